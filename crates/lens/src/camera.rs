@@ -1,0 +1,202 @@
+//! The camera: what is saved, and its checks.
+
+use crate::{Aperture, Optics};
+use glam::{DMat3, DMat4, DVec2, DVec3};
+
+/// A wide-aperture camera. Lengths in scene units, angles in radians.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Camera {
+    /// Picture width, px.
+    pub width: u32,
+    /// Picture height, px.
+    pub height: u32,
+    /// Full vertical angle of view, in (0, π).
+    pub yfov: f64,
+    /// Axial distance from the aperture to the focus plane, > 0; may be infinite.
+    pub focus_distance: f64,
+    /// Half the side of the square that the aperture lies in; 0 is a pinhole.
+    pub aperture_radius: f64,
+    /// Height of the sensor: decides how much blur a focus offset means.
+    pub sensor_height: f64,
+    /// Pose, a rigid motion; glTF axes: the camera looks down −Z, +Y up.
+    pub camera_to_world: DMat4,
+    /// Radiance where no surface is, linear RGB.
+    pub background: [f64; 3],
+    /// The aperture's shape.
+    pub aperture: Aperture,
+}
+
+/// What is wrong with a camera.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CameraError {
+    /// The field.
+    pub field: &'static str,
+    /// What it must be.
+    pub must: &'static str,
+}
+
+impl std::fmt::Display for CameraError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "camera: {} must be {}", self.field, self.must)
+    }
+}
+
+impl std::error::Error for CameraError {}
+
+impl Default for Camera {
+    /// A 50 mm lens at f/2 on a 24 mm high sensor, focused at 3, 960 × 540.
+    fn default() -> Self {
+        Self {
+            width: 960,
+            height: 540,
+            yfov: 2.0 * (12.0f64 / 50.0).atan(),
+            focus_distance: 3.0,
+            aperture_radius: 0.0125,
+            sensor_height: 0.024,
+            camera_to_world: DMat4::IDENTITY,
+            background: [0.0; 3],
+            aperture: Aperture::default(),
+        }
+    }
+}
+
+impl Camera {
+    /// The widest picture side that is accepted, px.
+    pub const LARGEST_SIDE_PX: u32 = 16384;
+
+    /// The first field that makes the camera unusable.
+    pub fn validate(&self) -> Result<(), CameraError> {
+        let require = |ok: bool, field, must| if ok { Ok(()) } else { Err(CameraError { field, must }) };
+        let side = 1..=Self::LARGEST_SIDE_PX;
+        let positive = |x: f64| x > 0.0 && x.is_finite();
+        require(side.contains(&self.width), "width", "1 to 16384 px")?;
+        require(side.contains(&self.height), "height", "1 to 16384 px")?;
+        require(self.yfov > 0.0 && self.yfov < std::f64::consts::PI, "yfov", "an angle in (0, π) rad")?;
+        require(self.focus_distance > 0.0, "focus_distance", "above 0, or \"inf\"")?;
+        require(
+            self.aperture_radius >= 0.0 && self.aperture_radius.is_finite(),
+            "aperture_radius",
+            "0 (a pinhole) or more, and finite",
+        )?;
+        require(positive(self.sensor_height), "sensor_height", "above 0 and finite")?;
+        require(
+            self.background.iter().all(|c| *c >= 0.0 && c.is_finite()),
+            "background",
+            "finite radiances of 0 or more",
+        )?;
+        let pose = self.camera_to_world;
+        require(pose.is_finite(), "camera_to_world", "finite")?;
+        let rotation = DMat3::from_mat4(pose);
+        let deviation = rotation.transpose() * rotation - DMat3::IDENTITY;
+        let rigid = deviation.to_cols_array().iter().all(|e| e.abs() < 1e-3) && rotation.determinant() > 0.0;
+        require(rigid, "camera_to_world", "a rigid motion (orthonormal axes, no mirroring)")?;
+        self.aperture.validate()
+    }
+
+    /// The numbers of the optics.
+    pub fn optics(&self) -> Optics {
+        let tan_half_yfov = (self.yfov / 2.0).tan();
+        Optics {
+            inverse_focus_distance: 1.0 / self.focus_distance,
+            image_distance: self.sensor_height / (2.0 * tan_half_yfov),
+            aperture_radius: self.aperture_radius,
+            tan_half_yfov,
+            half_height_px: self.height as f64 / 2.0,
+        }
+    }
+
+    /// The aperture's centre in the world.
+    pub fn position(&self) -> DVec3 {
+        self.camera_to_world.w_axis.truncate()
+    }
+
+    /// A world point in camera space (x right, y up, z forward).
+    pub fn camera_from_world(&self, point: DVec3) -> DVec3 {
+        self.camera_direction(point - self.position())
+    }
+
+    /// A world direction in camera space.
+    pub fn camera_direction(&self, direction: DVec3) -> DVec3 {
+        let m = &self.camera_to_world;
+        DVec3::new(
+            m.x_axis.truncate().dot(direction),
+            m.y_axis.truncate().dot(direction),
+            -m.z_axis.truncate().dot(direction),
+        )
+    }
+
+    /// A camera-space point in the world. Inverse of [`Self::camera_from_world`].
+    pub fn world_from_camera(&self, point: DVec3) -> DVec3 {
+        self.position() + self.world_direction(point)
+    }
+
+    /// A camera-space direction in the world. Inverse of [`Self::camera_direction`].
+    pub fn world_direction(&self, direction: DVec3) -> DVec3 {
+        let m = &self.camera_to_world;
+        m.x_axis.truncate() * direction.x + m.y_axis.truncate() * direction.y
+            - m.z_axis.truncate() * direction.z
+    }
+
+    /// Half the picture's width, in half-heights.
+    pub fn aspect(&self) -> f64 {
+        self.width as f64 / self.height as f64
+    }
+
+    /// The pixel position (x right, y down, (0, 0) the frame's upper left corner) of q in half-heights.
+    pub fn pixel_from_q(&self, q: DVec2) -> DVec2 {
+        let half_height = self.height as f64 / 2.0;
+        DVec2::new(self.width as f64 / 2.0 + q.x * half_height, half_height - q.y * half_height)
+    }
+
+    /// q in half-heights of a pixel position. Inverse of [`Self::pixel_from_q`].
+    pub fn q_from_pixel(&self, pixel: DVec2) -> DVec2 {
+        let half_height = self.height as f64 / 2.0;
+        DVec2::new((pixel.x - self.width as f64 / 2.0) / half_height, (half_height - pixel.y) / half_height)
+    }
+
+    /// The f-number f/(2R).
+    pub fn f_number(&self) -> f64 {
+        self.optics().focal_length() / (2.0 * self.aperture_radius)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn spaces_invert() {
+        let pose = DMat4::from_rotation_translation(
+            glam::DQuat::from_euler(glam::EulerRot::YXZ, 0.4, -0.3, 0.2),
+            DVec3::new(1.0, -2.0, 3.0),
+        );
+        let camera = Camera { camera_to_world: pose, ..Camera::default() };
+        camera.validate().unwrap();
+        let p = DVec3::new(0.3, -7.0, 2.0);
+        assert!(camera.world_from_camera(camera.camera_from_world(p)).distance(p) < 1e-12);
+        let pixel = DVec2::new(13.25, 400.5);
+        assert!(camera.pixel_from_q(camera.q_from_pixel(pixel)).distance(pixel) < 1e-12);
+        let ahead = pose.transform_point3(DVec3::new(0.0, 0.0, -2.0));
+        assert!(camera.camera_from_world(ahead).distance(DVec3::new(0.0, 0.0, 2.0)) < 1e-12);
+    }
+
+    #[test]
+    fn bad_fields_are_named() {
+        let good = Camera::default();
+        let bad = [
+            (Camera { width: 0, ..good.clone() }, "width"),
+            (Camera { yfov: f64::NAN, ..good.clone() }, "yfov"),
+            (Camera { focus_distance: 0.0, ..good.clone() }, "focus_distance"),
+            (Camera { aperture_radius: -1.0, ..good.clone() }, "aperture_radius"),
+            (Camera { sensor_height: f64::INFINITY, ..good.clone() }, "sensor_height"),
+            (
+                Camera { camera_to_world: DMat4::from_scale(DVec3::splat(2.0)), ..good.clone() },
+                "camera_to_world",
+            ),
+        ];
+        for (camera, field) in bad {
+            assert_eq!(camera.validate().unwrap_err().field, field);
+        }
+        Camera { focus_distance: f64::INFINITY, aperture_radius: 0.0, ..good }.validate().unwrap();
+    }
+}

@@ -1,0 +1,25 @@
+//! The camera and its optics.
+//!
+//! All of focusing is one signed number a point, the *defocus* κ (see [`Optics::kappa`]); every other crate
+//! takes κ and the landing point q from here, so that splat, ground truth and tests share one formula.
+//!
+//! * [`Camera`]: what is saved: resolution, field of view, focus distance, aperture, pose.
+//! * [`Optics`]: the same, reduced to the numbers of the formula, for inner loops.
+//! * [`FocusOffset`]: what is painted: t and its anchor a.
+//! * [`Aperture`]: its shape, how to sample it and how to cut it into rows.
+//! * [`Picture`]: what comes out: radiance and coverage a pixel, and the two exposures.
+//!
+//! Camera space: aperture centre at the origin, x right, y up, z forward (depth, > 0 in front). f64
+//! throughout, lengths in scene units (metres in glTF).
+
+mod aperture;
+mod camera;
+mod focus_offset;
+mod optics;
+mod picture;
+
+pub use aperture::{Aperture, ApertureMask, ApertureRow, ApertureRows, ApertureSampler, ApertureShape, Run};
+pub use camera::{Camera, CameraError};
+pub use focus_offset::FocusOffset;
+pub use optics::Optics;
+pub use picture::{Exposure, Picture};

@@ -1,0 +1,249 @@
+//! The scene in memory: flat, world space, triangles only.
+
+use glam::{DMat4, DVec3, Mat3, Vec2, Vec3, Vec4};
+use std::ops::Range;
+use std::path::PathBuf;
+
+/// A scene: triangles in world space with their materials, and what lights and views them.
+///
+/// Instances are flattened: each (node, instance, primitive) is a [`Part`] with vertices of its own, so that
+/// every instance can be painted apart. Vertex arrays run in parallel to `positions`; an array of an attribute
+/// that no part has is empty.
+#[derive(Clone, Debug, Default)]
+pub struct Scene {
+    /// The file it was read from.
+    pub path: PathBuf,
+    /// World positions.
+    pub positions: Vec<DVec3>,
+    /// Unit shading normals in world space; zero where the file gives none (shade flat).
+    pub normals: Vec<Vec3>,
+    /// Texture coordinates of sets 0 and 1 (glTF: origin at the image's upper left).
+    pub uv: [Vec<Vec2>; 2],
+    /// Linear vertex colours, multiplied into the base colour; 1 where the file gives none.
+    pub colors: Vec<Vec4>,
+    /// Counter-clockwise seen from the front, negative scales already undone.
+    pub triangles: Vec<Triangle>,
+    /// What the triangles belong to, in order; their ranges tile `triangles`.
+    pub parts: Vec<Part>,
+    /// The nodes that have parts.
+    pub nodes: Vec<Node>,
+    /// Materials; the last may be glTF's default material.
+    pub materials: Vec<Material>,
+    /// Decoded images that the materials refer to.
+    pub images: Vec<Image>,
+    /// Lights in world space.
+    pub lights: Vec<Light>,
+    /// Perspective cameras in file order. Never empty: a scene without one gets a framing of its own.
+    pub cameras: Vec<SceneCamera>,
+    /// Whether the first camera was made up because the file has none.
+    pub camera_is_invented: bool,
+    /// Whether the lights were made up because the file has none and needs some.
+    pub lights_are_invented: bool,
+    /// What was wrong with the file but did no harm, a sentence each.
+    pub warnings: Vec<String>,
+}
+
+/// Three corners and the part they belong to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Triangle {
+    /// Indices into the vertex arrays.
+    pub vertices: [u32; 3],
+    /// Index into [`Scene::parts`].
+    pub part: u32,
+}
+
+/// One primitive of one instance of a mesh.
+#[derive(Clone, Debug)]
+pub struct Part {
+    /// Index into [`Scene::nodes`].
+    pub node: u32,
+    /// Index into [`Scene::materials`].
+    pub material: u32,
+    /// Its triangles.
+    pub triangles: Range<u32>,
+    /// Which of the two UV sets the primitive has.
+    pub has_uv: [bool; 2],
+    /// Whether the transform mirrored it (its UVs then run the other way round).
+    pub mirrored: bool,
+}
+
+/// A node (and, for EXT_mesh_gpu_instancing, one of its instances).
+#[derive(Clone, Debug)]
+pub struct Node {
+    /// Its name in the file, or `node N`.
+    pub name: String,
+    /// Its index in the file.
+    pub index: u32,
+}
+
+/// A material, reduced to what light transport here uses.
+#[derive(Clone, Debug)]
+pub struct Material {
+    /// Its name in the file, or `material N`.
+    pub name: String,
+    /// Linear base colour and opacity.
+    pub base_color: Vec4,
+    /// sRGB image multiplied into the base colour.
+    pub base_color_texture: Option<TextureRef>,
+    /// Linear emitted radiance, emissive strength included.
+    pub emissive: Vec3,
+    /// sRGB image multiplied into the emitted radiance.
+    pub emissive_texture: Option<TextureRef>,
+    /// Metalness in [0, 1].
+    pub metallic: f32,
+    /// Roughness in [0, 1].
+    pub roughness: f32,
+    /// KHR_materials_specular's factor (1 without the extension).
+    pub specular: f32,
+    /// KHR_materials_unlit: the base colour is the radiance.
+    pub unlit: bool,
+    /// How opacity is used.
+    pub alpha: AlphaMode,
+    /// Whether the back is shaded as the front is; else the back emits nothing.
+    pub double_sided: bool,
+}
+
+/// How a material's opacity is used.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum AlphaMode {
+    /// Ignored.
+    Opaque,
+    /// A point is there where opacity ≥ the cutoff.
+    Mask(f32),
+    /// A point lets 1 − opacity of the light behind it pass.
+    Blend,
+}
+
+/// How a texture is looked up.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TextureRef {
+    /// Index into [`Scene::images`].
+    pub image: u32,
+    /// UV set, 0 or 1.
+    pub uv_set: u8,
+    /// KHR_texture_transform: uv' = transform · (u, v, 1).
+    pub transform: Mat3,
+    /// Wrap in u and v.
+    pub wrap: [Wrap; 2],
+    /// Whether the sampler asks for nearest texels (magnification).
+    pub nearest: bool,
+}
+
+/// What a texture shows outside [0, 1].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum Wrap {
+    /// Starts over.
+    #[default]
+    Repeat,
+    /// Keeps its border.
+    Clamp,
+    /// Runs back and forth.
+    Mirror,
+}
+
+/// A decoded image: encoded values as in the file, four channels a texel, row 0 on top.
+#[derive(Clone, Debug)]
+pub struct Image {
+    /// Its name or URI, for messages.
+    pub name: String,
+    /// Columns.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+    /// RGBA texels.
+    pub texels: ImageLevel,
+}
+
+/// The texels of an image, RGBA interleaved; colour is sRGB-encoded, opacity linear.
+#[derive(Clone, Debug)]
+pub enum ImageLevel {
+    /// 8 bits a channel.
+    Bits8(Vec<u8>),
+    /// 16 bits a channel.
+    Bits16(Vec<u16>),
+}
+
+/// A punctual light in world space (KHR_lights_punctual).
+#[derive(Clone, Debug)]
+pub struct Light {
+    /// Its name, for messages.
+    pub name: String,
+    /// Kind and its extent.
+    pub kind: LightKind,
+    /// Linear colour times intensity: radiant intensity (W/sr) of point and spot, irradiance of directional.
+    pub intensity: Vec3,
+    /// Position (not for directional lights).
+    pub position: DVec3,
+    /// Unit direction in which it shines.
+    pub direction: DVec3,
+    /// Beyond this distance it does not shine; infinite unless the file says so.
+    pub range: f64,
+}
+
+/// What kind of light.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum LightKind {
+    /// The same in every direction.
+    Point,
+    /// A cone; half angles in rad.
+    Spot {
+        /// Full intensity within.
+        inner: f64,
+        /// Nothing beyond.
+        outer: f64,
+    },
+    /// Parallel light from infinity.
+    Directional,
+    /// The same radiance from everywhere (made up for a scene without light); `intensity` is that radiance.
+    Ambient,
+}
+
+/// A perspective camera of the file.
+#[derive(Clone, Debug)]
+pub struct SceneCamera {
+    /// Its name, or its node's, or `camera N`.
+    pub name: String,
+    /// Rigid pose, glTF axes; scale of the node hierarchy removed.
+    pub camera_to_world: DMat4,
+    /// Full vertical angle of view, rad.
+    pub yfov: f64,
+    /// Width over height, if the file says so.
+    pub aspect: Option<f64>,
+    /// A focus distance that suits the scene: to the first surface ahead, or the middle of the scene.
+    pub focus_distance: f64,
+}
+
+impl Scene {
+    /// The world positions of a triangle's corners.
+    pub fn corners(&self, triangle: u32) -> [DVec3; 3] {
+        self.triangles[triangle as usize].vertices.map(|v| self.positions[v as usize])
+    }
+
+    /// The part that a triangle belongs to.
+    pub fn part_of(&self, triangle: u32) -> &Part {
+        &self.parts[self.triangles[triangle as usize].part as usize]
+    }
+
+    /// The material of a triangle.
+    pub fn material_of(&self, triangle: u32) -> &Material {
+        &self.materials[self.part_of(triangle).material as usize]
+    }
+
+    /// The texture coordinates of a triangle's corners; zero where the part has none.
+    pub fn corner_uv(&self, triangle: u32, set: u8) -> [Vec2; 3] {
+        let uv = &self.uv[set as usize];
+        self.triangles[triangle as usize].vertices.map(|v| uv.get(v as usize).copied().unwrap_or_default())
+    }
+
+    /// The geometric normal of a triangle, its length twice the area; zero for a degenerate triangle.
+    pub fn area_normal(&self, triangle: u32) -> DVec3 {
+        let [a, b, c] = self.corners(triangle);
+        (b - a).cross(c - a)
+    }
+
+    /// The corners of the box around all triangles.
+    pub fn bounds(&self) -> (DVec3, DVec3) {
+        let corners = self.triangles.iter().flat_map(|t| t.vertices).map(|v| self.positions[v as usize]);
+        corners.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)))
+    }
+}
