@@ -1,0 +1,3 @@
+//! Focus Brush: the window and the command line, both thin over the `session` crate.
+
+pub mod window;

@@ -1,0 +1,10 @@
+//! The window.
+
+use std::path::PathBuf;
+
+/// What the window starts with.
+#[derive(Clone, Debug, Default)]
+pub struct WindowOptions {
+    /// A scene or project to open; the demo when there is none.
+    pub file: Option<PathBuf>,
+}
