@@ -1,1 +1,3 @@
+//! `focus-brush`: the window and the command line.
+
 fn main() {}
