@@ -1,1 +1,49 @@
-fn main() {}
+//! `cargo xtask CHORE`: what a developer does with this repository.
+//!
+//! * `run [FILE…]` installs what is missing, builds `focus-brush` and opens it; without a display it renders the
+//!   demo to a picture.
+//! * `test [ARG…]` installs what is missing and runs the whole test suite.
+//! * `ci` is everything that must be green: crate directions, licences, formatting, lints, docs, tests.
+//! * `demo` makes the demo scene in `assets/demo` anew.
+//!
+//! Pure Rust without build scripts of its own, so that it runs where only Rust and a C linker are.
+
+mod chore;
+mod ci;
+mod crate_directions;
+mod licences;
+mod packages;
+mod run;
+
+use chore::Failure;
+
+const USAGE: &str = "\
+usage: cargo xtask CHORE
+
+  run [FILE…]   install what is missing, build focus-brush and open it
+                (with no display: render the demo to a picture)
+  test [ARG…]   install what is missing and run all tests; ARGs go to cargo test
+  ci            crate directions, licences, formatting, lints, docs, tests";
+
+fn main() -> std::process::ExitCode {
+    let mut arguments = std::env::args_os().skip(1);
+    let chore = arguments.next().map(|a| a.to_string_lossy().into_owned()).unwrap_or_default();
+    let rest: Vec<_> = arguments.collect();
+    let outcome = match chore.as_str() {
+        "run" => run::run(&rest),
+        "test" => run::test(&rest),
+        "ci" => ci::ci(),
+        "" | "help" | "-h" | "--help" => {
+            println!("{USAGE}");
+            Ok(())
+        }
+        other => Err(Failure::new(format!("{other}: there is no such chore\n\n{USAGE}"))),
+    };
+    match outcome {
+        Ok(()) => std::process::ExitCode::SUCCESS,
+        Err(failure) => {
+            eprintln!("error: {failure}");
+            std::process::ExitCode::from(failure.exit_code())
+        }
+    }
+}

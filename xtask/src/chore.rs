@@ -1,0 +1,78 @@
+//! What all chores share: where the repository is, how a command is run, how a chore fails.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// Why a chore ended early: a sentence for the person who started it, and the exit code.
+#[derive(Debug)]
+pub struct Failure {
+    message: String,
+    exit_code: u8,
+}
+
+impl Failure {
+    /// A failure with exit code 1.
+    pub fn new(message: impl Into<String>) -> Self {
+        Self { message: message.into(), exit_code: 1 }
+    }
+
+    /// The code that the process should end with.
+    pub fn exit_code(&self) -> u8 {
+        self.exit_code
+    }
+}
+
+impl std::fmt::Display for Failure {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(&self.message)
+    }
+}
+
+/// The root of the repository.
+pub fn repository() -> PathBuf {
+    let own = std::env::var_os("CARGO_MANIFEST_DIR").map(PathBuf::from);
+    let own = own.unwrap_or_else(|| PathBuf::from(env!("CARGO_MANIFEST_DIR")));
+    own.parent().map(Path::to_path_buf).unwrap_or(own)
+}
+
+/// Cargo, for this repository: the one that runs this chore.
+pub fn cargo(subcommand: &str) -> Command {
+    let mut command = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+    command.arg(subcommand).arg("--manifest-path").arg(repository().join("Cargo.toml"));
+    command
+}
+
+/// Runs a command to its end; its output goes where ours goes.
+///
+/// # Errors
+/// When it does not start, or ends with a code other than 0 (which becomes ours).
+pub fn execute(command: &mut Command) -> Result<(), Failure> {
+    let shown = shown(command);
+    let status = command.status().map_err(|e| Failure::new(format!("{shown}: does not start: {e}")))?;
+    if status.success() {
+        return Ok(());
+    }
+    let exit_code = status.code().and_then(|code| u8::try_from(code).ok()).unwrap_or(1);
+    Err(Failure { message: format!("{shown}: failed ({status})"), exit_code })
+}
+
+/// Runs a command and returns what it printed.
+///
+/// # Errors
+/// When it does not start or ends with a code other than 0; the message holds what it said.
+pub fn output_of(command: &mut Command) -> Result<Vec<u8>, Failure> {
+    let shown = shown(command);
+    let output = command.output().map_err(|e| Failure::new(format!("{shown}: does not start: {e}")))?;
+    if output.status.success() {
+        return Ok(output.stdout);
+    }
+    let said = String::from_utf8_lossy(&output.stderr);
+    Err(Failure::new(format!("{shown}: failed ({})\n{}", output.status, said.trim_end())))
+}
+
+/// A command as a person would type it.
+pub fn shown(command: &Command) -> String {
+    let program = Path::new(command.get_program()).file_name().unwrap_or(command.get_program());
+    let words = std::iter::once(program).chain(command.get_args());
+    words.map(|word| word.to_string_lossy().into_owned()).collect::<Vec<_>>().join(" ")
+}

@@ -1,0 +1,117 @@
+//! Which crate may depend on which: the layout of ARCHITECTURE.md as a table, checked against the manifests.
+
+use crate::chore::{Failure, cargo, output_of};
+use serde_json::Value;
+
+/// Each crate of the workspace and the crates of the workspace it may depend on.
+const ALLOWED: &[(&str, &[&str])] = &[
+    ("lens", &[]),
+    ("progress", &[]),
+    ("scene", &["lens", "progress"]),
+    ("atlas", &["scene", "progress"]),
+    ("trace", &["scene", "lens", "progress"]),
+    ("slf", &["trace", "scene", "atlas"]),
+    ("salf", &["slf", "trace", "scene", "lens", "progress"]),
+    ("focus", &["atlas", "scene", "lens"]),
+    ("splat", &["salf", "focus", "scene", "lens", "progress"]),
+    ("project", &["scene", "focus", "atlas", "lens"]),
+    ("session", &["lens", "progress", "scene", "atlas", "trace", "slf", "salf", "focus", "splat", "project"]),
+    (
+        "focus-brush",
+        &[
+            "lens", "progress", "scene", "atlas", "trace", "slf", "salf", "focus", "splat", "project",
+            "session",
+        ],
+    ),
+    ("xtask", &[]),
+];
+
+/// Crates from elsewhere, by how their names begin, and the only crates that may know them.
+const RESERVED: &[(&str, &[&str])] = &[
+    ("eframe", &["focus-brush"]),
+    ("egui", &["focus-brush"]),
+    ("wgpu", &["focus-brush", "splat"]),
+    ("rfd", &["focus-brush"]),
+    ("anyhow", &["focus-brush"]),
+    ("clap", &["focus-brush"]),
+    ("xatlas", &["atlas"]),
+];
+
+/// Checks the workspace as it is.
+pub fn check() -> Result<(), Failure> {
+    let metadata = output_of(cargo("metadata").args(["--no-deps", "--format-version", "1"]))?;
+    let metadata: Value =
+        serde_json::from_slice(&metadata).map_err(|e| Failure::new(format!("cargo metadata: {e}")))?;
+    let wrong = violations(&metadata);
+    if wrong.is_empty() {
+        return Ok(());
+    }
+    Err(Failure::new(format!("crate directions (see ARCHITECTURE.md):\n  {}", wrong.join("\n  "))))
+}
+
+/// What the table forbids in the output of `cargo metadata --no-deps`, a sentence each.
+fn violations(metadata: &Value) -> Vec<String> {
+    let mut wrong = Vec::new();
+    for package in metadata["packages"].as_array().into_iter().flatten() {
+        let name = package["name"].as_str().unwrap_or_default();
+        let Some((_, allowed)) = ALLOWED.iter().find(|(of, _)| *of == name) else {
+            wrong.push(format!("{name} is not in the table (xtask/src/crate_directions.rs)"));
+            continue;
+        };
+        for dependency in package["dependencies"].as_array().into_iter().flatten() {
+            let on = dependency["name"].as_str().unwrap_or_default();
+            let ours = ALLOWED.iter().any(|(of, _)| *of == on);
+            // A test may look at a crate from above.
+            let for_tests = dependency["kind"] == "dev";
+            if ours && !for_tests && !allowed.contains(&on) {
+                wrong.push(format!("{name} may not depend on {on}"));
+            }
+            let reserved = RESERVED.iter().find(|(prefix, _)| on.starts_with(prefix));
+            if let Some((_, knowing)) = reserved.filter(|(_, knowing)| !knowing.contains(&name)) {
+                wrong.push(format!("{name} may not know {on} (only {} may)", knowing.join(" and ")));
+            }
+        }
+    }
+    wrong
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    fn package(name: &str, dependencies: &[(&str, Option<&str>)]) -> Value {
+        let dependencies: Vec<_> =
+            dependencies.iter().map(|(name, kind)| json!({"name": name, "kind": kind})).collect();
+        json!({"name": name, "dependencies": dependencies})
+    }
+
+    #[test]
+    fn the_workspace_keeps_its_directions() {
+        check().unwrap_or_else(|failure| panic!("{failure}"));
+    }
+
+    #[test]
+    fn what_the_table_forbids_is_found() {
+        let metadata = json!({"packages": [
+            package("lens", &[("glam", None), ("scene", None)]),
+            package("salf", &[("wgpu", None)]),
+            package("session", &[("egui_tiles", Some("dev"))]),
+            package("helper", &[]),
+        ]});
+        let wrong = violations(&metadata).join("\n");
+        assert!(wrong.contains("lens may not depend on scene"), "{wrong}");
+        assert!(wrong.contains("salf may not know wgpu"), "{wrong}");
+        assert!(wrong.contains("session may not know egui_tiles"), "{wrong}");
+        assert!(wrong.contains("helper is not in the table"), "{wrong}");
+    }
+
+    #[test]
+    fn what_the_table_allows_passes() {
+        let metadata = json!({"packages": [
+            package("splat", &[("salf", None), ("wgpu", None), ("project", Some("dev"))]),
+            package("focus-brush", &[("egui", None), ("session", None)]),
+        ]});
+        assert_eq!(violations(&metadata), Vec::<String>::new());
+    }
+}

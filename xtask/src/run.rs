@@ -1,0 +1,63 @@
+//! `run` opens the program on the demo or on files; `test` runs all tests.
+
+use crate::chore::{Failure, cargo, execute, repository};
+use crate::packages::{TO_BUILD, TO_RUN, install_missing};
+use std::ffi::OsString;
+use std::path::Path;
+use std::process::Command;
+
+/// Builds and opens `focus-brush` with these arguments; where there is no display and nothing but files is asked
+/// for, renders them (or the demo) to pictures instead.
+pub fn run(arguments: &[OsString]) -> Result<(), Failure> {
+    install_missing(&[TO_BUILD, TO_RUN])?;
+    let is_file = |argument: &OsString| Path::new(argument).exists();
+    if has_display() || !arguments.iter().all(is_file) {
+        return focus_brush(arguments);
+    }
+    if arguments.is_empty() {
+        let demo = repository().join("assets/demo");
+        let options = [
+            demo.join("demo.glb").into_os_string(),
+            "--camera".into(),
+            demo.join("demo.camera.json").into_os_string(),
+            "--focus".into(),
+            demo.join("demo.focus.json").into_os_string(),
+        ];
+        return render("demo", &options);
+    }
+    for file in arguments {
+        let stem = Path::new(file).file_stem().unwrap_or(file).to_string_lossy();
+        render(&stem, std::slice::from_ref(file))?;
+    }
+    Ok(())
+}
+
+/// Runs the whole test suite; the arguments go to `cargo test`.
+pub fn test(arguments: &[OsString]) -> Result<(), Failure> {
+    install_missing(&[TO_BUILD, TO_RUN])?;
+    execute(cargo("test").arg("--workspace").args(arguments))
+}
+
+fn render(stem: &str, options: &[OsString]) -> Result<(), Failure> {
+    let folder = repository().join("target/pictures");
+    std::fs::create_dir_all(&folder).map_err(|e| Failure::new(format!("{}: {e}", folder.display())))?;
+    let picture = folder.join(format!("{stem}.png"));
+    eprintln!("There is no display here: rendering {stem} to a picture.");
+    let mut arguments = vec![OsString::from("render")];
+    arguments.extend_from_slice(options);
+    arguments.extend(["-o".into(), picture.clone().into_os_string()]);
+    focus_brush(&arguments)?;
+    println!("The picture is {}", picture.display());
+    Ok(())
+}
+
+fn focus_brush(arguments: &[OsString]) -> Result<(), Failure> {
+    execute(cargo("build").args(["--package", "focus-brush"]))?;
+    let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| repository().join("target"), Into::into);
+    execute(Command::new(target.join("debug/focus-brush")).args(arguments))
+}
+
+fn has_display() -> bool {
+    let set = |name| std::env::var_os(name).is_some_and(|value| !value.is_empty());
+    !cfg!(target_os = "linux") || set("DISPLAY") || set("WAYLAND_DISPLAY")
+}
