@@ -1,0 +1,95 @@
+//! What can be wrong with a scene file.
+
+use progress::Cancelled;
+use std::path::PathBuf;
+
+/// Why a scene did not open. Displays as `FILE: what is wrong (what to do)`.
+#[derive(Debug, thiserror::Error)]
+pub enum SceneError {
+    /// The file was read, but holds no triangle, so there is nothing to see. [`crate::inspect`] still opens it.
+    #[error("{}: no triangle: {why} (export at least one visible mesh made of triangles)", file.display())]
+    NoTriangles {
+        /// The scene file.
+        file: PathBuf,
+        /// What it holds instead.
+        why: String,
+    },
+    /// The file cannot be read as a scene.
+    #[error("{}: {fault}", file.display())]
+    Bad {
+        /// The scene file.
+        file: PathBuf,
+        /// What is wrong with it, where, and what to do.
+        fault: Fault,
+    },
+    /// Loading was called off.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+}
+
+/// What is wrong inside a scene file.
+#[derive(Debug, thiserror::Error)]
+pub enum Fault {
+    /// The file itself cannot be read.
+    #[error("cannot be read: {0} (check the path and its permissions)")]
+    Unreadable(std::io::Error),
+    /// The file is no glTF.
+    #[error("not a glTF 2.0 file: {0} (export it again as .glb or .gltf)")]
+    NotGltf(String),
+    /// A part of the document that the picture needs is missing or malformed.
+    #[error("{place}: {what} (correct the file or export it again)")]
+    Malformed {
+        /// JSON pointer to the place.
+        place: String,
+        /// What is wrong there.
+        what: String,
+    },
+    /// A file that the scene refers to cannot be had.
+    #[error("{place}: {uri}: {what}")]
+    Resource {
+        /// JSON pointer to what refers to it.
+        place: String,
+        /// The reference, shortened.
+        uri: String,
+        /// What is wrong and what to do.
+        what: String,
+    },
+    /// The file needs an extension that is not understood.
+    #[error("it requires the extension {extension}, which is not supported ({cure})")]
+    Extension {
+        /// The extension's name.
+        extension: String,
+        /// What to do.
+        cure: String,
+    },
+    /// A limit of [`crate::LoadOptions`] was passed.
+    #[error("{what} (simplify the scene or raise the limit)")]
+    TooBig {
+        /// What is too big, and the limit.
+        what: String,
+    },
+    /// A decoder gave up in an unforeseen way.
+    #[error("the decoder failed: {0} (export the file again; this file shows a flaw of the importer)")]
+    Panicked(String),
+}
+
+/// What stops loading below the level that knows the file's name.
+#[derive(Debug)]
+pub(crate) enum Stop {
+    /// Something is wrong.
+    Fault(Fault),
+    /// Nobody wants the scene any more.
+    Cancelled,
+}
+
+impl From<Fault> for Stop {
+    fn from(fault: Fault) -> Self {
+        Self::Fault(fault)
+    }
+}
+
+impl From<Cancelled> for Stop {
+    fn from(_: Cancelled) -> Self {
+        Self::Cancelled
+    }
+}

@@ -1,0 +1,19 @@
+//! How much of the machine a scene file may use.
+
+/// Limits that keep a hostile or mistaken file from taking the machine.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LoadOptions {
+    /// Bytes that loading may hold at once: files, decoded images, vertices and triangles together.
+    pub max_memory: u64,
+    /// Triangles after instancing.
+    pub max_triangles: u64,
+    /// Texels of one image.
+    pub max_texels: u64,
+}
+
+impl Default for LoadOptions {
+    /// 768 MiB (so that the whole program stays below 1 GiB), 5 million triangles, images up to 8192².
+    fn default() -> Self {
+        Self { max_memory: 768 << 20, max_triangles: 5_000_000, max_texels: 8192 * 8192 }
+    }
+}

@@ -1,0 +1,96 @@
+//! What the surface looks like at a point: base colour, own light, opacity, normal.
+
+use crate::{AlphaMode, Material, Scene, SurfacePoint, TextureRef};
+use glam::{DVec3, Vec2, Vec3, Vec4};
+
+impl Material {
+    /// Whether some point of it may let light through ([`AlphaMode::Mask`] and [`AlphaMode::Blend`]).
+    pub fn may_be_transparent(&self) -> bool {
+        self.alpha != AlphaMode::Opaque
+    }
+
+    /// Whether it sends light of its own: unlit, or emissive.
+    pub fn emits(&self) -> bool {
+        self.unlit || self.emissive != Vec3::ZERO
+    }
+}
+
+impl Scene {
+    /// The texture coordinates of set 0 or 1 at a point; zero where the part has none.
+    #[inline]
+    pub fn uv_at(&self, point: SurfacePoint, set: u8) -> Vec2 {
+        let uv = &self.uv[set as usize];
+        if uv.is_empty() {
+            return Vec2::ZERO;
+        }
+        let [a, b, c] = self.triangles[point.triangle as usize].vertices.map(|v| uv[v as usize]);
+        let [wa, wb, wc] = point.weights();
+        (a.as_dvec2() * wa + b.as_dvec2() * wb + c.as_dvec2() * wc).as_vec2()
+    }
+
+    /// The linear vertex colour at a point; 1 where the part has none.
+    #[inline]
+    pub fn color_at(&self, point: SurfacePoint) -> Vec4 {
+        if self.colors.is_empty() {
+            return Vec4::ONE;
+        }
+        let [a, b, c] = self.triangles[point.triangle as usize].vertices.map(|v| self.colors[v as usize]);
+        let [wa, wb, wc] = point.weights().map(|w| w as f32);
+        a * wa + b * wb + c * wc
+    }
+
+    /// A texture's linear RGBA at a point of the surface.
+    #[inline]
+    pub fn texture_at(&self, texture: &TextureRef, point: SurfacePoint) -> Vec4 {
+        self.sample_texture(texture, self.uv_at(point, texture.uv_set))
+    }
+
+    /// Linear base colour (factor × texture × vertex colour); opacity in w, before the alpha mode is applied.
+    pub fn base_color(&self, point: SurfacePoint) -> Vec4 {
+        let material = self.material_of(point.triangle);
+        let mut color = material.base_color * self.color_at(point);
+        if let Some(texture) = &material.base_color_texture {
+            color *= self.texture_at(texture, point);
+        }
+        color
+    }
+
+    /// The radiance that the surface sends by itself: the base colour of an unlit material, else the emissive
+    /// factor × texture. Whether the back sends it too is for the caller ([`Material::double_sided`]).
+    pub fn emitted(&self, point: SurfacePoint) -> Vec3 {
+        let material = self.material_of(point.triangle);
+        if material.unlit {
+            return self.base_color(point).truncate();
+        }
+        match &material.emissive_texture {
+            Some(texture) if material.emissive != Vec3::ZERO => {
+                material.emissive * self.texture_at(texture, point).truncate()
+            }
+            _ => material.emissive,
+        }
+    }
+
+    /// The share of light that the surface stops, in [0, 1], the alpha mode applied: 1 if opaque, 0 or 1 if masked.
+    pub fn opacity(&self, point: SurfacePoint) -> f32 {
+        match self.material_of(point.triangle).alpha {
+            AlphaMode::Opaque => 1.0,
+            AlphaMode::Mask(cutoff) => f32::from(self.base_color(point).w >= cutoff),
+            AlphaMode::Blend => self.base_color(point).w.clamp(0.0, 1.0),
+        }
+    }
+
+    /// The unit normal for shading: interpolated where the file has normals, else the triangle's own, on the
+    /// side from which the triangle runs counter-clockwise. Zero for a degenerate triangle without normals.
+    pub fn shading_normal(&self, point: SurfacePoint) -> DVec3 {
+        if !self.normals.is_empty() {
+            let [a, b, c] =
+                self.triangles[point.triangle as usize].vertices.map(|v| self.normals[v as usize].as_dvec3());
+            let [wa, wb, wc] = point.weights();
+            let normal = (a * wa + b * wb + c * wc).normalize_or_zero();
+            if normal != DVec3::ZERO {
+                return normal;
+            }
+        }
+        self.area_normal(point.triangle).normalize_or_zero()
+    }
+}

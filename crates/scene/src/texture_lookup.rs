@@ -1,0 +1,151 @@
+//! Texture lookup: the colour of an image at texture coordinates.
+//!
+//! The rule of glTF: (0, 0) is the upper left corner of the upper left texel, texel centres lie at +0.5,
+//! colour is decoded from sRGB texel by texel *before* it is filtered, opacity is linear. There are no mip-maps:
+//! whoever looks up texels over an area averages them.
+
+use crate::{Image, ImageLevel, Scene, TextureRef, Wrap};
+use glam::{Vec2, Vec3, Vec4};
+use std::sync::LazyLock;
+
+/// sRGB decoding of 8-bit values.
+static LINEAR_FROM_8: LazyLock<[f32; 256]> =
+    LazyLock::new(|| std::array::from_fn(|v| decode(v as f64 / 255.0)));
+/// sRGB decoding of 16-bit values.
+static LINEAR_FROM_16: LazyLock<Vec<f32>> =
+    LazyLock::new(|| (0..=65535).map(|v| decode(v as f64 / 65535.0)).collect());
+
+/// IEC 61966-2-1, encoded to linear.
+fn decode(v: f64) -> f32 {
+    (if v <= 0.04045 { v / 12.92 } else { ((v + 0.055) / 1.055).powf(2.4) }) as f32
+}
+
+impl Wrap {
+    /// The texel that stands at `i` of a row of `n` texels.
+    #[inline]
+    fn fold(self, i: i32, n: i32) -> i32 {
+        if (i as u32) < (n as u32) {
+            return i;
+        }
+        match self {
+            Self::Repeat => i.rem_euclid(n),
+            Self::Clamp => i.clamp(0, n - 1),
+            Self::Mirror => {
+                let m = i64::from(i).rem_euclid(2 * i64::from(n)) as i32;
+                if m < n { m } else { 2 * n - 1 - m }
+            }
+        }
+    }
+}
+
+impl Image {
+    /// Linear RGBA of the texel in column `x` of row `y`, both within the image.
+    #[inline]
+    pub fn texel(&self, x: u32, y: u32) -> Vec4 {
+        let at = 4 * (y as usize * self.width as usize + x as usize);
+        match &self.texels {
+            ImageLevel::Bits8(data) => {
+                let t = &data[at..at + 4];
+                let lut = &*LINEAR_FROM_8;
+                let [r, g, b] = [t[0], t[1], t[2]].map(|v| lut[v as usize]);
+                Vec4::new(r, g, b, f32::from(t[3]) * (1.0 / 255.0))
+            }
+            ImageLevel::Bits16(data) => {
+                let t = &data[at..at + 4];
+                let lut = &*LINEAR_FROM_16;
+                let [r, g, b] = [t[0], t[1], t[2]].map(|v| lut[v as usize]);
+                Vec4::new(r, g, b, f32::from(t[3]) * (1.0 / 65535.0))
+            }
+        }
+    }
+
+    /// Linear RGBA at texture coordinates.
+    #[inline]
+    pub fn sample(&self, uv: Vec2, wrap: [Wrap; 2], nearest: bool) -> Vec4 {
+        let (w, h) = (self.width as i32, self.height as i32);
+        let texel = |x: i32, y: i32| self.texel(wrap[0].fold(x, w) as u32, wrap[1].fold(y, h) as u32);
+        let at = uv * Vec2::new(w as f32, h as f32);
+        if nearest {
+            return texel(at.x.floor() as i32, at.y.floor() as i32);
+        }
+        let at = at - 0.5;
+        let low = at.floor();
+        let f = at - low;
+        // Not more than half the range of i32, so that the right neighbour has a number too.
+        let (x, y) = ((low.x as i32).clamp(-(1 << 30), 1 << 30), (low.y as i32).clamp(-(1 << 30), 1 << 30));
+        let top = texel(x, y) * (1.0 - f.x) + texel(x + 1, y) * f.x;
+        let bottom = texel(x, y + 1) * (1.0 - f.x) + texel(x + 1, y + 1) * f.x;
+        top * (1.0 - f.y) + bottom * f.y
+    }
+}
+
+impl Scene {
+    /// Linear RGBA of a texture at the mesh's texture coordinates (its transform is applied here).
+    #[inline]
+    pub fn sample_texture(&self, texture: &TextureRef, uv: Vec2) -> Vec4 {
+        let image = &self.images[texture.image as usize];
+        let uv = (texture.transform * Vec3::new(uv.x, uv.y, 1.0)).truncate();
+        image.sample(uv, texture.wrap, texture.nearest)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn row() -> Image {
+        let texels = ImageLevel::Bits8(vec![0, 0, 0, 255, 255, 0, 0, 255, 0, 255, 0, 0, 255, 255, 255, 255]);
+        Image { name: "row".into(), width: 4, height: 1, texels }
+    }
+
+    fn at(x: f32, wrap: Wrap) -> Vec4 {
+        row().sample(Vec2::new(x / 4.0, 0.5), [wrap; 2], false)
+    }
+
+    #[test]
+    fn texel_centres_are_at_half() {
+        assert_eq!(at(1.5, Wrap::Repeat), Vec4::new(1.0, 0.0, 0.0, 1.0));
+        assert_eq!(at(2.5, Wrap::Repeat), Vec4::new(0.0, 1.0, 0.0, 0.0));
+        assert_ne!(at(1.6, Wrap::Repeat), Vec4::new(1.0, 0.0, 0.0, 1.0));
+    }
+
+    #[test]
+    fn colour_is_decoded_before_it_is_filtered() {
+        // Between black and full red lies half the light, not the light of the encoded middle (0.214).
+        assert_eq!(at(1.0, Wrap::Repeat).x, 0.5);
+    }
+
+    #[test]
+    fn wraps() {
+        assert_eq!(at(0.0, Wrap::Repeat).x, 0.5);
+        assert_eq!(at(0.0, Wrap::Clamp).x, 0.0);
+        assert_eq!(at(4.5, Wrap::Mirror), Vec4::ONE);
+        assert_eq!(at(5.5, Wrap::Mirror), Vec4::new(0.0, 1.0, 0.0, 0.0));
+        assert_eq!(at(-1.5, Wrap::Mirror), Vec4::new(1.0, 0.0, 0.0, 1.0));
+        assert_eq!(at(-2.5, Wrap::Repeat), Vec4::new(1.0, 0.0, 0.0, 1.0));
+    }
+
+    #[test]
+    fn nearest_takes_the_texel_that_covers_the_point() {
+        let at = |x: f32| row().sample(Vec2::new(x / 4.0, 0.5), [Wrap::Repeat; 2], true);
+        assert_eq!(at(1.01), Vec4::new(1.0, 0.0, 0.0, 1.0));
+        assert_eq!(at(1.99), Vec4::new(1.0, 0.0, 0.0, 1.0));
+    }
+
+    #[test]
+    fn absurd_coordinates_have_a_colour() {
+        for x in [f32::MAX, f32::MIN, f32::INFINITY, f32::NAN, 3e9] {
+            for wrap in [Wrap::Repeat, Wrap::Clamp, Wrap::Mirror] {
+                row().sample(Vec2::splat(x), [wrap; 2], false);
+                row().sample(Vec2::splat(x), [wrap; 2], true);
+            }
+        }
+    }
+
+    #[test]
+    fn sixteen_bits_decode_as_eight() {
+        for v in 0..=255u16 {
+            assert_eq!(LINEAR_FROM_8[v as usize], LINEAR_FROM_16[v as usize * 257]);
+        }
+    }
+}
