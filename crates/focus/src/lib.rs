@@ -1,7 +1,36 @@
 //! The focus map: what is painted, and what paints it.
+//!
+//! * [`FocusMap`]: t and anchor over the atlas, in copy-on-write tiles: a clone is a cheap snapshot.
+//! * [`Focus`]: the focus of a whole scene, a source a part; what the renderers ask.
+//! * [`FocusRecipe`]: focus by name of material and node, for scripts; evaluates to a [`Focus`].
+//! * [`Canvas`]: the surface behind the map's texels, found by world position.
+//! * [`Brush`] and [`Stroke`]: painting with spheres along a path on the surface, as one transaction.
+//! * [`fill`]: the same value over a node, part, material or chart.
+//! * [`History`]: undo and redo under a byte budget.
 
+mod brush;
+mod canvas;
+mod changed;
+mod dab;
+mod error;
+mod fill;
+mod focus_image;
 mod focus_map;
+mod history;
+mod recipe;
+mod smooth;
 mod source;
+mod stroke;
+mod texel_tree;
 
-pub use focus_map::FocusMap;
-pub use source::{Focus, FocusImage, FocusSource};
+pub use brush::{Brush, BrushMode, Channels, PenSample};
+pub use canvas::{Canvas, CanvasTexel};
+pub use changed::Changed;
+pub use error::FocusError;
+pub use fill::{FillTarget, fill};
+pub use focus_image::FocusImage;
+pub use focus_map::{FocusMap, TILE_SIDE};
+pub use history::{Applied, Edit, History};
+pub use recipe::{FocusRecipe, RecipeEntry};
+pub use source::{Focus, FocusSource};
+pub use stroke::{Stroke, SurfaceHit};

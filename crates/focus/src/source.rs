@@ -1,21 +1,11 @@
 //! Where the focus of a surface point comes from: a constant, a texture in the mesh's UV, or the painted atlas.
 
-use crate::FocusMap;
+use crate::focus_image::interpolate;
+use crate::{FocusImage, FocusMap};
 use atlas::Atlas;
 use lens::FocusOffset;
 use scene::{Scene, SurfaceField, SurfacePoint, Wrap};
 use std::sync::Arc;
-
-/// A focus map in a mesh's own UV set, as recipes give it.
-#[derive(Clone, Debug, PartialEq)]
-pub struct FocusImage {
-    /// Columns.
-    pub width: u32,
-    /// Rows.
-    pub height: u32,
-    /// [t, anchor] a texel, row 0 on top.
-    pub texels: Vec<[f32; 2]>,
-}
 
 /// Where a part's focus comes from.
 #[derive(Clone, Debug)]
@@ -49,10 +39,35 @@ pub struct Focus {
     pub background: FocusOffset,
 }
 
-impl SurfaceField<FocusOffset> for Focus {
-    fn at(&self, _point: SurfacePoint) -> FocusOffset {
-        todo!()
+impl Focus {
+    /// The same value everywhere, the background included.
+    pub fn constant(scene: Arc<Scene>, value: FocusOffset) -> Self {
+        let parts = vec![FocusSource::Constant(value); scene.parts.len()];
+        Self { scene, parts, background: value }
     }
+
+    /// The painted map over the whole scene; it must have the atlas's size.
+    pub fn painted(scene: Arc<Scene>, atlas: Arc<Atlas>, map: Arc<FocusMap>) -> Self {
+        debug_assert_eq!([atlas.width, atlas.height], map.size());
+        let background = map.background;
+        let parts = vec![FocusSource::Atlas { atlas, map }; scene.parts.len()];
+        Self { scene, parts, background }
+    }
+}
+
+impl SurfaceField<FocusOffset> for Focus {
+    fn at(&self, point: SurfacePoint) -> FocusOffset {
+        let part = self.scene.triangles[point.triangle as usize].part;
+        match &self.parts[part as usize] {
+            FocusSource::Constant(value) => *value,
+            FocusSource::Uv { image, wrap } => {
+                let uv = interpolate(self.scene.corner_uv(point.triangle, 0), point.weights());
+                image.sample(uv, *wrap)
+            }
+            FocusSource::Atlas { atlas, map } => map.sample(atlas.position_of(point)),
+        }
+    }
+
     fn at_infinity(&self) -> FocusOffset {
         self.background
     }

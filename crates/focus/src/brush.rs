@@ -1,0 +1,174 @@
+//! The brush: what a dab does to the texels under it.
+
+use lens::FocusOffset;
+use serde::{Deserialize, Serialize};
+
+/// How a brush paints.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Brush {
+    /// Radius of a dab's sphere, world units, > 0.
+    pub radius: f64,
+    /// The share of the radius within which a dab has its full strength, in [0, 1]; beyond it fades smoothly.
+    pub hardness: f64,
+    /// The most that a stroke (or, where dabs build up, a dab) does, in [0, 1].
+    pub strength: f64,
+    /// Distance between dabs as a share of the radius, in [0.01, 10].
+    pub spacing: f64,
+    /// What it does.
+    pub mode: BrushMode,
+    /// What is set; for adding and subtracting, t − 1 and anchor are what a full dab adds.
+    #[serde(with = "FocusOffsetFields")]
+    pub target: FocusOffset,
+    /// Which of the two numbers it touches.
+    pub channels: Channels,
+    /// What t is kept within, lowest and highest, by adding and subtracting.
+    pub offset_limits: [f64; 2],
+    /// The largest angle, in degrees, between the normal under the pen and that of a painted texel: at 90 a
+    /// thin wall is not painted through; 180 paints all sides.
+    pub normal_limit_degrees: f64,
+    /// How much a light pen weakens a dab: 0 not at all, 1 down to nothing.
+    pub pressure_to_strength: f64,
+    /// How much a light pen shrinks a dab: 0 not at all, 1 down to nothing.
+    pub pressure_to_radius: f64,
+}
+
+/// What a brush does to the texels under it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum BrushMode {
+    /// Moves them to the target. Dabs of a stroke do not build up: its strength is a ceiling.
+    #[default]
+    Set,
+    /// Adds t − 1 and anchor of the target; dabs build up.
+    Add,
+    /// Subtracts t − 1 and anchor of the target; dabs build up.
+    Subtract,
+    /// Evens out differences; dabs build up.
+    Smooth,
+    /// Moves them back to the standard lens. As [`Self::Set`].
+    Reset,
+}
+
+/// Which of a texel's numbers are touched.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Channels {
+    /// Only t.
+    T,
+    /// Only the anchor.
+    Anchor,
+    /// Both.
+    #[default]
+    Both,
+}
+
+impl Channels {
+    /// Whether t, and whether the anchor is touched.
+    pub fn touches(self) -> [bool; 2] {
+        [self != Self::Anchor, self != Self::T]
+    }
+}
+
+/// What the pen reports beside its position.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PenSample {
+    /// Pressure in [0, 1]; a mouse presses with 1.
+    pub pressure: f64,
+}
+
+impl Default for PenSample {
+    fn default() -> Self {
+        Self { pressure: 1.0 }
+    }
+}
+
+impl Default for Brush {
+    /// Paints sharp, softly.
+    fn default() -> Self {
+        Self {
+            radius: 0.1,
+            hardness: 0.5,
+            strength: 1.0,
+            spacing: 0.25,
+            mode: BrushMode::Set,
+            target: FocusOffset::SHARP,
+            channels: Channels::Both,
+            offset_limits: [0.0, 2.0],
+            normal_limit_degrees: 90.0,
+            pressure_to_strength: 1.0,
+            pressure_to_radius: 0.0,
+        }
+    }
+}
+
+impl Brush {
+    /// What is wrong with it, if anything.
+    pub fn problem(&self) -> Option<&'static str> {
+        let unit = 0.0..=1.0;
+        let [low, high] = self.offset_limits;
+        match () {
+            _ if !(self.radius > 0.0 && self.radius.is_finite()) => Some("radius must be above 0 and finite"),
+            _ if !unit.contains(&self.hardness) => Some("hardness must be in [0, 1]"),
+            _ if !unit.contains(&self.strength) => Some("strength must be in [0, 1]"),
+            _ if !(0.01..=10.0).contains(&self.spacing) => Some("spacing must be in [0.01, 10]"),
+            _ if !self.target.is_valid() => Some("target needs a finite t and an anchor in [0, 1]"),
+            _ if !(low <= high && low.is_finite() && high.is_finite()) => {
+                Some("offset_limits must be finite, the lower one first")
+            }
+            _ if !(0.0..=180.0).contains(&self.normal_limit_degrees) => {
+                Some("normal_limit_degrees must be in [0, 180]")
+            }
+            _ if !unit.contains(&self.pressure_to_strength) => Some("pressure_to_strength must be in [0, 1]"),
+            _ if !unit.contains(&self.pressure_to_radius) => Some("pressure_to_radius must be in [0, 1]"),
+            _ => None,
+        }
+    }
+
+    /// What it is called in the undo list.
+    pub fn stroke_name(&self) -> &'static str {
+        match self.mode {
+            BrushMode::Set => "Brush stroke",
+            BrushMode::Add => "Add stroke",
+            BrushMode::Subtract => "Subtract stroke",
+            BrushMode::Smooth => "Smooth stroke",
+            BrushMode::Reset => "Reset stroke",
+        }
+    }
+
+    /// The share of a dab's strength at `distance` (a share of the radius): 1 up to the hardness, then
+    /// smoothly (3s² − 2s³) down to 0 at the rim.
+    pub fn falloff(&self, distance: f64) -> f64 {
+        if distance > 1.0 {
+            0.0
+        } else if distance <= self.hardness {
+            1.0
+        } else {
+            let s = (1.0 - distance) / (1.0 - self.hardness);
+            s * s * (3.0 - 2.0 * s)
+        }
+    }
+
+    /// The radius of a dab at a pen pressure.
+    pub fn radius_at(&self, pen: PenSample) -> f64 {
+        self.radius * response(self.pressure_to_radius, pen)
+    }
+
+    /// The strength of a dab at a pen pressure.
+    pub fn strength_at(&self, pen: PenSample) -> f64 {
+        self.strength * response(self.pressure_to_strength, pen)
+    }
+}
+
+/// 1 at full pressure, 1 − `share` at none.
+fn response(share: f64, pen: PenSample) -> f64 {
+    1.0 - share * (1.0 - pen.pressure.clamp(0.0, 1.0))
+}
+
+/// How [`FocusOffset`] is written.
+#[derive(Serialize, Deserialize)]
+#[serde(remote = "FocusOffset", deny_unknown_fields)]
+struct FocusOffsetFields {
+    t: f64,
+    anchor: f64,
+}

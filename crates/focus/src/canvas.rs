@@ -1,0 +1,197 @@
+//! The surface behind the texels of a focus map, found by world position.
+
+use crate::texel_tree::TexelTree;
+use crate::{Changed, FocusMap};
+use atlas::{Atlas, AtlasTexel};
+use glam::{DVec3, Vec3};
+use scene::Scene;
+
+/// A texel that covers some surface, as painting sees it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CanvasTexel {
+    /// Column in the map.
+    pub x: u32,
+    /// Row in the map.
+    pub y: u32,
+    /// World position of its centroid.
+    pub position: DVec3,
+    /// Unit geometric normal there; zero if the surface is degenerate.
+    pub normal: Vec3,
+    /// World area it covers.
+    pub area: f64,
+    /// The scene's part.
+    pub part: u32,
+    /// The atlas's chart.
+    pub chart: u32,
+}
+
+/// Every covered texel of an atlas in the order of a spatial tree, with the gutter texels that copy it.
+///
+/// A brush finds its texels here by distance in the world, so chart seams, mirrored texture coordinates and
+/// instances do not matter to it.
+#[derive(Debug)]
+pub struct Canvas {
+    size: [u32; 2],
+    /// World position of the tree's origin: its points are relative to it, in f32.
+    origin: DVec3,
+    tree: TexelTree,
+    /// In the tree's order.
+    texels: Vec<CanvasTexel>,
+    /// Where each texel's gutters start in `gutters`; one more at the end.
+    gutter_starts: Vec<u32>,
+    gutters: Vec<[u32; 2]>,
+    largest_texel: f32,
+    /// Node and material of each part.
+    part_owners: Vec<[u32; 2]>,
+}
+
+impl Canvas {
+    /// The canvas of an atlas: its covered texels and, for each gutter texel, the covered texel that it
+    /// copies (both as [x, y]).
+    pub fn new(scene: &Scene, atlas: &Atlas, texels: &[AtlasTexel], gutters: &[[[u32; 2]; 2]]) -> Self {
+        let seen = |texel: &AtlasTexel| {
+            let triangle = texel.centroid.triangle;
+            CanvasTexel {
+                x: texel.x,
+                y: texel.y,
+                position: texel.centroid.position(scene),
+                normal: scene.area_normal(triangle).normalize_or_zero().as_vec3(),
+                area: texel.area,
+                part: scene.triangles[triangle as usize].part,
+                chart: atlas.chart_of[triangle as usize],
+            }
+        };
+        let part_owners = scene.parts.iter().map(|part| [part.node, part.material]).collect();
+        Self::from_texels(
+            [atlas.width, atlas.height],
+            texels.iter().map(seen).collect(),
+            gutters,
+            part_owners,
+        )
+    }
+
+    /// The canvas of the given texels. `gutters` pairs each gutter texel with the covered texel that it
+    /// copies; `part_owners` holds node and material of each part.
+    pub fn from_texels(
+        size: [u32; 2],
+        texels: Vec<CanvasTexel>,
+        gutters: &[[[u32; 2]; 2]],
+        part_owners: Vec<[u32; 2]>,
+    ) -> Self {
+        let bounds = texels.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), texel| {
+            (low.min(texel.position), high.max(texel.position))
+        });
+        let origin = if texels.is_empty() { DVec3::ZERO } else { (bounds.0 + bounds.1) / 2.0 };
+        let points: Vec<Vec3> = texels.iter().map(|texel| (texel.position - origin).as_vec3()).collect();
+        let (tree, order) = TexelTree::new(&points);
+        let texels: Vec<CanvasTexel> = order.iter().map(|&i| texels[i as usize]).collect();
+        let (gutter_starts, gutters) = gutters_by_texel(size, &texels, gutters);
+        let largest_texel = texels.iter().map(|texel| texel.area.sqrt() as f32).fold(0.0, f32::max);
+        Self { size, origin, tree, texels, gutter_starts, gutters, largest_texel, part_owners }
+    }
+
+    /// Columns and rows of the map that it belongs to.
+    pub fn size(&self) -> [u32; 2] {
+        self.size
+    }
+
+    /// The covered texels, neighbours in space near each other.
+    pub fn texels(&self) -> &[CanvasTexel] {
+        &self.texels
+    }
+
+    /// The scene node of a texel.
+    pub fn node_of(&self, texel: &CanvasTexel) -> u32 {
+        self.part_owners[texel.part as usize][0]
+    }
+
+    /// The material of a texel.
+    pub fn material_of(&self, texel: &CanvasTexel) -> u32 {
+        self.part_owners[texel.part as usize][1]
+    }
+
+    /// The gutter texels that copy a texel.
+    pub fn gutters_of(&self, index: usize) -> &[[u32; 2]] {
+        &self.gutters[self.gutter_starts[index] as usize..self.gutter_starts[index + 1] as usize]
+    }
+
+    /// Calls `visit` with the index and distance of every texel whose centroid is at most `radius` from
+    /// `center`.
+    pub(crate) fn within(&self, center: DVec3, radius: f64, mut visit: impl FnMut(usize, f32)) {
+        let center = (center - self.origin).as_vec3();
+        self.tree.within(center, radius as f32, &mut |index, squared| visit(index, squared.sqrt()));
+    }
+
+    /// The texel nearest to `center` among those that `accept` lets through, if its centroid is no further
+    /// away than its own size (the side of a square of its area).
+    pub(crate) fn nearest(&self, center: DVec3, accept: impl Fn(&CanvasTexel) -> bool) -> Option<usize> {
+        let mut best: Option<(f32, usize)> = None;
+        self.within(center, self.largest_texel as f64, |index, distance| {
+            let texel = &self.texels[index];
+            let near = distance <= texel.area.sqrt() as f32 && best.is_none_or(|(least, _)| distance < least);
+            if near && accept(texel) {
+                best = Some((distance, index));
+            }
+        });
+        best.map(|(_, index)| index)
+    }
+
+    /// World position of a texel relative to a point.
+    pub(crate) fn offset_from(&self, index: usize, center: DVec3) -> Vec3 {
+        self.tree.points()[index] - (center - self.origin).as_vec3()
+    }
+
+    /// [t, anchor] of a texel.
+    pub(crate) fn value(&self, map: &FocusMap, index: usize) -> [f32; 2] {
+        let texel = &self.texels[index];
+        map.texel(texel.x, texel.y)
+    }
+
+    /// Writes a texel and the gutters that copy it; notes in `changed` what was not so before.
+    pub(crate) fn write(
+        &self,
+        map: &mut FocusMap,
+        index: usize,
+        value: [f32; 2],
+        changed: &mut Vec<[u32; 2]>,
+    ) {
+        let texel = &self.texels[index];
+        for &[x, y] in [[texel.x, texel.y]].iter().chain(self.gutters_of(index)) {
+            if map.texel(x, y) != value {
+                map.set(x, y, value);
+                changed.push([x, y]);
+            }
+        }
+    }
+
+    /// Copies every covered texel into its gutters.
+    pub fn dilate(&self, map: &mut FocusMap) -> Changed {
+        let mut changed = Vec::new();
+        for index in 0..self.texels.len() {
+            let value = self.value(map, index);
+            self.write(map, index, value, &mut changed);
+        }
+        Changed::new(changed)
+    }
+}
+
+/// The gutters sorted by the texel that they copy, and where each texel's start. Gutters of texels that
+/// are not covered are left out.
+fn gutters_by_texel(
+    size: [u32; 2],
+    texels: &[CanvasTexel],
+    gutters: &[[[u32; 2]; 2]],
+) -> (Vec<u32>, Vec<[u32; 2]>) {
+    let address = |[x, y]: [u32; 2]| y as u64 * size[0] as u64 + x as u64;
+    let mut indices: Vec<(u64, u32)> = (0..).zip(texels).map(|(i, t)| (address([t.x, t.y]), i)).collect();
+    indices.sort_unstable();
+    let index_of = |texel: [u32; 2]| {
+        let found = indices.binary_search_by_key(&address(texel), |entry| entry.0).ok()?;
+        Some(indices[found].1)
+    };
+    let mut sorted: Vec<(u32, [u32; 2])> =
+        gutters.iter().filter_map(|&[gutter, source]| Some((index_of(source)?, gutter))).collect();
+    sorted.sort_unstable();
+    let starts = (0..=texels.len() as u32).map(|i| sorted.partition_point(|entry| entry.0 < i) as u32);
+    (starts.collect(), sorted.into_iter().map(|entry| entry.1).collect())
+}

@@ -1,0 +1,162 @@
+//! Focus by name: what scripts and farms hand to the renderer.
+
+use crate::{Focus, FocusError, FocusImage, FocusSource};
+use lens::FocusOffset;
+use scene::{Material, Scene, Wrap};
+use std::sync::Arc;
+
+/// One entry of a recipe.
+#[derive(Clone, Debug, PartialEq)]
+pub enum RecipeEntry {
+    /// One value.
+    Value(FocusOffset),
+    /// A map in the first UV set.
+    Map(Arc<FocusImage>),
+}
+
+/// The focus of a scene by the names of its materials and nodes. Nodes win over materials, materials over
+/// the default, and of two entries of one kind the later one wins.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FocusRecipe {
+    /// For what no other entry names.
+    pub default: RecipeEntry,
+    /// For the background; `None` takes the default's value (the standard lens where that is a map).
+    pub background: Option<RecipeEntry>,
+    /// By material name.
+    pub materials: Vec<(String, RecipeEntry)>,
+    /// By node name.
+    pub nodes: Vec<(String, RecipeEntry)>,
+}
+
+impl Default for FocusRecipe {
+    /// The standard lens everywhere.
+    fn default() -> Self {
+        Self {
+            default: RecipeEntry::Value(FocusOffset::STANDARD),
+            background: None,
+            materials: Vec::new(),
+            nodes: Vec::new(),
+        }
+    }
+}
+
+impl FocusRecipe {
+    /// A recipe of one value.
+    pub fn constant(value: FocusOffset) -> Self {
+        Self { default: RecipeEntry::Value(value), ..Self::default() }
+    }
+
+    /// The focus it gives `scene`. A name that the scene does not have is an error, and so is a map on a part
+    /// without texture coordinates.
+    pub fn evaluate(&self, scene: &Arc<Scene>) -> Result<Focus, FocusError> {
+        let material_names = || scene.materials.iter().map(|m| m.name.as_str());
+        let node_names = || scene.nodes.iter().map(|n| n.name.as_str());
+        require_names("material", &self.materials, material_names)?;
+        require_names("node", &self.nodes, node_names)?;
+
+        let source_of_part = |part: &scene::Part| {
+            let material = &scene.materials[part.material as usize];
+            let node = &scene.nodes[part.node as usize].name;
+            let by_node = self.nodes.iter().rev().find(|(name, _)| name == node);
+            let by_material = || self.materials.iter().rev().find(|(name, _)| *name == material.name);
+            let (entry, label) = match (by_node, by_material()) {
+                (Some((name, entry)), _) => (entry, format!("nodes \"{name}\"")),
+                (None, Some((name, entry))) => (entry, format!("materials \"{name}\"")),
+                (None, None) => (&self.default, "default".to_string()),
+            };
+            match entry {
+                RecipeEntry::Value(value) if value.is_valid() => Ok(FocusSource::Constant(*value)),
+                RecipeEntry::Value(_) => Err(FocusError::BadValue { entry: label }),
+                RecipeEntry::Map(image) if part.has_uv[0] => {
+                    Ok(FocusSource::Uv { image: image.clone(), wrap: surface_wrap(material) })
+                }
+                RecipeEntry::Map(_) => Err(FocusError::NoTextureCoordinates {
+                    entry: label,
+                    part: format!("node \"{node}\" with material \"{}\"", material.name),
+                }),
+            }
+        };
+        let parts = scene.parts.iter().map(source_of_part).collect::<Result<_, _>>()?;
+        Ok(Focus { scene: scene.clone(), parts, background: self.background_value()? })
+    }
+
+    fn background_value(&self) -> Result<FocusOffset, FocusError> {
+        match (&self.background, &self.default) {
+            (Some(RecipeEntry::Map(_)), _) => Err(FocusError::BackgroundMap),
+            (Some(RecipeEntry::Value(value)), _) | (None, RecipeEntry::Value(value)) if value.is_valid() => {
+                Ok(*value)
+            }
+            (None, RecipeEntry::Map(_)) => Ok(FocusOffset::STANDARD),
+            _ => Err(FocusError::BadValue { entry: "background".to_string() }),
+        }
+    }
+}
+
+/// The wrap of the texture that gives the material its colour: base colour, or emission where the base is
+/// black; without a texture it repeats.
+fn surface_wrap(material: &Material) -> [Wrap; 2] {
+    let black = material.base_color.truncate() == glam::Vec3::ZERO;
+    let (first, second) = (material.base_color_texture, material.emissive_texture);
+    let texture = if black { second.or(first) } else { first.or(second) };
+    texture.map_or_else(Default::default, |texture| texture.wrap)
+}
+
+/// An error for the first entry that names nothing in the scene.
+fn require_names<'a, Names: Iterator<Item = &'a str>>(
+    kind: &'static str,
+    entries: &[(String, RecipeEntry)],
+    names: impl Fn() -> Names,
+) -> Result<(), FocusError> {
+    match entries.iter().find(|(name, _)| !names().any(|n| n == name)) {
+        None => Ok(()),
+        Some((name, _)) => {
+            Err(FocusError::UnknownName { kind, name: name.clone(), hint: near_names(kind, name, names()) })
+        }
+    }
+}
+
+/// The names nearest to a mistyped one, or, if none is near, some of those that there are.
+fn near_names<'a>(kind: &str, wanted: &str, names: impl Iterator<Item = &'a str>) -> String {
+    /// Names listed at most.
+    const LISTED: usize = 5;
+    let lower = wanted.to_lowercase();
+    let mut ranked: Vec<(usize, &str)> = names
+        .map(|name| {
+            let candidate = name.to_lowercase();
+            let contains = candidate.contains(&lower) || lower.contains(&candidate);
+            (if contains { 1 } else { edit_distance(&lower, &candidate) }, name)
+        })
+        .collect();
+    ranked.sort();
+    ranked.dedup();
+    if ranked.is_empty() {
+        return format!("the scene has no {kind}");
+    }
+    let largest_typo = 1 + wanted.chars().count() / 3;
+    let near = ranked.iter().filter(|(distance, _)| *distance <= largest_typo);
+    let near: Vec<_> = near.take(LISTED).map(|(_, name)| format!("\"{name}\"")).collect();
+    if !near.is_empty() {
+        return format!("did you mean {}?", near.join(" or "));
+    }
+    ranked.sort_by_key(|(_, name)| *name);
+    let some: Vec<_> = ranked.iter().take(LISTED).map(|(_, name)| format!("\"{name}\"")).collect();
+    let more =
+        if ranked.len() > LISTED { format!(" and {} more", ranked.len() - LISTED) } else { String::new() };
+    format!("there are {}{more}", some.join(", "))
+}
+
+/// Levenshtein's distance: insertions, deletions and replacements that turn one word into the other.
+fn edit_distance(a: &str, b: &str) -> usize {
+    let b: Vec<char> = b.chars().collect();
+    let mut row: Vec<usize> = (0..=b.len()).collect();
+    for (i, ca) in a.chars().enumerate() {
+        let mut diagonal = row[0];
+        row[0] = i + 1;
+        for (j, cb) in b.iter().enumerate() {
+            let replaced = diagonal + usize::from(ca != *cb);
+            diagonal = row[j + 1];
+            row[j + 1] = replaced.min(row[j] + 1).min(diagonal + 1);
+        }
+    }
+    row[b.len()]
+}

@@ -1,0 +1,93 @@
+//! The local mean under a dab, by position in the world.
+//!
+//! The texels around the dab are spread over a coarse grid of cells (each over the eight nearest, trilinearly,
+//! weighted by area), and the mean at a point is gathered from the eight cells around it. The grid knows only
+//! positions, so the mean runs across chart seams, and its cost does not grow with the kernel's width.
+//! Values are summed as differences from one texel's: among equal texels the mean is exactly their value.
+
+use crate::dab::Dab;
+use crate::{Brush, Canvas, FocusMap};
+use glam::{IVec3, Vec3};
+
+/// Cells along the dab's radius, unless the texels are too large for that.
+const CELLS_ALONG_RADIUS: f32 = 4.0;
+
+/// The means around a dab.
+pub(crate) struct Smoothed {
+    /// The value that the sums are relative to.
+    reference: [f32; 2],
+    cell_side: f32,
+    /// Cells on each side of the grid.
+    side: i32,
+    /// Weight and weighted differences of t and anchor a cell.
+    cells: Vec<[f64; 3]>,
+}
+
+impl Smoothed {
+    /// Gathers the texels around `dab` that face as it does.
+    pub fn new(dab: &Dab, brush: &Brush, canvas: &Canvas, map: &FocusMap) -> Self {
+        let mut area = 0.0;
+        let mut count = 0.0;
+        canvas.within(dab.center, dab.radius, |index, _| {
+            area += canvas.texels()[index].area;
+            count += 1.0;
+        });
+        // A cell smaller than two texels would hold no neighbours to even out with.
+        let texel_side = if count > 0.0 { (area / count).sqrt() as f32 } else { 0.0 };
+        let cell_side = (dab.radius as f32 / CELLS_ALONG_RADIUS).max(2.0 * texel_side);
+        let reach = dab.radius as f32 + 2.0 * cell_side;
+        let side = 2 * (reach / cell_side).ceil() as i32 + 2;
+        let empty = vec![[0.0; 3]; (side * side * side) as usize];
+        let mut smoothed = Self { reference: [0.0; 2], cell_side, side, cells: empty };
+        let mut reference = None;
+        canvas.within(dab.center, reach as f64, |index, _| {
+            let texel = &canvas.texels()[index];
+            if !dab.faces(brush, texel) {
+                return;
+            }
+            let value = canvas.value(map, index);
+            let [t, anchor] = *reference.get_or_insert(value);
+            let difference = [value[0] as f64 - t as f64, value[1] as f64 - anchor as f64];
+            for (cell, share) in smoothed.around(canvas.offset_from(index, dab.center)) {
+                let weight = share * texel.area;
+                let sums = &mut smoothed.cells[cell];
+                sums[0] += weight;
+                sums[1] += weight * difference[0];
+                sums[2] += weight * difference[1];
+            }
+        });
+        smoothed.reference = reference.unwrap_or_default();
+        smoothed
+    }
+
+    /// The mean at a point given relative to the dab's centre; `otherwise` where no texel is near.
+    pub fn at(&self, offset: Vec3, otherwise: [f32; 2]) -> [f32; 2] {
+        let mut sums = [0.0; 3];
+        for (cell, share) in self.around(offset) {
+            for k in 0..3 {
+                sums[k] += share * self.cells[cell][k];
+            }
+        }
+        if sums[0] > 0.0 {
+            [0, 1].map(|k| (self.reference[k] as f64 + sums[k + 1] / sums[0]) as f32)
+        } else {
+            otherwise
+        }
+    }
+
+    /// The eight cells around a point with its trilinear shares; those outside the grid are left out.
+    fn around(&self, offset: Vec3) -> impl Iterator<Item = (usize, f64)> + use<> {
+        let side = self.side;
+        let p = offset / self.cell_side + Vec3::splat(side as f32 / 2.0 - 0.5);
+        let low = p.floor();
+        let f = p - low;
+        (0..8).filter_map(move |corner| {
+            let step = IVec3::new(corner & 1, corner >> 1 & 1, corner >> 2 & 1);
+            let cell = low.as_ivec3() + step;
+            let inside = cell.cmpge(IVec3::ZERO).all() && cell.cmplt(IVec3::splat(side)).all();
+            let shares = Vec3::select(step.cmpeq(IVec3::ONE), f, Vec3::ONE - f);
+            let index = (cell.z * side + cell.y) * side + cell.x;
+            inside.then_some((index as usize, shares.element_product() as f64))
+        })
+    }
+}

@@ -1,0 +1,127 @@
+//! A stroke: dabs along the pen's path, as one transaction.
+
+use crate::dab::{Dab, Wash};
+use crate::{Brush, Canvas, Changed, Edit, FocusError, FocusMap, PenSample};
+use glam::{DVec3, Vec3};
+use std::sync::Arc;
+
+/// Where the pen touches the surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SurfaceHit {
+    /// World position.
+    pub position: DVec3,
+    /// Unit geometric normal of the triangle, as the scene has it (not turned to the viewer); `None` paints
+    /// every side whatever the brush's limit.
+    pub normal: Option<Vec3>,
+}
+
+/// A stroke in the making.
+///
+/// Begin on pen down, extend with every reported hit, commit on pen up, abort on Esc. Dabs lie at equal steps
+/// (spacing · radius) along the polyline through the hits, so how the hits are bunched into events does not
+/// matter. A stroke that changed nothing commits to nothing.
+#[derive(Debug)]
+pub struct Stroke {
+    brush: Brush,
+    canvas: Arc<Canvas>,
+    before: FocusMap,
+    /// How strongly each texel of the canvas has been painted so far.
+    coverage: Vec<f32>,
+    /// The last hit, and how far after it the next dab is due.
+    last: Option<(SurfaceHit, PenSample)>,
+    until_next_dab: f64,
+}
+
+/// More dabs than this on one straight piece are not a pen's movement but a jump between two surfaces.
+const JUMP_DABS: f64 = 4096.0;
+
+impl Stroke {
+    /// Begins a stroke on `map`, which must have the canvas's size.
+    pub fn begin(map: &FocusMap, canvas: Arc<Canvas>, brush: Brush) -> Result<Self, FocusError> {
+        if let Some(problem) = brush.problem() {
+            return Err(FocusError::BadBrush { problem });
+        }
+        if map.size() != canvas.size() {
+            return Err(FocusError::SizesDiffer { map: map.size(), canvas: canvas.size() });
+        }
+        let coverage = vec![0.0; canvas.texels().len()];
+        Ok(Self { brush, canvas, before: map.clone(), coverage, last: None, until_next_dab: 0.0 })
+    }
+
+    /// Draws on to the next hit. Returns what changed.
+    pub fn extend(&mut self, map: &mut FocusMap, hit: SurfaceHit, pen: PenSample) -> Changed {
+        let mut changed = Vec::new();
+        if !hit.position.is_finite() {
+            return Changed::default();
+        }
+        let from = self.last.replace((hit, pen));
+        let length = from.map_or(0.0, |(last, _)| last.position.distance(hit.position));
+        match from {
+            Some((last, last_pen)) if length <= JUMP_DABS * self.step(pen) => {
+                let mut along = self.until_next_dab;
+                while along <= length {
+                    // A segment without length has no dab on it: the one at its start is drawn already.
+                    let share = if length > 0.0 { along / length } else { 1.0 };
+                    let mix = |a: f64, b: f64| a + (b - a) * share;
+                    let pen = PenSample { pressure: mix(last_pen.pressure, pen.pressure) };
+                    let position = last.position.lerp(hit.position, share);
+                    let normal = last.normal.zip(hit.normal).map(|(a, b)| a.lerp(b, share as f32));
+                    let normal = normal.and_then(Vec3::try_normalize).or(hit.normal);
+                    self.dab(map, SurfaceHit { position, normal }, pen, &mut changed);
+                    along += self.step(pen);
+                }
+                self.until_next_dab = along - length;
+            }
+            _ => {
+                self.dab(map, hit, pen, &mut changed);
+                self.until_next_dab = self.step(pen);
+            }
+        }
+        Changed::new(changed)
+    }
+
+    /// Takes the pen off the surface: the next hit starts a new path, without a line from the last one. For
+    /// when it leaves the object, or the surface jumps under it.
+    pub fn lift(&mut self) {
+        self.last = None;
+    }
+
+    /// Ends the stroke. Nothing to undo: `None`.
+    pub fn commit(self, map: &FocusMap) -> Option<Edit> {
+        Edit::between(self.brush.stroke_name(), &self.before, map)
+    }
+
+    /// Takes the stroke back. Returns what changed.
+    pub fn abort(self, map: &mut FocusMap) -> Changed {
+        match Edit::between(self.brush.stroke_name(), map, &self.before) {
+            Some(edit) => edit.apply(map),
+            None => Changed::default(),
+        }
+    }
+
+    /// The brush it is drawn with.
+    pub fn brush(&self) -> &Brush {
+        &self.brush
+    }
+
+    /// Distance from one dab to the next.
+    fn step(&self, pen: PenSample) -> f64 {
+        // A vanishing radius would never get anywhere.
+        let radius = self.brush.radius_at(pen).max(self.brush.radius * LEAST_RADIUS_SHARE);
+        self.brush.spacing * radius
+    }
+
+    fn dab(&mut self, map: &mut FocusMap, hit: SurfaceHit, pen: PenSample, changed: &mut Vec<[u32; 2]>) {
+        let dab = Dab {
+            center: hit.position,
+            normal: hit.normal,
+            radius: self.brush.radius_at(pen),
+            strength: self.brush.strength_at(pen),
+        };
+        let mut wash = Wash { before: &self.before, coverage: &mut self.coverage };
+        dab.paint(&self.brush, &self.canvas, &mut wash, map, changed);
+    }
+}
+
+/// Dabs lie no closer than those of this share of the brush's radius, however light the pen.
+const LEAST_RADIUS_SHARE: f64 = 0.05;

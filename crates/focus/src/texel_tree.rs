@@ -1,0 +1,126 @@
+//! Finding points within a sphere: a tree of boxes over points that it puts in order.
+
+use glam::Vec3;
+
+/// A balanced tree of boxes (a k-d tree) over points that were reordered so that each box is a range.
+///
+/// The node of a range splits it in the middle, so ranges and children follow from the point count alone.
+#[derive(Debug)]
+pub(crate) struct TexelTree {
+    points: Vec<Vec3>,
+    /// Lower and upper corners, in pre-order.
+    boxes: Vec<[Vec3; 2]>,
+}
+
+/// Points in a leaf, at most.
+const LEAF: usize = 32;
+
+impl TexelTree {
+    /// Builds the tree; also returns the original index of each of its points.
+    pub(crate) fn new(points: &[Vec3]) -> (Self, Vec<u32>) {
+        let mut order: Vec<u32> = (0..points.len() as u32).collect();
+        let mut boxes = vec![[Vec3::ZERO; 2]; node_count(points.len())];
+        if !points.is_empty() {
+            build(points, &mut order, &mut boxes);
+        }
+        let points = order.iter().map(|&i| points[i as usize]).collect();
+        (Self { points, boxes }, order)
+    }
+
+    /// The points, in the tree's order.
+    pub(crate) fn points(&self) -> &[Vec3] {
+        &self.points
+    }
+
+    /// Calls `visit` with the index (in the tree's order) and squared distance of every point at most
+    /// `radius` from `center`, in order.
+    pub(crate) fn within(&self, center: Vec3, radius: f32, visit: &mut impl FnMut(usize, f32)) {
+        if !self.points.is_empty() {
+            self.within_node(0, 0..self.points.len(), center, radius * radius, visit);
+        }
+    }
+
+    fn within_node(
+        &self,
+        node: usize,
+        range: std::ops::Range<usize>,
+        center: Vec3,
+        radius_squared: f32,
+        visit: &mut impl FnMut(usize, f32),
+    ) {
+        let [low, high] = self.boxes[node];
+        if center.distance_squared(center.clamp(low, high)) > radius_squared {
+            return;
+        }
+        if range.len() <= LEAF {
+            for index in range {
+                let distance_squared = self.points[index].distance_squared(center);
+                if distance_squared <= radius_squared {
+                    visit(index, distance_squared);
+                }
+            }
+            return;
+        }
+        let middle = range.start + range.len() / 2;
+        let right = node + 1 + node_count(middle - range.start);
+        self.within_node(node + 1, range.start..middle, center, radius_squared, visit);
+        self.within_node(right, middle..range.end, center, radius_squared, visit);
+    }
+}
+
+/// Nodes of the tree over `points` points.
+fn node_count(points: usize) -> usize {
+    if points <= LEAF { 1 } else { 1 + node_count(points / 2) + node_count(points - points / 2) }
+}
+
+/// Orders `order` so that every node of its tree is a range, and fills in the nodes' boxes.
+fn build(points: &[Vec3], order: &mut [u32], boxes: &mut [[Vec3; 2]]) {
+    let at = |i: u32| points[i as usize];
+    let start = (Vec3::INFINITY, Vec3::NEG_INFINITY);
+    let (low, high) = order.iter().map(|&i| at(i)).fold(start, |(l, h), p| (l.min(p), h.max(p)));
+    boxes[0] = [low, high];
+    if order.len() <= LEAF {
+        return;
+    }
+    let axis = (high - low).max_position();
+    let middle = order.len() / 2;
+    // Ties are broken by index, so that the order depends on nothing but the points.
+    order.select_nth_unstable_by(middle, |&i, &j| at(i)[axis].total_cmp(&at(j)[axis]).then(i.cmp(&j)));
+    let (left, right) = order.split_at_mut(middle);
+    let (left_boxes, right_boxes) = boxes[1..].split_at_mut(node_count(middle));
+    rayon::join(|| build(points, left, left_boxes), || build(points, right, right_boxes));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn finds_what_a_search_through_all_finds() {
+        let mut state = 1u32;
+        let mut random = || {
+            state = state.wrapping_mul(1664525).wrapping_add(1013904223);
+            (state >> 8) as f32 / (1 << 24) as f32
+        };
+        let points: Vec<_> = (0..5000).map(|_| Vec3::new(random(), random(), 0.1 * random())).collect();
+        let (tree, order) = TexelTree::new(&points);
+        for radius in [0.0, 0.02, 0.3, 3.0] {
+            let center = Vec3::new(random(), random(), 0.05);
+            let mut found = Vec::new();
+            tree.within(center, radius, &mut |i, _| found.push(order[i]));
+            found.sort_unstable();
+            let inside = |i: &u32| points[*i as usize].distance_squared(center) <= radius * radius;
+            assert_eq!(found, (0..5000).filter(inside).collect::<Vec<_>>());
+        }
+    }
+
+    #[test]
+    fn empty_and_coincident_points() {
+        let (tree, _) = TexelTree::new(&[]);
+        tree.within(Vec3::ZERO, 1.0, &mut |_, _| panic!("nothing to find"));
+        let (tree, _) = TexelTree::new(&[Vec3::ONE; 1000]);
+        let mut count = 0;
+        tree.within(Vec3::ONE, 0.0, &mut |_, _| count += 1);
+        assert_eq!(count, 1000);
+    }
+}
