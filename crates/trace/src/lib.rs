@@ -1,8 +1,18 @@
 //! Rays: first hit, occlusion, and the ray-traced ground truth.
+//!
+//! [`Tracer`] answers what a ray meets. Its way: a ray enters the f32 space of the boxes (`local_space`), walks the tree
+//! (`hierarchy`), meets triangles in f64 (`watertight`) whose points may be cut away (`presence`). [`truth`] sums such
+//! rays to the picture that everything else is measured against.
 
+mod hierarchy;
+mod local_space;
+mod presence;
 mod ray;
+#[cfg(test)]
+mod test_scene;
 mod tracer;
 pub mod truth;
+mod watertight;
 
 pub use ray::{Hit, Ray};
 pub use tracer::Tracer;

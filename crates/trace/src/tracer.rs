@@ -1,19 +1,63 @@
 //! The scene's triangles in a bounding volume hierarchy.
 
+use crate::hierarchy::Hierarchy;
+use crate::local_space::LocalSpace;
+use crate::presence::{Presence, is_there};
+use crate::watertight::{ShearedRay, has_area, in_plane};
 use crate::{Hit, Ray};
 use glam::DVec3;
 use scene::{Scene, SurfacePoint};
 use std::sync::Arc;
 
 /// Answers what a ray meets.
+///
+/// * Watertight: no ray passes between triangles that share an edge or a corner (the same f64 positions).
+/// * Deterministic: a hit depends on the ray and the scene alone. Of two triangles at equal t, the one with the lower
+///   index is hit.
+/// * Triangles without area, or with corners that are not finite, are never hit; rays whose direction is zero or not finite hit nothing.
+/// * Both sides of every triangle are met. Points that a material's opacity takes away are not (see [`scene::AlphaMode`]):
+///   under a mask a point is there where the opacity reaches the cutoff; under blending it is there *for a given ray* with the
+///   probability of its opacity, decided by a hash of the ray and the triangle, so that sums over many rays see the right
+///   transmittance and each ray still gives the same answer every time.
 pub struct Tracer {
     scene: Arc<Scene>,
+    space: LocalSpace,
+    hierarchy: Hierarchy,
+    /// In the order of the hierarchy's leaves.
+    triangles: Vec<LeafTriangle>,
+}
+
+/// A triangle as the inner loop wants it.
+struct LeafTriangle {
+    corners: [DVec3; 3],
+    index: u32,
+    presence: Presence,
 }
 
 impl Tracer {
     /// Builds the hierarchy.
     pub fn new(scene: Arc<Scene>) -> Self {
-        Self { scene }
+        let with_area: Vec<u32> =
+            (0..scene.triangles.len() as u32).filter(|&index| has_area(&scene.corners(index))).collect();
+        let corners = with_area.iter().flat_map(|&index| scene.corners(index));
+        let (low, high) =
+            corners.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(l, h), p| (l.min(p), h.max(p)));
+        let space = if with_area.is_empty() {
+            LocalSpace::around(DVec3::ZERO, DVec3::ZERO)
+        } else {
+            LocalSpace::around(low, high)
+        };
+        let boxes: Vec<_> = with_area.iter().map(|&index| space.bounds(&scene.corners(index))).collect();
+        let (hierarchy, order) = Hierarchy::build(&boxes);
+        let triangles = order
+            .into_iter()
+            .map(|place| {
+                let index = with_area[place as usize];
+                let presence = Presence::of(scene.material_of(index).alpha);
+                LeafTriangle { corners: scene.corners(index), index, presence }
+            })
+            .collect();
+        Self { scene, space, hierarchy, triangles }
     }
 
     /// The scene it traces.
@@ -22,17 +66,74 @@ impl Tracer {
     }
 
     /// The first surface that the ray meets.
-    pub fn first_hit(&self, _ray: &Ray) -> Option<Hit> {
-        todo!()
+    pub fn first_hit(&self, ray: &Ray) -> Option<Hit> {
+        let local = self.space.ray(ray)?;
+        let sheared = ShearedRay::new(ray.origin, ray.direction);
+        let mut first: Option<Hit> = None;
+        let mut t_max = ray.t_max;
+        self.hierarchy.walk(&local, local.local_t(t_max), |leaf| {
+            for triangle in &self.triangles[leaf] {
+                let Some(crossing) = sheared.cross(&triangle.corners) else { continue };
+                let t = crossing.t;
+                let nearer =
+                    t < t_max || first.is_some_and(|hit| t == hit.t && triangle.index < hit.point.triangle);
+                if !(t > ray.t_min && nearer) || ray.skip == Some(triangle.index) {
+                    continue;
+                }
+                let point = SurfacePoint { triangle: triangle.index, barycentric: crossing.barycentric };
+                if is_there(&self.scene, triangle.presence, point, ray) {
+                    first = Some(Hit { point, t });
+                    t_max = t;
+                }
+            }
+            Some(local.local_t(t_max))
+        });
+        first
     }
 
     /// Whether anything lies strictly between a surface point and the world position `eye`.
-    pub fn occluded(&self, _from: SurfacePoint, _eye: DVec3) -> bool {
-        todo!()
+    ///
+    /// Free of self-intersection without an offset: the point's own triangle never occludes it, and neither does any triangle
+    /// in whose plane the point or `eye` lies to the precision of f64 (some 3e-15 of the coordinates), because a line that
+    /// starts in a plane does not meet it again. So neighbours that meet at the point's edge do not occlude it however
+    /// they are bent, and shells closer together than any fixed offset still occlude each other. `eye` may itself
+    /// be on a surface.
+    pub fn occluded(&self, from: SurfacePoint, eye: DVec3) -> bool {
+        let origin = from.position(&self.scene);
+        let ray = Ray { origin, direction: eye - origin, t_min: 0.0, t_max: 1.0, skip: Some(from.triangle) };
+        self.any(&ray, |corners| !in_plane(corners, origin) && !in_plane(corners, eye))
     }
 
     /// Whether a ray meets any surface.
-    pub fn any_hit(&self, _ray: &Ray) -> bool {
-        todo!()
+    pub fn any_hit(&self, ray: &Ray) -> bool {
+        self.any(ray, |_| true)
+    }
+
+    /// Whether a ray meets any triangle that `counts`.
+    #[inline(always)]
+    fn any(&self, ray: &Ray, counts: impl Fn(&[DVec3; 3]) -> bool) -> bool {
+        let Some(local) = self.space.ray(ray) else { return false };
+        let sheared = ShearedRay::new(ray.origin, ray.direction);
+        let far = local.local_t(ray.t_max);
+        let mut met = false;
+        self.hierarchy.walk(&local, far, |leaf| {
+            for triangle in &self.triangles[leaf] {
+                let Some(crossing) = sheared.cross(&triangle.corners) else { continue };
+                let within = crossing.t > ray.t_min && crossing.t < ray.t_max;
+                if !within || ray.skip == Some(triangle.index) || !counts(&triangle.corners) {
+                    continue;
+                }
+                let point = SurfacePoint { triangle: triangle.index, barycentric: crossing.barycentric };
+                if is_there(&self.scene, triangle.presence, point, ray) {
+                    met = true;
+                    return None;
+                }
+            }
+            Some(far)
+        });
+        met
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,199 @@
+//! A hierarchy of boxes, four to a node, and the walk of a ray through it.
+//!
+//! The binary tree comes from `obvhs` (PLOC with reinsertion); its nodes are joined by fours, so that one step tests four boxes side by side.
+
+use crate::local_space::{FAR_STRETCH, LocalRay};
+use glam::Vec4;
+use obvhs::BvhBuildParams;
+use obvhs::aabb::Aabb;
+use obvhs::bvh2::Bvh2;
+use obvhs::bvh2::builder::build_bvh2;
+use std::ops::Range;
+
+/// Where the stack of a walk lives without allocating; deeper trees than any but the most contrived need more.
+const SHALLOW_STACK: usize = 96;
+
+/// Boxes over items that are numbered in the order of the leaves.
+#[derive(Debug, Default)]
+pub(crate) struct Hierarchy {
+    nodes: Vec<Node>,
+    /// The most entries that a walk can have waiting.
+    stack_size: usize,
+}
+
+/// Four boxes and what they hold.
+#[derive(Clone, Copy, Debug)]
+struct Node {
+    /// By axis, the low and high sides of the four boxes. An absent child has a box turned inside out, which nothing meets.
+    sides: [[Vec4; 2]; 3],
+    /// A node, or the first item of a leaf.
+    first: [u32; 4],
+    /// Items of a leaf; 0 for a node.
+    count: [u32; 4],
+}
+
+/// A child that a ray meets, and where.
+#[derive(Clone, Copy, Default)]
+struct Pending {
+    near: f32,
+    first: u32,
+    count: u32,
+}
+
+impl Hierarchy {
+    /// Builds over boxes; also returns the item at each place of the leaves' order.
+    pub fn build(boxes: &[Aabb]) -> (Self, Vec<u32>) {
+        if boxes.is_empty() {
+            return (Self::default(), Vec::new());
+        }
+        let params = BvhBuildParams { max_prims_per_leaf: 4, ..BvhBuildParams::medium_build() };
+        let binary = build_bvh2(boxes, params, &mut std::time::Duration::default());
+        let mut joined =
+            Joining { binary: &binary, nodes: Vec::new(), order: Vec::with_capacity(boxes.len()) };
+        let depth = joined.join();
+        let (nodes, order) = (joined.nodes, joined.order);
+        (Self { nodes, stack_size: 3 * depth + 4 }, order)
+    }
+
+    /// Calls `visit` for the items of every leaf that the ray meets before local t `far`, nearer leaves first
+    /// (by and large); `visit` returns the new `far`, or `None` to end the walk.
+    #[inline(always)]
+    pub fn walk(&self, ray: &LocalRay, far: f32, visit: impl FnMut(Range<usize>) -> Option<f32>) {
+        if self.stack_size <= SHALLOW_STACK {
+            self.walk_with(&mut [Pending::default(); SHALLOW_STACK], ray, far, visit);
+        } else {
+            self.walk_with(&mut vec![Pending::default(); self.stack_size], ray, far, visit);
+        }
+    }
+
+    #[inline(always)]
+    fn walk_with(
+        &self,
+        stack: &mut [Pending],
+        ray: &LocalRay,
+        mut far: f32,
+        mut visit: impl FnMut(Range<usize>) -> Option<f32>,
+    ) {
+        if self.nodes.is_empty() {
+            return;
+        }
+        let [near_x, near_y, near_z] = ray.near_origin.to_array().map(Vec4::splat);
+        let [far_x, far_y, far_z] = ray.far_origin.to_array().map(Vec4::splat);
+        let [inverse_x, inverse_y, inverse_z] = ray.inverse.to_array().map(Vec4::splat);
+        let [side_x, side_y, side_z] = ray.near_side;
+        let mut waiting = 0;
+        let mut current = Pending { near: 0.0, first: 0, count: 0 };
+        loop {
+            if current.count == 0 {
+                let node = &self.nodes[current.first as usize];
+                let [x, y, z] = &node.sides;
+                let near = ((x[side_x & 1] - near_x) * inverse_x)
+                    .max((y[side_y & 1] - near_y) * inverse_y)
+                    .max(((z[side_z & 1] - near_z) * inverse_z).max(Vec4::ZERO));
+                let end = ((x[1 - (side_x & 1)] - far_x) * inverse_x)
+                    .min((y[1 - (side_y & 1)] - far_y) * inverse_y)
+                    .min((z[1 - (side_z & 1)] - far_z) * inverse_z)
+                    * FAR_STRETCH;
+                let mut met = near.cmple(end.min(Vec4::splat(far))).bitmask();
+                let near = near.to_array();
+                // Insert the children that are met so that the nearest lies on top.
+                let base = waiting;
+                while met != 0 {
+                    let child = (met.trailing_zeros() & 3) as usize;
+                    met &= met - 1;
+                    let new =
+                        Pending { near: near[child], first: node.first[child], count: node.count[child] };
+                    let mut place = waiting;
+                    while place > base && stack[place - 1].near < new.near {
+                        stack[place] = stack[place - 1];
+                        place -= 1;
+                    }
+                    stack[place] = new;
+                    waiting += 1;
+                }
+            } else {
+                let first = current.first as usize;
+                match visit(first..first + current.count as usize) {
+                    Some(new_far) => far = new_far,
+                    None => return,
+                }
+            }
+            loop {
+                if waiting == 0 {
+                    return;
+                }
+                waiting -= 1;
+                current = stack[waiting];
+                if current.near <= far {
+                    break;
+                }
+            }
+        }
+    }
+}
+
+/// The join of a binary tree's nodes by fours.
+struct Joining<'a> {
+    binary: &'a Bvh2,
+    nodes: Vec<Node>,
+    order: Vec<u32>,
+}
+
+impl Joining<'_> {
+    /// Fills `nodes` and `order`; returns the depth. Works off a list, not the call stack: trees can be as deep as they have items.
+    fn join(&mut self) -> usize {
+        let mut deepest = 0;
+        self.nodes.push(Node::EMPTY);
+        let root = if self.binary.nodes[0].is_leaf() { vec![0] } else { self.four_under(0) };
+        let mut open = vec![(0, root, 1)];
+        while let Some((node, children, depth)) = open.pop() {
+            deepest = deepest.max(depth);
+            for (slot, child) in children.into_iter().enumerate() {
+                let source = &self.binary.nodes[child];
+                self.nodes[node].set_sides(slot, source.aabb());
+                if source.is_leaf() {
+                    let items =
+                        source.first_index as usize..(source.first_index + source.prim_count) as usize;
+                    self.nodes[node].first[slot] = self.order.len() as u32;
+                    self.nodes[node].count[slot] = source.prim_count;
+                    self.order.extend_from_slice(&self.binary.primitive_indices[items]);
+                } else {
+                    self.nodes[node].first[slot] = self.nodes.len() as u32;
+                    let grandchildren = self.four_under(child);
+                    open.push((self.nodes.len(), grandchildren, depth + 1));
+                    self.nodes.push(Node::EMPTY);
+                }
+            }
+        }
+        deepest
+    }
+
+    /// Up to four descendants of a binary node: its children, the largest of them opened until there are four.
+    fn four_under(&self, node: usize) -> Vec<usize> {
+        let pair = |node: usize| {
+            let first = self.binary.nodes[node].first_index as usize;
+            [first, first + 1]
+        };
+        let mut children = pair(node).to_vec();
+        while children.len() < 4 {
+            let inner = (0..children.len()).filter(|&k| !self.binary.nodes[children[k]].is_leaf());
+            let area = |&k: &usize| self.binary.nodes[children[k]].aabb().half_area();
+            let Some(largest) = inner.max_by(|a, b| area(a).total_cmp(&area(b))) else { break };
+            let [first, second] = pair(children.swap_remove(largest));
+            children.extend([first, second]);
+        }
+        children
+    }
+}
+
+impl Node {
+    const EMPTY: Self =
+        Self { sides: [[Vec4::INFINITY, Vec4::NEG_INFINITY]; 3], first: [0; 4], count: [0; 4] };
+
+    fn set_sides(&mut self, slot: usize, bounds: &Aabb) {
+        for axis in 0..3 {
+            self.sides[axis][0][slot] = bounds.min[axis];
+            self.sides[axis][1][slot] = bounds.max[axis];
+        }
+    }
+}

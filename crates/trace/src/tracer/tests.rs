@@ -1,0 +1,253 @@
+use super::*;
+use crate::test_scene::*;
+use glam::DVec2;
+use scene::{AlphaMode, Material};
+
+const OFFSETS: [DVec3; 2] = [DVec3::ZERO, DVec3::new(1e5, -1e5, 1e5)];
+
+fn ray(origin: DVec3, direction: DVec3) -> Ray {
+    Ray { origin, direction, t_min: 0.0, t_max: f64::INFINITY, skip: None }
+}
+
+fn random_triangles(random: &mut Random, count: u32, size: f64) -> Mesh {
+    let positions = (0..count)
+        .flat_map(|_| {
+            let center = random.in_cube();
+            [0; 3].map(|_| center + size * random.in_cube())
+        })
+        .collect();
+    (positions, (0..count).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect())
+}
+
+/// First hit by testing every triangle.
+fn brute_force(scene: &Scene, ray: &Ray) -> Option<Hit> {
+    let sheared = ShearedRay::new(ray.origin, ray.direction);
+    let crossings = (0..scene.triangles.len() as u32).filter_map(|triangle| {
+        let crossing = sheared.cross(&scene.corners(triangle))?;
+        let within = crossing.t > ray.t_min && crossing.t < ray.t_max && ray.skip != Some(triangle);
+        let point = SurfacePoint { triangle, barycentric: crossing.barycentric };
+        within.then_some(Hit { point, t: crossing.t })
+    });
+    crossings.min_by(|a, b| a.t.total_cmp(&b.t))
+}
+
+#[test]
+fn agrees_with_testing_every_triangle() {
+    let mut random = Random(1);
+    for (count, size) in [(1, 1.0), (3, 0.5), (400, 0.3), (2000, 0.02)] {
+        for offset in OFFSETS {
+            let (mut positions, triangles) = random_triangles(&mut random, count, size);
+            positions.iter_mut().for_each(|p| *p += offset);
+            let scene = scene_of(&[((positions, triangles), WHITE)]);
+            let tracer = Tracer::new(scene.clone());
+            let mut hits = 0;
+            for k in 0..3000 {
+                // From within, near and far; along the axes; with short and long directions.
+                let origin = offset + random.in_cube() * [0.5, 3.0, 1e3, 1e6][k % 4];
+                let aim = offset + random.in_cube() * 0.7;
+                let mut direction = (aim - origin) * [1e-9, 1.0, 1e9][k % 3];
+                if k % 16 == 0 {
+                    direction = [DVec3::X, -DVec3::Y, DVec3::Z][k / 16 % 3];
+                }
+                let mut ray = ray(origin, direction);
+                if k % 5 == 0 {
+                    ray.t_max = (aim - origin).length() / direction.length();
+                }
+                if k % 7 == 0 {
+                    ray.skip = brute_force(&scene, &ray).map(|hit| hit.point.triangle);
+                }
+                let (found, expected) = (tracer.first_hit(&ray), brute_force(&scene, &ray));
+                let key = |hit: Hit| (hit.point.triangle, hit.t.to_bits());
+                assert_eq!(found.map(key), expected.map(key), "{ray:?}");
+                assert_eq!(tracer.any_hit(&ray), expected.is_some());
+                hits += usize::from(expected.is_some());
+            }
+            assert!(hits > 10, "{hits} hits of {count} triangles prove little");
+        }
+    }
+}
+
+#[test]
+fn no_ray_leaves_a_closed_mesh() {
+    let mut random = Random(2);
+    for offset in OFFSETS {
+        let scene = scene_of(&[(sphere(offset, 1.0, 24), WHITE)]);
+        let tracer = Tracer::new(scene.clone());
+        let mut leaks = 0;
+        for _ in 0..500_000 {
+            let triangle = (random.unit() * scene.triangles.len() as f64) as u32;
+            let aim = SurfacePoint { triangle, barycentric: random.barycentric() }.position(&scene);
+            let origin = offset + 0.5 * random.in_cube();
+            leaks += u32::from(tracer.first_hit(&ray(origin, aim - origin)).is_none());
+        }
+        assert_eq!(leaks, 0, "around {offset}");
+    }
+}
+
+#[test]
+fn a_convex_mesh_does_not_occlude_itself() {
+    let mut random = Random(3);
+    for offset in OFFSETS {
+        for rings in [8, 200] {
+            let scene = scene_of(&[(sphere(offset, 1.0, rings), WHITE)]);
+            let tracer = Tracer::new(scene.clone());
+            let (mut seen, mut hidden) = (0, 0);
+            while seen < 50_000 {
+                let triangle = (random.unit() * scene.triangles.len() as f64) as u32;
+                let point = SurfacePoint { triangle, barycentric: random.barycentric() };
+                let eye = offset + 4.0 * random.in_cube();
+                let origin = point.position(&scene);
+                // Down to rays that graze the triangle by 1e-9 rad, which those of the far-away scene cannot resolve.
+                let normal = scene.area_normal(triangle).normalize();
+                let smallest = if offset == DVec3::ZERO { 1e-9 } else { 1e-4 };
+                let graze = random.unit().powi(8).max(smallest);
+                let along = (eye - origin).reject_from(normal).normalize();
+                let eye = if seen % 2 == 0 { origin + 3.0 * (along + graze * normal) } else { eye };
+                if (eye - origin).dot(normal) < smallest {
+                    continue;
+                }
+                seen += 1;
+                hidden += u32::from(tracer.occluded(point, eye));
+            }
+            assert_eq!(hidden, 0, "of {seen} around {offset}, {rings} rings");
+        }
+    }
+}
+
+#[test]
+fn the_far_side_of_a_closed_mesh_is_occluded() {
+    let mut random = Random(4);
+    let scene = scene_of(&[(sphere(DVec3::ZERO, 1.0, 32), WHITE)]);
+    let tracer = Tracer::new(scene.clone());
+    for _ in 0..20_000 {
+        let triangle = (random.unit() * scene.triangles.len() as f64) as u32;
+        let point = SurfacePoint { triangle, barycentric: DVec2::splat(1.0 / 3.0) };
+        let eye = -2.0 * point.position(&scene) + 0.5 * random.in_cube();
+        assert!(tracer.occluded(point, eye));
+    }
+}
+
+#[test]
+fn shells_occlude_each_other() {
+    let mut random = Random(5);
+    for offset in OFFSETS {
+        let inner = sphere(offset, 1.0, 16);
+        let outer = sphere(offset, 1.0 + 4e-5, 16);
+        let shells = inner.1.len() as f64;
+        let scene = scene_of(&[(inner, WHITE), (outer, WHITE)]);
+        let tracer = Tracer::new(scene.clone());
+        for _ in 0..20_000 {
+            let triangle = (random.unit() * shells) as u32;
+            let point = SurfacePoint { triangle, barycentric: random.barycentric() };
+            let eye = offset + random.direction() * 5.0;
+            assert!(tracer.occluded(point, eye), "{offset}: {point:?} sees {eye}");
+        }
+    }
+}
+
+#[test]
+fn neither_end_occludes() {
+    let floor = rectangle(DVec3::ZERO, DVec3::X, DVec3::Z);
+    let wall = rectangle(DVec3::ZERO, DVec3::Y, DVec3::Z);
+    let tracer = Tracer::new(scene_of(&[(floor, WHITE), (wall, WHITE)]));
+    let on = |triangle, b1, b2| SurfacePoint { triangle, barycentric: DVec2::new(b1, b2) };
+    let on_wall = on(2, 0.5, 0.25).position(tracer.scene());
+    assert!(!tracer.occluded(on(0, 0.5, 0.25), on_wall));
+    assert!(!tracer.occluded(on(1, 0.0, 1.0), DVec3::new(0.5, 1.0, 0.5)), "from the edge they share");
+    assert!(tracer.occluded(on(0, 0.5, 0.25), DVec3::new(-0.5, 0.3, 0.5)), "from behind the wall");
+}
+
+#[test]
+fn the_lowest_of_coincident_triangles_is_hit() {
+    let quad = rectangle(DVec3::ZERO, DVec3::X, DVec3::Y);
+    let copies: Vec<_> = (0..9).map(|_| (quad.clone(), WHITE)).collect();
+    let tracer = Tracer::new(scene_of(&copies));
+    let mut ray = ray(DVec3::new(0.5, 0.25, 1.0), -DVec3::Z);
+    assert_eq!(tracer.first_hit(&ray).unwrap().point.triangle, 0);
+    ray.skip = Some(0);
+    assert_eq!(tracer.first_hit(&ray).unwrap().point.triangle, 2);
+}
+
+#[test]
+fn the_interval_is_open() {
+    let tracer = Tracer::new(scene_of(&[(rectangle(DVec3::ZERO, DVec3::X, DVec3::Y), WHITE)]));
+    let within = |t_min, t_max| {
+        let ray = Ray { t_min, t_max, ..ray(DVec3::new(0.5, 0.25, 1.0), DVec3::new(0.0, 0.0, -0.25)) };
+        assert_eq!(tracer.first_hit(&ray).is_some(), tracer.any_hit(&ray));
+        tracer.any_hit(&ray)
+    };
+    assert!(within(0.0, 5.0) && within(3.999, 4.001) && within(f64::NEG_INFINITY, f64::INFINITY));
+    assert!(!within(4.0, 5.0) && !within(0.0, 4.0) && !within(5.0, 3.0) && !within(f64::NAN, 5.0));
+}
+
+#[test]
+fn what_is_no_ray_or_no_triangle_is_not_hit() {
+    let tracer = Tracer::new(scene_of(&[(rectangle(-DVec3::ONE, DVec3::X * 2.0, DVec3::Y * 2.0), WHITE)]));
+    for direction in [DVec3::ZERO, DVec3::splat(f64::NAN), DVec3::new(0.0, 0.0, f64::INFINITY)] {
+        assert!(tracer.first_hit(&ray(-3.0 * DVec3::Z, direction)).is_none());
+    }
+    assert!(tracer.first_hit(&ray(DVec3::splat(f64::NAN), DVec3::Z)).is_none());
+    assert!(tracer.first_hit(&ray(-3.0 * DVec3::Z, 1e-300 * DVec3::Z)).is_some());
+
+    assert!(!Tracer::new(scene_of(&[])).any_hit(&ray(DVec3::ZERO, DVec3::Z)));
+    let needle = vec![DVec3::ZERO, DVec3::splat(0.1), DVec3::splat(0.3)];
+    let broken = vec![DVec3::ZERO, DVec3::X, DVec3::new(0.0, f64::NAN, 0.0)];
+    let endless = vec![DVec3::ZERO, DVec3::X, DVec3::new(0.0, f64::INFINITY, 0.0)];
+    for positions in [needle, broken, endless] {
+        let tracer = Tracer::new(scene_of(&[((positions, vec![[0, 1, 2]]), WHITE)]));
+        assert!(!tracer.any_hit(&ray(DVec3::new(0.1, 0.1, 3.0), -DVec3::new(0.0, 0.0, 1.0))));
+    }
+}
+
+#[test]
+fn a_deep_tree_is_walked_whole() {
+    // Triangles that shrink geometrically toward a point.
+    let positions = (0..3000).flat_map(|k| {
+        let size = 0.98f64.powi(k);
+        [DVec3::new(size, 0.0, 0.0), DVec3::new(size, 0.5 * size, 0.0), DVec3::new(size, 0.0, 0.5 * size)]
+    });
+    let mesh = (positions.collect(), (0..3000).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect());
+    let scene = scene_of(&[(mesh, WHITE)]);
+    let tracer = Tracer::new(scene.clone());
+    let mut random = Random(6);
+    for _ in 0..2000 {
+        let ray =
+            ray(DVec3::X * 2.0, DVec3::new(-2.0, 0.5 * random.unit().powi(8), 0.5 * random.unit().powi(8)));
+        let key = |hit: Hit| (hit.point.triangle, hit.t.to_bits());
+        assert_eq!(tracer.first_hit(&ray).map(key), brute_force(&scene, &ray).map(key));
+    }
+}
+
+fn window(alpha: AlphaMode, opacity: f32) -> Tracer {
+    let material = Material { alpha, base_color: glam::Vec4::new(1.0, 1.0, 1.0, opacity), ..WHITE };
+    let behind = rectangle(DVec3::new(-1.0, -1.0, -2.0), DVec3::X * 2.0, DVec3::Y * 2.0);
+    let pane = |z| rectangle(DVec3::new(-1.0, -1.0, z), DVec3::X * 2.0, DVec3::Y * 2.0);
+    Tracer::new(scene_of(&[(pane(0.0), material.clone()), (pane(-1.0), material), (behind, WHITE)]))
+}
+
+#[test]
+fn a_mask_cuts_away_what_is_below_its_cutoff() {
+    let ahead = ray(DVec3::new(0.1, 0.2, 1.0), -DVec3::Z);
+    for (opacity, there) in [(0.49, false), (0.5, true), (0.51, true)] {
+        let tracer = window(AlphaMode::Mask(0.5), opacity);
+        assert_eq!(tracer.first_hit(&ahead).unwrap().t.round(), if there { 1.0 } else { 3.0 });
+    }
+    assert_eq!(window(AlphaMode::Opaque, 0.0).first_hit(&ahead).unwrap().t, 1.0);
+}
+
+#[test]
+fn blending_lets_its_share_of_rays_pass() {
+    let tracer = window(AlphaMode::Blend, 0.3);
+    let mut random = Random(7);
+    let (rays, mut by_depth) = (100_000, [0.0; 4]);
+    for _ in 0..rays {
+        let ray = ray(DVec3::new(random.unit(), random.unit(), 1.0), -DVec3::Z);
+        let t = tracer.first_hit(&ray).unwrap().t;
+        assert_eq!(t, tracer.first_hit(&ray).unwrap().t, "the same ray meets the same point");
+        by_depth[t.round() as usize - 1] += 1.0;
+    }
+    for (found, expected) in by_depth.into_iter().zip([0.3, 0.7 * 0.3, 0.7 * 0.7, 0.0f64]) {
+        let deviation = (expected * (1.0 - expected) / rays as f64).sqrt();
+        assert!((found / rays as f64 - expected).abs() <= 4.0 * deviation, "{by_depth:?}");
+    }
+}
