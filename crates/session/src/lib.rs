@@ -1,1 +1,42 @@
-//! See Cargo.toml.
+//! An open document: commands, caches and background work, without a window.
+//!
+//! The window and the command line are both thin over this crate. [`Session`] is the window's: it takes a
+//! [`Command`], does it or starts it in the background, and tells by [`Event`]s what happened.
+//!
+//! ```text
+//! let mut session = Session::new(SessionOptions { waker, ..Default::default() })?;
+//! session.apply(Command::Open("garden.glb".into()))?;          // in the background
+//! for event in session.poll() { … }                             // once a frame
+//! if let Some(ray) = session.picture_ray(position) {            // either view paints with rays
+//!     session.apply(Command::BeginStroke(StrokePoint::ray(ray)))?;
+//! }
+//! session.preview()                                             // the last good picture, always
+//! ```
+
+mod camera_edit;
+mod command;
+mod command_table;
+mod depth_blur;
+mod document;
+mod error;
+mod first_hits;
+mod job;
+mod picking;
+mod preview;
+mod preview_worker;
+mod sample_index;
+mod session;
+mod stage;
+mod undo;
+
+pub use camera_edit::CameraEdit;
+pub use command::{Command, Event, FillRegion, StrokePoint, StrokeTarget};
+pub use command_table::{COMMANDS, CommandId, CommandInfo, Menu, Shortcut};
+pub use document::{Document, camera_of};
+pub use error::SessionError;
+pub use first_hits::FirstHits;
+pub use job::{JobId, JobProgress, JobStatus, Waker, guarded};
+pub use picking::{SurfaceHit, chief_ray, pick};
+pub use preview::{Preview, PreviewActivity, PreviewKind};
+pub use session::{Session, SessionOptions, Truth};
+pub use stage::{Stage, load_scene};

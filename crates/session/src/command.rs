@@ -1,0 +1,144 @@
+//! What a session can be asked to do, and what it tells back.
+
+use crate::{CameraEdit, JobId, JobStatus, SurfaceHit};
+use focus::Brush;
+use lens::{Exposure, FocusOffset};
+use std::ops::Range;
+use std::path::PathBuf;
+use trace::Ray;
+
+/// A change of the document or of what is worked on. See [`crate::Session::apply`].
+#[derive(Clone, Debug)]
+pub enum Command {
+    /// Opens a scene or a project in the background; the document that is open stays until the new one is ready.
+    Open(PathBuf),
+    /// Saves to the project's own file. An error where it has none yet.
+    Save,
+    /// Saves to this file and keeps it as the project's own.
+    SaveAs(PathBuf),
+    /// Renders the picture at full size in the background and writes it.
+    ExportPicture(PathBuf),
+    /// Writes the focus map, EXR or 16-bit PNG by the file's extension.
+    ExportFocusMap(PathBuf),
+    /// Writes the scene as GLB with the atlas as a second UV set.
+    ExportScene(PathBuf),
+    /// Replaces the focus map by one that was exported for this atlas.
+    ImportFocusMap(PathBuf),
+
+    /// Takes back the last stroke, fill or lens change.
+    Undo,
+    /// Does again what was taken back.
+    Redo,
+
+    /// Changes the camera. Edits of one field in a row are one step of undo until [`Command::FinishEdit`].
+    Camera(CameraEdit),
+    /// Ends a run of edits (a slider was let go): the next one is a step of undo of its own.
+    FinishEdit,
+    /// How the sum becomes the picture.
+    SetExposure(Exposure),
+    /// The longest side that the preview is drawn at, px; the picture's own size if that is smaller.
+    SetPreviewSize(u32),
+
+    /// The brush of the strokes to come.
+    SetBrush(Brush),
+    /// Begins a stroke, with a first dab if the point is on a surface.
+    BeginStroke(StrokePoint),
+    /// Moves the stroke on.
+    ExtendStroke(StrokePoint),
+    /// Ends the stroke: one step of undo, or nothing if it changed nothing.
+    CommitStroke,
+    /// Takes the stroke back, leaving no trace.
+    AbortStroke,
+    /// Gives a whole region a focus.
+    Fill(FillRegion, FocusOffset),
+    /// Returns everything to the ordinary lens.
+    ResetMap,
+    /// The focus of the background.
+    SetBackgroundFocus(FocusOffset),
+    /// Sets the focus distance to the axial depth of a surface point.
+    FocusHere(SurfaceHit),
+    /// Takes the brush's focus from a surface point.
+    Pick(SurfaceHit),
+
+    /// Bakes the light field anew.
+    Bake,
+    /// Ray traces the picture in the background, at the preview's size.
+    RenderTruth {
+        /// Rays a pixel.
+        samples_per_pixel: u32,
+    },
+    /// Stops one piece of background work.
+    Cancel(JobId),
+    /// Stops all background work.
+    CancelAll,
+}
+
+/// What a fill covers, named by a point on it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum FillRegion {
+    /// The object: every part of the point's node.
+    Node(SurfaceHit),
+    /// The primitive of the point's node.
+    Part(SurfaceHit),
+    /// Everything of the point's material.
+    Material(SurfaceHit),
+    /// The connected piece of the atlas.
+    Chart(SurfaceHit),
+    /// All surfaces.
+    All,
+}
+
+/// Where the pointer is during a stroke.
+#[derive(Clone, Copy, Debug)]
+pub struct StrokePoint {
+    /// Where.
+    pub at: StrokeTarget,
+    /// Pen pressure in [0, 1]; 1 for a mouse.
+    pub pressure: f32,
+}
+
+/// A stroke's place, from either view.
+#[derive(Clone, Copy, Debug)]
+pub enum StrokeTarget {
+    /// A ray from a view; what it meets is painted. A ray that meets nothing interrupts the stroke.
+    Ray(Ray),
+    /// A point that was picked already.
+    Surface(SurfaceHit),
+}
+
+impl StrokePoint {
+    /// A mouse position, as a ray of a view.
+    pub fn ray(ray: Ray) -> Self {
+        Self { at: StrokeTarget::Ray(ray), pressure: 1.0 }
+    }
+
+    /// A picked surface point.
+    pub fn surface(hit: SurfaceHit) -> Self {
+        Self { at: StrokeTarget::Surface(hit), pressure: 1.0 }
+    }
+}
+
+/// What happened since the last [`crate::Session::poll`].
+#[derive(Clone, Debug, PartialEq)]
+pub enum Event {
+    /// A document was opened; everything drawn of the old one is stale.
+    Opened,
+    /// The camera changed (also by undo).
+    CameraChanged,
+    /// Texels of the focus map changed: columns and rows.
+    MapChanged(Range<u32>, Range<u32>),
+    /// The brush changed (by picking).
+    BrushChanged,
+    /// A new preview is ready: [`crate::Session::preview`].
+    PreviewReady(u64),
+    /// The ray-traced picture is ready: [`crate::Session::truth`].
+    TruthReady,
+    /// Background work went on.
+    Progress(JobStatus),
+    /// A file was written.
+    Written(PathBuf),
+    /// Work failed: one sentence, what it was doing first.
+    Failed(String),
+    /// Something the user should know: one sentence.
+    Notice(String),
+}

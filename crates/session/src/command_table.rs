@@ -1,0 +1,241 @@
+//! Every command a person can invoke: one table for menus, palette, keys, documentation and tests.
+//!
+//! Plain data: the window maps [`Shortcut`] to its own key type and [`CommandId`] to what it does (most send a
+//! [`crate::Command`], some open a dialog or change the view).
+
+/// Names a command for good: stored in key maps and scripts by [`CommandInfo::name`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[allow(missing_docs, reason = "the table below says what each one does")]
+pub enum CommandId {
+    Open,
+    OpenDemo,
+    Save,
+    SaveAs,
+    ExportPicture,
+    ExportFocusMap,
+    ExportScene,
+    ImportFocusMap,
+    Quit,
+    Undo,
+    Redo,
+    FrameAll,
+    FrameCursor,
+    ViewFromCamera,
+    PictureFit,
+    PictureActualSize,
+    ShowFocus,
+    ShowSurface,
+    ResetLayout,
+    Brush,
+    Smooth,
+    Erase,
+    FillPart,
+    FillMaterial,
+    FillChart,
+    FillAll,
+    FocusHere,
+    Pick,
+    ResetMap,
+    BrushLarger,
+    BrushSmaller,
+    BrushHarder,
+    BrushSofter,
+    BrushNearer,
+    BrushFarther,
+    BrushSharp,
+    ToggleAnchor,
+    OpenAperture,
+    CloseAperture,
+    FocusNearer,
+    FocusFarther,
+    CameraFromView,
+    Normalise,
+    Bake,
+    RenderTruth,
+    Stop,
+    Palette,
+    Shortcuts,
+    About,
+}
+
+/// The menu a command stands in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[allow(missing_docs, reason = "the menus' own names")]
+pub enum Menu {
+    File,
+    Edit,
+    View,
+    Focus,
+    Lens,
+    Render,
+    Help,
+}
+
+impl Menu {
+    /// All menus, left to right.
+    pub const ALL: [Menu; 7] =
+        [Menu::File, Menu::Edit, Menu::View, Menu::Focus, Menu::Lens, Menu::Render, Menu::Help];
+
+    /// The title in the menu bar.
+    pub fn title(self) -> &'static str {
+        match self {
+            Menu::File => "File",
+            Menu::Edit => "Edit",
+            Menu::View => "View",
+            Menu::Focus => "Focus",
+            Menu::Lens => "Lens",
+            Menu::Render => "Render",
+            Menu::Help => "Help",
+        }
+    }
+}
+
+/// A key with its modifiers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Shortcut {
+    /// Ctrl (Cmd on a Mac).
+    pub command: bool,
+    /// Shift.
+    pub shift: bool,
+    /// Alt.
+    pub alt: bool,
+    /// The key as egui names it: `A`, `F2`, `Escape`, `OpenBracket`, `Plus`.
+    pub key: &'static str,
+}
+
+impl Shortcut {
+    const fn key(key: &'static str) -> Option<Self> {
+        Some(Self { command: false, shift: false, alt: false, key })
+    }
+    const fn command(key: &'static str) -> Option<Self> {
+        Some(Self { command: true, shift: false, alt: false, key })
+    }
+    const fn command_shift(key: &'static str) -> Option<Self> {
+        Some(Self { command: true, shift: true, alt: false, key })
+    }
+    const fn shift(key: &'static str) -> Option<Self> {
+        Some(Self { command: false, shift: true, alt: false, key })
+    }
+}
+
+impl std::fmt::Display for Shortcut {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let modifiers = [(self.command, "Ctrl+"), (self.alt, "Alt+"), (self.shift, "Shift+")];
+        for (_, name) in modifiers.into_iter().filter(|(held, _)| *held) {
+            f.write_str(name)?;
+        }
+        f.write_str(match self.key {
+            "OpenBracket" => "[",
+            "CloseBracket" => "]",
+            "Comma" => ",",
+            "Period" => ".",
+            "Escape" => "Esc",
+            key => key,
+        })
+    }
+}
+
+/// What the table says about a command.
+#[derive(Clone, Copy, Debug)]
+pub struct CommandInfo {
+    /// Which one.
+    pub id: CommandId,
+    /// Its name in menu and palette; unique.
+    pub name: &'static str,
+    /// One sentence that says what it does.
+    pub tooltip: &'static str,
+    /// Its key, if it has one; unique.
+    pub shortcut: Option<Shortcut>,
+    /// Where it stands.
+    pub menu: Menu,
+}
+
+const fn row(
+    id: CommandId,
+    menu: Menu,
+    shortcut: Option<Shortcut>,
+    name: &'static str,
+    tooltip: &'static str,
+) -> CommandInfo {
+    CommandInfo { id, name, tooltip, shortcut, menu }
+}
+
+/// The table, in menu order.
+#[rustfmt::skip]
+pub const COMMANDS: &[CommandInfo] = &[
+    row(CommandId::Open, Menu::File, Shortcut::command("O"), "Open…", "Open a glTF scene (.glb, .gltf) or a project."),
+    row(CommandId::OpenDemo, Menu::File, None, "Open the demo", "Open the scene that comes with Focus Brush."),
+    row(CommandId::Save, Menu::File, Shortcut::command("S"), "Save", "Save the project."),
+    row(CommandId::SaveAs, Menu::File, Shortcut::command_shift("S"), "Save as…", "Save the project under another name."),
+    row(CommandId::ExportPicture, Menu::File, Shortcut::command("E"), "Export picture…", "Write the picture at full size as EXR or PNG."),
+    row(CommandId::ExportFocusMap, Menu::File, None, "Export focus map…", "Write the painted focus as EXR or 16-bit PNG."),
+    row(CommandId::ExportScene, Menu::File, None, "Export unwrapped scene…", "Write the scene as GLB with the atlas as its second UV set."),
+    row(CommandId::ImportFocusMap, Menu::File, None, "Import focus map…", "Replace the painted focus by a map written earlier."),
+    row(CommandId::Quit, Menu::File, Shortcut::command("Q"), "Quit", "Close the window; asks when something is unsaved."),
+    row(CommandId::Undo, Menu::Edit, Shortcut::command("Z"), "Undo", "Take back the last stroke, fill or lens change."),
+    row(CommandId::Redo, Menu::Edit, Shortcut::command_shift("Z"), "Redo", "Do again what was taken back."),
+    row(CommandId::FrameAll, Menu::View, Shortcut::key("Home"), "Frame all", "Show the whole scene in the paint view."),
+    row(CommandId::FrameCursor, Menu::View, Shortcut::key("F"), "Orbit around cursor", "Centre the paint view on what lies under the cursor."),
+    row(CommandId::ViewFromCamera, Menu::View, Shortcut::key("Num0"), "View from camera", "Look through the shot camera in the paint view."),
+    row(CommandId::PictureFit, Menu::View, None, "Fit picture", "Scale the picture to its panel."),
+    row(CommandId::PictureActualSize, Menu::View, Shortcut::key("Num1"), "Picture at 100 %", "Show one picture pixel as one screen pixel."),
+    row(CommandId::ShowFocus, Menu::View, Shortcut::key("C"), "Show focus", "Colour the paint view by the blur that the focus gives."),
+    row(CommandId::ShowSurface, Menu::View, Shortcut::key("V"), "Show surface", "Show the scene's own colours in the paint view."),
+    row(CommandId::ResetLayout, Menu::View, None, "Reset layout", "Put the panels back where they were at first."),
+    row(CommandId::Brush, Menu::Focus, Shortcut::key("B"), "Brush", "Paint the chosen focus."),
+    row(CommandId::Smooth, Menu::Focus, Shortcut::key("S"), "Smooth", "Even out the painted focus."),
+    row(CommandId::Erase, Menu::Focus, Shortcut::key("E"), "Reset brush", "Paint the ordinary lens back."),
+    row(CommandId::FillPart, Menu::Focus, Shortcut::key("G"), "Fill object", "Give the whole clicked object the chosen focus."),
+    row(CommandId::FillMaterial, Menu::Focus, None, "Fill material", "Give everything of the clicked material the chosen focus."),
+    row(CommandId::FillChart, Menu::Focus, None, "Fill chart", "Give the clicked atlas chart the chosen focus."),
+    row(CommandId::FillAll, Menu::Focus, None, "Fill everything", "Give the whole scene the chosen focus."),
+    row(CommandId::FocusHere, Menu::Focus, Shortcut::key("H"), "Focus here", "Set the lens's focus distance to what is clicked."),
+    row(CommandId::Pick, Menu::Focus, Shortcut::key("I"), "Pick", "Take the brush's focus from what is clicked."),
+    row(CommandId::ResetMap, Menu::Focus, None, "Reset all paint", "Return the whole scene to the ordinary lens."),
+    row(CommandId::BrushLarger, Menu::Focus, Shortcut::key("CloseBracket"), "Larger brush", "Make the brush larger."),
+    row(CommandId::BrushSmaller, Menu::Focus, Shortcut::key("OpenBracket"), "Smaller brush", "Make the brush smaller."),
+    row(CommandId::BrushHarder, Menu::Focus, Shortcut::shift("CloseBracket"), "Harder brush", "Sharpen the brush's edge."),
+    row(CommandId::BrushSofter, Menu::Focus, Shortcut::shift("OpenBracket"), "Softer brush", "Soften the brush's edge."),
+    row(CommandId::BrushNearer, Menu::Focus, Shortcut::key("Comma"), "Blur nearer", "Move the brush's focus toward near blur."),
+    row(CommandId::BrushFarther, Menu::Focus, Shortcut::key("Period"), "Blur farther", "Move the brush's focus toward far blur."),
+    row(CommandId::BrushSharp, Menu::Focus, Shortcut::key("X"), "Paint sharp", "Set the brush to perfectly sharp, wherever the camera focuses."),
+    row(CommandId::ToggleAnchor, Menu::Focus, Shortcut::key("A"), "Anchor: lens or point", "Paint blur relative to the lens, or to the point itself."),
+    row(CommandId::OpenAperture, Menu::Lens, Shortcut::key("Plus"), "Open aperture", "Open the aperture by a third of a stop."),
+    row(CommandId::CloseAperture, Menu::Lens, Shortcut::key("Minus"), "Close aperture", "Close the aperture by a third of a stop."),
+    row(CommandId::FocusNearer, Menu::Lens, Shortcut::shift("Comma"), "Focus nearer", "Focus the lens a twentieth nearer."),
+    row(CommandId::FocusFarther, Menu::Lens, Shortcut::shift("Period"), "Focus farther", "Focus the lens a twentieth farther."),
+    row(CommandId::CameraFromView, Menu::Lens, None, "Camera from view", "Move the shot camera to where the paint view looks from."),
+    row(CommandId::Normalise, Menu::Render, Shortcut::key("N"), "Normalise exposure", "Keep a white scene white, or show the conserved energy of the model."),
+    row(CommandId::Bake, Menu::Render, Shortcut::key("F5"), "Bake again", "Bake the light field anew."),
+    row(CommandId::RenderTruth, Menu::Render, Shortcut::key("F12"), "Render ground truth", "Ray trace the picture, to compare the preview with."),
+    row(CommandId::Stop, Menu::Render, Shortcut::command("Period"), "Stop", "Cancel the work that is going on."),
+    row(CommandId::Palette, Menu::Help, Shortcut::command_shift("P"), "Command palette…", "Find any command by typing part of its name."),
+    row(CommandId::Shortcuts, Menu::Help, Shortcut::key("F1"), "Keyboard shortcuts", "List every shortcut."),
+    row(CommandId::About, Menu::Help, None, "About Focus Brush", "Version, licence and what draws the pictures."),
+];
+
+impl CommandId {
+    /// The command's row in the table.
+    pub fn info(self) -> &'static CommandInfo {
+        COMMANDS.iter().find(|info| info.id == self).expect("every command has a row")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::HashSet;
+
+    #[test]
+    fn names_and_shortcuts_are_unique() {
+        let mut names = HashSet::new();
+        let mut keys = HashSet::new();
+        let mut ids = HashSet::new();
+        for info in COMMANDS {
+            assert!(ids.insert(info.id), "{:?} stands twice", info.id);
+            assert!(names.insert(info.name), "{} stands twice", info.name);
+            assert!(info.shortcut.is_none_or(|key| keys.insert(key)), "{}: its key is taken", info.name);
+            assert!(info.tooltip.ends_with('.'), "{}: the tooltip is a sentence", info.name);
+        }
+    }
+}

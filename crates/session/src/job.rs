@@ -1,0 +1,143 @@
+//! Background work: a named thread with progress, cancel and a result; its panics become errors.
+
+use crate::SessionError;
+use progress::Progress;
+use std::panic::AssertUnwindSafe;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
+
+/// Names one piece of background work.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct JobId(pub u64);
+
+/// How background work stands, for the status line.
+#[derive(Clone, Debug, PartialEq)]
+pub struct JobStatus {
+    /// Which.
+    pub id: JobId,
+    /// What it does: "opening house.glb".
+    pub label: String,
+    /// The share done, in [0, 1].
+    pub fraction: f32,
+    /// Whether [`crate::Command::Cancel`] can stop it.
+    pub can_cancel: bool,
+}
+
+/// Progress and cancellation shared between a job and its watchers.
+#[derive(Default)]
+pub struct JobProgress {
+    fraction: AtomicU32,
+    cancelled: AtomicBool,
+}
+
+impl JobProgress {
+    /// The share done, in [0, 1].
+    pub fn fraction(&self) -> f32 {
+        f32::from_bits(self.fraction.load(Ordering::Relaxed))
+    }
+
+    /// Asks the work to stop.
+    pub fn cancel(&self) {
+        self.cancelled.store(true, Ordering::Relaxed);
+    }
+
+    /// Starts over: nothing done, not cancelled.
+    pub(crate) fn reset(&self) {
+        self.fraction.store(0, Ordering::Relaxed);
+        self.cancelled.store(false, Ordering::Relaxed);
+    }
+}
+
+impl Progress for JobProgress {
+    fn report(&self, fraction: f32) {
+        self.fraction.fetch_max(fraction.clamp(0.0, 1.0).to_bits(), Ordering::Relaxed);
+    }
+    fn cancelled(&self) -> bool {
+        self.cancelled.load(Ordering::Relaxed)
+    }
+}
+
+/// Calls the window back when there is something to [`crate::Session::poll`].
+pub type Waker = Arc<dyn Fn() + Send + Sync>;
+
+/// Work in the background.
+pub(crate) struct Job {
+    pub id: JobId,
+    pub label: String,
+    pub progress: Arc<JobProgress>,
+}
+
+/// Stack of a job's thread: imports and unwrapping may recurse over a scene's hierarchy.
+const STACK_BYTES: usize = 16 << 20;
+
+impl Job {
+    /// Starts `work` on a thread of its own and hands its result, or what its panic means, to `deliver`.
+    pub fn start<T: Send + 'static>(
+        id: JobId,
+        label: String,
+        work: impl FnOnce(&JobProgress) -> Result<T, SessionError> + Send + 'static,
+        deliver: impl FnOnce(JobId, Result<T, SessionError>) + Send + 'static,
+    ) -> Result<Self, SessionError> {
+        let progress = Arc::new(JobProgress::default());
+        let (shared, doing) = (progress.clone(), label.clone());
+        std::thread::Builder::new()
+            .name(label.clone())
+            .stack_size(STACK_BYTES)
+            .spawn(move || deliver(id, guarded(&doing, || work(&shared))))
+            .map_err(|e| SessionError::TryAgain(format!("{label}: no thread could be started: {e} (try again)")))?;
+        Ok(Self { id, label, progress })
+    }
+
+    pub fn status(&self) -> JobStatus {
+        JobStatus {
+            id: self.id,
+            label: self.label.clone(),
+            fraction: self.progress.fraction(),
+            can_cancel: !self.progress.cancelled(),
+        }
+    }
+}
+
+/// Runs `work`; a panic in it becomes an error.
+pub fn guarded<T>(doing: &str, work: impl FnOnce() -> Result<T, SessionError>) -> Result<T, SessionError> {
+    std::panic::catch_unwind(AssertUnwindSafe(work))
+        .unwrap_or_else(|payload| Err(SessionError::panicked(doing, payload.as_ref())))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::sync::mpsc;
+    use std::time::Duration;
+
+    #[test]
+    fn a_panic_is_an_error_and_a_result_arrives() {
+        let (send, receive) = mpsc::channel();
+        let deliver = send.clone();
+        let panics = |_: &JobProgress| -> Result<u8, SessionError> { panic!("index out of bounds") };
+        Job::start(JobId(1), "testing".into(), panics, move |id, r| deliver.send((id, r)).unwrap()).unwrap();
+        let (id, result) = receive.recv_timeout(Duration::from_secs(10)).unwrap();
+        assert_eq!(id, JobId(1));
+        assert!(matches!(result, Err(SessionError::Internal(text)) if text.contains("index out of bounds")));
+
+        Job::start(JobId(2), "testing".into(), |_| Ok(7), move |id, r| send.send((id, r)).unwrap()).unwrap();
+        assert_eq!(receive.recv_timeout(Duration::from_secs(10)).unwrap(), (JobId(2), Ok(7)));
+    }
+
+    #[test]
+    fn cancel_reaches_the_work() {
+        let (send, receive) = mpsc::channel();
+        let job = Job::start(
+            JobId(1),
+            "waiting".into(),
+            |progress| loop {
+                progress.check()?;
+                std::thread::sleep(Duration::from_millis(1));
+            },
+            move |_, r: Result<(), _>| send.send(r).unwrap(),
+        )
+        .unwrap();
+        job.progress.cancel();
+        assert_eq!(receive.recv_timeout(Duration::from_secs(10)).unwrap(), Err(SessionError::Cancelled));
+    }
+}

@@ -1,0 +1,163 @@
+//! What the preview thread does with its wishes: bake, splat, update, publish.
+
+use crate::first_hits::FirstHits;
+use crate::job::guarded;
+use crate::preview::{Changes, Shared, Wishes, serves};
+use crate::sample_index::SampleIndex;
+use crate::{Preview, PreviewActivity, PreviewKind, SessionError, Stage};
+use focus::{Focus, FocusMap};
+use glam::DVec3;
+use lens::{Camera, Picture};
+use salf::{BakeOptions, SalfStatistics};
+use slf::DirectLight;
+use splat::{SplatError, Splatter};
+use std::sync::Arc;
+use std::time::Instant;
+
+/// The thread's own state.
+pub(crate) struct Worker {
+    shared: Arc<Shared>,
+    stage: Option<Arc<Stage>>,
+    camera: Option<Camera>,
+    map: Option<Arc<FocusMap>>,
+    baked: Option<Baked>,
+    /// The camera of the newest picture.
+    shown: Option<Camera>,
+    last_id: u64,
+}
+
+/// A light field and its running sum.
+struct Baked {
+    splatter: Splatter,
+    index: SampleIndex,
+    statistics: SalfStatistics,
+    /// The lens of the sum; none while there is no valid sum.
+    summed: Option<Camera>,
+}
+
+impl From<SplatError> for SessionError {
+    fn from(error: SplatError) -> Self {
+        match error {
+            SplatError::Cancelled => Self::Cancelled,
+            other => Self::BadInput(other.to_string()),
+        }
+    }
+}
+
+impl Worker {
+    pub fn new(shared: Arc<Shared>) -> Self {
+        Self { shared, stage: None, camera: None, map: None, baked: None, shown: None, last_id: 0 }
+    }
+
+    /// Follows wishes until the session goes.
+    pub fn run(mut self) {
+        while let Some(wishes) = self.shared.next() {
+            match guarded("drawing the preview", || self.follow(wishes)) {
+                Ok(()) | Err(SessionError::Cancelled) => {}
+                Err(error) => {
+                    if matches!(error, SessionError::Internal(_)) {
+                        self.baked = None;
+                    }
+                    self.shared.fail(error.to_string());
+                }
+            }
+        }
+    }
+
+    fn follow(&mut self, wishes: Wishes) -> Result<(), SessionError> {
+        if let Some(stage) = wishes.stage {
+            self.stage = Some(stage);
+            self.baked = None;
+            self.shown = None;
+        }
+        if wishes.bake {
+            self.baked = None;
+        }
+        self.camera = wishes.camera.or(self.camera.take());
+        self.map = wishes.map.map(Arc::new).or(self.map.take());
+        let (Some(stage), Some(camera), Some(map)) = (&self.stage, &self.camera, &self.map) else {
+            return Ok(());
+        };
+        let (stage, camera) = (stage.clone(), camera.clone());
+        let focus = Focus::painted(stage.scene.clone(), stage.atlas.clone(), map.clone());
+        if !self.baked.as_ref().is_some_and(|baked| serves(&baked.splatter.salf().camera, &camera)) {
+            self.bake(&stage, &camera, &focus)?;
+        }
+        self.splat(&camera, &focus, &wishes.changed)
+    }
+
+    /// Shows the pinhole picture, then makes the light field.
+    fn bake(&mut self, stage: &Stage, camera: &Camera, focus: &Focus) -> Result<(), SessionError> {
+        let start = Instant::now();
+        self.shared.begin(PreviewActivity::Baking)?;
+        let progress = &self.shared.progress;
+        let [r, g, b] = camera.background;
+        let radiance = DirectLight::new(stage.tracer.clone(), DVec3::new(r, g, b).as_vec3());
+        if !self.shown.as_ref().is_some_and(|shown| same_view(shown, camera)) {
+            let hits = FirstHits::trace(&stage.tracer, &radiance, focus, camera, progress)?;
+            self.publish(hits.picture(), PreviewKind::Pinhole, camera, start, SalfStatistics::default());
+        }
+        let options = BakeOptions::default();
+        let salf = Arc::new(salf::bake(&stage.tracer, &radiance, camera, &options, &self.shared.progress)?);
+        self.baked = Some(Baked {
+            index: SampleIndex::new(&salf, &stage.atlas),
+            statistics: salf.statistics(),
+            splatter: Splatter::new(salf),
+            summed: None,
+        });
+        Ok(())
+    }
+
+    /// Brings the sum to the camera's lens and the focus, and shows it.
+    fn splat(&mut self, camera: &Camera, focus: &Focus, changed: &Changes) -> Result<(), SessionError> {
+        let Some(baked) = &mut self.baked else { return Ok(()) };
+        let start = Instant::now();
+        self.shared.begin(PreviewActivity::Splatting)?;
+        let kind = match changed {
+            Changes::Texels(texels) if baked.summed.as_ref() == Some(camera) => {
+                let samples = baked.index.samples_reading(texels);
+                if samples.is_empty() {
+                    return Ok(());
+                }
+                // Until the update is through, the sum is of no lens.
+                baked.summed = None;
+                baked.splatter.update(focus, &samples)?;
+                PreviewKind::Update
+            }
+            _ => {
+                baked.summed = None;
+                baked.splatter.render(camera, focus, &self.shared.progress)?;
+                PreviewKind::Splat
+            }
+        };
+        baked.summed = Some(camera.clone());
+        let (picture, statistics) = (baked.splatter.picture(), baked.statistics);
+        self.publish(picture, kind, camera, start, statistics);
+        Ok(())
+    }
+
+    fn publish(
+        &mut self,
+        picture: Picture,
+        kind: PreviewKind,
+        camera: &Camera,
+        start: Instant,
+        statistics: SalfStatistics,
+    ) {
+        self.last_id += 1;
+        self.shown = Some(camera.clone());
+        self.shared.publish(Preview {
+            id: self.last_id,
+            picture: Arc::new(picture),
+            kind,
+            camera: camera.clone(),
+            seconds: start.elapsed().as_secs_f64(),
+            statistics,
+        });
+    }
+}
+
+/// Whether the two show the same view, whatever their lens.
+fn same_view(a: &Camera, b: &Camera) -> bool {
+    (a.width, a.height, a.yfov, a.camera_to_world) == (b.width, b.height, b.yfov, b.camera_to_world)
+}

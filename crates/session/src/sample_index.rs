@@ -1,0 +1,110 @@
+//! Which samples of the light field a patch of paint moves: atlas tile → samples.
+
+use atlas::Atlas;
+use glam::DVec2;
+use salf::Salf;
+use std::collections::HashMap;
+
+/// Side of a tile, texels: a tile's texels are the bits of a u64.
+const TILE: u32 = 8;
+
+/// The samples of every tile of the atlas, with where they lie.
+pub(crate) struct SampleIndex {
+    tiles_across: u32,
+    /// Where each tile's entries start; one more than there are tiles.
+    starts: Vec<u32>,
+    /// Sample, and the bit of its texel within the tile; tile by tile.
+    entries: Vec<(u32, u8)>,
+    size: [u32; 2],
+}
+
+impl SampleIndex {
+    /// Sorts the samples of `salf` into the tiles of `atlas`.
+    pub fn new(salf: &Salf, atlas: &Atlas) -> Self {
+        let positions = salf.samples.iter().map(|sample| Some(atlas.position_of(sample.surface?)));
+        Self::of_positions([atlas.width, atlas.height], positions)
+    }
+
+    /// Sorts samples by their positions in texel coordinates; those without one are never found.
+    fn of_positions(size: [u32; 2], positions: impl Iterator<Item = Option<DVec2>>) -> Self {
+        let [across, down] = size.map(|side| side.div_ceil(TILE).max(1));
+        let placed = positions.enumerate().filter_map(|(index, position)| {
+            let texel = |k: usize| (position.map(|p| p[k].max(0.0) as u32)).map(|t| t.min(size[k].max(1) - 1));
+            let (tile, bit) = place(texel(0)?, texel(1)?, across);
+            Some((tile, index as u32, bit))
+        });
+        let placed: Vec<_> = placed.collect();
+        let mut starts = vec![0u32; (across * down) as usize + 1];
+        for (tile, ..) in &placed {
+            starts[*tile as usize + 1] += 1;
+        }
+        for k in 1..starts.len() {
+            starts[k] += starts[k - 1];
+        }
+        let mut next = starts.clone();
+        let mut entries = vec![(0, 0); placed.len()];
+        for (tile, index, bit) in placed {
+            entries[next[tile as usize] as usize] = (index, bit);
+            next[tile as usize] += 1;
+        }
+        Self { tiles_across: across, starts, entries, size }
+    }
+
+    /// The samples whose bilinear lookup may read one of `texels` (column and row), each once.
+    ///
+    /// A lookup at p reads the texels whose centres lie within 1 of p in x and y: p's own and its neighbours.
+    pub fn samples_reading(&self, texels: &[[u32; 2]]) -> Vec<u32> {
+        let mut read: HashMap<u32, u64> = HashMap::new();
+        for &[x, y] in texels {
+            for row in y.saturating_sub(1)..=(y + 1).min(self.size[1].max(1) - 1) {
+                for column in x.saturating_sub(1)..=(x + 1).min(self.size[0].max(1) - 1) {
+                    let (tile, bit) = place(column, row, self.tiles_across);
+                    *read.entry(tile).or_default() |= 1 << bit;
+                }
+            }
+        }
+        let mut samples = Vec::new();
+        for (tile, bits) in read {
+            let entries = self.starts[tile as usize] as usize..self.starts[tile as usize + 1] as usize;
+            let found = self.entries[entries].iter().filter(|(_, bit)| bits >> bit & 1 == 1);
+            samples.extend(found.map(|(sample, _)| sample));
+        }
+        samples.sort_unstable();
+        samples
+    }
+}
+
+/// The tile of a texel, and its bit in it.
+fn place(x: u32, y: u32, tiles_across: u32) -> (u32, u8) {
+    (y / TILE * tiles_across + x / TILE, (y % TILE * TILE + x % TILE) as u8)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_texel_moves_exactly_the_samples_that_read_it() {
+        let position = |k: u32| DVec2::new((k % 40) as f64 * 0.5 + 0.1, (k / 40) as f64 * 0.5 + 0.3);
+        let index = SampleIndex::of_positions([20, 20], (0..1600).map(|k| Some(position(k))));
+        let texel = [8, 7];
+        let expected: Vec<u32> = (0..1600)
+            .filter(|&k| {
+                let from_centre = position(k) - DVec2::new(8.5, 7.5);
+                from_centre.abs().max_element() < 1.0
+            })
+            .collect();
+        let found = index.samples_reading(&[texel, texel]);
+        assert!(expected.iter().all(|sample| found.contains(sample)), "none is missed");
+        assert!(found.len() <= 36, "and few are found in vain: {}", found.len());
+        assert!(index.samples_reading(&[]).is_empty());
+    }
+
+    #[test]
+    fn positions_on_the_border_and_the_background_do_no_harm() {
+        let positions = [Some(DVec2::new(20.0, 20.0)), None, Some(DVec2::new(-0.0, 0.0))];
+        let index = SampleIndex::of_positions([20, 20], positions.into_iter());
+        assert_eq!(index.samples_reading(&[[19, 19]]), [0]);
+        assert_eq!(index.samples_reading(&[[0, 0]]), [2]);
+    }
+}

@@ -1,0 +1,476 @@
+//! The session: commands in, events out, one document open at a time.
+
+use crate::document::Document;
+use crate::job::{Job, JobProgress, Waker};
+use crate::picking::{chief_ray, pick};
+use crate::preview::{Changes, PreviewThread, serves};
+use crate::undo::Undone;
+use crate::{
+    CameraEdit, Command, Event, FillRegion, JobId, JobStatus, Preview, PreviewActivity, SessionError, Stage,
+    StrokePoint, StrokeTarget, SurfaceHit,
+};
+use atlas::UnwrapOptions;
+use focus::{Changed, Channels, Edit, FillTarget, PenSample, Stroke, fill};
+use glam::DVec2;
+use lens::{Camera, FocusOffset, Picture};
+use progress::Progress;
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, mpsc};
+use trace::Ray;
+
+/// How a session works.
+#[derive(Clone)]
+pub struct SessionOptions {
+    /// How scenes are unwrapped.
+    pub unwrap: UnwrapOptions,
+    /// The longest side that the preview is drawn at, px.
+    pub preview_size: u32,
+    /// Called from any thread when there is something to poll.
+    pub waker: Waker,
+}
+
+impl Default for SessionOptions {
+    fn default() -> Self {
+        Self { unwrap: UnwrapOptions::default(), preview_size: 640, waker: Arc::new(|| {}) }
+    }
+}
+
+/// The job id of the preview's own work.
+const PREVIEW_JOB: JobId = JobId(0);
+
+/// What a finished job hands to the session.
+pub(crate) enum Outcome {
+    Opened(Box<Document>),
+    Written(PathBuf),
+    Truth(Box<Truth>),
+}
+
+/// A ray-traced picture of the document, to compare the preview with.
+#[derive(Clone, Debug)]
+pub struct Truth {
+    /// The picture.
+    pub picture: Arc<Picture>,
+    /// The camera it was traced with.
+    pub camera: Camera,
+    /// Rays a pixel.
+    pub samples_per_pixel: u32,
+    /// Seconds it took.
+    pub seconds: f64,
+}
+
+/// An open document and the work on it. See the crate's documentation.
+pub struct Session {
+    options: SessionOptions,
+    document: Option<Document>,
+    stroke: Option<Stroke>,
+    preview_thread: PreviewThread,
+    preview: Option<Preview>,
+    truth: Option<Truth>,
+    jobs: Vec<Job>,
+    last_job: u64,
+    outcomes: mpsc::Receiver<(JobId, Result<Outcome, SessionError>)>,
+    sender: mpsc::Sender<(JobId, Result<Outcome, SessionError>)>,
+    events: Vec<Event>,
+    reported: Vec<JobStatus>,
+}
+
+impl Session {
+    /// A session with nothing open.
+    pub fn new(options: SessionOptions) -> Result<Self, SessionError> {
+        let (sender, outcomes) = mpsc::channel();
+        Ok(Self {
+            preview_thread: PreviewThread::start(options.waker.clone())?,
+            options,
+            document: None,
+            stroke: None,
+            preview: None,
+            truth: None,
+            jobs: Vec::new(),
+            last_job: PREVIEW_JOB.0,
+            outcomes,
+            sender,
+            events: Vec::new(),
+            reported: Vec::new(),
+        })
+    }
+
+    /// The open document.
+    pub fn document(&self) -> Option<&Document> {
+        self.document.as_ref()
+    }
+
+    /// The last good picture.
+    pub fn preview(&self) -> Option<&Preview> {
+        self.preview.as_ref()
+    }
+
+    /// The last ray-traced picture of this document.
+    pub fn truth(&self) -> Option<&Truth> {
+        self.truth.as_ref()
+    }
+
+    /// What the preview is being drawn as.
+    pub fn preview_activity(&self) -> PreviewActivity {
+        self.preview_thread.activity().0
+    }
+
+    /// Whether a stroke is going on.
+    pub fn is_painting(&self) -> bool {
+        self.stroke.is_some()
+    }
+
+    /// Whether all background work is done and the preview shows the document as it is.
+    pub fn is_settled(&self) -> bool {
+        self.jobs.is_empty() && self.preview_thread.is_settled()
+    }
+
+    /// All background work that is going on.
+    pub fn jobs(&self) -> Vec<JobStatus> {
+        let (activity, fraction) = self.preview_thread.activity();
+        let baking = (activity == PreviewActivity::Baking).then(|| JobStatus {
+            id: PREVIEW_JOB,
+            label: "baking".into(),
+            fraction,
+            can_cancel: true,
+        });
+        baking.into_iter().chain(self.jobs.iter().map(Job::status)).collect()
+    }
+
+    /// What a ray of either view meets first.
+    pub fn pick(&self, ray: &Ray) -> Option<SurfaceHit> {
+        pick(&self.document.as_ref()?.stage.tracer, ray)
+    }
+
+    /// The ray of a position in the picture: (0, 0) its upper left corner, (1, 1) its lower right.
+    pub fn picture_ray(&self, position: DVec2) -> Option<Ray> {
+        Some(chief_ray(&self.document.as_ref()?.camera, position))
+    }
+
+    /// The focus at a surface point.
+    pub fn focus_at(&self, hit: &SurfaceHit) -> Option<FocusOffset> {
+        let document = self.document.as_ref()?;
+        Some(document.map.sample(document.stage.atlas.position_of(hit.point)))
+    }
+
+    /// What happened since the last call. To be called once a frame.
+    pub fn poll(&mut self) -> Vec<Event> {
+        while let Ok((id, outcome)) = self.outcomes.try_recv() {
+            self.jobs.retain(|job| job.id != id);
+            match outcome {
+                Ok(outcome) => self.take(outcome),
+                Err(SessionError::Cancelled) => {}
+                Err(error) => self.events.push(Event::Failed(error.to_string())),
+            }
+        }
+        let (newer, failures) = self.preview_thread.take(self.preview.as_ref().map_or(0, |p| p.id));
+        if let Some(preview) = newer {
+            self.events.push(Event::PreviewReady(preview.id));
+            self.preview = Some(preview);
+        }
+        self.events.extend(failures.into_iter().map(Event::Failed));
+        let jobs = self.jobs();
+        let moved = jobs.iter().filter(|job| !self.reported.contains(job)).cloned();
+        self.events.extend(moved.map(Event::Progress));
+        self.reported = jobs;
+        std::mem::take(&mut self.events)
+    }
+
+    fn take(&mut self, outcome: Outcome) {
+        match outcome {
+            Outcome::Opened(document) => {
+                self.stroke = None;
+                self.truth = None;
+                let camera = self.preview_camera(&document.camera);
+                self.preview_thread.set_stage(document.stage.clone(), document.map.clone(), camera);
+                self.document = Some(*document);
+                self.events.push(Event::Opened);
+            }
+            Outcome::Written(path) => self.events.push(Event::Written(path)),
+            Outcome::Truth(truth) => {
+                self.truth = Some(*truth);
+                self.events.push(Event::TruthReady);
+            }
+        }
+    }
+
+    /// Does what `command` asks, or starts doing it.
+    pub fn apply(&mut self, command: Command) -> Result<(), SessionError> {
+        match command {
+            Command::Open(path) => self.open(path),
+            Command::Undo => self.step_back(),
+            Command::Redo => self.step_forward(),
+            Command::Camera(edit) => self.edit_camera(edit),
+            Command::FinishEdit => {
+                self.opened()?.undo.finish_run();
+                Ok(())
+            }
+            Command::SetExposure(exposure) => {
+                self.opened()?.exposure = exposure;
+                Ok(())
+            }
+            Command::SetPreviewSize(size) => {
+                self.options.preview_size = size.max(1);
+                self.show_camera();
+                Ok(())
+            }
+            Command::SetBrush(brush) => match brush.problem() {
+                Some(problem) => Err(SessionError::BadInput(format!("brush: {problem}"))),
+                None => {
+                    self.opened()?.brush = brush;
+                    Ok(())
+                }
+            },
+            Command::BeginStroke(point) => self.begin_stroke(point),
+            Command::ExtendStroke(point) => self.extend_stroke(point),
+            Command::CommitStroke => self.commit_stroke(),
+            Command::AbortStroke => self.abort_stroke(),
+            Command::Fill(region, focus) => self.fill(region, focus),
+            Command::ResetMap => self.reset_map(),
+            Command::SetBackgroundFocus(focus) => self.fill_target("Background focus", FillTarget::Background, focus),
+            Command::FocusHere(hit) => {
+                let depth = self.opened()?.camera.camera_from_world(hit.position).z;
+                self.edit_camera(CameraEdit::FocusDistance(depth))?;
+                self.opened()?.undo.finish_run();
+                Ok(())
+            }
+            Command::Pick(hit) => {
+                let Some(focus) = self.focus_at(&hit) else { return Err(SessionError::NothingOpen) };
+                self.opened()?.brush.target = focus;
+                self.events.push(Event::BrushChanged);
+                Ok(())
+            }
+            Command::Bake => {
+                self.opened()?;
+                self.preview_thread.bake();
+                Ok(())
+            }
+            Command::Cancel(PREVIEW_JOB) => {
+                self.preview_thread.cancel();
+                Ok(())
+            }
+            Command::Cancel(id) => {
+                self.jobs.iter().filter(|job| job.id == id).for_each(|job| job.progress.cancel());
+                Ok(())
+            }
+            Command::CancelAll => {
+                self.preview_thread.cancel();
+                self.jobs.iter().for_each(|job| job.progress.cancel());
+                Ok(())
+            }
+            other => Err(SessionError::Internal(format!("{other:?} is not connected"))),
+        }
+    }
+
+    /// The document, to be changed.
+    fn opened(&mut self) -> Result<&mut Document, SessionError> {
+        self.document.as_mut().ok_or(SessionError::NothingOpen)
+    }
+
+    /// Starts background work.
+    fn start(
+        &mut self,
+        label: String,
+        work: impl FnOnce(&JobProgress) -> Result<Outcome, SessionError> + Send + 'static,
+    ) -> Result<(), SessionError> {
+        self.last_job += 1;
+        let (sender, waker) = (self.sender.clone(), self.options.waker.clone());
+        let job = Job::start(JobId(self.last_job), label, work, move |id, outcome| {
+            // A session that is gone wants nothing.
+            let _ = sender.send((id, outcome));
+            waker();
+        })?;
+        self.jobs.push(job);
+        Ok(())
+    }
+
+    fn open(&mut self, path: PathBuf) -> Result<(), SessionError> {
+        let unwrap = self.options.unwrap.clone();
+        let label = format!("opening {}", crate::error::file_name(&path));
+        self.start(label, move |progress| Ok(Outcome::Opened(Box::new(open(&path, &unwrap, progress)?))))
+    }
+
+    fn step_back(&mut self) -> Result<(), SessionError> {
+        if self.stroke.is_some() {
+            return self.abort_stroke();
+        }
+        let document = self.opened()?;
+        let undone = document.undo.undo(&mut document.map, &mut document.camera);
+        self.after_step(undone)
+    }
+
+    fn step_forward(&mut self) -> Result<(), SessionError> {
+        if self.stroke.is_some() {
+            return Ok(());
+        }
+        let document = self.opened()?;
+        let done = document.undo.redo(&mut document.map, &mut document.camera);
+        self.after_step(done)
+    }
+
+    fn after_step(&mut self, step: Option<Undone>) -> Result<(), SessionError> {
+        match step {
+            None => Ok(()),
+            Some(Undone::Camera) => {
+                self.opened()?.revision += 1;
+                self.events.push(Event::CameraChanged);
+                self.show_camera();
+                Ok(())
+            }
+            Some(Undone::Paint { texels, background }) => {
+                self.opened()?.revision += 1;
+                self.show_paint(Changed { texels }, background)
+            }
+        }
+    }
+
+    fn edit_camera(&mut self, edit: CameraEdit) -> Result<(), SessionError> {
+        let document = self.opened()?;
+        let (name, after) = edit.applied_to(&document.camera);
+        after.validate().map_err(|error| SessionError::BadInput(error.to_string()))?;
+        if after == document.camera {
+            return Ok(());
+        }
+        let before = std::mem::replace(&mut document.camera, after.clone());
+        document.undo.push_camera(name, before, after);
+        document.revision += 1;
+        self.events.push(Event::CameraChanged);
+        self.show_camera();
+        Ok(())
+    }
+
+    fn begin_stroke(&mut self, point: StrokePoint) -> Result<(), SessionError> {
+        if self.stroke.is_some() {
+            self.commit_stroke()?;
+        }
+        let document = self.opened()?;
+        let stroke = Stroke::begin(&document.map, document.stage.canvas.clone(), document.brush.clone());
+        self.stroke = Some(stroke.map_err(|error| SessionError::BadInput(error.to_string()))?);
+        self.extend_stroke(point)
+    }
+
+    fn extend_stroke(&mut self, point: StrokePoint) -> Result<(), SessionError> {
+        let Some(document) = &mut self.document else { return Err(SessionError::NothingOpen) };
+        let Some(stroke) = &mut self.stroke else { return Ok(()) };
+        let hit = match point.at {
+            StrokeTarget::Surface(hit) => Some(hit),
+            StrokeTarget::Ray(ray) => pick(&document.stage.tracer, &ray),
+        };
+        let Some(hit) = hit else {
+            stroke.lift();
+            return Ok(());
+        };
+        let front = document.stage.scene.area_normal(hit.point.triangle).try_normalize();
+        let hit = focus::SurfaceHit { position: hit.position, normal: front.map(|n| n.as_vec3()) };
+        let changed = stroke.extend(&mut document.map, hit, PenSample { pressure: point.pressure as f64 });
+        self.show_paint(changed, false)
+    }
+
+    fn commit_stroke(&mut self) -> Result<(), SessionError> {
+        let Some(stroke) = self.stroke.take() else { return Ok(()) };
+        let document = self.opened()?;
+        if let Some(edit) = stroke.commit(&document.map) {
+            document.undo.push_paint(edit);
+            document.revision += 1;
+        }
+        Ok(())
+    }
+
+    fn abort_stroke(&mut self) -> Result<(), SessionError> {
+        let Some(stroke) = self.stroke.take() else { return Ok(()) };
+        let changed = stroke.abort(&mut self.opened()?.map);
+        self.show_paint(changed, false)
+    }
+
+    fn fill(&mut self, region: FillRegion, focus: FocusOffset) -> Result<(), SessionError> {
+        let stage = self.opened()?.stage.clone();
+        let part_of = |hit: SurfaceHit| stage.scene.triangles[hit.point.triangle as usize].part;
+        let (name, target) = match region {
+            FillRegion::Node(hit) => {
+                ("Fill object", FillTarget::Node(stage.scene.parts[part_of(hit) as usize].node))
+            }
+            FillRegion::Part(hit) => ("Fill part", FillTarget::Part(part_of(hit))),
+            FillRegion::Material(hit) => {
+                ("Fill material", FillTarget::Material(stage.scene.parts[part_of(hit) as usize].material))
+            }
+            FillRegion::Chart(hit) => {
+                ("Fill chart", FillTarget::Chart(stage.atlas.chart_of[hit.point.triangle as usize]))
+            }
+            FillRegion::All => ("Fill everything", FillTarget::Everything),
+        };
+        self.fill_target(name, target, focus)
+    }
+
+    fn fill_target(&mut self, name: &str, target: FillTarget, focus: FocusOffset) -> Result<(), SessionError> {
+        self.commit_stroke()?;
+        let document = self.opened()?;
+        let before = document.map.clone();
+        let changed = fill(&mut document.map, &document.stage.canvas, target, focus, Channels::Both)
+            .map_err(|error| SessionError::BadInput(error.to_string()))?;
+        self.finish_edit(name, &before, changed)
+    }
+
+    fn reset_map(&mut self) -> Result<(), SessionError> {
+        self.commit_stroke()?;
+        let document = self.opened()?;
+        let [width, height] = document.map.size();
+        let blank = focus::FocusMap::new(width, height, FocusOffset::STANDARD);
+        self.replace_map("Reset all paint", blank)
+    }
+
+    /// Puts another map in the place of the document's, as one step of undo.
+    fn replace_map(&mut self, name: &str, map: focus::FocusMap) -> Result<(), SessionError> {
+        let document = self.opened()?;
+        let Some(edit) = Edit::between(name, &document.map, &map) else { return Ok(()) };
+        let texels = edit.apply(&mut document.map);
+        let background = edit.changes_background();
+        document.undo.push_paint(edit);
+        document.revision += 1;
+        self.show_paint(texels, background)
+    }
+
+    /// Takes up a change that was made to the map.
+    fn finish_edit(&mut self, name: &str, before: &focus::FocusMap, changed: Changed) -> Result<(), SessionError> {
+        let document = self.opened()?;
+        let Some(edit) = Edit::between(name, before, &document.map) else { return Ok(()) };
+        let background = edit.changes_background();
+        document.undo.push_paint(edit);
+        document.revision += 1;
+        self.show_paint(changed, background)
+    }
+
+    /// Shows changed texels in the views.
+    fn show_paint(&mut self, changed: Changed, background: bool) -> Result<(), SessionError> {
+        if changed.is_empty() && !background {
+            return Ok(());
+        }
+        let [columns, rows] = changed.bounds();
+        let map = self.opened()?.map.clone();
+        let changes = if background { Changes::Everything } else { Changes::Texels(changed.texels) };
+        self.preview_thread.set_map(map, changes);
+        self.events.push(Event::MapChanged(columns, rows));
+        Ok(())
+    }
+
+    /// Shows the camera in the preview.
+    fn show_camera(&mut self) {
+        let Some(document) = &self.document else { return };
+        let camera = self.preview_camera(&document.camera);
+        let stays = self.preview.as_ref().is_some_and(|preview| serves(&preview.camera, &camera));
+        self.preview_thread.set_camera(camera, stays);
+    }
+
+    /// A camera scaled to the preview's size.
+    fn preview_camera(&self, camera: &Camera) -> Camera {
+        let longest = camera.width.max(camera.height);
+        let scale = (self.options.preview_size as f64 / longest as f64).min(1.0);
+        let scaled = |side: u32| ((side as f64 * scale).round() as u32).max(1);
+        Camera { width: scaled(camera.width), height: scaled(camera.height), ..camera.clone() }
+    }
+}
+
+/// Opens a scene or a project.
+fn open(path: &Path, unwrap: &UnwrapOptions, progress: &dyn Progress) -> Result<Document, SessionError> {
+    let scene = crate::stage::load_scene(path, &progress::Stage::new(progress, 0.0, 0.2))?;
+    let stage = Stage::unwrap(scene, unwrap, &progress::Stage::new(progress, 0.2, 1.0))?;
+    Ok(Document::new(Arc::new(stage)))
+}

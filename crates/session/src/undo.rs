@@ -1,0 +1,187 @@
+//! Undo and redo of paint and lens in the order in which they happened.
+
+use focus::{Edit, FocusMap};
+use lens::Camera;
+use std::collections::VecDeque;
+
+/// Memory that the steps may keep alive; the oldest are forgotten beyond it.
+const BUDGET_BYTES: usize = 256 << 20;
+
+/// One step.
+#[derive(Clone, Debug)]
+enum Step {
+    /// Of the focus map.
+    Paint(Edit),
+    /// Of the camera.
+    Camera { name: &'static str, before: Box<Camera>, after: Box<Camera> },
+}
+
+impl Step {
+    fn name(&self) -> &str {
+        match self {
+            Self::Paint(edit) => edit.name(),
+            Self::Camera { name, .. } => name,
+        }
+    }
+
+    fn bytes(&self) -> usize {
+        match self {
+            Self::Paint(edit) => edit.bytes(),
+            Self::Camera { .. } => size_of::<Step>() + 2 * size_of::<Camera>(),
+        }
+    }
+}
+
+/// What a step of undo or redo changed.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Undone {
+    /// These texels, and perhaps the background.
+    Paint { texels: Vec<[u32; 2]>, background: bool },
+    /// The camera.
+    Camera,
+}
+
+/// The steps that can be taken back, and those that can be done again.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Undo {
+    done: VecDeque<Step>,
+    undone: Vec<Step>,
+    /// Whether the next camera edit of the same name joins the latest step.
+    run: bool,
+}
+
+impl Undo {
+    /// Takes up a change of the map.
+    pub fn push_paint(&mut self, edit: Edit) {
+        self.push(Step::Paint(edit));
+        self.run = false;
+    }
+
+    /// Takes up a change of the camera; edits of one name in a row are one step.
+    pub fn push_camera(&mut self, name: &'static str, before: Camera, after: Camera) {
+        match self.done.back_mut() {
+            Some(Step::Camera { name: last, after: end, .. }) if self.run && *last == name => {
+                **end = after;
+                self.undone.clear();
+            }
+            _ => self.push(Step::Camera { name, before: before.into(), after: after.into() }),
+        }
+        self.run = true;
+    }
+
+    /// Ends a run of camera edits.
+    pub fn finish_run(&mut self) {
+        self.run = false;
+    }
+
+    fn push(&mut self, step: Step) {
+        self.undone.clear();
+        self.done.push_back(step);
+        while self.bytes() > BUDGET_BYTES && self.done.len() > 1 {
+            self.done.pop_front();
+        }
+    }
+
+    /// Takes the latest step back.
+    pub fn undo(&mut self, map: &mut FocusMap, camera: &mut Camera) -> Option<Undone> {
+        let step = self.done.pop_back()?;
+        self.run = false;
+        let undone = match &step {
+            Step::Paint(edit) => Undone::Paint {
+                texels: edit.revert(map).texels,
+                background: edit.changes_background(),
+            },
+            Step::Camera { before, .. } => {
+                *camera = (**before).clone();
+                Undone::Camera
+            }
+        };
+        self.undone.push(step);
+        Some(undone)
+    }
+
+    /// Makes the step again that was taken back last.
+    pub fn redo(&mut self, map: &mut FocusMap, camera: &mut Camera) -> Option<Undone> {
+        let step = self.undone.pop()?;
+        self.run = false;
+        let done = match &step {
+            Step::Paint(edit) => {
+                Undone::Paint { texels: edit.apply(map).texels, background: edit.changes_background() }
+            }
+            Step::Camera { after, .. } => {
+                *camera = (**after).clone();
+                Undone::Camera
+            }
+        };
+        self.done.push_back(step);
+        Some(done)
+    }
+
+    pub fn undo_name(&self) -> Option<&str> {
+        self.done.back().map(Step::name)
+    }
+
+    pub fn redo_name(&self) -> Option<&str> {
+        self.undone.last().map(Step::name)
+    }
+
+    /// All steps that can be taken back, oldest first.
+    pub fn names(&self) -> impl Iterator<Item = &str> {
+        self.done.iter().map(Step::name)
+    }
+
+    pub fn bytes(&self) -> usize {
+        self.done.iter().chain(&self.undone).map(Step::bytes).sum()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use lens::FocusOffset;
+
+    fn focused(at: f64) -> Camera {
+        Camera { focus_distance: at, ..Camera::default() }
+    }
+
+    #[test]
+    fn a_dragged_slider_is_one_step() {
+        let mut undo = Undo::default();
+        let mut map = FocusMap::new(4, 4, FocusOffset::STANDARD);
+        let mut camera = focused(3.0);
+        for k in 0..5 {
+            undo.push_camera("Focus distance", focused(3.0 + k as f64), focused(4.0 + k as f64));
+        }
+        undo.finish_run();
+        undo.push_camera("Focus distance", focused(8.0), focused(9.0));
+        assert_eq!(undo.undo(&mut map, &mut camera), Some(Undone::Camera));
+        assert_eq!(camera.focus_distance, 8.0);
+        undo.undo(&mut map, &mut camera);
+        assert_eq!(camera.focus_distance, 3.0);
+        assert_eq!(undo.undo(&mut map, &mut camera), None);
+        undo.redo(&mut map, &mut camera);
+        assert_eq!(camera.focus_distance, 8.0);
+    }
+
+    #[test]
+    fn paint_and_lens_are_undone_in_order() {
+        let mut undo = Undo::default();
+        let before = FocusMap::new(4, 4, FocusOffset::STANDARD);
+        let mut map = before.clone();
+        map.set(1, 2, [0.5, 1.0]);
+        let painted = map.clone();
+        let mut camera = focused(5.0);
+        undo.push_paint(Edit::between("Brush stroke", &before, &map).unwrap());
+        undo.push_camera("Focus distance", focused(3.0), focused(5.0));
+        assert_eq!(undo.undo_name(), Some("Focus distance"));
+        undo.undo(&mut map, &mut camera);
+        assert_eq!((camera.focus_distance, &map), (3.0, &painted));
+        let undone = undo.undo(&mut map, &mut camera);
+        assert_eq!(undone, Some(Undone::Paint { texels: vec![[1, 2]], background: false }));
+        assert_eq!(map, before);
+        undo.redo(&mut map, &mut camera);
+        assert_eq!(map, painted);
+        undo.push_camera("Focus distance", focused(3.0), focused(6.0));
+        assert_eq!(undo.redo_name(), None, "a new step forgets what was undone");
+    }
+}
