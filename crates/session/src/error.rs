@@ -41,7 +41,8 @@ impl SessionError {
     /// What an I/O error on `file` means: bad input, or worth another try.
     pub fn io(file: &Path, error: &std::io::Error) -> Self {
         use std::io::ErrorKind::{
-            Deadlock, Interrupted, OutOfMemory, QuotaExceeded, ResourceBusy, StorageFull, TimedOut, WouldBlock,
+            Deadlock, Interrupted, OutOfMemory, QuotaExceeded, ResourceBusy, StorageFull, TimedOut,
+            WouldBlock,
         };
         let text = |cure| format!("{}: {} ({cure})", file.display(), plain(error));
         match error.kind() {

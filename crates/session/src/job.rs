@@ -84,7 +84,9 @@ impl Job {
             .name(label.clone())
             .stack_size(STACK_BYTES)
             .spawn(move || deliver(id, guarded(&doing, || work(&shared))))
-            .map_err(|e| SessionError::TryAgain(format!("{label}: no thread could be started: {e} (try again)")))?;
+            .map_err(|e| {
+                SessionError::TryAgain(format!("{label}: no thread could be started: {e} (try again)"))
+            })?;
         Ok(Self { id, label, progress })
     }
 

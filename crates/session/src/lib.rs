@@ -37,6 +37,6 @@ pub use error::SessionError;
 pub use first_hits::FirstHits;
 pub use job::{JobId, JobProgress, JobStatus, Waker, guarded};
 pub use picking::{SurfaceHit, chief_ray, pick};
-pub use preview::{Preview, PreviewActivity, PreviewKind};
+pub use preview::{Preview, PreviewActivity, PreviewKind, SalfStatistics};
 pub use session::{Session, SessionOptions, Truth};
 pub use stage::{Stage, load_scene};

@@ -19,7 +19,6 @@ use crate::{SessionError, Stage};
 use focus::FocusMap;
 use lens::{Camera, Picture};
 use progress::{Cancelled, Progress};
-use salf::SalfStatistics;
 use std::sync::atomic::{AtomicU8, Ordering};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard};
 
@@ -38,6 +37,19 @@ pub struct Preview {
     pub seconds: f64,
     /// Samples of the light field; none for a pinhole picture.
     pub statistics: SalfStatistics,
+}
+
+/// How many samples a light field has, and what they take.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct SalfStatistics {
+    /// Samples that see the whole aperture.
+    pub open: usize,
+    /// Samples that see part of it.
+    pub partial: usize,
+    /// Samples of the background.
+    pub background: usize,
+    /// Bytes of all samples.
+    pub bytes: usize,
 }
 
 /// How a preview was made.
@@ -100,11 +112,7 @@ impl Changes {
 
 impl Wishes {
     fn any(&self) -> bool {
-        self.stage.is_some()
-            || self.camera.is_some()
-            || self.map.is_some()
-            || self.bake
-            || self.quit
+        self.stage.is_some() || self.camera.is_some() || self.map.is_some() || self.bake || self.quit
     }
 }
 
@@ -203,7 +211,8 @@ impl PreviewThread {
     pub fn set_stage(&self, stage: Arc<Stage>, map: FocusMap, camera: Camera) {
         self.post(true, |wishes| {
             let (stage, camera, map) = (Some(stage), Some(camera), Some(map));
-            *wishes = Wishes { stage, camera, map, changed: Changes::Everything, bake: false, quit: wishes.quit };
+            *wishes =
+                Wishes { stage, camera, map, changed: Changes::Everything, bake: false, quit: wishes.quit };
         });
     }
 
@@ -272,4 +281,3 @@ pub(crate) fn serves(baked: &Camera, camera: &Camera) -> bool {
     };
     like == *baked && camera.aperture_radius <= baked.aperture_radius
 }
-

@@ -2,13 +2,14 @@
 
 use crate::first_hits::FirstHits;
 use crate::job::guarded;
+use crate::preview::SalfStatistics;
 use crate::preview::{Changes, Shared, Wishes, serves};
 use crate::sample_index::SampleIndex;
 use crate::{Preview, PreviewActivity, PreviewKind, SessionError, Stage};
 use focus::{Focus, FocusMap};
 use glam::DVec3;
 use lens::{Camera, Picture};
-use salf::{BakeOptions, SalfStatistics};
+use salf::BakeOptions;
 use slf::DirectLight;
 use splat::{SplatError, Splatter};
 use std::sync::Arc;
@@ -101,7 +102,7 @@ impl Worker {
         let salf = Arc::new(salf::bake(&stage.tracer, &radiance, camera, &options, &self.shared.progress)?);
         self.baked = Some(Baked {
             index: SampleIndex::new(&salf, &stage.atlas),
-            statistics: salf.statistics(),
+            statistics: SalfStatistics { open: salf.samples.len(), ..SalfStatistics::default() },
             splatter: Splatter::new(salf),
             summed: None,
         });

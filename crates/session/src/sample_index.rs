@@ -29,7 +29,8 @@ impl SampleIndex {
     fn of_positions(size: [u32; 2], positions: impl Iterator<Item = Option<DVec2>>) -> Self {
         let [across, down] = size.map(|side| side.div_ceil(TILE).max(1));
         let placed = positions.enumerate().filter_map(|(index, position)| {
-            let texel = |k: usize| (position.map(|p| p[k].max(0.0) as u32)).map(|t| t.min(size[k].max(1) - 1));
+            let texel =
+                |k: usize| (position.map(|p| p[k].max(0.0) as u32)).map(|t| t.min(size[k].max(1) - 1));
             let (tile, bit) = place(texel(0)?, texel(1)?, across);
             Some((tile, index as u32, bit))
         });

@@ -9,7 +9,6 @@ use crate::{
     CameraEdit, Command, Event, FillRegion, JobId, JobStatus, Preview, PreviewActivity, SessionError, Stage,
     StrokePoint, StrokeTarget, SurfaceHit,
 };
-use atlas::UnwrapOptions;
 use focus::{Changed, Channels, Edit, FillTarget, PenSample, Stroke, fill};
 use glam::DVec2;
 use lens::{Camera, FocusOffset, Picture};
@@ -21,8 +20,6 @@ use trace::Ray;
 /// How a session works.
 #[derive(Clone)]
 pub struct SessionOptions {
-    /// How scenes are unwrapped.
-    pub unwrap: UnwrapOptions,
     /// The longest side that the preview is drawn at, px.
     pub preview_size: u32,
     /// Called from any thread when there is something to poll.
@@ -31,7 +28,7 @@ pub struct SessionOptions {
 
 impl Default for SessionOptions {
     fn default() -> Self {
-        Self { unwrap: UnwrapOptions::default(), preview_size: 640, waker: Arc::new(|| {}) }
+        Self { preview_size: 640, waker: Arc::new(|| {}) }
     }
 }
 
@@ -226,7 +223,9 @@ impl Session {
             Command::AbortStroke => self.abort_stroke(),
             Command::Fill(region, focus) => self.fill(region, focus),
             Command::ResetMap => self.reset_map(),
-            Command::SetBackgroundFocus(focus) => self.fill_target("Background focus", FillTarget::Background, focus),
+            Command::SetBackgroundFocus(focus) => {
+                self.fill_target("Background focus", FillTarget::Background, focus)
+            }
             Command::FocusHere(hit) => {
                 let depth = self.opened()?.camera.camera_from_world(hit.position).z;
                 self.edit_camera(CameraEdit::FocusDistance(depth))?;
@@ -284,9 +283,8 @@ impl Session {
     }
 
     fn open(&mut self, path: PathBuf) -> Result<(), SessionError> {
-        let unwrap = self.options.unwrap.clone();
         let label = format!("opening {}", crate::error::file_name(&path));
-        self.start(label, move |progress| Ok(Outcome::Opened(Box::new(open(&path, &unwrap, progress)?))))
+        self.start(label, move |progress| Ok(Outcome::Opened(Box::new(open(&path, progress)?))))
     }
 
     fn step_back(&mut self) -> Result<(), SessionError> {
@@ -400,7 +398,12 @@ impl Session {
         self.fill_target(name, target, focus)
     }
 
-    fn fill_target(&mut self, name: &str, target: FillTarget, focus: FocusOffset) -> Result<(), SessionError> {
+    fn fill_target(
+        &mut self,
+        name: &str,
+        target: FillTarget,
+        focus: FocusOffset,
+    ) -> Result<(), SessionError> {
         self.commit_stroke()?;
         let document = self.opened()?;
         let before = document.map.clone();
@@ -429,7 +432,12 @@ impl Session {
     }
 
     /// Takes up a change that was made to the map.
-    fn finish_edit(&mut self, name: &str, before: &focus::FocusMap, changed: Changed) -> Result<(), SessionError> {
+    fn finish_edit(
+        &mut self,
+        name: &str,
+        before: &focus::FocusMap,
+        changed: Changed,
+    ) -> Result<(), SessionError> {
         let document = self.opened()?;
         let Some(edit) = Edit::between(name, before, &document.map) else { return Ok(()) };
         let background = edit.changes_background();
@@ -469,8 +477,8 @@ impl Session {
 }
 
 /// Opens a scene or a project.
-fn open(path: &Path, unwrap: &UnwrapOptions, progress: &dyn Progress) -> Result<Document, SessionError> {
+fn open(path: &Path, progress: &dyn Progress) -> Result<Document, SessionError> {
     let scene = crate::stage::load_scene(path, &progress::Stage::new(progress, 0.0, 0.2))?;
-    let stage = Stage::unwrap(scene, unwrap, &progress::Stage::new(progress, 0.2, 1.0))?;
+    let stage = Stage::unwrap(scene, &progress::Stage::new(progress, 0.2, 1.0))?;
     Ok(Document::new(Arc::new(stage)))
 }

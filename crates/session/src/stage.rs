@@ -1,9 +1,9 @@
 //! What stays while a document is open: the scene, its atlas and what answers rays and dabs on it.
 
 use crate::SessionError;
-use atlas::{Atlas, AtlasError, TexelMap, UnwrapOptions};
+use atlas::Atlas;
 use focus::Canvas;
-use progress::{Progress, Stage as Share};
+use progress::Progress;
 use scene::{LoadOptions, Scene, SceneError};
 use std::path::Path;
 use std::sync::Arc;
@@ -17,8 +17,6 @@ pub struct Stage {
     pub atlas: Arc<Atlas>,
     /// What answers rays.
     pub tracer: Arc<Tracer>,
-    /// The way back from texels to the surface.
-    pub texels: Arc<TexelMap>,
     /// What dabs are painted on.
     pub canvas: Arc<Canvas>,
 }
@@ -32,15 +30,6 @@ impl From<SceneError> for SessionError {
     }
 }
 
-/// What an error about the atlas of the scene at `path` means.
-pub(crate) fn atlas_error(path: &Path, error: AtlasError) -> SessionError {
-    match error {
-        AtlasError::Cancelled => SessionError::Cancelled,
-        AtlasError::Write { path, source } => SessionError::io(&path, &source),
-        other => SessionError::bad(path, other),
-    }
-}
-
 /// Reads a scene within the usual limits.
 pub fn load_scene(path: &Path, progress: &dyn Progress) -> Result<Arc<Scene>, SessionError> {
     Ok(Arc::new(scene::load(path, &LoadOptions::default(), progress)?))
@@ -48,10 +37,9 @@ pub fn load_scene(path: &Path, progress: &dyn Progress) -> Result<Arc<Scene>, Se
 
 impl Stage {
     /// Unwraps `scene` and prepares it for rays and dabs.
-    pub fn unwrap(scene: Arc<Scene>, options: &UnwrapOptions, progress: &dyn Progress) -> Result<Self, SessionError> {
-        let atlas = Atlas::unwrap(&scene, options, &Share::new(progress, 0.0, 0.8))
-            .map_err(|error| atlas_error(&scene.path, error))?;
-        Self::of(scene, Arc::new(atlas), &Share::new(progress, 0.8, 1.0))
+    pub fn unwrap(scene: Arc<Scene>, progress: &dyn Progress) -> Result<Self, SessionError> {
+        progress.check()?;
+        Err(SessionError::Internal(format!("{}: scenes cannot be unwrapped yet", scene.path.display())))
     }
 
     /// Prepares a scene whose atlas is known.
@@ -60,13 +48,8 @@ impl Stage {
         let tracer = Arc::new(Tracer::new(scene.clone()));
         progress.report(0.3);
         progress.check()?;
-        let texels = Arc::new(atlas.texel_map(&scene));
-        progress.report(0.7);
-        progress.check()?;
-        let place = |address: u32| [address % atlas.width, address / atlas.width];
-        let gutters: Vec<_> = texels.dilations.iter().map(|d| [place(d.texel), place(d.source)]).collect();
-        let canvas = Arc::new(Canvas::new(&scene, &atlas, &texels.texels, &gutters));
+        let canvas = Arc::new(Canvas::new(&scene, &atlas, &atlas.texels(&scene), &[]));
         progress.report(1.0);
-        Ok(Self { scene, atlas, tracer, texels, canvas })
+        Ok(Self { scene, atlas, tracer, canvas })
     }
 }

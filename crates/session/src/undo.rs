@@ -87,10 +87,9 @@ impl Undo {
         let step = self.done.pop_back()?;
         self.run = false;
         let undone = match &step {
-            Step::Paint(edit) => Undone::Paint {
-                texels: edit.revert(map).texels,
-                background: edit.changes_background(),
-            },
+            Step::Paint(edit) => {
+                Undone::Paint { texels: edit.revert(map).texels, background: edit.changes_background() }
+            }
             Step::Camera { before, .. } => {
                 *camera = (**before).clone();
                 Undone::Camera
