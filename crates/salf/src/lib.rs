@@ -1,7 +1,21 @@
-//! The surface-aperture light field (SALF): for a fixed camera, the image of the aperture as each surface point sees it.
+//! The surface-aperture light field (SALF): for a fixed camera, the image of the aperture as each surface point
+//! sees it.
+//!
+//! [`bake()`] samples every surface that some point of the aperture sees. Samples come from the pinhole picture
+//! where surfaces face the aperture (their footprints are the squares of the pixel grid, so that they tile the
+//! picture exactly), and from the surface itself where it is edge-on. A [`Sample`] knows its surface address, its
+//! weight toward every aperture point, its radiance, and what of the aperture it sees ([`Visibility`]).
 
 mod bake;
+mod domain;
+mod edge_on;
+mod jitter;
+mod layers;
+mod margin;
+mod occluders;
 mod sample;
+mod view;
+mod visibility;
 
 pub use bake::{BakeOptions, bake};
-pub use sample::{Salf, Sample, Visibility};
+pub use sample::{Salf, SalfStatistics, Sample, Visibility};

@@ -1,56 +1,120 @@
 //! What the light field holds.
 
-use glam::{DVec2, Vec2, Vec3};
+use glam::{Vec2, Vec3};
 use lens::Camera;
 use scene::SurfacePoint;
 
 /// The surface-aperture light field of one camera.
 #[derive(Clone, Debug)]
 pub struct Salf {
-    /// The camera it was baked for; aperture shape, f-stop and focus distance may change afterwards.
+    /// The camera it was baked for. Its focus distance and aperture shape may change afterwards, and its
+    /// aperture radius shrink; all else is fixed.
     pub camera: Camera,
+    /// How far outside the frame it was sampled, px.
+    pub margin_px: u32,
     /// Its samples.
     pub samples: Vec<Sample>,
 }
 
 /// A patch of surface as the aperture sees it.
-#[derive(Clone, Debug)]
+///
+/// Toward the aperture point U = R·(u, v) of the baked camera it has the weight (design: `w(P, U)`, here in
+/// px² of picture area)
+///
+/// ```text
+/// w(u, v) = max(0, weight + tilt·(u, v))
+/// ```
+///
+/// which is exact: |n·(P − U)| is linear in U as long as the aperture does not cross the patch's plane, and
+/// where it does, each side of the patch is a sample of its own.
+#[derive(Clone, Debug, PartialEq)]
 pub struct Sample {
-    /// Centre of its pinhole footprint, px.
+    /// Centre of its footprint in the pinhole picture, px (x right, y down, the frame's corner at 0).
     pub center: Vec2,
     /// Half the footprint's sides, px.
     pub half_size: Vec2,
-    /// 1/z; 0 for the background.
+    /// 1/z, z the depth; 0 for the background.
     pub inverse_depth: f32,
-    /// w(0), px², and its gradient over the unit aperture.
+    /// w toward the aperture's centre, px².
     pub weight: f32,
-    /// ∂w/∂u, px².
+    /// ∂w/∂u and ∂w/∂v, px².
     pub tilt: Vec2,
     /// Linear RGB radiance toward the aperture.
     pub radiance: Vec3,
-    /// Its surface address; `None` for the background.
+    /// Its address on the surface (and so in the atlas); `None` for the background.
     pub surface: Option<SurfacePoint>,
     /// What of the aperture it sees.
     pub visibility: Visibility,
 }
 
-/// What of the aperture a sample sees.
-#[derive(Clone, Debug, PartialEq)]
+/// What of the square aperture [−R, R]² a sample sees.
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Visibility {
     /// All of it.
     Open,
-    /// A bit a cell of the square aperture.
+    /// n × n cells, a bit each, row 0 at v = −R, column 0 at u = −R; n is 8 (one word) or 16
+    /// (four words).
     Cells(Box<[u64]>),
 }
 
-impl Sample {
-    /// Whether it is the background.
-    pub fn is_background(&self) -> bool {
-        self.surface.is_none()
+impl Visibility {
+    /// Cells a side of a field of cells.
+    pub fn side_of(words: &[u64]) -> usize {
+        8 * words.len().isqrt()
     }
 
-    /// Centre in f64.
-    pub fn center_px(&self) -> DVec2 {
-        self.center.as_dvec2()
+    /// The bits of `row` of a field of cells, column 0 the lowest.
+    pub fn row(words: &[u64], row: usize) -> u64 {
+        let side = Self::side_of(words);
+        let rows_a_word = 64 / side;
+        words[row / rows_a_word] >> (row % rows_a_word * side) & (u64::MAX >> (64 - side))
+    }
+}
+
+/// How many samples there are of each kind, and what they take.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct SalfStatistics {
+    /// Samples that see the whole aperture.
+    pub open: usize,
+    /// Samples that see part of it.
+    pub partial: usize,
+    /// Samples of the background.
+    pub background: usize,
+    /// Bytes of all samples.
+    pub bytes: usize,
+}
+
+impl Salf {
+    /// Counts the samples by kind.
+    pub fn statistics(&self) -> SalfStatistics {
+        let mut statistics =
+            SalfStatistics { bytes: size_of_val(self.samples.as_slice()), ..Default::default() };
+        for sample in &self.samples {
+            match &sample.visibility {
+                Visibility::Open => statistics.open += 1,
+                Visibility::Cells(words) => {
+                    statistics.partial += 1;
+                    statistics.bytes += size_of_val(&**words);
+                }
+            }
+            statistics.background += usize::from(sample.surface.is_none());
+        }
+        statistics
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_of_bits() {
+        let mut words = [0u64; 4];
+        words[1] = 0xABCD << 16;
+        assert_eq!(Visibility::side_of(&words), 16);
+        assert_eq!(Visibility::row(&words, 5), 0xABCD);
+        assert_eq!(Visibility::row(&words, 4), 0);
+        assert_eq!(Visibility::row(&[0x1200], 1), 0x12);
+        assert_eq!(Visibility::side_of(&[0]), 8);
     }
 }

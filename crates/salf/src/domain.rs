@@ -1,0 +1,120 @@
+//! Where the pinhole picture is sampled: pixels of the frame, and ever larger cells outside it.
+
+use glam::{DVec2, IVec2};
+
+/// A square of the pinhole picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Cell {
+    /// Upper left corner, px; negative left of or above the frame.
+    pub corner: IVec2,
+    /// Side, px; a power of two.
+    pub side: i32,
+}
+
+impl Cell {
+    /// Sub-cells a side: a ray is traced in each.
+    pub const SUBDIVISION: i32 = 4;
+    /// Rays a cell.
+    pub const RAYS: usize = (Self::SUBDIVISION * Self::SUBDIVISION) as usize;
+
+    /// The corner of sub-cell `k`, px.
+    pub fn sub_corner(&self, k: usize) -> DVec2 {
+        let (row, column) = (k as i32 / Self::SUBDIVISION, k as i32 % Self::SUBDIVISION);
+        self.corner.as_dvec2() + IVec2::new(column, row).as_dvec2() * self.sub_side()
+    }
+
+    /// The side of a sub-cell, px.
+    pub fn sub_side(&self) -> f64 {
+        self.side as f64 / Self::SUBDIVISION as f64
+    }
+}
+
+/// The frame and its margin.
+#[derive(Clone, Copy, Debug)]
+pub struct Domain {
+    /// The frame, px.
+    pub size: IVec2,
+    /// Margin on every side, px; a multiple of [`Domain::BLOCK`].
+    pub margin: i32,
+}
+
+impl Domain {
+    /// The largest cell, px.
+    pub const BLOCK: i32 = 16;
+
+    /// A frame with a margin of at least `margin_px`.
+    pub fn new(width: u32, height: u32, margin_px: f64) -> Self {
+        let margin = (margin_px / Self::BLOCK as f64).ceil() as i32 * Self::BLOCK;
+        Self { size: IVec2::new(width as i32, height as i32), margin }
+    }
+
+    /// Columns and rows with the margin, px.
+    pub fn extent(&self) -> IVec2 {
+        self.size + 2 * self.margin
+    }
+
+    /// The cells, in rows of blocks.
+    ///
+    /// A cell outside the frame has at most a quarter of its distance to the frame as its side: only light that
+    /// is spread at least that far can enter the frame, so that its splat is eight cells wide or wider.
+    pub fn block_rows(&self) -> Vec<Vec<Cell>> {
+        let blocks = (self.extent() + Self::BLOCK - 1) / Self::BLOCK;
+        (0..blocks.y)
+            .map(|row| {
+                let mut cells = Vec::new();
+                for column in 0..blocks.x {
+                    let corner = IVec2::new(column, row) * Self::BLOCK - self.margin;
+                    self.split(Cell { corner, side: Self::BLOCK }, &mut cells);
+                }
+                cells
+            })
+            .collect()
+    }
+
+    fn split(&self, cell: Cell, cells: &mut Vec<Cell>) {
+        let beyond = self.size + self.margin;
+        if cell.corner.x >= beyond.x || cell.corner.y >= beyond.y {
+            return;
+        }
+        if cell.side == 1 || self.distance_outside(cell) >= 4 * cell.side {
+            cells.push(cell);
+            return;
+        }
+        let side = cell.side / 2;
+        for step in [IVec2::ZERO, IVec2::X, IVec2::Y, IVec2::ONE] {
+            self.split(Cell { corner: cell.corner + step * side, side }, cells);
+        }
+    }
+
+    /// How far the cell lies outside the frame, px; 0 inside.
+    fn distance_outside(&self, cell: Cell) -> i32 {
+        let before = -(cell.corner + cell.side);
+        let behind = cell.corner - self.size;
+        before.max(behind).max_element().max(0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn cells_tile_the_domain() {
+        let domain = Domain::new(37, 21, 70.0);
+        let extent = domain.extent();
+        let mut covered = vec![0; (extent.x * extent.y) as usize];
+        for cell in domain.block_rows().into_iter().flatten() {
+            for y in 0..cell.side {
+                for x in 0..cell.side {
+                    let p = cell.corner + IVec2::new(x, y) + domain.margin;
+                    if p.x < extent.x && p.y < extent.y {
+                        covered[(p.y * extent.x + p.x) as usize] += 1;
+                    }
+                }
+            }
+            let inside = cell.corner.cmpge(IVec2::ZERO).all() && cell.corner.cmplt(domain.size).all();
+            assert!(!inside || cell.side == 1);
+        }
+        assert!(covered.iter().all(|&n| n == 1));
+    }
+}

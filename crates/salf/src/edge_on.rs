@@ -1,0 +1,142 @@
+//! Surfaces that are nearly edge-on to the aperture, sampled on the surface itself.
+//!
+//! A triangle whose plane passes through or close by the aperture covers next to nothing of the pinhole picture, yet the
+//! rim of the aperture sees it: the weight |n·(P − U)|/|n·P| of pinhole samples has no bound there. Such triangles are
+//! cut into patches of about a pixel as the rim sees them, and each side of a patch is a sample.
+
+use crate::domain::Domain;
+use crate::jitter::jitter;
+use crate::layers::Member;
+use crate::sample::Sample;
+use crate::view::View;
+use crate::visibility;
+use glam::{DVec2, DVec3};
+use scene::SurfacePoint;
+use trace::{Radiance, Tracer};
+
+/// More pieces than this are not made of one triangle: the largest is then split no further.
+const MOST_PATCHES: usize = 20_000;
+
+/// A piece of a triangle: its corners as barycentrics and in camera space.
+#[derive(Clone, Copy)]
+struct Piece {
+    barycentric: [DVec2; 3],
+    corners: [DVec3; 3],
+}
+
+/// The samples of one edge-on triangle.
+pub fn samples(
+    tracer: &Tracer,
+    radiance: &dyn Radiance,
+    view: &View,
+    domain: &Domain,
+    triangle: u32,
+) -> Vec<Sample> {
+    let scene = tracer.scene();
+    let corners = scene.corners(triangle).map(|p| view.camera.camera_from_world(p));
+    let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalize_or_zero();
+    if normal == DVec3::ZERO {
+        return Vec::new();
+    }
+    // Camera space is left-handed (z forward): the front's normal points the other way.
+    let front = -normal;
+    let whole = Piece { barycentric: [DVec2::ZERO, DVec2::X, DVec2::Y], corners };
+    let mut samples = Vec::new();
+    for piece in split(whole, view, domain) {
+        let point = SurfacePoint { triangle, barycentric: piece.barycentric.iter().sum::<DVec2>() / 3.0 };
+        for side in [front, -front] {
+            samples.extend(patch(tracer, radiance, view, point, piece, side));
+        }
+    }
+    samples
+}
+
+/// One side of a piece.
+fn patch(
+    tracer: &Tracer,
+    radiance: &dyn Radiance,
+    view: &View,
+    point: SurfacePoint,
+    piece: Piece,
+    normal: DVec3,
+) -> Option<Sample> {
+    let optics = &view.optics;
+    let position = piece.corners.iter().sum::<DVec3>() / 3.0;
+    let [a, b, c] = piece.corners;
+    let area = (b - a).cross(c - a).length() / 2.0;
+    let scale = optics.half_height_px / optics.tan_half_yfov;
+    // w(P, U) = dA·n·(U − P)/(z³ tan²θ), linear in U.
+    let density = area / position.z.powi(3) * scale * scale;
+    let weight = -normal.dot(position) * density;
+    let tilt = normal.truncate() * (optics.aperture_radius * density);
+    let largest = weight + tilt.abs().element_sum();
+    if largest <= 0.0 {
+        return None;
+    }
+    let pixel = view.camera.pixel_from_q(optics.chief(position));
+    let inverse_depth = 1.0 / position.z;
+    let member = Member { sub_cell: 0, pixel, point: Some(point), inverse_depth };
+    let cells = visibility::cells_a_side(view, inverse_depth);
+    let seed = [point.triangle, (jitter(point.barycentric.x.to_bits() as u32, 0, 0)[0] * 1e9) as u32];
+    let is_on_side = |u: DVec2| weight + tilt.dot(u) > 0.0;
+    let visibility = visibility::visibility(tracer, view, &[member], cells, seed, is_on_side)?;
+    let rim = view.aperture_point(tilt.signum());
+    Some(Sample {
+        center: pixel.as_vec2(),
+        half_size: glam::Vec2::splat((largest.sqrt() / 2.0).max(0.125) as f32),
+        inverse_depth: inverse_depth as f32,
+        weight: weight as f32,
+        tilt: tilt.as_vec2(),
+        radiance: radiance.toward(point, rim),
+        surface: Some(point),
+        visibility,
+    })
+}
+
+/// Cuts a triangle by its longest projected side until every piece is about a pixel, or an eighth of its own circle of
+/// confusion; drops what lies behind the aperture or outside the domain.
+fn split(whole: Piece, view: &View, domain: &Domain) -> Vec<Piece> {
+    let mut pieces = Vec::new();
+    let mut pending = vec![(whole, 0)];
+    let low = DVec2::splat(-domain.margin as f64);
+    let high = (domain.size + domain.margin).as_dvec2();
+    while let Some((piece, depth)) = pending.pop() {
+        if piece.corners.iter().all(|p| p.z <= 0.0) {
+            continue;
+        }
+        if piece.corners.iter().all(|p| p.z > 0.0) {
+            let pixels = piece.corners.map(|p| view.camera.pixel_from_q(view.optics.chief(p)));
+            let (first, last) = pixels.iter().fold((pixels[0], pixels[0]), |(a, b), &p| (a.min(p), b.max(p)));
+            if first.cmpgt(high).any() || last.cmplt(low).any() {
+                continue;
+            }
+            let nearest = piece.corners.iter().map(|p| p.z).fold(f64::INFINITY, f64::min);
+            let kappa = view.optics.standard_kappa(1.0 / nearest);
+            let fine = (view.optics.circle_of_confusion_px(kappa) / 8.0).max(1.0);
+            if (last - first).max_element() <= fine || depth >= 24 || pieces.len() >= MOST_PATCHES {
+                pieces.push(piece);
+                continue;
+            }
+        } else if depth >= 24 {
+            continue;
+        }
+        let [first, second] = halves(piece);
+        pending.push((first, depth + 1));
+        pending.push((second, depth + 1));
+    }
+    pieces
+}
+
+/// Cuts a piece through the middle of its longest side.
+fn halves(piece: Piece) -> [Piece; 2] {
+    let length = |i: usize| piece.corners[i].distance_squared(piece.corners[(i + 1) % 3]);
+    let i = (0..3).max_by(|&i, &j| length(i).total_cmp(&length(j))).expect("three sides");
+    let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+    let middle = (piece.barycentric[i] + piece.barycentric[j]) / 2.0;
+    let corner = (piece.corners[i] + piece.corners[j]) / 2.0;
+    let piece_of = |a: usize, b: usize| Piece {
+        barycentric: [piece.barycentric[a], middle, piece.barycentric[b]],
+        corners: [piece.corners[a], corner, piece.corners[b]],
+    };
+    [piece_of(i, k), piece_of(k, j)]
+}

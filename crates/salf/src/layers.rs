@@ -1,0 +1,180 @@
+//! The pinhole picture, one cell at a time: which surfaces lie along its chief rays.
+
+use crate::domain::Cell;
+use crate::jitter::jitter;
+use crate::occluders::Occluders;
+use crate::sample::{Sample, Visibility};
+use crate::view::View;
+use glam::{DVec2, Vec3};
+use scene::SurfacePoint;
+use trace::{Radiance, Ray, Tracer};
+
+/// Surfaces along one chief ray beyond which nothing is looked for.
+const DEEPEST_LAYER: usize = 12;
+
+/// Where a chief ray of a cell meets a surface, or goes to infinity.
+#[derive(Clone, Copy, Debug)]
+pub struct Member {
+    /// Its sub-cell.
+    pub sub_cell: usize,
+    /// Where it is in the pinhole picture, px.
+    pub pixel: DVec2,
+    /// The surface; `None` for the background.
+    pub point: Option<SurfacePoint>,
+    /// 1/z.
+    pub inverse_depth: f64,
+}
+
+/// Members of one cell that lie on one smooth surface.
+#[derive(Clone, Debug)]
+pub struct Group {
+    /// At most one a sub-cell.
+    pub members: Vec<Member>,
+    /// Whether the surface is the nearest along every member's ray.
+    pub is_nearest: bool,
+    part: Option<u32>,
+    /// The weight's relative change over the unit aperture.
+    tilt: DVec2,
+    /// Gradient of 1/z, per px.
+    pub slope: DVec2,
+}
+
+/// What the rays of a cell met.
+pub struct Layers {
+    /// Its surfaces.
+    pub groups: Vec<Group>,
+    /// The largest and the smallest inverse depth among its nearest surfaces.
+    pub depth_range: [f32; 2],
+    /// Whether a nearest surface is edge-on to the aperture and so not among the groups.
+    pub is_edge_on: bool,
+}
+
+/// Traces the chief rays of a cell: to the nearest surface, or, if `hidden`, through all of them.
+pub fn trace_cell(tracer: &Tracer, view: &View, cell: Cell, hidden: bool) -> Layers {
+    let mut layers = Layers { groups: Vec::new(), depth_range: [0.0, f32::INFINITY], is_edge_on: false };
+    for sub_cell in 0..Cell::RAYS {
+        let seed = cell.corner.as_uvec2();
+        let [jx, jy, _] = jitter(seed.x, seed.y, sub_cell as u32);
+        let pixel = cell.sub_corner(sub_cell) + DVec2::new(jx, jy) * cell.sub_side();
+        let mut ray = view.chief_ray(pixel);
+        for layer in 0..DEEPEST_LAYER {
+            let hit = tracer.first_hit(&ray);
+            let inverse_depth = hit.map_or(0.0, |hit| 1.0 / hit.t);
+            let point = hit.map(|hit| hit.point);
+            if layer == 0 {
+                let [near, far] = &mut layers.depth_range;
+                *near = near.max(inverse_depth as f32);
+                *far = far.min(inverse_depth as f32);
+            }
+            let member = Member { sub_cell, pixel, point, inverse_depth };
+            let is_sampled_here =
+                point.is_none_or(|point| view.faces_aperture(tracer.scene(), point.triangle));
+            if is_sampled_here {
+                layers.add(tracer, view, member, layer == 0);
+            } else if layer == 0 {
+                layers.is_edge_on = true;
+            }
+            match hit {
+                Some(hit) if hidden => ray = Ray { t_min: hit.t, skip: Some(hit.point.triangle), ..ray },
+                _ => break,
+            }
+        }
+    }
+    layers
+}
+
+impl Layers {
+    fn add(&mut self, tracer: &Tracer, view: &View, member: Member, is_nearest: bool) {
+        let parallax_px = view.radius_per_kappa_px;
+        let part = member.point.map(|p| tracer.scene().triangles[p.triangle as usize].part);
+        let belongs = |group: &&mut Group| {
+            let first = group.members[0];
+            let expected = first.inverse_depth + group.slope.dot(member.pixel - first.pixel);
+            group.part == part
+                && (member.inverse_depth - expected).abs() * parallax_px <= Occluders::SAME_SURFACE_PX
+                && group.members.last().is_none_or(|last| last.sub_cell != member.sub_cell)
+        };
+        if let Some(group) = self.groups.iter_mut().find(belongs) {
+            group.members.push(member);
+            group.is_nearest &= is_nearest;
+            return;
+        }
+        let (mut tilt, mut slope) = (DVec2::ZERO, DVec2::ZERO);
+        if let Some(point) = member.point {
+            let scene = tracer.scene();
+            tilt = view.relative_tilt(scene.area_normal(point.triangle), point.position(scene));
+            if parallax_px > 0.0 {
+                slope = DVec2::new(-tilt.x, tilt.y) / parallax_px;
+            }
+        }
+        self.groups.push(Group { members: vec![member], is_nearest, part, tilt, slope });
+    }
+
+    /// Whether another surface of this cell lies noticeably in front of `group`.
+    pub fn has_nearer(&self, group: &Group, parallax_px: f64) -> bool {
+        let depth = group.mean_inverse_depth();
+        let others = self.groups.iter().filter(|other| !std::ptr::eq(*other, group));
+        others.map(Group::mean_inverse_depth).any(|other| (other - depth) * parallax_px > 0.1)
+    }
+}
+
+impl Group {
+    /// Mean of 1/z.
+    pub fn mean_inverse_depth(&self) -> f64 {
+        self.members.iter().map(|m| m.inverse_depth).sum::<f64>() / self.members.len() as f64
+    }
+
+    /// The centre of its sub-cells, px.
+    pub fn center(&self, cell: Cell) -> DVec2 {
+        let corners: DVec2 = self.members.iter().map(|m| cell.sub_corner(m.sub_cell)).sum();
+        corners / self.members.len() as f64 + cell.sub_side() / 2.0
+    }
+
+    /// The sample of this group: its mean radiance over its share of the cell.
+    pub fn sample(&self, radiance: &dyn Radiance, view: &View, cell: Cell, visibility: Visibility) -> Sample {
+        let count = self.members.len();
+        let center = self.center(cell);
+        let half_size = if count == Cell::RAYS {
+            DVec2::splat(cell.side as f64 / 2.0)
+        } else {
+            self.half_size(cell, center)
+        };
+        let emitted: Vec3 = self.members.iter().map(|m| toward_aperture(radiance, view, m)).sum();
+        let weight = (cell.side * cell.side) as f64 * count as f64 / Cell::RAYS as f64;
+        let middle = self
+            .members
+            .iter()
+            .min_by(|a, b| a.pixel.distance_squared(center).total_cmp(&b.pixel.distance_squared(center)))
+            .expect("a group has members");
+        Sample {
+            center: center.as_vec2(),
+            half_size: half_size.as_vec2(),
+            inverse_depth: self.mean_inverse_depth() as f32,
+            weight: weight as f32,
+            tilt: (self.tilt * weight).as_vec2(),
+            radiance: emitted / count as f32,
+            surface: middle.point,
+            visibility,
+        }
+    }
+
+    /// Half the sides of a box with the spread of the group's sub-cells.
+    fn half_size(&self, cell: Cell, center: DVec2) -> DVec2 {
+        let side = cell.sub_side();
+        let variance: DVec2 = self
+            .members
+            .iter()
+            .map(|m| (cell.sub_corner(m.sub_cell) + side / 2.0 - center).powf(2.0))
+            .sum::<DVec2>()
+            / self.members.len() as f64;
+        // A box of half side h has the variance h²/3.
+        (3.0 * variance + side * side / 4.0).map(f64::sqrt)
+    }
+}
+
+fn toward_aperture(radiance: &dyn Radiance, view: &View, member: &Member) -> Vec3 {
+    match member.point {
+        Some(point) => radiance.toward(point, view.eye),
+        None => radiance.from_infinity(view.chief_ray(member.pixel).direction.normalize()),
+    }
+}

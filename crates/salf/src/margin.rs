@@ -1,0 +1,98 @@
+//! How far outside the frame light must be gathered.
+
+use crate::view::View;
+use glam::{DVec2, DVec3};
+use lens::FocusOffset;
+use scene::{Scene, SurfaceField};
+use trace::Tracer;
+
+/// Beyond this many picture heights outside the frame nothing is sampled.
+const LARGEST_MARGIN_HEIGHTS: f64 = 1.5;
+
+/// The margin of the standard picture, px: the largest circle of confusion (its radius) of any surface that the
+/// aperture sees through the frame, however far outside the frame the surface itself lies.
+///
+/// The rays of the picture fill the frustum |y| ≤ z·tanθ + R·|1 − z/s| (and the same in x). Its near part is
+/// convex up to the focus plane; clipping every triangle to it gives the nearest visible depth. Beyond the
+/// focus plane the circle grows to that of infinity.
+pub fn standard_margin_px(scene: &Scene, view: &View) -> f64 {
+    let inverse_s = view.optics.inverse_focus_distance;
+    let nearest = (0..scene.triangles.len() as u32)
+        .filter_map(|triangle| {
+            let corners = scene.corners(triangle).map(|p| view.camera.camera_from_world(p));
+            nearest_depth_in_frustum(corners, view)
+        })
+        .fold(f64::INFINITY, f64::min);
+    let near = view.optics.splat_radius_px(1.0 / nearest - inverse_s);
+    let far = view.optics.splat_radius_px(inverse_s);
+    near.max(far).clamp(0.0, largest_margin_px(view))
+}
+
+/// The margin of a painted picture, px, measured on a grid of chief rays (like the guard band of the ground
+/// truth): the largest splat radius of a surface that is no further outside the frame than that.
+pub fn painted_margin_px(tracer: &Tracer, view: &View, focus: &dyn SurfaceField<FocusOffset>) -> f64 {
+    const SPACING_PX: f64 = 6.0;
+    let frame = DVec2::new(view.camera.width as f64, view.camera.height as f64);
+    let mut margin: f64 = 0.0;
+    loop {
+        let mut reach = margin;
+        let extent = frame + 2.0 * margin;
+        let steps = (extent / SPACING_PX).ceil();
+        for row in 0..steps.y as i64 {
+            for column in 0..steps.x as i64 {
+                let pixel = DVec2::new(column as f64 + 0.5, row as f64 + 0.5) / steps * extent - margin;
+                let (inverse_depth, offset) = match tracer.first_hit(&view.chief_ray(pixel)) {
+                    Some(hit) => (1.0 / hit.t, focus.at(hit.point)),
+                    None => (0.0, focus.at_infinity()),
+                };
+                let radius = view.optics.splat_radius_px(view.optics.kappa(inverse_depth, offset)).abs();
+                let outside = (-pixel).max(pixel - frame).max_element();
+                if radius >= outside {
+                    reach = reach.max(radius * 1.05);
+                }
+            }
+        }
+        let reach = reach.min(largest_margin_px(view));
+        if reach <= margin * 1.02 + 1.0 {
+            return reach;
+        }
+        margin = reach;
+    }
+}
+
+fn largest_margin_px(view: &View) -> f64 {
+    LARGEST_MARGIN_HEIGHTS * view.camera.height as f64
+}
+
+/// The smallest depth of the part of a triangle (camera space) that lies between aperture and focus plane in the
+/// frustum of the picture's rays.
+fn nearest_depth_in_frustum(corners: [DVec3; 3], view: &View) -> Option<f64> {
+    let optics = &view.optics;
+    let (radius, inverse_s) = (optics.aperture_radius, optics.inverse_focus_distance);
+    // Side planes: R + z·(slope·tanθ − R/s) − |y| ≥ 0.
+    let half = [view.camera.aspect() * optics.tan_half_yfov, optics.tan_half_yfov];
+    let mut polygon = corners.to_vec();
+    clip(&mut polygon, |p| p.z);
+    clip(&mut polygon, |p| 1.0 - p.z * inverse_s);
+    for (axis, half) in half.into_iter().enumerate() {
+        for sign in [-1.0, 1.0] {
+            clip(&mut polygon, |p| radius + p.z * (half - radius * inverse_s) - sign * p[axis]);
+        }
+    }
+    polygon.iter().map(|p| p.z).reduce(f64::min)
+}
+
+/// Keeps the part of a convex polygon where `inside` ≥ 0 (Sutherland and Hodgman).
+fn clip(polygon: &mut Vec<DVec3>, inside: impl Fn(DVec3) -> f64) {
+    let source = std::mem::take(polygon);
+    for (i, &a) in source.iter().enumerate() {
+        let b = source[(i + 1) % source.len()];
+        let (da, db) = (inside(a), inside(b));
+        if da >= 0.0 {
+            polygon.push(a);
+        }
+        if (da >= 0.0) != (db >= 0.0) {
+            polygon.push(a + (b - a) * (da / (da - db)));
+        }
+    }
+}

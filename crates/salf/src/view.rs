@@ -1,0 +1,59 @@
+//! The baked camera, ready for rays: pixels to chief rays, aperture points to the world.
+
+use glam::{DVec2, DVec3};
+use lens::{Camera, Optics};
+use scene::Scene;
+use trace::Ray;
+
+/// A camera with its axes in the world.
+pub struct View<'a> {
+    pub camera: &'a Camera,
+    pub optics: Optics,
+    /// The aperture's centre.
+    pub eye: DVec3,
+    right: DVec3,
+    up: DVec3,
+    /// Splat radius in px for κ = 1: half the side of the aperture square as a point sees it.
+    pub radius_per_kappa_px: f64,
+}
+
+impl<'a> View<'a> {
+    pub fn new(camera: &'a Camera) -> Self {
+        let optics = camera.optics();
+        Self {
+            camera,
+            optics,
+            eye: camera.position(),
+            right: camera.world_direction(DVec3::X),
+            up: camera.world_direction(DVec3::Y),
+            radius_per_kappa_px: optics.splat_radius_px(1.0),
+        }
+    }
+
+    /// The chief ray through a pixel position; its t is the depth z.
+    pub fn chief_ray(&self, pixel: DVec2) -> Ray {
+        let q = self.camera.q_from_pixel(pixel) * self.optics.tan_half_yfov;
+        let direction = self.camera.world_direction(q.extend(1.0));
+        Ray { origin: self.eye, direction, t_min: 0.0, t_max: f64::INFINITY, skip: None }
+    }
+
+    /// The world position of the aperture point R·u.
+    pub fn aperture_point(&self, u: DVec2) -> DVec3 {
+        self.eye + self.optics.aperture_radius * (u.x * self.right + u.y * self.up)
+    }
+
+    /// How the weight of a surface with `normal` through `point` changes over the aperture, as a share of its
+    /// weight at the centre: w(u)/w(0) = n·(P − U)/n·P = 1 + tilt·u. Unbounded where the plane passes
+    /// through the aperture's centre.
+    pub fn relative_tilt(&self, normal: DVec3, point: DVec3) -> DVec2 {
+        let radius = self.optics.aperture_radius;
+        DVec2::new(normal.dot(self.right), normal.dot(self.up)) * (-radius / normal.dot(point - self.eye))
+    }
+
+    /// Whether the aperture is well on one side of a triangle's plane, so that the pinhole picture samples it
+    /// well: its weight changes by at most three quarters over the aperture. Else it is nearly edge-on.
+    pub fn faces_aperture(&self, scene: &Scene, triangle: u32) -> bool {
+        let tilt = self.relative_tilt(scene.area_normal(triangle), scene.corners(triangle)[0]);
+        tilt.x.abs() + tilt.y.abs() <= 0.75
+    }
+}

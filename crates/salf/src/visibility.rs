@@ -1,0 +1,73 @@
+//! What of the aperture a patch of surface sees: a ray a cell of the aperture.
+
+use crate::jitter::jitter;
+use crate::layers::Member;
+use crate::sample::Visibility;
+use crate::view::View;
+use glam::DVec2;
+use trace::{Ray, Tracer};
+
+/// Circle of confusion, px, up to which 8 × 8 cells are fine enough: a cell is then at most two pixels.
+const COARSE_UP_TO_PX: f64 = 16.0;
+
+/// Cells a side for a point of inverse depth `inverse_depth`.
+pub fn cells_a_side(view: &View, inverse_depth: f64) -> usize {
+    let kappa = view.optics.standard_kappa(inverse_depth);
+    if view.optics.circle_of_confusion_px(kappa) <= COARSE_UP_TO_PX { 8 } else { 16 }
+}
+
+/// Whether a patch that is hidden from the aperture's centre is hidden from all of it, judged by eight jittered
+/// rays. A patch of which less than a tenth is visible may be missed.
+pub fn is_hidden(tracer: &Tracer, view: &View, members: &[Member], seed: [u32; 2]) -> bool {
+    const RAYS: u32 = 8;
+    (0..RAYS).all(|k| {
+        let [jx, jy, pick] = jitter(seed[0], seed[1], 0x8000 + k);
+        let (column, row) = (k % 4, k / 4);
+        let u = DVec2::new((column as f64 + jx) / 2.0 - 1.0, row as f64 + jy - 1.0);
+        !sees(tracer, view, pick_member(members, pick), u)
+    })
+}
+
+/// The cells of the aperture that a patch sees: one jittered ray each, from a random member. `None` if it sees none.
+///
+/// `is_on_side` tells which aperture points lie on the side of the surface that the patch stands for.
+pub fn visibility(
+    tracer: &Tracer,
+    view: &View,
+    members: &[Member],
+    side: usize,
+    seed: [u32; 2],
+    is_on_side: impl Fn(DVec2) -> bool,
+) -> Option<Visibility> {
+    let mut words = vec![0u64; side * side / 64];
+    let mut open = 0;
+    for row in 0..side {
+        for column in 0..side {
+            let cell = row * side + column;
+            let [jx, jy, pick] = jitter(seed[0], seed[1], cell as u32);
+            let u = DVec2::new(column as f64 + jx, row as f64 + jy) * (2.0 / side as f64) - 1.0;
+            if is_on_side(u) && sees(tracer, view, pick_member(members, pick), u) {
+                words[cell / 64] |= 1 << (cell % 64);
+                open += 1;
+            }
+        }
+    }
+    match open {
+        0 => None,
+        _ if open == side * side => Some(Visibility::Open),
+        _ => Some(Visibility::Cells(words.into())),
+    }
+}
+
+fn pick_member(members: &[Member], pick: f64) -> &Member {
+    &members[(pick * members.len() as f64) as usize]
+}
+
+/// Whether nothing stands between a member and the aperture point R·u.
+fn sees(tracer: &Tracer, view: &View, member: &Member, u: DVec2) -> bool {
+    let aperture_point = view.aperture_point(u);
+    match member.point {
+        Some(point) => !tracer.occluded(point, aperture_point),
+        None => !tracer.any_hit(&Ray { origin: aperture_point, ..view.chief_ray(member.pixel) }),
+    }
+}

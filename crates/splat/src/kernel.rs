@@ -1,0 +1,229 @@
+//! The aperture as the splat uses it: cut to rows and to cells at every size that a splat may have.
+
+use glam::DVec2;
+use lens::{Aperture, ApertureRow};
+use salf::Visibility;
+
+/// An aperture, ready to be splatted at any size. Coordinates are those of the baked square [−1, 1]²; a lens stopped
+/// down from the baked one fills only the middle of it.
+pub struct Kernel {
+    /// The lens's aperture radius as a share of the baked one.
+    stop: f64,
+    /// Level ℓ has 2^ℓ rows.
+    levels: Vec<Level>,
+    /// Mean of the open area, and its standard deviation: for splats under a pixel.
+    mean: DVec2,
+    deviation: DVec2,
+    /// Share of the open area in each of CELLS × CELLS cells of the baked square, row 0 at v = −1.
+    cells: Vec<f64>,
+}
+
+/// The aperture in rows, in units of the lens's own radius.
+struct Level {
+    rows: Vec<ApertureRow>,
+    open_area: f64,
+}
+
+/// A piece of the aperture: a rectangle in [−1, 1]² and its share of the open area.
+#[derive(Clone, Copy, Debug)]
+pub struct Piece {
+    /// Centre.
+    pub center: DVec2,
+    /// Half its sides.
+    pub half_size: DVec2,
+    /// Share of the open area.
+    pub share: f64,
+}
+
+impl Kernel {
+    /// Cells a side of the finest visibility.
+    const CELLS: usize = 16;
+    /// Rows are cut down to 2^FINEST; a larger splat has rows of several pixels.
+    const FINEST: usize = 7;
+
+    /// Cuts `aperture`, whose radius is `stop` ≤ 1 of the baked one.
+    pub fn new(aperture: &Aperture, stop: f64) -> Self {
+        let level = |level: usize| {
+            let rows = aperture.rows(1 << level);
+            Level { open_area: rows.open_area(), rows: rows.rows }
+        };
+        let levels: Vec<_> = (0..=Self::FINEST).map(level).collect();
+        let (mean, deviation) = levels[Self::FINEST].moments(stop);
+        let cells = levels[Self::FINEST].cell_shares(stop, Self::CELLS);
+        Self { stop, levels, mean, deviation, cells }
+    }
+
+    /// The pieces of the whole aperture for a splat of signed radius `radius_px` (of the baked aperture).
+    ///
+    /// Along a row a piece is at most `longest` wide in units of the lens's radius, so that a weight that changes over
+    /// the aperture can be followed.
+    pub fn pieces(&self, radius_px: f64, longest: f64, mut emit: impl FnMut(Piece)) {
+        let diameter = 2.0 * radius_px.abs() * self.stop;
+        if diameter < 1.0 {
+            // A box of the same mean and variance.
+            emit(Piece { center: self.mean, half_size: self.deviation * 3f64.sqrt(), share: 1.0 });
+        } else {
+            let level = (diameter.log2() as usize).min(Self::FINEST);
+            self.levels[level].pieces(self.stop, longest, emit);
+        }
+    }
+
+    /// The pieces that the cells of `words` let through, times `weight` of the aperture point, for a splat of signed
+    /// radius `radius_px`: blocks of cells of a pixel or two, neighbours of equal share joined.
+    pub fn visible_pieces(
+        &self,
+        words: &[u64],
+        radius_px: f64,
+        weight: impl Fn(DVec2) -> f64,
+        mut emit: impl FnMut(Piece),
+    ) {
+        let side = Visibility::side_of(words);
+        let wanted = (2.0 * radius_px.abs() / 1.5).max(1.0).log2().ceil() as u32;
+        let blocks = (1usize << wanted.min(side.ilog2())).max(1);
+        let mut shares = [0.0; Self::CELLS];
+        for row in 0..blocks {
+            let shares = &mut shares[..blocks];
+            self.block_row(words, side, row, shares, &weight);
+            let mut column = 0;
+            while column < blocks {
+                let share = shares[column];
+                let alike = shares[column..].iter().take_while(|&&other| other == share).count();
+                if share > 0.0 {
+                    let size = DVec2::new(alike as f64, 1.0) / blocks as f64;
+                    let corner = DVec2::new(column as f64, row as f64) * (2.0 / blocks as f64) - 1.0;
+                    emit(Piece { center: corner + size, half_size: size, share: share * alike as f64 });
+                }
+                column += alike;
+            }
+        }
+    }
+
+    /// The shares of one row of blocks: of `shares.len()` blocks a side, each the sum of its open cells.
+    fn block_row(
+        &self,
+        words: &[u64],
+        side: usize,
+        row: usize,
+        shares: &mut [f64],
+        weight: &impl Fn(DVec2) -> f64,
+    ) {
+        let blocks = shares.len();
+        let (cells_a_block, fine) = (side / blocks, Self::CELLS / side);
+        shares.fill(0.0);
+        for cell_row in row * cells_a_block..(row + 1) * cells_a_block {
+            let bits = Visibility::row(words, cell_row);
+            for cell_column in (0..side).filter(|column| bits >> column & 1 == 1) {
+                let share: f64 = (0..fine * fine)
+                    .map(|k| (cell_row * fine + k / fine, cell_column * fine + k % fine))
+                    .map(|(v, u)| self.cells[v * Self::CELLS + u])
+                    .sum();
+                let center = DVec2::new(cell_column as f64 + 0.5, cell_row as f64 + 0.5);
+                shares[cell_column / cells_a_block] += share * weight(center * (2.0 / side as f64) - 1.0);
+            }
+        }
+    }
+}
+
+impl Level {
+    fn pieces(&self, stop: f64, longest: f64, mut emit: impl FnMut(Piece)) {
+        let height = 2.0 / self.rows.len() as f64;
+        for (i, row) in self.rows.iter().enumerate() {
+            let v = -1.0 + height * (i as f64 + 0.5);
+            for run in &row.runs {
+                let parts = ((run.end - run.start) / longest).ceil().max(1.0);
+                let width = (run.end - run.start) / parts;
+                for part in 0..parts as usize {
+                    let u = run.start + width * (part as f64 + 0.5);
+                    emit(Piece {
+                        center: DVec2::new(u, v) * stop,
+                        half_size: DVec2::new(width, height) / 2.0 * stop,
+                        share: width * height * run.transmission / self.open_area,
+                    });
+                }
+            }
+        }
+    }
+
+    /// Mean and standard deviation of the open area.
+    fn moments(&self, stop: f64) -> (DVec2, DVec2) {
+        let (mut mean, mut square) = (DVec2::ZERO, DVec2::ZERO);
+        self.pieces(stop, f64::INFINITY, |piece| {
+            mean += piece.center * piece.share;
+            square += (piece.center.powf(2.0) + piece.half_size.powf(2.0) / 3.0) * piece.share;
+        });
+        (mean, (square - mean.powf(2.0)).max(DVec2::ZERO).map(f64::sqrt))
+    }
+
+    /// Share of the open area in each of `side` × `side` cells of the baked square.
+    fn cell_shares(&self, stop: f64, side: usize) -> Vec<f64> {
+        let mut cells = vec![0.0; side * side];
+        let span = |center: f64, half: f64| [-half, half].map(|h| (center + h + 1.0) / 2.0 * side as f64);
+        self.pieces(stop, f64::INFINITY, |piece| {
+            let columns = span(piece.center.x, piece.half_size.x);
+            let rows = span(piece.center.y, piece.half_size.y);
+            let area = (columns[1] - columns[0]) * (rows[1] - rows[0]);
+            for (row, height) in overlaps(rows, side) {
+                for (column, width) in overlaps(columns, side) {
+                    cells[row * side + column] += piece.share * height * width / area;
+                }
+            }
+        });
+        cells
+    }
+}
+
+/// The cells of 0..count that `span` overlaps, with the length of each overlap.
+fn overlaps(span: [f64; 2], count: usize) -> impl Iterator<Item = (usize, f64)> {
+    let cells = span[0].max(0.0) as usize..(span[1].ceil() as usize).min(count);
+    cells.map(move |k| (k, (span[1].min(k as f64 + 1.0) - span[0].max(k as f64)).max(0.0)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use lens::ApertureShape;
+
+    #[test]
+    fn shares_sum_to_one_at_every_size() {
+        let shapes = [
+            ApertureShape::Disc,
+            ApertureShape::Square,
+            ApertureShape::Polygon { blades: 5, rotation: 0.2, roundness: 0.3 },
+        ];
+        for shape in shapes {
+            for stop in [1.0, 0.4] {
+                let kernel = Kernel::new(&shape.clone().into(), stop);
+                assert!((kernel.cells.iter().sum::<f64>() - 1.0).abs() < 1e-9);
+                for radius in [0.0, -0.3, 0.7, -5.0, 40.0, 900.0] {
+                    let mut sum = 0.0;
+                    kernel.pieces(radius, 0.25, |piece| sum += piece.share);
+                    assert!((sum - 1.0).abs() < 1e-9);
+                    for words in [&[u64::MAX; 1][..], &[u64::MAX; 4]] {
+                        let mut sum = 0.0;
+                        kernel.visible_pieces(words, radius, |_| 1.0, |piece| sum += piece.share);
+                        assert!((sum - 1.0).abs() < 1e-9, "{shape:?} {stop} {radius}");
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn half_an_aperture_lets_half_pass() {
+        let kernel = Kernel::new(&ApertureShape::Disc.into(), 1.0);
+        let right = [0xFF00_FF00_FF00_FF00u64; 4];
+        for radius in [0.1, 3.0, 30.0] {
+            let (mut sum, mut mean) = (0.0, DVec2::ZERO);
+            kernel.visible_pieces(
+                &right,
+                radius,
+                |_| 1.0,
+                |piece| {
+                    sum += piece.share;
+                    mean += piece.share * piece.center;
+                },
+            );
+            assert!((sum - 0.5).abs() < 1e-3 && (radius < 1.0 || mean.x > 0.2), "{radius}: {sum} {mean}");
+        }
+    }
+}

@@ -1,0 +1,51 @@
+//! The lens that a picture is summed with, and where it sends samples.
+
+use crate::aperture_image::ApertureImage;
+use crate::kernel::Kernel;
+use lens::{Aperture, FocusOffset, Optics};
+use salf::Sample;
+use scene::SurfaceField;
+
+/// Aperture and optics of one picture, in units of the baked aperture.
+pub struct SplatLens {
+    kernel: Kernel,
+    optics: Optics,
+}
+
+/// How a sample is summed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Placed {
+    /// Its defocus.
+    pub kappa: f64,
+    /// Whether it is unpainted.
+    pub is_standard: bool,
+}
+
+impl SplatLens {
+    /// A lens of `optics`, which may be stopped down from `baked_radius`.
+    pub fn new(aperture: &Aperture, optics: Optics, baked_radius: f64) -> Self {
+        let stop = if baked_radius > 0.0 { (optics.aperture_radius / baked_radius).min(1.0) } else { 1.0 };
+        let kernel = Kernel::new(aperture, stop);
+        Self { kernel, optics: Optics { aperture_radius: baked_radius, ..optics } }
+    }
+
+    /// Where `focus` sends a sample.
+    pub fn place(&self, sample: &Sample, focus: &dyn SurfaceField<FocusOffset>) -> Placed {
+        let offset = sample.surface.map_or_else(|| focus.at_infinity(), |point| focus.at(point));
+        if offset.is_standard() {
+            self.standard(sample)
+        } else {
+            Placed { kappa: self.optics.kappa(sample.inverse_depth as f64, offset), is_standard: false }
+        }
+    }
+
+    /// Where the unpainted lens sends a sample.
+    pub fn standard(&self, sample: &Sample) -> Placed {
+        Placed { kappa: self.optics.standard_kappa(sample.inverse_depth as f64), is_standard: true }
+    }
+
+    /// The aperture image of a sample.
+    pub fn image<'a>(&'a self, sample: &'a Sample, placed: Placed) -> ApertureImage<'a> {
+        ApertureImage { sample, kernel: &self.kernel, radius_px: self.optics.splat_radius_px(placed.kappa) }
+    }
+}
