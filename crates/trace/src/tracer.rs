@@ -2,7 +2,7 @@
 
 use crate::hierarchy::Hierarchy;
 use crate::local_space::LocalSpace;
-use crate::presence::{Presence, is_there};
+use crate::presence::is_there;
 use crate::watertight::{ShearedRay, has_area, in_plane};
 use crate::{Hit, Ray};
 use glam::DVec3;
@@ -31,7 +31,7 @@ pub struct Tracer {
 struct LeafTriangle {
     corners: [DVec3; 3],
     index: u32,
-    presence: Presence,
+    may_be_transparent: bool,
 }
 
 impl Tracer {
@@ -53,8 +53,8 @@ impl Tracer {
             .into_iter()
             .map(|place| {
                 let index = with_area[place as usize];
-                let presence = Presence::of(scene.material_of(index).alpha);
-                LeafTriangle { corners: scene.corners(index), index, presence }
+                let may_be_transparent = scene.material_of(index).may_be_transparent();
+                LeafTriangle { corners: scene.corners(index), index, may_be_transparent }
             })
             .collect();
         Self { scene, space, hierarchy, triangles }
@@ -81,7 +81,7 @@ impl Tracer {
                     continue;
                 }
                 let point = SurfacePoint { triangle: triangle.index, barycentric: crossing.barycentric };
-                if is_there(&self.scene, triangle.presence, point, ray) {
+                if !triangle.may_be_transparent || is_there(&self.scene, point, ray) {
                     first = Some(Hit { point, t });
                     t_max = t;
                 }
@@ -124,7 +124,7 @@ impl Tracer {
                     continue;
                 }
                 let point = SurfacePoint { triangle: triangle.index, barycentric: crossing.barycentric };
-                if is_there(&self.scene, triangle.presence, point, ray) {
+                if !triangle.may_be_transparent || is_there(&self.scene, point, ray) {
                     met = true;
                     return None;
                 }

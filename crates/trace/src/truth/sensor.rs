@@ -69,7 +69,13 @@ impl Sensor {
     pub fn new(camera: &Camera, quantiser: Quantiser) -> Self {
         let mut pixels = Vec::new();
         pixels.resize_with(camera.width as usize * camera.height as usize, Default::default);
-        Self { width: camera.width, height: camera.height, quantiser, pixels, overflowed: AtomicBool::new(false) }
+        Self {
+            width: camera.width,
+            height: camera.height,
+            quantiser,
+            pixels,
+            overflowed: AtomicBool::new(false),
+        }
     }
 
     /// Width and height, px.

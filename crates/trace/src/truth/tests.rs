@@ -1,0 +1,246 @@
+use super::*;
+use crate::test_scene::*;
+use glam::DVec3;
+use lens::{ApertureMask, ApertureShape};
+use progress::Unwatched;
+use scene::SurfacePoint;
+use std::sync::Arc;
+
+/// Every surface sends its material's base colour; the background is black.
+struct BaseColor(Arc<scene::Scene>);
+
+impl Radiance for BaseColor {
+    fn toward(&self, point: SurfacePoint, _eye: DVec3) -> Vec3 {
+        self.0.base_color(point).truncate()
+    }
+    fn from_infinity(&self, _direction: DVec3) -> Vec3 {
+        Vec3::ZERO
+    }
+}
+
+/// One focus everywhere.
+struct Uniform(FocusOffset);
+
+impl SurfaceField<FocusOffset> for Uniform {
+    fn at(&self, _point: SurfacePoint) -> FocusOffset {
+        self.0
+    }
+    fn at_infinity(&self) -> FocusOffset {
+        self.0
+    }
+}
+
+fn camera() -> Camera {
+    Camera {
+        width: 128,
+        height: 128,
+        yfov: 0.6,
+        focus_distance: 3.0,
+        aperture_radius: 0.15,
+        sensor_height: 0.08,
+        ..Camera::default()
+    }
+}
+
+const SPOT_PX: f64 = 8.0;
+
+/// A square facing the camera at depth z, SPOT_PX wide when seen sharp.
+fn spot(camera: &Camera, z: f64) -> Arc<scene::Scene> {
+    let half = SPOT_PX / 2.0 * z * camera.optics().tan_half_yfov / camera.optics().half_height_px;
+    let square = rectangle(DVec3::new(-half, -half, -z), DVec3::X * 2.0 * half, DVec3::Y * 2.0 * half);
+    scene_of(&[(square, WHITE)])
+}
+
+fn picture(scene: Arc<scene::Scene>, camera: &Camera, focus: FocusOffset, spp: u32) -> Picture {
+    let tracer = Tracer::new(scene.clone());
+    let options = TruthOptions { samples_per_pixel: spp, seed: 1 };
+    render(&tracer, &BaseColor(scene), &Uniform(focus), camera, &options, &Unwatched).unwrap()
+}
+
+/// Energy (px), centroid (px from the middle, y up) and radius (px) of the disc that has the picture's second moment.
+fn moments(picture: &Picture) -> (f64, DVec2, f64) {
+    let mut energy = 0.0;
+    let (mut first, mut second) = (DVec2::ZERO, 0.0);
+    let size = DVec2::new(f64::from(picture.width), f64::from(picture.height));
+    for (k, rgb) in picture.radiance.iter().enumerate() {
+        let (x, y) = (k % picture.width as usize, k / picture.width as usize);
+        let position = (DVec2::new(x as f64, y as f64) + 0.5 - size / 2.0) * DVec2::new(1.0, -1.0);
+        energy += f64::from(rgb[1]);
+        first += f64::from(rgb[1]) * position;
+        second += f64::from(rgb[1]) * position.length_squared();
+    }
+    let mean = first / energy;
+    (energy, mean, (2.0 * (second / energy - mean.length_squared())).sqrt())
+}
+
+#[test]
+fn a_white_furnace_is_exactly_white() {
+    let room = scene_of(&[(sphere(DVec3::new(0.1, 0.2, -0.3), 5.0, 16), WHITE)]);
+    for focus_distance in [3.0, f64::INFINITY] {
+        let camera = Camera { focus_distance, width: 40, height: 30, ..camera() };
+        for samples in [1, 5, 64] {
+            let picture = picture(room.clone(), &camera, FocusOffset::STANDARD, samples);
+            assert!(picture.radiance.iter().all(|rgb| *rgb == [1.0; 3]));
+            assert!(picture.coverage.iter().all(|coverage| *coverage == 1.0));
+        }
+    }
+}
+
+#[test]
+fn an_evenly_painted_wall_is_white_on_average() {
+    let wall = rectangle(DVec3::new(-9.0, -9.0, -5.0), DVec3::X * 18.0, DVec3::Y * 18.0);
+    let wall = scene_of(&[(wall, WHITE)]);
+    for focus in [FocusOffset::new(0.9, 0.0), FocusOffset::new(1.05, 1.0), FocusOffset::new(1.1, 0.5)] {
+        let picture = picture(wall.clone(), &Camera { width: 40, height: 30, ..camera() }, focus, 256);
+        // Up to 256 samples land at random: 1/16 each pixel, 1/16 of 1/√1200 their mean; lost light would be all on one side.
+        let worst = picture.coverage.iter().map(|coverage| (coverage - 1.0).abs()).fold(0.0, f32::max);
+        assert!(worst < 4.0 / 16.0, "{worst} with {focus:?}");
+        let mean = picture.coverage.iter().sum::<f32>() / picture.coverage.len() as f32;
+        assert!((mean - 1.0).abs() < 4.0 / 16.0 / 1200f32.sqrt(), "{mean} with {focus:?}");
+    }
+}
+
+#[test]
+fn circles_of_confusion_have_their_radius_and_keep_their_energy() {
+    let camera = camera();
+    let optics = camera.optics();
+    for z in [1.5, 3.0, 40.0] {
+        let mut unpainted = None;
+        for focus in [(1.0, 0.0), (0.9, 1.0), (1.05, 0.0), (0.93, 0.4)] {
+            let focus = FocusOffset::new(focus.0, focus.1);
+            let (energy, mean, radius) = moments(&picture(spot(&camera, z), &camera, focus, 64));
+            let disc = optics.splat_radius_px(optics.kappa(1.0 / z, focus));
+            // The second moments of the spot, a square, and of a pixel add to the disc's.
+            let expected = (disc.powi(2) + (SPOT_PX.powi(2) + 1.0) / 3.0).sqrt();
+            assert!((radius - expected).abs() < 0.3, "{focus:?} at {z}: {radius} px, expected {expected}");
+            // At random, 64 · 64 samples would hit the spot with a deviation of 1/64. The rays do not depend on the paint.
+            let relative = energy / SPOT_PX.powi(2);
+            assert!((relative - 1.0).abs() < 3.0 / 64.0, "{focus:?} at {z}: {relative} of the energy");
+            assert!((energy / *unpainted.get_or_insert(energy) - 1.0).abs() < 1e-6, "{focus:?} at {z}");
+            assert!(mean.length() < 0.2, "{focus:?} at {z}: centred at {mean}");
+        }
+    }
+}
+
+/// An aperture open in one quarter: u, v > 0 (right and up, seen from behind the camera).
+fn upper_right() -> lens::Aperture {
+    let mask =
+        ApertureMask { width: 2, height: 2, transmission: vec![0.0, 1.0, 0.0, 0.0], file: String::new() };
+    ApertureShape::Mask(Arc::new(mask)).into()
+}
+
+#[test]
+fn near_defocus_turns_the_aperture() {
+    let camera = Camera { aperture: upper_right(), ..camera() };
+    let optics = camera.optics();
+    for (t, anchor, z) in [(0.9, 1.0, 2.0), (1.1, 1.0, 2.0), (1.0, 0.0, 1.5), (1.0, 0.0, 30.0)] {
+        let focus = FocusOffset::new(t, anchor);
+        let (_, mean, _) = moments(&picture(spot(&camera, z), &camera, focus, 64));
+        let expected = DVec2::splat(0.5 * optics.splat_radius_px(optics.kappa(1.0 / z, focus)));
+        assert!(mean.distance(expected) < 0.3, "{focus:?} at {z}: {mean}, expected {expected}");
+        assert!(expected.length() > 3.0, "the check can tell the signs apart");
+    }
+}
+
+#[test]
+fn light_outside_of_the_frame_comes_in_by_its_circle_of_confusion() {
+    let camera = camera();
+    let z = 3.0;
+    let focus = FocusOffset::new(0.9, 1.0);
+    let radius = camera.optics().splat_radius_px(camera.optics().kappa(1.0 / z, focus)).abs();
+    let px = z * (camera.yfov / 2.0).tan() / 64.0;
+    for (outside, seen) in [(0.8 * radius, true), (1.2 * radius, false)] {
+        let corner = DVec3::new((64.0 + outside - 1.0) * px, -px, -z);
+        let scene = scene_of(&[(rectangle(corner, DVec3::X * 2.0 * px, DVec3::Y * 2.0 * px), WHITE)]);
+        assert_eq!(moments(&picture(scene, &camera, focus, 64)).0 > 0.0, seen, "{outside} px of {radius}");
+    }
+}
+
+#[test]
+fn the_guard_band_is_the_largest_displacement() {
+    let camera = camera();
+    let tracer = Tracer::new(scene_of(&[(sphere(DVec3::ZERO, 5.0, 16), WHITE)]));
+    let width = |focus, camera: &Camera| {
+        guard_band::width_px(&SampleRays::new(&tracer, &Uniform(focus), camera), &Unwatched).unwrap()
+    };
+    assert_eq!(width(FocusOffset::STANDARD, &camera), 0);
+    assert_eq!(width(FocusOffset::new(0.5, 1.0), &Camera { aperture_radius: 0.0, ..camera.clone() }), 0);
+    // t = 1 − x, a = 1: κ − κ_standard = −x/d − (1/s − 1/z), 1/z up to 1/5 over the shortest axial depth in view.
+    let optics = camera.optics();
+    for x in [0.02, 0.5] {
+        let found = width(FocusOffset::new(1.0 - x, 1.0), &camera) as f64;
+        let of = |z: f64| optics.splat_radius_px(x / optics.image_distance + 1.0 / 3.0 - 1.0 / z).abs();
+        // The sphere's facets and the frame's corner leave depths from 4.7 down to 3.
+        assert!(
+            found >= of(4.7) && found <= 1.0 + 1.05 * of(5.1),
+            "{found} px, expected {} to {}",
+            of(4.7),
+            of(5.1)
+        );
+    }
+    let absurd = FocusOffset::new(1e6, 1.0);
+    assert!(width(absurd, &camera) <= 16 * 64);
+}
+
+#[test]
+fn threads_do_not_matter() {
+    let scene = scene_of(&[
+        (
+            sphere(DVec3::new(0.0, 0.0, -4.0), 1.0, 12),
+            scene::Material { base_color: glam::vec4(0.3, 0.7, 0.1, 1.0), ..WHITE },
+        ),
+        (rectangle(DVec3::new(-9.0, -9.0, -9.0), DVec3::X * 18.0, DVec3::Y * 18.0), WHITE),
+    ]);
+    let render_with = |threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| {
+            picture(scene.clone(), &Camera { width: 64, ..camera() }, FocusOffset::new(0.95, 0.3), 16)
+        })
+    };
+    let one = render_with(1);
+    assert_eq!(one, render_with(2));
+    assert_eq!(one, render_with(3));
+    assert_ne!(one, Picture::black(64, 128));
+}
+
+#[test]
+fn the_brightest_light_does_not_overflow() {
+    struct Blinding(f32);
+    impl Radiance for Blinding {
+        fn toward(&self, _point: SurfacePoint, _eye: DVec3) -> Vec3 {
+            Vec3::splat(self.0)
+        }
+        fn from_infinity(&self, _direction: DVec3) -> Vec3 {
+            Vec3::new(self.0, -self.0, f32::NAN)
+        }
+    }
+    let camera = Camera { width: 8, height: 8, ..camera() };
+    let tracer = Tracer::new(scene_of(&[]));
+    for radiance in [1e-3, 1.0, 1e9, 1e30, f32::MAX] {
+        let options = TruthOptions { samples_per_pixel: 64, seed: 0 };
+        let focus = Uniform(FocusOffset::STANDARD);
+        let picture = render(&tracer, &Blinding(radiance), &focus, &camera, &options, &Unwatched).unwrap();
+        for rgb in picture.radiance {
+            assert!(
+                (rgb[0] / radiance - 1.0).abs() < 1e-6 && rgb[1] == 0.0 && rgb[2] == 0.0,
+                "{radiance}: {rgb:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn it_stops_when_cancelled() {
+    struct Impatient;
+    impl Progress for Impatient {
+        fn report(&self, _fraction: f32) {}
+        fn cancelled(&self) -> bool {
+            true
+        }
+    }
+    let tracer = Tracer::new(scene_of(&[]));
+    let radiance = BaseColor(tracer.scene().clone());
+    let options = TruthOptions { samples_per_pixel: 1 << 20, seed: 0 };
+    let focus = Uniform(FocusOffset::STANDARD);
+    assert_eq!(render(&tracer, &radiance, &focus, &camera(), &options, &Impatient), Err(Cancelled));
+}
