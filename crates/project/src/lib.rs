@@ -1,1 +1,34 @@
-//! See Cargo.toml.
+//! Files: projects, focus maps, pictures, cameras and recipes.
+//!
+//! * [`read_camera`], [`write_camera`]: the camera as JSON.
+//! * [`read_recipe`]: focus by name, as JSON; [`read_focus`]: a recipe or a map, whichever the file is.
+//! * [`FocusMapFile`]: focus maps as EXR or 16-bit PNG.
+//! * [`write_picture`], [`read_picture`]: pictures as EXR, PNG and (reading only) HDR, with layers beside the colour.
+//! * [`compare`]: how far two pictures are apart.
+//! * [`ProjectFile`]: the saved document.
+//!
+//! Everything is written atomically: the old file stays until the new one is complete.
+
+mod camera;
+mod compare;
+mod container;
+mod disk;
+mod error;
+mod exr_file;
+mod focus_map_file;
+mod json;
+mod manifest;
+mod picture_file;
+mod png_file;
+mod project_file;
+mod recipe;
+mod recovery;
+
+pub use camera::{camera_from_json, camera_to_json, read_aperture_mask, read_camera, write_camera};
+pub use compare::{Comparison, ErrorMaps, compare, error_maps};
+pub use error::ProjectError;
+pub use focus_map_file::{FocusMapFile, write_focus_map};
+pub use picture_file::{Layer, LinearPicture, PictureOptions, read_picture, write_picture, write_rgb};
+pub use project_file::{NamedCamera, ProjectFile, SceneState};
+pub use recipe::{FocusFile, read_focus, read_recipe};
+pub use recovery::{find_recovery, recovery_path_for, remove_recovery, unsaved_recovery_path};

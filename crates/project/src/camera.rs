@@ -1,0 +1,176 @@
+//! The camera as JSON.
+//!
+//! ```text
+//! {"width": 960, "height": 540, "yfov": 0.7, "focus_distance": 3.0 | "inf", "aperture_radius": 0.0125,
+//!  "sensor_height": 0.024, "camera_to_world": 4×4 rows, "background": [r, g, b],
+//!  "aperture": {"shape": "disc" | "polygon" | "square" | "mask", "blades": 6, "rotation": rad,
+//!               "roundness": 0..1, "ratio": 1.0, "mask": FILE}}
+//! ```
+//!
+//! yfov is the full angle in rad, lengths are scene units, focus_distance is axial, to the focus plane;
+//! camera_to_world has glTF axes (looks down −Z, +Y up). Any field may be missing.
+
+use crate::ProjectError;
+use crate::disk::write_bytes;
+use crate::json::{Field, Fields, Json};
+use glam::{DMat4, DVec4};
+use lens::{Aperture, ApertureMask, ApertureShape, Camera};
+use serde_json::{Value, json};
+use std::path::Path;
+use std::sync::Arc;
+
+const FIELDS: [&str; 9] = [
+    "width",
+    "height",
+    "yfov",
+    "focus_distance",
+    "aperture_radius",
+    "sensor_height",
+    "camera_to_world",
+    "background",
+    "aperture",
+];
+const APERTURE_FIELDS: [&str; 6] = ["shape", "blades", "rotation", "roundness", "ratio", "mask"];
+
+/// Corners of a polygon whose file does not say.
+const DEFAULT_BLADES: u32 = 6;
+
+/// Reads a camera file. Fields that it lacks keep the value of `defaults`. Unknown fields are errors, as a
+/// misspelt one would otherwise go unnoticed. A mask is looked up beside the file.
+pub fn read_camera(file: &Path, defaults: &Camera) -> Result<Camera, ProjectError> {
+    from_json(file, &Json::read(file)?, defaults, &|path| {
+        let mask = file.parent().unwrap_or(Path::new("")).join(path);
+        read_aperture_mask(&mask, path)
+    })
+}
+
+/// The camera of the JSON text of `file` (used in messages); `mask` finds an aperture mask by the name that
+/// the text gives it.
+pub fn camera_from_json(
+    file: &Path,
+    text: &str,
+    defaults: &Camera,
+    mask: &dyn Fn(&str) -> Result<ApertureMask, ProjectError>,
+) -> Result<Camera, ProjectError> {
+    from_json(file, &Json::parse(file, text)?, defaults, mask)
+}
+
+fn from_json(
+    file: &Path,
+    json: &Json,
+    defaults: &Camera,
+    mask: &dyn Fn(&str) -> Result<ApertureMask, ProjectError>,
+) -> Result<Camera, ProjectError> {
+    let fields = Field::root(file, json).object()?;
+    fields.only(&FIELDS)?;
+    let number = |name, default| fields.get(name).map_or(Ok(default), |field| field.number());
+    let whole = |name, default| fields.get(name).map_or(Ok(default), |field| field.whole());
+    let camera = Camera {
+        width: whole("width", defaults.width)?,
+        height: whole("height", defaults.height)?,
+        yfov: number("yfov", defaults.yfov)?,
+        focus_distance: match fields.get("focus_distance") {
+            Some(field) if field.text().is_ok_and(|text| text == "inf") => f64::INFINITY,
+            Some(field) => field.number()?,
+            None => defaults.focus_distance,
+        },
+        aperture_radius: number("aperture_radius", defaults.aperture_radius)?,
+        sensor_height: number("sensor_height", defaults.sensor_height)?,
+        camera_to_world: match fields.get("camera_to_world") {
+            Some(field) => {
+                let [x, y, z, w] = field.rows::<4, 4>()?.map(DVec4::from_array);
+                if w != DVec4::W {
+                    return Err(field.error("is not a rigid motion", "its last row must be 0, 0, 0, 1"));
+                }
+                DMat4::from_cols(x, y, z, w).transpose()
+            }
+            None => defaults.camera_to_world,
+        },
+        background: match fields.get("background") {
+            Some(field) => field.numbers()?,
+            None => defaults.background,
+        },
+        aperture: match fields.get("aperture") {
+            Some(field) => aperture_from_json(&field.object()?, mask)?,
+            None => defaults.aperture.clone(),
+        },
+    };
+    camera.validate().map_err(|error| ProjectError::Field {
+        file: file.to_owned(),
+        field: error.field.replace("aperture ", "aperture."),
+        problem: "cannot be used".to_string(),
+        cure: format!("it must be {}", error.must),
+    })?;
+    Ok(camera)
+}
+
+fn aperture_from_json(
+    fields: &Fields<'_>,
+    mask: &dyn Fn(&str) -> Result<ApertureMask, ProjectError>,
+) -> Result<Aperture, ProjectError> {
+    fields.only(&APERTURE_FIELDS)?;
+    let number = |name, default| fields.get(name).map_or(Ok(default), |field| field.number());
+    let ratio = number("ratio", 1.0)?;
+    let name = fields.get("shape").map_or(Ok("disc"), |field| field.text())?;
+    let shape = match (name, fields.get("mask"), fields.get("shape")) {
+        ("disc", ..) => ApertureShape::Disc,
+        ("square", ..) => ApertureShape::Square,
+        ("polygon", ..) => ApertureShape::Polygon {
+            blades: fields.get("blades").map_or(Ok(DEFAULT_BLADES), |field| field.whole())?,
+            rotation: number("rotation", 0.0)?,
+            roundness: number("roundness", 0.0)?,
+        },
+        ("mask", Some(file), _) => ApertureShape::Mask(Arc::new(mask(file.text()?)?)),
+        ("mask", None, Some(shape)) => {
+            return Err(shape.error("is \"mask\", but no mask is given", "add \"mask\": FILE"));
+        }
+        (_, _, Some(shape)) => {
+            return Err(shape.error(format!("\"{name}\" is no shape"), "give disc, polygon, square or mask"));
+        }
+        (_, _, None) => unreachable!("a missing shape is a disc"),
+    };
+    Ok(Aperture { shape, ratio })
+}
+
+/// Reads a picture as an aperture mask: the mean of red, green and blue as stored (no sRGB decoding) is the
+/// transmission. `name` is kept as the mask's file.
+pub fn read_aperture_mask(file: &Path, name: &str) -> Result<ApertureMask, ProjectError> {
+    let (width, height, texels) = crate::png_file::stored_rgb(file)?;
+    let transmission = texels.iter().map(|[r, g, b]| (r + g + b) / 3.0).collect();
+    Ok(ApertureMask { width, height, transmission, file: name.to_string() })
+}
+
+/// Writes a camera file. A mask is named as the camera names it, and not copied.
+pub fn write_camera(file: &Path, camera: &Camera) -> Result<(), ProjectError> {
+    let text = serde_json::to_string_pretty(&camera_to_json(camera)).expect("a JSON value has a text");
+    write_bytes(file, (text + "\n").as_bytes())
+}
+
+/// The camera as a JSON value.
+pub fn camera_to_json(camera: &Camera) -> Value {
+    let rows = camera.camera_to_world.transpose().to_cols_array_2d();
+    let focus_distance = match camera.focus_distance {
+        distance if distance.is_infinite() => json!("inf"),
+        distance => json!(distance),
+    };
+    let mut aperture = match &camera.aperture.shape {
+        ApertureShape::Disc => json!({"shape": "disc"}),
+        ApertureShape::Square => json!({"shape": "square"}),
+        ApertureShape::Polygon { blades, rotation, roundness } => {
+            json!({"shape": "polygon", "blades": blades, "rotation": rotation, "roundness": roundness})
+        }
+        ApertureShape::Mask(mask) => json!({"shape": "mask", "mask": mask.file}),
+    };
+    aperture["ratio"] = json!(camera.aperture.ratio);
+    json!({
+        "width": camera.width,
+        "height": camera.height,
+        "yfov": camera.yfov,
+        "focus_distance": focus_distance,
+        "aperture_radius": camera.aperture_radius,
+        "sensor_height": camera.sensor_height,
+        "camera_to_world": rows,
+        "background": camera.background,
+        "aperture": aperture,
+    })
+}

@@ -1,0 +1,112 @@
+//! What can be wrong with a file. Every message reads `FILE: what is wrong (what to do)`.
+
+use focus::FocusError;
+use std::path::{Path, PathBuf};
+
+/// Why a file could not be read, written or used.
+#[derive(Debug, thiserror::Error)]
+pub enum ProjectError {
+    /// The file system said no while reading.
+    #[error("{}: cannot be read: {source} ({})", file.display(), io_cure(source))]
+    Read {
+        /// The file.
+        file: PathBuf,
+        /// What the file system said.
+        source: std::io::Error,
+    },
+    /// The file system said no while writing. What was there before is still there.
+    #[error("{}: cannot be written: {source} ({})", file.display(), io_cure(source))]
+    Write {
+        /// The file.
+        file: PathBuf,
+        /// What the file system said.
+        source: std::io::Error,
+    },
+    /// The file's content is not what it should be.
+    #[error("{}: {problem} ({cure})", file.display())]
+    Content {
+        /// The file.
+        file: PathBuf,
+        /// What is wrong, and where in the file.
+        problem: String,
+        /// What to do.
+        cure: String,
+    },
+    /// A field of a JSON file cannot be used.
+    #[error("{}: {field}: {problem} ({cure})", file.display())]
+    Field {
+        /// The file.
+        file: PathBuf,
+        /// The field's path, such as `aperture.blades`.
+        field: String,
+        /// What is wrong.
+        problem: String,
+        /// What to do.
+        cure: String,
+    },
+    /// The project was written by a later version of the program.
+    #[error("{}: written in format version {version}, this program reads up to {newest} (update the program)", file.display())]
+    Newer {
+        /// The file.
+        file: PathBuf,
+        /// Its version.
+        version: u64,
+        /// The newest version that can be read.
+        newest: u64,
+    },
+    /// A part of the project file is damaged.
+    #[error("{}: {entry}: {problem} ({cure})", file.display())]
+    Entry {
+        /// The file.
+        file: PathBuf,
+        /// The entry of the container.
+        entry: String,
+        /// What is wrong.
+        problem: String,
+        /// What to do.
+        cure: String,
+    },
+    /// What was written could not be read back the same. What was there before is still there.
+    #[error("{}: not saved: what was written read back wrong: {problem} (check the disk, or save elsewhere)", file.display())]
+    Unverified {
+        /// The file.
+        file: PathBuf,
+        /// What was wrong.
+        problem: String,
+    },
+    /// The focus does not fit the scene.
+    #[error("{}: {source}", file.display())]
+    Focus {
+        /// The file.
+        file: PathBuf,
+        /// What is wrong.
+        source: FocusError,
+    },
+    /// Two pictures that cannot be compared.
+    #[error("the pictures are {}×{} and {}×{} (compare pictures of one size)", a[0], a[1], b[0], b[1])]
+    SizesDiffer {
+        /// Columns and rows of one.
+        a: [u32; 2],
+        /// Columns and rows of the other.
+        b: [u32; 2],
+    },
+}
+
+impl ProjectError {
+    /// A [`Self::Content`].
+    pub(crate) fn content(file: &Path, problem: impl Into<String>, cure: impl Into<String>) -> Self {
+        Self::Content { file: file.to_owned(), problem: problem.into(), cure: cure.into() }
+    }
+}
+
+/// What to do about an error of the file system.
+fn io_cure(error: &std::io::Error) -> &'static str {
+    use std::io::ErrorKind::*;
+    match error.kind() {
+        NotFound => "check the path",
+        PermissionDenied | ReadOnlyFilesystem => "check the permissions",
+        StorageFull | QuotaExceeded => "make room on the disk",
+        IsADirectory => "name a file, not a folder",
+        _ => "check the disk",
+    }
+}

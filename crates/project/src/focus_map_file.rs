@@ -1,0 +1,247 @@
+//! Focus maps as files.
+//!
+//! **EXR**, float: channels `focus.t` and `focus.anchor`. Attributes: `focusBrush.version` (1),
+//! `focusBrush.uvSet` (the UV set that the map lies in: 0 is the mesh's first, 1 the atlas), for a map over an
+//! atlas `focusBrush.atlasHash`, and `focusBrush.backgroundT` and `focusBrush.backgroundAnchor`. A file without
+//! attributes is a map in the mesh's first UV set.
+//!
+//! **PNG**, 16-bit RGB without a colour profile: red = t·32768 (32768 is exactly t = 1), green = anchor·65535,
+//! blue 0. t is kept within [0, 65535/32768]. What the EXR has as attributes stands in `NAME.png.json`.
+
+use crate::ProjectError;
+use crate::disk::{extension, with_suffix, write_bytes};
+use crate::exr_file::{ExrAttribute, ExrImage, ExrSamples, read_exr, write_exr};
+use crate::json::{Field, Json};
+use crate::png_file::{encode_rgb16, read_png16};
+use atlas::Atlas;
+use focus::{FocusImage, FocusMap};
+use lens::FocusOffset;
+use serde_json::json;
+use std::collections::BTreeMap;
+use std::path::Path;
+
+/// The version of the form that is written.
+const VERSION: u32 = 1;
+
+/// Red of t = 1.
+const PNG_UNIT_OFFSET: f64 = 32768.0;
+
+/// Green of anchor = 1, and the largest number of a channel.
+const PNG_LARGEST: f64 = 65535.0;
+
+/// A focus map with what its file says about it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FocusMapFile {
+    /// The texels.
+    pub image: FocusImage,
+    /// The background's focus, if the file gives one.
+    pub background: Option<FocusOffset>,
+    /// The atlas it belongs to; `None` for a map in the mesh's first UV set.
+    pub atlas_hash: Option<String>,
+    /// What is odd about the file without making it useless, a sentence each.
+    pub warnings: Vec<String>,
+}
+
+impl FocusMapFile {
+    /// The map painted over `atlas`.
+    pub fn of_atlas(map: &FocusMap, atlas: &Atlas) -> Self {
+        let image = FocusImage { width: map.width(), height: map.height(), texels: map.to_rows() };
+        Self {
+            image,
+            background: Some(map.background),
+            atlas_hash: Some(atlas.hash.clone()),
+            warnings: Vec::new(),
+        }
+    }
+
+    /// The map over `atlas`. An error if it was made for another one; `file` is where it came from.
+    pub fn into_atlas_map(self, file: &Path, atlas: &Atlas) -> Result<FocusMap, ProjectError> {
+        let cure = "unwrap with the settings it was painted with, or bring it in as a map of the mesh's UVs";
+        let error = |problem: &str| ProjectError::content(file, problem, cure);
+        if self.atlas_hash.as_ref().is_some_and(|hash| *hash != atlas.hash) {
+            return Err(error("the focus map belongs to another atlas"));
+        }
+        let FocusImage { width, height, texels } = self.image;
+        if [width, height] != [atlas.width, atlas.height] {
+            let (w, h) = (atlas.width, atlas.height);
+            return Err(error(&format!("the focus map has {width}×{height} texels, the atlas {w}×{h}")));
+        }
+        let background = self.background.unwrap_or(FocusOffset::STANDARD);
+        FocusMap::from_rows(width, height, &texels, background)
+            .ok_or_else(|| error("the focus map is incomplete"))
+    }
+
+    /// Reads an EXR or PNG focus map, by extension.
+    pub fn read(file: &Path) -> Result<Self, ProjectError> {
+        let map = match extension(file).as_str() {
+            "exr" => from_exr(file, read_exr(file)?)?,
+            "png" => from_png(file)?,
+            _ => {
+                return Err(ProjectError::content(
+                    file,
+                    "is no focus map: unknown extension",
+                    "give an .exr or .png",
+                ));
+            }
+        };
+        let usable = |[t, anchor]: &[f32; 2]| t.is_finite() && (0.0..=1.0).contains(anchor);
+        if let Some(index) = map.image.texels.iter().position(|texel| !usable(texel)) {
+            let [t, anchor] = map.image.texels[index];
+            let (x, y) = (index % map.image.width as usize, index / map.image.width as usize);
+            return Err(ProjectError::content(
+                file,
+                format!("texel ({x}, {y}) has t = {t}, anchor = {anchor}"),
+                "t must be finite and anchor in [0, 1]",
+            ));
+        }
+        Ok(map)
+    }
+}
+
+/// Writes an EXR or PNG focus map, by extension. Returns what could not be kept, a sentence each.
+pub fn write_focus_map(file: &Path, map: &FocusMapFile) -> Result<Vec<String>, ProjectError> {
+    match extension(file).as_str() {
+        "exr" => {
+            write_exr(file, &to_exr(map), ExrSamples::Float)?;
+            Ok(Vec::new())
+        }
+        "png" => to_png(file, map),
+        _ => Err(ProjectError::content(
+            file,
+            "focus maps are not written in this form",
+            "name an .exr or .png",
+        )),
+    }
+}
+
+fn uv_set(map: &FocusMapFile) -> u32 {
+    u32::from(map.atlas_hash.is_some())
+}
+
+fn to_exr(map: &FocusMapFile) -> ExrImage {
+    let channel = |k: usize| map.image.texels.iter().map(|texel| texel[k]).collect();
+    let channels = [("focus.t".to_string(), channel(0)), ("focus.anchor".to_string(), channel(1))];
+    let mut attributes = BTreeMap::new();
+    let mut put = |name: &str, value| attributes.insert(format!("focusBrush.{name}"), value);
+    put("version", ExrAttribute::Number(VERSION as f64));
+    put("uvSet", ExrAttribute::Number(uv_set(map) as f64));
+    if let Some(hash) = &map.atlas_hash {
+        put("atlasHash", ExrAttribute::Text(hash.clone()));
+    }
+    if let Some(background) = map.background {
+        put("backgroundT", ExrAttribute::Number(background.t));
+        put("backgroundAnchor", ExrAttribute::Number(background.anchor));
+    }
+    ExrImage { width: map.image.width, height: map.image.height, channels: channels.into(), attributes }
+}
+
+fn from_exr(file: &Path, mut exr: ExrImage) -> Result<FocusMapFile, ProjectError> {
+    let mut channel = |name: &str| {
+        let found: Vec<_> = exr.channels.keys().cloned().collect();
+        exr.channels.remove(name).ok_or_else(|| {
+            let problem = format!("is no focus map: it has no channel {name}, only {}", found.join(", "));
+            ProjectError::content(file, problem, "give an EXR with channels focus.t and focus.anchor")
+        })
+    };
+    let (t, anchor) = (channel("focus.t")?, channel("focus.anchor")?);
+    let number = |name: &str| match exr.attributes.get(&format!("focusBrush.{name}")) {
+        Some(ExrAttribute::Number(number)) => Some(*number),
+        _ => None,
+    };
+    if let Some(version) = number("version").filter(|&version| version > VERSION as f64) {
+        let newest = VERSION as u64;
+        return Err(ProjectError::Newer { file: file.to_owned(), version: version as u64, newest });
+    }
+    let background = number("backgroundT").zip(number("backgroundAnchor"));
+    let background = background.map(|(t, anchor)| FocusOffset { t, anchor });
+    if background.is_some_and(|background| !background.is_valid()) {
+        return Err(ProjectError::content(
+            file,
+            "the background's focus cannot be used",
+            "its t must be finite and its anchor in [0, 1]",
+        ));
+    }
+    let atlas_hash = match exr.attributes.get("focusBrush.atlasHash") {
+        Some(ExrAttribute::Text(hash)) => Some(hash.clone()),
+        _ => None,
+    };
+    let texels = t.into_iter().zip(anchor).map(|(t, anchor)| [t, anchor]).collect();
+    let image = FocusImage { width: exr.width, height: exr.height, texels };
+    Ok(FocusMapFile { image, background, atlas_hash, warnings: Vec::new() })
+}
+
+fn to_png(file: &Path, map: &FocusMapFile) -> Result<Vec<String>, ProjectError> {
+    let stored = |[t, anchor]: [f32; 2]| {
+        let red = (t as f64 * PNG_UNIT_OFFSET).round().clamp(0.0, PNG_LARGEST);
+        let green = (anchor as f64 * PNG_LARGEST).round().clamp(0.0, PNG_LARGEST);
+        [red as u16, green as u16, 0]
+    };
+    let rgb: Vec<u16> = map.image.texels.iter().flat_map(|&texel| stored(texel)).collect();
+    let bytes = encode_rgb16(map.image.width, map.image.height, &rgb, &[]).map_err(|error| {
+        ProjectError::Write { file: file.to_owned(), source: std::io::Error::other(error) }
+    })?;
+    let mut sidecar = json!({
+        "format": "focus-brush focus map",
+        "version": VERSION,
+        "uv_set": uv_set(map),
+        "encoding": {"t": "red / 32768", "anchor": "green / 65535"},
+    });
+    if let Some(hash) = &map.atlas_hash {
+        sidecar["atlas_hash"] = json!(hash);
+    }
+    if let Some(background) = map.background {
+        sidecar["background"] = json!({"t": background.t, "anchor": background.anchor});
+    }
+    let text = serde_json::to_string_pretty(&sidecar).expect("a JSON value has a text");
+    write_bytes(&with_suffix(file, ".json"), (text + "\n").as_bytes())?;
+    write_bytes(file, &bytes)?;
+    let outside = |t: f32| !(0.0..=PNG_LARGEST / PNG_UNIT_OFFSET).contains(&(t as f64));
+    let lost = map.image.texels.iter().filter(|[t, _]| outside(*t)).count();
+    let warning = format!(
+        "{}: {lost} texels have t outside [0, 2), which 16-bit PNG cannot hold; they were clipped (write an .exr to keep them)",
+        file.display()
+    );
+    Ok(if lost > 0 { vec![warning] } else { Vec::new() })
+}
+
+fn from_png(file: &Path) -> Result<FocusMapFile, ProjectError> {
+    let png = read_png16(file)?;
+    let value = |[red, green, _]: [u16; 3]| {
+        [(red as f64 / PNG_UNIT_OFFSET) as f32, (green as f64 / PNG_LARGEST) as f32]
+    };
+    let texels = png.rgb.into_iter().map(value).collect();
+    let image = FocusImage { width: png.width, height: png.height, texels };
+    let mut warnings = Vec::new();
+    if png.has_color_space {
+        warnings.push(format!(
+            "{}: has a colour profile, which a focus map must not have; its numbers are taken as they are",
+            file.display()
+        ));
+    }
+    let mut map = FocusMapFile { image, background: None, atlas_hash: None, warnings };
+    let sidecar = with_suffix(file, ".json");
+    if sidecar.exists() {
+        let json = Json::read(&sidecar)?;
+        let fields = Field::root(&sidecar, &json).object()?;
+        if let Some(version) = fields.get("version").map(|field| field.whole()).transpose()?
+            && version > VERSION
+        {
+            return Err(ProjectError::Newer {
+                file: sidecar,
+                version: version as u64,
+                newest: VERSION as u64,
+            });
+        }
+        map.atlas_hash = fields.get("atlas_hash").map(|field| field.text().map(str::to_owned)).transpose()?;
+        if let Some(field) = fields.get("background") {
+            let background = field.object()?;
+            let number = |name, default| background.get(name).map_or(Ok(default), |field| field.number());
+            let background = FocusOffset { t: number("t", 1.0)?, anchor: number("anchor", 0.0)? };
+            if !background.is_valid() {
+                return Err(field.error("cannot be used", "its anchor must be in [0, 1]"));
+            }
+            map.background = Some(background);
+        }
+    }
+    Ok(map)
+}

@@ -1,0 +1,237 @@
+//! JSON that people write: keys keep their order, and every complaint names file and field.
+
+use crate::ProjectError;
+use crate::disk::read_text;
+use serde::de::{Deserialize, Deserializer, MapAccess, SeqAccess, Visitor};
+use std::path::{Path, PathBuf};
+
+/// A JSON value. Objects keep the order of their keys, and keys that come twice.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Json {
+    Null,
+    Bool(bool),
+    Number(f64),
+    Text(String),
+    List(Vec<Json>),
+    Object(Vec<(String, Json)>),
+}
+
+impl Json {
+    /// Reads a file of one JSON value.
+    pub fn read(file: &Path) -> Result<Self, ProjectError> {
+        Self::parse(file, &read_text(file)?)
+    }
+
+    /// Parses the text of `file`.
+    pub fn parse(file: &Path, text: &str) -> Result<Self, ProjectError> {
+        serde_json::from_str(text).map_err(|error| {
+            let key = key_before(text, error.line(), error.column());
+            let place = key.map(|key| format!(", in \"{key}\"")).unwrap_or_default();
+            let problem = format!("is not JSON: {error}{place}");
+            ProjectError::content(
+                file,
+                problem,
+                "mend it there; JSON has no NaN, no comments and no commas at the end",
+            )
+        })
+    }
+
+    fn kind(&self) -> &'static str {
+        match self {
+            Json::Null => "null",
+            Json::Bool(_) => "true or false",
+            Json::Number(_) => "a number",
+            Json::Text(_) => "a text",
+            Json::List(_) => "a list",
+            Json::Object(_) => "an object",
+        }
+    }
+}
+
+/// The key of the last `"key":` before a place in the text.
+fn key_before(text: &str, line: usize, column: usize) -> Option<&str> {
+    let line_start: usize = text.split_inclusive('\n').take(line.checked_sub(1)?).map(str::len).sum();
+    let place = (line_start + column).min(text.len());
+    let before = text.get(..place)?;
+    let colon = before.rfind("\":").or_else(|| before.rfind("\" :"))?;
+    let open = before[..colon].rfind('"')?;
+    Some(&before[open + 1..colon])
+}
+
+impl<'de> Deserialize<'de> for Json {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct JsonVisitor;
+        impl<'de> Visitor<'de> for JsonVisitor {
+            type Value = Json;
+            fn expecting(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                f.write_str("a JSON value")
+            }
+            fn visit_unit<E>(self) -> Result<Json, E> {
+                Ok(Json::Null)
+            }
+            fn visit_bool<E>(self, value: bool) -> Result<Json, E> {
+                Ok(Json::Bool(value))
+            }
+            fn visit_i64<E>(self, value: i64) -> Result<Json, E> {
+                Ok(Json::Number(value as f64))
+            }
+            fn visit_u64<E>(self, value: u64) -> Result<Json, E> {
+                Ok(Json::Number(value as f64))
+            }
+            fn visit_f64<E>(self, value: f64) -> Result<Json, E> {
+                Ok(Json::Number(value))
+            }
+            fn visit_str<E>(self, value: &str) -> Result<Json, E> {
+                Ok(Json::Text(value.to_owned()))
+            }
+            fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<Json, A::Error> {
+                let mut values = Vec::new();
+                while let Some(value) = list.next_element()? {
+                    values.push(value);
+                }
+                Ok(Json::List(values))
+            }
+            fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Json, A::Error> {
+                let mut entries = Vec::new();
+                while let Some(entry) = map.next_entry()? {
+                    entries.push(entry);
+                }
+                Ok(Json::Object(entries))
+            }
+        }
+        deserializer.deserialize_any(JsonVisitor)
+    }
+}
+
+/// A value with the file and field that it stands in.
+#[derive(Clone, Copy)]
+pub(crate) struct Field<'a> {
+    pub file: &'a Path,
+    pub value: &'a Json,
+    parent: Option<&'a Fields<'a>>,
+    name: &'a str,
+}
+
+/// The fields of an object.
+pub(crate) struct Fields<'a> {
+    file: &'a Path,
+    path: String,
+    entries: &'a [(String, Json)],
+}
+
+impl<'a> Field<'a> {
+    /// The file's whole value.
+    pub fn root(file: &'a Path, value: &'a Json) -> Self {
+        Self { file, value, parent: None, name: "" }
+    }
+
+    /// The field's path in the file.
+    pub fn path(&self) -> String {
+        match self.parent {
+            Some(parent) if !parent.path.is_empty() => format!("{}.{}", parent.path, self.name),
+            _ => self.name.to_string(),
+        }
+    }
+
+    /// An error about the field.
+    pub fn error(&self, problem: impl Into<String>, cure: impl Into<String>) -> ProjectError {
+        let path = self.path();
+        let field = if path.is_empty() { "the whole file".to_string() } else { path };
+        ProjectError::Field { file: self.file.to_owned(), field, problem: problem.into(), cure: cure.into() }
+    }
+
+    fn wants(&self, wanted: &str) -> ProjectError {
+        let shown = match self.value {
+            Json::Text(text) => format!("is the text \"{text}\""),
+            other => format!("is {}", other.kind()),
+        };
+        self.error(shown, format!("give {wanted}"))
+    }
+
+    /// The value as a finite number.
+    pub fn number(&self) -> Result<f64, ProjectError> {
+        match self.value {
+            Json::Number(number) if number.is_finite() => Ok(*number),
+            Json::Number(_) => Err(self.error("is not finite", "give a finite number")),
+            _ => Err(self.wants("a number")),
+        }
+    }
+
+    /// The value as a whole number that fits 32 bits.
+    pub fn whole(&self) -> Result<u32, ProjectError> {
+        let number = self.number()?;
+        if number.fract() == 0.0 && (0.0..=u32::MAX as f64).contains(&number) {
+            Ok(number as u32)
+        } else {
+            Err(self.error(format!("is {number}"), "give a whole number of 0 or more"))
+        }
+    }
+
+    /// The value as text.
+    pub fn text(&self) -> Result<&'a str, ProjectError> {
+        match self.value {
+            Json::Text(text) => Ok(text),
+            _ => Err(self.wants("a text")),
+        }
+    }
+
+    /// The value as N finite numbers.
+    pub fn numbers<const N: usize>(&self) -> Result<[f64; N], ProjectError> {
+        let wanted = || self.wants(&format!("a list of {N} numbers"));
+        let Json::List(list) = self.value else { return Err(wanted()) };
+        let numbers = list.iter().map(|value| Field { value, ..*self }.number());
+        let numbers = numbers.collect::<Result<Vec<_>, _>>()?;
+        numbers.try_into().map_err(|numbers: Vec<f64>| {
+            self.error(format!("has {} numbers", numbers.len()), format!("give {N} numbers"))
+        })
+    }
+
+    /// The value as N lists of M finite numbers.
+    pub fn rows<const N: usize, const M: usize>(&self) -> Result<[[f64; M]; N], ProjectError> {
+        let wanted = || self.wants(&format!("{N} rows of {M} numbers"));
+        let Json::List(list) = self.value else { return Err(wanted()) };
+        let rows = list.iter().map(|value| Field { value, ..*self }.numbers());
+        let rows = rows.collect::<Result<Vec<[f64; M]>, _>>()?;
+        rows.try_into().map_err(|rows: Vec<[f64; M]>| {
+            self.error(format!("has {} rows", rows.len()), format!("give {N} rows of {M} numbers"))
+        })
+    }
+
+    /// The value as an object.
+    pub fn object(&self) -> Result<Fields<'a>, ProjectError> {
+        match self.value {
+            Json::Object(entries) => Ok(Fields { file: self.file, path: self.path(), entries }),
+            _ => Err(self.wants("an object: {…}")),
+        }
+    }
+}
+
+impl<'a> Fields<'a> {
+    /// The field of this name; of two, the later.
+    pub fn get(&'a self, name: &'a str) -> Option<Field<'a>> {
+        let (name, value) = self.entries.iter().rev().find(|(key, _)| key == name)?;
+        Some(Field { file: self.file, value, parent: Some(self), name })
+    }
+
+    /// All fields in order.
+    pub fn all(&'a self) -> impl Iterator<Item = (&'a str, Field<'a>)> {
+        self.entries.iter().map(move |(name, value)| {
+            (name.as_str(), Field { file: self.file, value, parent: Some(self), name })
+        })
+    }
+
+    /// An error for a field that is not one of `known`.
+    pub fn only(&'a self, known: &[&str]) -> Result<(), ProjectError> {
+        match self.all().find(|(name, _)| !known.contains(name)) {
+            None => Ok(()),
+            Some((_, field)) => {
+                Err(field.error("is not a known field", format!("known are {}", known.join(", "))))
+            }
+        }
+    }
+
+    /// The folder that the file's relative paths start from.
+    pub fn folder(&self) -> PathBuf {
+        self.file.parent().unwrap_or(Path::new("")).to_owned()
+    }
+}

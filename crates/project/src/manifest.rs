@@ -1,0 +1,131 @@
+//! The format of a project: what its manifest says, and the versions of it.
+
+use crate::ProjectError;
+use crate::container::{Container, DAMAGED_CURE};
+use focus::Brush;
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+use sha2::{Digest, Sha256};
+use std::collections::BTreeMap;
+use std::fmt::Write;
+use std::path::Path;
+
+/// The manifest's entry: the first of the container.
+pub(crate) const MANIFEST: &str = "manifest.json";
+
+/// What the manifest calls the format.
+const FORMAT: &str = "focus-brush project";
+
+/// The version that is written. It changes when an older program would misread the file.
+pub(crate) const VERSION: u64 = 1;
+
+/// The largest manifest that is read, bytes.
+const LARGEST_MANIFEST: u64 = 16 << 20;
+
+/// The manifest. Unknown fields are let pass: a later program may have added some that do no harm.
+#[derive(Debug, Serialize, Deserialize)]
+pub(crate) struct Manifest {
+    pub format: String,
+    pub version: u64,
+    /// What wrote it, for people.
+    #[serde(default)]
+    pub written_by: String,
+    pub scene: SceneReference,
+    pub cameras: Vec<CameraEntry>,
+    pub active_camera: usize,
+    pub exposure: String,
+    pub background_focus: [f64; 2],
+    pub brush: Brush,
+    #[serde(default)]
+    pub view: Value,
+    #[serde(default)]
+    pub focus_map: Option<MapEntry>,
+    /// Checksum of every other entry by its name: hex SHA-256 of its unpacked bytes.
+    #[serde(default)]
+    pub checksums: BTreeMap<String, String>,
+}
+
+/// Where the scene is.
+#[derive(Debug, Serialize, Deserialize)]
+pub(crate) struct SceneReference {
+    /// Relative to the project's folder where that is possible, with forward slashes.
+    pub path: String,
+    /// Hex SHA-256 of the scene file.
+    pub sha256: String,
+}
+
+/// A camera: its name, and its form as in a camera file; a mask names an entry.
+#[derive(Debug, Serialize, Deserialize)]
+pub(crate) struct CameraEntry {
+    pub name: String,
+    pub camera: Value,
+}
+
+/// The focus map's entry: t and anchor of every texel, f32 little endian, row by row.
+#[derive(Debug, Serialize, Deserialize)]
+pub(crate) struct MapEntry {
+    pub entry: String,
+    pub width: u32,
+    pub height: u32,
+}
+
+impl Manifest {
+    /// A manifest of this version.
+    pub fn format() -> (String, u64) {
+        (FORMAT.to_string(), VERSION)
+    }
+
+    /// Reads and checks the manifest.
+    pub fn read(file: &Path, container: &mut Container<'_>) -> Result<Self, ProjectError> {
+        /// What every version says.
+        #[derive(Deserialize)]
+        struct Header {
+            format: String,
+            version: u64,
+        }
+        let bytes = container.read(MANIFEST, LARGEST_MANIFEST)?;
+        let header: Header = serde_json::from_slice(&bytes)
+            .map_err(|error| container.error(MANIFEST, format!("cannot be understood: {error}")))?;
+        if header.format != FORMAT {
+            let problem = format!("is not a Focus Brush project but \"{}\"", header.format);
+            return Err(ProjectError::content(file, problem, "open it with the program that wrote it"));
+        }
+        if header.version > VERSION {
+            return Err(ProjectError::Newer {
+                file: file.to_owned(),
+                version: header.version,
+                newest: VERSION,
+            });
+        }
+        serde_json::from_slice(&bytes)
+            .map_err(|error| container.error(MANIFEST, format!("cannot be understood: {error}")))
+    }
+
+    /// An entry's bytes, checked against the manifest.
+    pub fn entry(
+        &self,
+        file: &Path,
+        container: &mut Container<'_>,
+        entry: &str,
+        limit: u64,
+    ) -> Result<Vec<u8>, ProjectError> {
+        let bytes = container.read(entry, limit)?;
+        match self.checksums.get(entry) {
+            Some(sum) if *sum == sha256_hex(&bytes) => Ok(bytes),
+            Some(_) => Err(container.error(entry, "is damaged: its checksum does not match")),
+            None => Err(ProjectError::content(
+                file,
+                format!("{MANIFEST} has no checksum of {entry}"),
+                DAMAGED_CURE,
+            )),
+        }
+    }
+}
+
+/// Hex SHA-256.
+pub(crate) fn sha256_hex(bytes: &[u8]) -> String {
+    Sha256::digest(bytes).iter().fold(String::with_capacity(64), |mut hex, byte| {
+        write!(hex, "{byte:02x}").expect("a String takes all writes");
+        hex
+    })
+}

@@ -1,0 +1,361 @@
+//! The project file: a document, saved.
+//!
+//! Three layers: the container (bytes), the manifest (format and version), and [`ProjectFile`] (the model). A
+//! `.fbrush` is a ZIP of
+//!
+//! | entry | what |
+//! | --- | --- |
+//! | `manifest.json` | format, version, scene, cameras, exposure, brush, view, checksums of the rest |
+//! | `atlas.bin` | the unwrapping, as the atlas writes it |
+//! | `focus.f32` | t and anchor a texel, f32 little endian, row by row |
+//! | `masks/N.f32` | the aperture mask of camera N: width and height as u32, then transmissions as f32 |
+//!
+//! The scene itself stays where it is; its path is kept relative to the project, so that both may be moved
+//! together, with its checksum, so that a change is noticed.
+
+use crate::ProjectError;
+use crate::camera::{camera_from_json, camera_to_json};
+use crate::container::{Container, DAMAGED_CURE, pack};
+use crate::disk::{read_bytes, write_verified};
+use crate::manifest::{CameraEntry, MANIFEST, Manifest, MapEntry, SceneReference, sha256_hex};
+use focus::{Brush, FocusMap};
+use lens::{ApertureMask, ApertureShape, Camera, Exposure, FocusOffset};
+use serde_json::Value;
+use std::path::{Component, Path, PathBuf};
+
+const ATLAS: &str = "atlas.bin";
+const FOCUS_MAP: &str = "focus.f32";
+
+/// The largest atlas that is read, bytes.
+const LARGEST_ATLAS: u64 = 2 << 30;
+
+/// The widest and highest focus map and mask that are read.
+const LARGEST_SIDE: u32 = 32768;
+
+/// The largest focus map and mask that are read, bytes.
+const LARGEST_MAP: u64 = 4 << 30;
+
+/// A camera and what it is called.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NamedCamera {
+    /// Its name.
+    pub name: String,
+    /// The camera.
+    pub camera: Camera,
+}
+
+/// A document as it is saved.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ProjectFile {
+    /// The scene file.
+    pub scene: PathBuf,
+    /// Hex SHA-256 of the scene file when the document was made; see [`Self::scene_state`].
+    pub scene_sha256: String,
+    /// The cameras, one at least.
+    pub cameras: Vec<NamedCamera>,
+    /// The camera in use: index into `cameras`.
+    pub active_camera: usize,
+    /// How the sum becomes the picture.
+    pub exposure: Exposure,
+    /// The brush.
+    pub brush: Brush,
+    /// Layout and viewpoint, as the window wants them; any JSON.
+    pub view: Value,
+    /// The unwrapping, as the atlas writes it; `None` if there is none yet.
+    pub atlas: Option<Vec<u8>>,
+    /// The focus map; `None` if nothing is painted.
+    pub focus_map: Option<FocusMap>,
+    /// The background's focus where there is no focus map; else the map's own counts.
+    pub background_focus: FocusOffset,
+}
+
+/// Whether the scene is still the one that the document was made for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SceneState {
+    /// It is.
+    Same,
+    /// It has changed since.
+    Changed,
+    /// It is not there.
+    Missing,
+}
+
+impl ProjectFile {
+    /// What a project file's name ends in.
+    pub const EXTENSION: &'static str = "fbrush";
+
+    /// A document of a scene that nothing is painted on yet. Reads the scene file for its checksum.
+    pub fn new(scene: &Path, cameras: Vec<NamedCamera>) -> Result<Self, ProjectError> {
+        Ok(Self {
+            scene: scene.to_owned(),
+            scene_sha256: Self::scene_checksum(scene)?,
+            cameras,
+            active_camera: 0,
+            exposure: Exposure::default(),
+            brush: Brush::default(),
+            view: Value::Null,
+            atlas: None,
+            focus_map: None,
+            background_focus: FocusOffset::STANDARD,
+        })
+    }
+
+    /// Hex SHA-256 of a scene file.
+    pub fn scene_checksum(scene: &Path) -> Result<String, ProjectError> {
+        Ok(sha256_hex(&read_bytes(scene)?))
+    }
+
+    /// Whether the scene file is still what it was.
+    pub fn scene_state(&self) -> SceneState {
+        match Self::scene_checksum(&self.scene) {
+            Ok(sum) if sum == self.scene_sha256 => SceneState::Same,
+            Ok(_) => SceneState::Changed,
+            Err(_) => SceneState::Missing,
+        }
+    }
+
+    /// Saves the document. `file` is replaced only when the new one is complete on the disk and has been read
+    /// back and found equal; whatever fails, the old one stays.
+    pub fn save(&self, file: &Path) -> Result<(), ProjectError> {
+        self.check(file)?;
+        let bytes =
+            self.to_bytes(file).map_err(|source| ProjectError::Write { file: file.to_owned(), source })?;
+        write_verified(file, &bytes, |back| match Self::from_bytes(file, back) {
+            Ok(read) if read.scene_sha256 == self.scene_sha256 && read.focus_map == self.focus_map => Ok(()),
+            Ok(_) => Err("its content differs".to_string()),
+            Err(error) => Err(error.to_string()),
+        })
+    }
+
+    /// Reads a document. The scene's path is made absolute from where the project now lies.
+    pub fn load(file: &Path) -> Result<Self, ProjectError> {
+        Self::from_bytes(file, &read_bytes(file)?)
+    }
+
+    /// What would be saved but not read again.
+    fn check(&self, file: &Path) -> Result<(), ProjectError> {
+        let error = |problem: String| ProjectError::content(file, problem, "mend it before saving");
+        if self.active_camera >= self.cameras.len() {
+            return Err(error(format!("camera {} of {} is in use", self.active_camera, self.cameras.len())));
+        }
+        for named in &self.cameras {
+            named.camera.validate().map_err(|e| error(format!("camera \"{}\": {e}", named.name)))?;
+        }
+        if let Some(problem) = self.brush.problem() {
+            return Err(error(format!("brush: {problem}")));
+        }
+        let usable =
+            self.focus_map.as_ref().is_none_or(FocusMap::is_valid) && self.background_focus.is_valid();
+        if usable { Ok(()) } else { Err(error("the focus has values that are not finite".to_string())) }
+    }
+
+    fn to_bytes(&self, file: &Path) -> Result<Vec<u8>, std::io::Error> {
+        let mut entries: Vec<(String, Vec<u8>)> = Vec::new();
+        let mut cameras = Vec::new();
+        for (index, NamedCamera { name, camera }) in self.cameras.iter().enumerate() {
+            let mut value = camera_to_json(camera);
+            if let ApertureShape::Mask(mask) = &camera.aperture.shape {
+                let entry = format!("masks/{index}.f32");
+                value["aperture"]["mask"] = Value::from(entry.as_str());
+                value["aperture"]["mask_file"] = Value::from(mask.file.as_str());
+                entries.push((entry, mask_bytes(mask)));
+            }
+            cameras.push(CameraEntry { name: name.clone(), camera: value });
+        }
+        if let Some(atlas) = &self.atlas {
+            entries.push((ATLAS.to_string(), atlas.clone()));
+        }
+        let focus_map = self.focus_map.as_ref().map(|map| {
+            let texels = map.to_rows();
+            let bytes = texels.iter().flatten().flat_map(|value| value.to_le_bytes()).collect();
+            entries.push((FOCUS_MAP.to_string(), bytes));
+            MapEntry { entry: FOCUS_MAP.to_string(), width: map.width(), height: map.height() }
+        });
+        let background = self.focus_map.as_ref().map_or(self.background_focus, |map| map.background);
+        let (format, version) = Manifest::format();
+        let manifest = Manifest {
+            format,
+            version,
+            written_by: format!("Focus Brush {}", env!("CARGO_PKG_VERSION")),
+            scene: SceneReference {
+                path: relative_path(&self.scene, file),
+                sha256: self.scene_sha256.clone(),
+            },
+            cameras,
+            active_camera: self.active_camera,
+            exposure: exposure_name(self.exposure).to_string(),
+            background_focus: [background.t, background.anchor],
+            brush: self.brush.clone(),
+            view: self.view.clone(),
+            focus_map,
+            checksums: entries.iter().map(|(name, bytes)| (name.clone(), sha256_hex(bytes))).collect(),
+        };
+        let manifest = serde_json::to_vec_pretty(&manifest).map_err(std::io::Error::other)?;
+        entries.insert(0, (MANIFEST.to_string(), manifest));
+        pack(&entries)
+    }
+
+    fn from_bytes(file: &Path, bytes: &[u8]) -> Result<Self, ProjectError> {
+        let mut container = Container::open(file, bytes)?;
+        let manifest = Manifest::read(file, &mut container)?;
+        let error = |problem: String| ProjectError::Entry {
+            file: file.to_owned(),
+            entry: MANIFEST.to_string(),
+            problem,
+            cure: DAMAGED_CURE.to_string(),
+        };
+
+        let mut cameras = Vec::new();
+        for CameraEntry { name, camera } in &manifest.cameras {
+            cameras.push(NamedCamera {
+                name: name.clone(),
+                camera: read_camera(file, camera.clone(), &manifest, &mut container)?,
+            });
+        }
+        if manifest.active_camera >= cameras.len() {
+            return Err(error(format!("camera {} of {} is in use", manifest.active_camera, cameras.len())));
+        }
+        let exposure = match manifest.exposure.as_str() {
+            "conserve" => Exposure::Conserve,
+            "normalise" => Exposure::Normalise,
+            other => return Err(error(format!("\"{other}\" is no exposure"))),
+        };
+        if let Some(problem) = manifest.brush.problem() {
+            return Err(error(format!("brush: {problem}")));
+        }
+        let [t, anchor] = manifest.background_focus;
+        let background_focus = FocusOffset { t, anchor };
+        if !background_focus.is_valid() {
+            return Err(error("background_focus cannot be used".to_string()));
+        }
+        let atlas = match manifest.checksums.contains_key(ATLAS) {
+            true => Some(manifest.entry(file, &mut container, ATLAS, LARGEST_ATLAS)?),
+            false => None,
+        };
+        let focus_map = match &manifest.focus_map {
+            Some(entry) => Some(read_focus_map(file, entry, &manifest, &mut container, background_focus)?),
+            None => None,
+        };
+        Ok(Self {
+            scene: absolute_path(&manifest.scene.path, file),
+            scene_sha256: manifest.scene.sha256.clone(),
+            cameras,
+            active_camera: manifest.active_camera,
+            exposure,
+            brush: manifest.brush,
+            view: manifest.view,
+            atlas,
+            focus_map,
+            background_focus,
+        })
+    }
+}
+
+/// What the manifest calls an exposure.
+fn exposure_name(exposure: Exposure) -> &'static str {
+    match exposure {
+        Exposure::Conserve => "conserve",
+        Exposure::Normalise => "normalise",
+    }
+}
+
+fn read_camera(
+    file: &Path,
+    mut json: Value,
+    manifest: &Manifest,
+    container: &mut Container<'_>,
+) -> Result<Camera, ProjectError> {
+    let named = json.get_mut("aperture").and_then(Value::as_object_mut).and_then(|a| a.remove("mask_file"));
+    let mask_file = named.and_then(|name| name.as_str().map(str::to_owned)).unwrap_or_default();
+    let mask_entry = json.pointer("/aperture/mask").and_then(Value::as_str).map(str::to_owned);
+    let mask = match mask_entry {
+        Some(entry) => {
+            let bytes = manifest.entry(file, container, &entry, LARGEST_MAP)?;
+            Some(
+                mask_from_bytes(&bytes, mask_file)
+                    .ok_or_else(|| container.error(&entry, "is no aperture mask"))?,
+            )
+        }
+        None => None,
+    };
+    let found = |_: &str| mask.clone().ok_or_else(|| container.error(MANIFEST, "names no aperture mask"));
+    camera_from_json(file, &json.to_string(), &Camera::default(), &found)
+}
+
+fn read_focus_map(
+    file: &Path,
+    entry: &MapEntry,
+    manifest: &Manifest,
+    container: &mut Container<'_>,
+    background: FocusOffset,
+) -> Result<FocusMap, ProjectError> {
+    let size = entry.width as u64 * entry.height as u64 * 8;
+    let sides = 1..=LARGEST_SIDE;
+    if !sides.contains(&entry.width) || !sides.contains(&entry.height) || size > LARGEST_MAP {
+        return Err(
+            container.error(&entry.entry, format!("cannot have {}×{} texels", entry.width, entry.height))
+        );
+    }
+    let bytes = manifest.entry(file, container, &entry.entry, size)?;
+    let value = |bytes: &[u8]| f32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]);
+    let texels: Vec<[f32; 2]> =
+        bytes.chunks_exact(8).map(|texel| [value(&texel[..4]), value(&texel[4..])]).collect();
+    let map = FocusMap::from_rows(entry.width, entry.height, &texels, background)
+        .ok_or_else(|| container.error(&entry.entry, "does not have the size that the manifest says"))?;
+    if !map.is_valid() {
+        return Err(container.error(&entry.entry, "has values that are not finite"));
+    }
+    Ok(map)
+}
+
+fn mask_bytes(mask: &ApertureMask) -> Vec<u8> {
+    let size = [mask.width, mask.height].into_iter().flat_map(u32::to_le_bytes);
+    size.chain(mask.transmission.iter().flat_map(|t| t.to_le_bytes())).collect()
+}
+
+fn mask_from_bytes(bytes: &[u8], file: String) -> Option<ApertureMask> {
+    let (words, rest) = bytes.as_chunks::<4>();
+    let [width, height, transmission @ ..] = words else { return None };
+    let (width, height) = (u32::from_le_bytes(*width), u32::from_le_bytes(*height));
+    let whole = rest.is_empty() && width as u64 * height as u64 == transmission.len() as u64;
+    let transmission = transmission.iter().map(|word| f32::from_le_bytes(*word)).collect();
+    whole.then_some(ApertureMask { width, height, transmission, file })
+}
+
+/// The path from the project's folder to the scene, with forward slashes; absolute if they share no root.
+fn relative_path(scene: &Path, project: &Path) -> String {
+    let scene = std::path::absolute(scene).unwrap_or_else(|_| scene.to_owned());
+    let project = std::path::absolute(project).unwrap_or_else(|_| project.to_owned());
+    let folder = project.parent().unwrap_or(Path::new(""));
+    let (from, to): (Vec<_>, Vec<_>) = (folder.components().collect(), scene.components().collect());
+    let shared = from.iter().zip(&to).take_while(|(a, b)| a == b).count();
+    // Only the root in common (or not even a drive): moving both together is not what anyone does.
+    let is_near = to[..shared].iter().any(|component| matches!(component, Component::Normal(_)));
+    let components: Vec<String> = match is_near {
+        true => {
+            let up = std::iter::repeat_n("..".to_string(), from.len() - shared);
+            up.chain(to[shared..].iter().map(|c| c.as_os_str().to_string_lossy().into_owned())).collect()
+        }
+        false => return scene.to_string_lossy().replace('\\', "/"),
+    };
+    components.join("/")
+}
+
+/// The path that the manifest's means, from where the project lies.
+fn absolute_path(scene: &str, project: &Path) -> PathBuf {
+    let project = std::path::absolute(project).unwrap_or_else(|_| project.to_owned());
+    let joined = project.parent().unwrap_or(Path::new("")).join(scene);
+    // `..` is taken out by name, so that the path reads well; where that is not the same file (through a
+    // link), it is kept.
+    let mut plain = PathBuf::new();
+    for component in joined.components() {
+        match component {
+            Component::ParentDir => {
+                plain.pop();
+            }
+            Component::CurDir => {}
+            other => plain.push(other),
+        }
+    }
+    if plain.exists() || !joined.exists() { plain } else { joined }
+}

@@ -1,0 +1,98 @@
+//! Focus recipes as JSON.
+//!
+//! ```text
+//! {"default": {"t": 1, "anchor": 0}, "background": {…}, "materials": {NAME: {…}}, "nodes": {NAME: {…}}}
+//! ```
+//!
+//! An entry is `{"t": x, "anchor": a}` (t is 1 and anchor 0 where missing) or `{"map": FILE}`, the file beside
+//! the recipe, in the mesh's first UV set.
+
+use crate::disk::extension;
+use crate::json::{Field, Fields, Json};
+use crate::{FocusMapFile, ProjectError};
+use focus::{FocusRecipe, RecipeEntry};
+use lens::FocusOffset;
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// Maps that were read, by path: a recipe may name one many times.
+type Maps = HashMap<PathBuf, RecipeEntry>;
+
+/// Reads a recipe and the maps that it names.
+pub fn read_recipe(file: &Path) -> Result<FocusRecipe, ProjectError> {
+    let json = Json::read(file)?;
+    let fields = Field::root(file, &json).object()?;
+    fields.only(&["default", "background", "materials", "nodes"])?;
+    let mut maps = Maps::new();
+    let default = match fields.get("default") {
+        Some(field) => entry(&field, &mut maps)?,
+        None => RecipeEntry::Value(FocusOffset::STANDARD),
+    };
+    let background = fields.get("background").map(|field| entry(&field, &mut maps)).transpose()?;
+    let materials = named(&fields, "materials", &mut maps)?;
+    let nodes = named(&fields, "nodes", &mut maps)?;
+    Ok(FocusRecipe { default, background, materials, nodes })
+}
+
+fn named(
+    fields: &Fields<'_>,
+    name: &str,
+    maps: &mut Maps,
+) -> Result<Vec<(String, RecipeEntry)>, ProjectError> {
+    let Some(field) = fields.get(name) else { return Ok(Vec::new()) };
+    let object = field.object()?;
+    object.all().map(|(name, field)| Ok((name.to_string(), entry(&field, maps)?))).collect()
+}
+
+fn entry(field: &Field<'_>, maps: &mut Maps) -> Result<RecipeEntry, ProjectError> {
+    let fields = field.object()?;
+    fields.only(&["t", "anchor", "map"])?;
+    let Some(map) = fields.get("map") else {
+        let t = fields.get("t").map_or(Ok(1.0), |field| field.number())?;
+        let anchor = fields.get("anchor").map_or(Ok(0.0), |field| field.number())?;
+        if let Some(field) = fields.get("anchor").filter(|_| !(0.0..=1.0).contains(&anchor)) {
+            return Err(field.error(format!("is {anchor}"), "give a number in [0, 1]"));
+        }
+        return Ok(RecipeEntry::Value(FocusOffset { t, anchor }));
+    };
+    if fields.get("t").or(fields.get("anchor")).is_some() {
+        return Err(field.error("has a map and a value", "give either map, or t and anchor"));
+    }
+    let path = fields.folder().join(map.text()?);
+    if let Some(entry) = maps.get(&path) {
+        return Ok(entry.clone());
+    }
+    let read = FocusMapFile::read(&path)?;
+    if read.atlas_hash.is_some() {
+        return Err(map.error(
+            format!("{} belongs to an atlas", path.display()),
+            "a recipe's maps lie in the mesh's UVs: give this one in place of the recipe",
+        ));
+    }
+    let entry = RecipeEntry::Map(Arc::new(read.image));
+    maps.insert(path, entry.clone());
+    Ok(entry)
+}
+
+/// A focus as a user names it: by a recipe or by a map.
+#[derive(Clone, Debug, PartialEq)]
+pub enum FocusFile {
+    /// A recipe.
+    Recipe(FocusRecipe),
+    /// A map: over an atlas if it has an atlas hash, else in the mesh's first UV set.
+    Map(FocusMapFile),
+}
+
+/// Reads a recipe (.json) or a focus map (.exr, .png).
+pub fn read_focus(file: &Path) -> Result<FocusFile, ProjectError> {
+    match extension(file).as_str() {
+        "json" => Ok(FocusFile::Recipe(read_recipe(file)?)),
+        "exr" | "png" => Ok(FocusFile::Map(FocusMapFile::read(file)?)),
+        _ => Err(ProjectError::content(
+            file,
+            "is no focus: unknown extension",
+            "give a recipe .json, or a focus map .exr or .png",
+        )),
+    }
+}
