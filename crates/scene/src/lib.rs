@@ -6,16 +6,42 @@
 //!   [`Scene::base_color`], [`Scene::emitted`], [`Scene::opacity`], [`Scene::shading_normal`].
 //! * [`SurfaceField`]: anything that has a value at every surface point (focus, radiance).
 //! * [`MeshHealth`]: what is odd about the triangles.
+//!
+//! Files come from anywhere, so the reader trusts none: every index and byte range is checked before it is used,
+//! memory, triangles and time are accounted for before they are taken, and only files inside the scene's
+//! folder are opened. The document is read as JSON values rather than into a fixed set of types, for two
+//! reasons: integers written as floats are legal, and a flaw in something the picture does not need must not keep
+//! the rest from opening.
+//!
+//! The road of a file: `container` (GLB chunks, JSON text) → `document` → `hierarchy` (which nodes, where) →
+//! `primitive` (checked `accessor`s to triangles, morphed) → `assembly` (instances and skins into the world) →
+//! `material_file` (materials, images) → `view`, `punctual_light` (what is missing is made up).
 
+mod accessor;
+mod assembly;
+mod container;
+mod document;
 mod error;
+mod extension;
+mod hierarchy;
+mod image_file;
 mod inspection;
+mod instancing;
+mod json_object;
 mod load;
 mod load_options;
+mod material_file;
 mod mesh_health;
 mod model;
+mod primitive;
+mod punctual_light;
+mod resource;
+mod skin;
 mod surface_color;
 mod surface_point;
 mod texture_lookup;
+mod triangulation;
+mod view;
 
 pub use error::{Fault, SceneError};
 pub use inspection::Inspection;

@@ -1,15 +1,270 @@
-//! From a file to a scene.
+//! From a file to a scene: the story of reading one, from top to bottom.
 
-use crate::{Inspection, LoadOptions, Scene, SceneError};
-use progress::Progress;
+use crate::assembly::{Placement, append};
+use crate::document::Document;
+use crate::error::{Fault, Stop};
+use crate::hierarchy::Hierarchy;
+use crate::json_object::Object;
+use crate::material_file::{MaterialReader, default_material};
+use crate::primitive::Primitive;
+use crate::triangulation::MODE_NAMES;
+use crate::{Inspection, LoadOptions, Material, Node, Scene, SceneError};
+use crate::{extension, instancing, punctual_light, skin, view};
+use glam::{DMat4, Vec3};
+use progress::{Progress, Unwatched};
+use std::collections::HashMap;
+use std::panic::AssertUnwindSafe;
 use std::path::Path;
 
-/// Reads a .glb or .gltf file.
-pub fn load(_path: &Path, _options: &LoadOptions, _progress: &dyn Progress) -> Result<Scene, SceneError> {
-    todo!()
+/// Reads a .glb or .gltf file, and what it refers to inside its folder.
+///
+/// # Errors
+/// [`SceneError::NoTriangles`] if there is nothing to see, [`SceneError::Bad`] for everything that is wrong with the
+/// file and does harm, [`SceneError::Cancelled`] if `progress` says so. What does no harm is in [`Scene::warnings`].
+pub fn load(path: &Path, options: &LoadOptions, progress: &dyn Progress) -> Result<Scene, SceneError> {
+    let (scene, inspection) = open(path, options, progress)?;
+    if scene.triangles.is_empty() {
+        let others: Vec<String> = (inspection.primitives.iter().zip(MODE_NAMES))
+            .filter(|&(&count, _)| count > 0)
+            .map(|(count, name)| format!("{count} × {name}"))
+            .collect();
+        let why = match (inspection.meshes, others.is_empty()) {
+            (0, _) => "the file has no mesh".into(),
+            (_, true) => "its meshes are empty".into(),
+            (_, false) => format!("the shown scene has none; the file has {}", others.join(", ")),
+        };
+        return Err(SceneError::NoTriangles { file: path.into(), why });
+    }
+    progress.report(1.0);
+    Ok(scene)
 }
 
 /// Says what is in a .glb or .gltf file; unlike [`load`] it also opens files without a triangle.
-pub fn inspect(_path: &Path) -> Result<Inspection, SceneError> {
-    todo!()
+///
+/// # Errors
+/// As [`load`], but for [`SceneError::NoTriangles`].
+pub fn inspect(path: &Path) -> Result<Inspection, SceneError> {
+    Ok(open(path, &LoadOptions::default(), &Unwatched)?.1)
+}
+
+/// Reads a file; panics of decoders become errors.
+fn open(
+    path: &Path,
+    options: &LoadOptions,
+    progress: &dyn Progress,
+) -> Result<(Scene, Inspection), SceneError> {
+    let result = std::panic::catch_unwind(AssertUnwindSafe(|| read(path, options, progress)));
+    let stop = match result {
+        Ok(Ok(read)) => return Ok(read),
+        Ok(Err(stop)) => stop,
+        Err(panic) => {
+            let text =
+                panic.downcast_ref::<String>().map(String::as_str).or(panic.downcast_ref::<&str>().copied());
+            Fault::Panicked(text.unwrap_or("for an unknown reason").into()).into()
+        }
+    };
+    Err(match stop {
+        Stop::Cancelled => SceneError::Cancelled(progress::Cancelled),
+        Stop::Fault(fault) => SceneError::Bad { file: path.into(), fault },
+    })
+}
+
+fn read(path: &Path, options: &LoadOptions, progress: &dyn Progress) -> Result<(Scene, Inspection), Stop> {
+    let bytes = read_file(path, options)?;
+    let folder = crate::document::folder_of(path).map_err(Fault::Unreadable)?;
+    let document = Document::parse(&bytes, folder, options)?;
+    extension::check(&document)?;
+    progress.check()?;
+
+    let mut scene = Scene { path: path.into(), ..Scene::default() };
+    let hierarchy = Hierarchy::read(&document)?;
+    let mut materials = MaterialReader::new(&document);
+    let mut used = UsedMaterials::default();
+    for (i, &index) in hierarchy.shown.iter().enumerate() {
+        progress.report(i as f32 / hierarchy.shown.len() as f32);
+        let node = document.item("nodes", index, "")?;
+        let Some(world) = hierarchy.world[index] else { continue };
+        scene.lights.extend(punctual_light::node_light(&document, &node, world)?);
+        scene.cameras.extend(view::node_camera(&document, &node, world)?);
+        let mesh = MeshNode { document: &document, hierarchy: &hierarchy, node, index, world };
+        mesh.read(&mut scene, &mut used, progress)?;
+    }
+    used.fill(&mut scene, &document, &mut materials)?;
+    scene.images = materials.images;
+    scene.normals.iter_mut().for_each(|normal| *normal = normal.normalize_or_zero());
+    complete(&mut scene);
+    scene.warnings = document.warnings();
+    let inspection = inspection(&document, &scene);
+    Ok((scene, inspection))
+}
+
+/// The bytes of a regular file within the limit.
+fn read_file(path: &Path, options: &LoadOptions) -> Result<Vec<u8>, Fault> {
+    let size = std::fs::metadata(path).map_err(Fault::Unreadable)?;
+    if !size.is_file() {
+        return Err(Fault::NotGltf("it is not a regular file".into()));
+    }
+    if size.len() > options.max_memory {
+        let limit = options.max_memory >> 20;
+        return Err(Fault::TooBig {
+            what: format!("the file has {} MiB, the limit is {limit} MiB", size.len() >> 20),
+        });
+    }
+    std::fs::read(path).map_err(Fault::Unreadable)
+}
+
+/// The materials that parts use, in the order of the file, the default one last.
+#[derive(Default)]
+struct UsedMaterials {
+    /// Who used a material of the file first.
+    by: HashMap<usize, String>,
+    uses_default: bool,
+}
+
+impl UsedMaterials {
+    /// The index in the scene of a material of the file.
+    fn index(&mut self, document: &Document<'_>, material: Option<usize>, place: &str) -> Result<u32, Fault> {
+        match material {
+            Some(index) => {
+                let place = format!("{place}/material");
+                document.item("materials", index, &place)?;
+                self.by.entry(index).or_insert(place);
+                Ok(index as u32)
+            }
+            None => {
+                self.uses_default = true;
+                Ok(document.len("materials") as u32)
+            }
+        }
+    }
+
+    /// Reads them. A material that no part uses has its name and nothing else.
+    fn fill(
+        self,
+        scene: &mut Scene,
+        document: &Document<'_>,
+        reader: &mut MaterialReader<'_>,
+    ) -> Result<(), Fault> {
+        for index in 0..document.len("materials") {
+            scene.materials.push(match self.by.get(&index) {
+                Some(place) => reader.read(index, place)?,
+                None => Material { name: reader.name(index), ..default_material() },
+            });
+        }
+        if self.uses_default {
+            scene.materials.push(default_material());
+        }
+        Ok(())
+    }
+}
+
+/// A node on its way into the scene.
+struct MeshNode<'a> {
+    document: &'a Document<'a>,
+    hierarchy: &'a Hierarchy,
+    node: Object<'a>,
+    index: usize,
+    world: DMat4,
+}
+
+impl MeshNode<'_> {
+    /// Appends every primitive of every instance of the node's mesh.
+    fn read(&self, scene: &mut Scene, used: &mut UsedMaterials, progress: &dyn Progress) -> Result<(), Stop> {
+        let (document, node) = (self.document, &self.node);
+        let Some(mesh) = node.index("mesh")? else { return Ok(()) };
+        let mesh = document.item("meshes", mesh, &format!("{}/mesh", node.place))?;
+        let weights = node.number_list("weights")?.or(mesh.number_list("weights")?).unwrap_or_default();
+        let joints = match node.index("skin")? {
+            Some(skin) => {
+                Some(skin::joint_matrices(document, self.hierarchy, skin, &format!("{}/skin", node.place))?)
+            }
+            None => None,
+        };
+        let instances = match joints {
+            Some(_) => vec![DMat4::IDENTITY],
+            None => instancing::instances(document, node)?,
+        };
+        let mut primitives = Vec::new();
+        for primitive in mesh.objects("primitives")? {
+            progress.check()?;
+            if let Some(primitive) = Primitive::read(document, &primitive, &weights)? {
+                let material = used.index(document, primitive.material, &primitive.place)?;
+                primitives.push((primitive, material));
+            }
+        }
+        for (i, instance) in instances.into_iter().enumerate() {
+            let first_part = scene.parts.len();
+            for (primitive, material) in &primitives {
+                progress.check()?;
+                if i > 0 {
+                    document.budget.triangles(primitive.triangles.len() as u64)?;
+                }
+                let placement = match &joints {
+                    Some(joints) if !primitive.influences.is_empty() => Placement::Skinned(joints),
+                    _ => Placement::Rigid(self.world * instance),
+                };
+                append(scene, document, primitive, &placement, scene.nodes.len() as u32, *material)?;
+            }
+            if scene.parts.len() > first_part {
+                let name = node.name().map_or_else(|| format!("node {}", self.index), String::from);
+                scene.nodes.push(Node { name, index: self.index as u32 });
+            }
+        }
+        primitives.into_iter().for_each(|(primitive, _)| primitive.release(document));
+        Ok(())
+    }
+}
+
+/// Gives the scene what the file lacks: a camera, light where some is needed.
+fn complete(scene: &mut Scene) {
+    if scene.triangles.is_empty() {
+        return;
+    }
+    if scene.cameras.is_empty() {
+        scene.cameras.push(view::framing(scene));
+        scene.camera_is_invented = true;
+    }
+    view::focus_cameras(scene);
+    let used = || scene.parts.iter().map(|part| &scene.materials[part.material as usize]);
+    // A texture of emission up to 1 is a screen or a glow, not what the scene is lit by.
+    let is_lamp = |m: &Material| m.emissive_texture.is_none() || m.emissive.max_element() > 1.0;
+    let shines = used().any(|m| !m.unlit && m.emissive != Vec3::ZERO && is_lamp(m));
+    let needs_light = used().any(|material| !material.unlit);
+    if scene.lights.is_empty() && needs_light && !shines {
+        scene.lights = punctual_light::invented_lights();
+        scene.lights_are_invented = true;
+    }
+}
+
+/// Counts what the file holds.
+fn inspection(document: &Document<'_>, scene: &Scene) -> Inspection {
+    let mut primitives = [0; 7];
+    for mesh in 0..document.len("meshes") {
+        let list = document.item("meshes", mesh, "").and_then(|mesh| mesh.objects("primitives"));
+        for primitive in list.unwrap_or_default() {
+            let mode = primitive.index("mode").ok().flatten().unwrap_or(crate::triangulation::TRIANGLES);
+            if let Some(count) = primitives.get_mut(mode) {
+                *count += 1;
+            }
+        }
+    }
+    let root = document.root();
+    let asset = root.object("asset").ok().flatten();
+    let lights = root.extension("KHR_lights_punctual").ok().flatten();
+    Inspection {
+        generator: asset.and_then(|asset| asset.text("generator").ok().flatten()).map(String::from),
+        nodes: document.len("nodes"),
+        meshes: document.len("meshes"),
+        primitives,
+        materials: document.len("materials"),
+        images: document.len("images"),
+        cameras: document.len("cameras"),
+        lights: lights.and_then(|lights| lights.list("lights").ok()).map_or(0, <[_]>::len),
+        skins: document.len("skins"),
+        animations: document.len("animations"),
+        triangles: scene.triangles.len(),
+        extensions_used: extension::names(document, "extensionsUsed"),
+        extensions_required: extension::names(document, "extensionsRequired"),
+        warnings: scene.warnings.clone(),
+    }
 }

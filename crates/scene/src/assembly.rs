@@ -1,0 +1,123 @@
+//! Puts primitives into the world: transforms them and appends them to the scene's arrays.
+
+use crate::document::Document;
+use crate::error::Fault;
+use crate::primitive::{Primitive, compact};
+use crate::skin::blended;
+use crate::{Part, Scene, Triangle};
+use glam::{DMat3, DMat4, DVec3, Vec2, Vec3, Vec4};
+
+/// How a primitive gets into the world.
+pub(crate) enum Placement<'a> {
+    /// All of it by one matrix.
+    Rigid(DMat4),
+    /// Each vertex by its joints.
+    Skinned(&'a [DMat4]),
+}
+
+/// Coordinates beyond this have squares that leave the range of f32, in which rays are traced; they count as infinite.
+const MAX_COORDINATE: f64 = 1e15;
+
+/// Bytes that a vertex takes in the scene, twice because growing arrays keep room.
+const VERTEX_BYTES: u64 = 2 * (24 + 12 + 8 + 8 + 16);
+
+/// Appends `primitive` as a part of scene node `node` with scene material `material`.
+pub(crate) fn append(
+    scene: &mut Scene,
+    document: &Document<'_>,
+    primitive: &Primitive,
+    placement: &Placement<'_>,
+    node: u32,
+    material: u32,
+) -> Result<(), Fault> {
+    let vertices = primitive.positions.len();
+    let size = vertices as u64 * (VERTEX_BYTES + 128) + primitive.triangles.len() as u64 * 32;
+    document.budget.memory(size, &primitive.place)?;
+    document.budget.work(16 * vertices as u64, &primitive.place)?;
+    let matrices: Vec<DMat4> = match placement {
+        Placement::Rigid(matrix) => vec![*matrix],
+        Placement::Skinned(joints) => {
+            let influences = primitive.influences.chunks_exact(primitive.influences_per_vertex.max(1));
+            influences.map(|influences| blended(joints, influences)).collect()
+        }
+    };
+    let matrix = |v: usize| if matrices.len() == 1 { &matrices[0] } else { &matrices[v] };
+    let world: Vec<DVec3> =
+        (0..vertices).map(|v| matrix(v).transform_point3(primitive.positions[v])).collect();
+
+    let sane =
+        |&v: &u32| world[v as usize].abs().max_element() <= MAX_COORDINATE && world[v as usize].is_finite();
+    let kept: Vec<[u32; 3]> = primitive.triangles.iter().copied().filter(|t| t.iter().all(sane)).collect();
+    if kept.len() < primitive.triangles.len() {
+        let (dropped, all) = (primitive.triangles.len() - kept.len(), primitive.triangles.len());
+        document.warn(format!(
+            "{}: {dropped} of {all} triangles have infinite, undefined or absurdly large positions; left out",
+            primitive.place
+        ));
+    }
+    let (triangles, used) = match kept.len() == primitive.triangles.len() {
+        true => (kept, (0..vertices as u32).collect()),
+        false => compact(&kept),
+    };
+    if triangles.is_empty() {
+        document.budget.release(size);
+        return Ok(());
+    }
+
+    let mirrors = |matrix: &DMat4| matrix.determinant() < 0.0;
+    let mirrored = 2 * matrices.iter().filter(|matrix| mirrors(matrix)).count() > matrices.len();
+    let base = scene.positions.len();
+    let part = scene.parts.len() as u32;
+    let first = scene.triangles.len() as u32;
+    scene.positions.extend(used.iter().map(|&v| world[v as usize]));
+    let end = scene.positions.len();
+    let normal = |v: usize| world_normal(matrix(v), primitive.normals[v]);
+    extend(&mut scene.normals, !primitive.normals.is_empty(), Vec3::ZERO, base, end, &used, normal);
+    for (set, uv) in scene.uv.iter_mut().enumerate() {
+        let source = &primitive.uv[set];
+        extend(uv, !source.is_empty(), Vec2::ZERO, base, end, &used, |v| source[v]);
+    }
+    let colors = &primitive.colors;
+    extend(&mut scene.colors, !colors.is_empty(), Vec4::ONE, base, end, &used, |v| colors[v]);
+    scene.triangles.extend(triangles.into_iter().map(|[a, b, c]| {
+        let vertices = if mirrored { [a, c, b] } else { [a, b, c] };
+        Triangle { vertices: vertices.map(|v| base as u32 + v), part }
+    }));
+    scene.parts.push(Part {
+        node,
+        material,
+        triangles: first..scene.triangles.len() as u32,
+        has_uv: [0, 1].map(|set| !primitive.uv[set].is_empty()),
+        mirrored,
+    });
+    document.budget.release(vertices as u64 * 128);
+    Ok(())
+}
+
+/// Appends an attribute of the used vertices, or its default. An attribute that no part has so far stays empty.
+fn extend<T: Clone>(
+    array: &mut Vec<T>,
+    present: bool,
+    default: T,
+    base: usize,
+    end: usize,
+    used: &[u32],
+    value: impl Fn(usize) -> T,
+) {
+    if present {
+        array.resize(base, default);
+        array.extend(used.iter().map(|&v| value(v as usize)));
+    } else if !array.is_empty() {
+        array.resize(end, default);
+    }
+}
+
+/// A unit normal in the world: by the inverse transpose, as the matrix of cofactors, which exists for flat ones
+/// too; its sign is that of the determinant. Zero if there is none.
+fn world_normal(matrix: &DMat4, normal: DVec3) -> Vec3 {
+    let m = DMat3::from_mat4(*matrix);
+    let cofactors =
+        DMat3::from_cols(m.y_axis.cross(m.z_axis), m.z_axis.cross(m.x_axis), m.x_axis.cross(m.y_axis));
+    let sign = if m.determinant() < 0.0 { -1.0 } else { 1.0 };
+    (sign * (cofactors * normal)).try_normalize().unwrap_or_default().as_vec3()
+}

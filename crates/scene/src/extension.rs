@@ -1,0 +1,64 @@
+//! Extensions: which ones are read, which ones can be ignored, and what to do about the rest.
+
+use crate::document::Document;
+use crate::error::Fault;
+
+/// Read and honoured.
+pub(crate) const SUPPORTED: [&str; 8] = [
+    "EXT_mesh_gpu_instancing",
+    "EXT_texture_webp",
+    "KHR_lights_punctual",
+    "KHR_materials_emissive_strength",
+    "KHR_materials_specular",
+    "KHR_materials_unlit",
+    "KHR_mesh_quantization",
+    "KHR_texture_transform",
+];
+
+/// Without influence on the default picture.
+const HARMLESS: [&str; 5] = [
+    "KHR_animation_pointer",
+    "KHR_materials_variants",
+    "KHR_xmp",
+    "KHR_xmp_json_ld",
+    "KHR_node_hoverability",
+];
+
+/// The names in `extensionsUsed` or `extensionsRequired`.
+pub(crate) fn names(document: &Document<'_>, key: &str) -> Vec<String> {
+    let list = document.root().list(key).unwrap_or_default();
+    list.iter().filter_map(|name| name.as_str()).map(String::from).collect()
+}
+
+/// Refuses a document that requires what is not supported; warns of what is ignored and shows.
+pub(crate) fn check(document: &Document<'_>) -> Result<(), Fault> {
+    for extension in names(document, "extensionsRequired") {
+        if !SUPPORTED.contains(&extension.as_str()) && !HARMLESS.contains(&extension.as_str()) {
+            return Err(Fault::Extension { cure: cure(&extension).into(), extension });
+        }
+    }
+    for extension in names(document, "extensionsUsed") {
+        if !SUPPORTED.contains(&extension.as_str()) && !HARMLESS.contains(&extension.as_str()) {
+            document.warn(format!(
+                "the extension {extension} is ignored; the picture may differ from other viewers"
+            ));
+        }
+    }
+    Ok(())
+}
+
+fn cure(extension: &str) -> &'static str {
+    match extension {
+        "KHR_draco_mesh_compression" => {
+            "export without Draco compression, or decompress with: gltf-transform copy IN OUT"
+        }
+        "EXT_meshopt_compression" | "KHR_meshopt_compression" => {
+            "export without meshopt compression, or decompress with: gltf-transform copy IN OUT"
+        }
+        "KHR_texture_basisu" => "export with PNG, JPEG or WebP textures",
+        "KHR_materials_pbrSpecularGlossiness" => {
+            "convert it with: gltf-transform metalrough IN OUT, or export metal-rough materials"
+        }
+        _ => "export the scene without it",
+    }
+}

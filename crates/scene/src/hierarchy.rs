@@ -1,0 +1,165 @@
+//! The node hierarchy: which nodes the scene shows, and where they stand.
+//!
+//! Walked without recursion, every node once: a node with two parents belongs to the first, a cycle among the
+//! shown nodes is an error.
+
+use crate::document::Document;
+use crate::error::Fault;
+use crate::json_object::Object;
+use glam::{DMat4, DQuat, DVec3};
+
+/// The nodes of a document, placed.
+pub(crate) struct Hierarchy {
+    /// The shown nodes, parents before children, in file order.
+    pub shown: Vec<usize>,
+    /// World from node, of all nodes that hang on a root; shown or not.
+    pub world: Vec<Option<DMat4>>,
+}
+
+impl Hierarchy {
+    /// Reads the nodes.
+    pub fn read(document: &Document<'_>) -> Result<Self, Fault> {
+        let count = document.len("nodes");
+        let roots = scene_roots(document)?;
+        let mut world = vec![None; count];
+        let shown = walk(document, &roots, &mut world, Walk::Strict)?;
+        // Joints of a skin may hang beside the scene.
+        let mut is_child = vec![false; count];
+        for node in 0..count {
+            for child in children(document, node).unwrap_or_default() {
+                if let Some(flag) = is_child.get_mut(child) {
+                    *flag = true;
+                }
+            }
+        }
+        let others: Vec<usize> =
+            (0..count).filter(|&node| !is_child[node] && world[node].is_none()).collect();
+        walk(document, &others, &mut world, Walk::Lenient)?;
+        Ok(Self { shown, world })
+    }
+}
+
+/// What a flaw on the way means.
+#[derive(Clone, Copy, PartialEq)]
+enum Walk {
+    /// The nodes are shown: an error.
+    Strict,
+    /// They are not: the branch ends there.
+    Lenient,
+}
+
+/// The roots of the shown scene: of `scene`, else of the first scene, else of all.
+fn scene_roots(document: &Document<'_>) -> Result<Vec<usize>, Fault> {
+    let root = document.root();
+    let scenes = document.len("scenes");
+    let index = match root.index("scene")? {
+        Some(index) if index >= scenes => {
+            document
+                .warn(format!("/scene: refers to scenes[{index}], which does not exist; another is shown"));
+            0
+        }
+        index => index.unwrap_or(0),
+    };
+    if index < scenes {
+        return document.item("scenes", index, "/scene")?.indices("nodes");
+    }
+    let count = document.len("nodes");
+    let mut is_child = vec![false; count];
+    for node in 0..count {
+        for child in children(document, node)? {
+            if let Some(flag) = is_child.get_mut(child) {
+                *flag = true;
+            }
+        }
+    }
+    let roots: Vec<usize> = (0..count).filter(|&node| !is_child[node]).collect();
+    if roots.is_empty() && count > 0 {
+        return Err(loops(0));
+    }
+    Ok(roots)
+}
+
+fn children(document: &Document<'_>, node: usize) -> Result<Vec<usize>, Fault> {
+    document.item("nodes", node, "")?.indices("children")
+}
+
+fn loops(node: usize) -> Fault {
+    Fault::Malformed { place: format!("/nodes/{node}"), what: "is a part of a loop of nodes".into() }
+}
+
+/// Places everything that hangs on `roots`; depth first, in file order.
+fn walk(
+    document: &Document<'_>,
+    roots: &[usize],
+    world: &mut [Option<DMat4>],
+    mode: Walk,
+) -> Result<Vec<usize>, Fault> {
+    enum Step {
+        Enter { node: usize, parent: Option<usize> },
+        Leave(usize),
+    }
+    let mut stack: Vec<Step> = roots.iter().rev().map(|&node| Step::Enter { node, parent: None }).collect();
+    let mut on_path = vec![false; world.len()];
+    let mut order = Vec::new();
+    while let Some(step) = stack.pop() {
+        let (node, parent) = match step {
+            Step::Enter { node, parent } => (node, parent),
+            Step::Leave(node) => {
+                on_path[node] = false;
+                continue;
+            }
+        };
+        if on_path.get(node) == Some(&true) {
+            match mode {
+                Walk::Strict => return Err(loops(node)),
+                Walk::Lenient => continue,
+            }
+        }
+        if world.get(node).is_some_and(Option::is_some) {
+            if mode == Walk::Strict {
+                document.warn(format!("/nodes/{node}: has several parents; only the first counts"));
+            }
+            continue;
+        }
+        let read = || -> Result<(DMat4, Vec<usize>), Fault> {
+            let place = parent.map_or("/scenes".into(), |parent| format!("/nodes/{parent}/children"));
+            let object = document.item("nodes", node, &place)?;
+            Ok((local_transform(document, &object)?, object.indices("children")?))
+        };
+        let (local, children) = match (read(), mode) {
+            (Ok(read), _) => read,
+            (Err(fault), Walk::Strict) => return Err(fault),
+            (Err(_), Walk::Lenient) => continue,
+        };
+        let parent = parent.and_then(|parent| world[parent]).unwrap_or(DMat4::IDENTITY);
+        world[node] = Some(parent * local);
+        on_path[node] = true;
+        order.push(node);
+        stack.push(Step::Leave(node));
+        stack.extend(children.iter().rev().map(|&child| Step::Enter { node: child, parent: Some(node) }));
+    }
+    Ok(order)
+}
+
+/// A node's own transform: its matrix, else translation · rotation · scale.
+fn local_transform(document: &Document<'_>, node: &Object<'_>) -> Result<DMat4, Fault> {
+    if let Some(matrix) = node.numbers::<16>("matrix")? {
+        return Ok(DMat4::from_cols_array(&matrix));
+    }
+    let vector = |key, default| -> Result<DVec3, Fault> {
+        Ok(node.numbers::<3>(key)?.map_or(default, DVec3::from_array))
+    };
+    let rotation = DQuat::from_array(node.numbers::<4>("rotation")?.unwrap_or([0.0, 0.0, 0.0, 1.0]));
+    let rotation = match rotation.length() {
+        length if length > 0.0 && length.is_finite() => rotation / length,
+        _ => {
+            document.warn(format!("{}/rotation: is no rotation; left out", node.place));
+            DQuat::IDENTITY
+        }
+    };
+    Ok(DMat4::from_scale_rotation_translation(
+        vector("scale", DVec3::ONE)?,
+        rotation,
+        vector("translation", DVec3::ZERO)?,
+    ))
+}

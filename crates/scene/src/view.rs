@@ -1,0 +1,134 @@
+//! The cameras of the file, and the framing of a scene that has none.
+
+use crate::document::Document;
+use crate::error::Fault;
+use crate::json_object::Object;
+use crate::{Scene, SceneCamera};
+use glam::{DMat3, DMat4, DVec3};
+use std::f64::consts::PI;
+
+/// The camera of a node that stands at `world`, if it is a perspective one that can be used.
+pub(crate) fn node_camera(
+    document: &Document<'_>,
+    node: &Object<'_>,
+    world: DMat4,
+) -> Result<Option<SceneCamera>, Fault> {
+    let Some(index) = node.index("camera")? else { return Ok(None) };
+    let camera = document.item("cameras", index, &format!("{}/camera", node.place))?;
+    let skip = |why: &str| {
+        document.warn(format!("{}: {why}; the camera is left out", camera.place));
+        Ok(None)
+    };
+    match camera.required("type", camera.text("type")?)? {
+        "perspective" => {}
+        "orthographic" => return skip("is orthographic, and only perspective cameras have a lens"),
+        other => return skip(&format!("its type {other:?} is unknown")),
+    }
+    let perspective = camera.required("perspective", camera.object("perspective")?)?;
+    let yfov = perspective.required("yfov", perspective.number("yfov")?)?;
+    if !(yfov > 0.0 && yfov < PI) {
+        return skip("its yfov is not between 0 and π");
+    }
+    let aspect = perspective.number("aspectRatio")?.filter(|&aspect| aspect > 0.0);
+    let Some(camera_to_world) = rigid(world) else { return skip("its transform is singular") };
+    let name = camera.name().or(node.name()).map_or_else(|| format!("camera {index}"), String::from);
+    Ok(Some(SceneCamera { name, camera_to_world, yfov, aspect, focus_distance: 1.0 }))
+}
+
+/// The pose in a transform: where it looks (−Z) is kept, up as well as it goes, scale and mirroring are removed.
+fn rigid(world: DMat4) -> Option<DMat4> {
+    let position = world.w_axis.truncate();
+    let back = world.z_axis.truncate().try_normalize()?;
+    let up = world.y_axis.truncate();
+    let up = (up - back * back.dot(up)).try_normalize()?;
+    let axes = DMat3::from_cols(up.cross(back), up, back);
+    position.is_finite().then(|| DMat4::from_mat3_translation(axes, position))
+}
+
+/// A camera that sees the whole scene in a picture at least as wide as high, from the front, right and above.
+pub(crate) fn framing(scene: &Scene) -> SceneCamera {
+    const YFOV: f64 = 0.7;
+    /// Room around the scene.
+    const MARGIN: f64 = 1.1;
+    let (low, high) = scene.bounds();
+    let centre = 0.5 * (low + high);
+    let back = DVec3::new(0.6, 0.45, 1.0).normalize();
+    let right = DVec3::Y.cross(back).normalize();
+    let up = back.cross(right);
+    let tan = (0.5 * YFOV).tan();
+    // A corner at height y and z towards the camera is in view from a distance of at least z + |y| / tan.
+    let corner = |i: u32| {
+        DVec3::from_array([0, 1, 2].map(|axis| if i >> axis & 1 == 0 { low[axis] } else { high[axis] }))
+            - centre
+    };
+    let need = |c: DVec3| c.dot(back) + c.dot(up).abs().max(c.dot(right).abs()) / tan * MARGIN;
+    let distance = (0..8).map(|i| need(corner(i))).fold(0.0, f64::max);
+    // All in one point: any distance will do.
+    let distance = if distance > 0.0 { distance } else { 1.0 };
+    SceneCamera {
+        name: "framing".into(),
+        camera_to_world: DMat4::from_mat3_translation(
+            DMat3::from_cols(right, up, back),
+            centre + distance * back,
+        ),
+        yfov: YFOV,
+        aspect: None,
+        focus_distance: distance,
+    }
+}
+
+/// Sets the focus distances: to the first surface on the axis, else to the middle of the scene.
+pub(crate) fn focus_cameras(scene: &mut Scene) {
+    /// Ray-triangle tests in all; some tenths of a second. Cameras beyond focus on the middle.
+    const MAX_TESTS: usize = 50_000_000;
+    let (low, high) = scene.bounds();
+    let centre = 0.5 * (low + high);
+    let affordable = MAX_TESTS / scene.triangles.len().max(1);
+    let distance = |camera: &SceneCamera, look: bool| {
+        let (origin, axis) =
+            (camera.camera_to_world.w_axis.truncate(), -camera.camera_to_world.z_axis.truncate());
+        let ahead = look.then(|| first_surface(scene, origin, axis)).flatten();
+        ahead.unwrap_or_else(|| {
+            let middle = (centre - origin).dot(axis);
+            // The scene lies behind the camera: as far as it is away.
+            if middle > 0.0 { middle } else { (centre - origin).length().max(f64::MIN_POSITIVE) }
+        })
+    };
+    let distances: Vec<f64> =
+        scene.cameras.iter().enumerate().map(|(i, camera)| distance(camera, i < affordable)).collect();
+    for (camera, distance) in scene.cameras.iter_mut().zip(distances) {
+        camera.focus_distance = distance;
+    }
+}
+
+/// The distance to the nearest triangle along a ray (Möller and Trumbore 1997).
+fn first_surface(scene: &Scene, origin: DVec3, direction: DVec3) -> Option<f64> {
+    let hit = |triangle: u32| {
+        let [a, b, c] = scene.corners(triangle);
+        let (e1, e2) = (b - a, c - a);
+        let p = direction.cross(e2);
+        let det = e1.dot(p);
+        let s = origin - a;
+        let q = s.cross(e1);
+        let (u, v, t) = (s.dot(p) / det, direction.dot(q) / det, e2.dot(q) / det);
+        // A ray in the triangle's plane gives NaN or infinity, which fails.
+        (u >= 0.0 && v >= 0.0 && u + v <= 1.0 && t > 0.0 && t.is_finite()).then_some(t)
+    };
+    (0..scene.triangles.len() as u32).filter_map(hit).min_by(f64::total_cmp)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_pose_loses_scale_and_mirroring() {
+        let world = DMat4::from_translation(DVec3::ONE)
+            * DMat4::from_rotation_y(0.5)
+            * DMat4::from_scale(DVec3::new(-2.0, 3.0, 4.0));
+        let pose = rigid(world).unwrap();
+        let expected = DMat4::from_translation(DVec3::ONE) * DMat4::from_rotation_y(0.5);
+        assert!(pose.abs_diff_eq(expected, 1e-12), "{pose}");
+        assert_eq!(rigid(DMat4::ZERO), None);
+    }
+}
