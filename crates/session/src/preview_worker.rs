@@ -132,7 +132,7 @@ impl Worker {
             }
         };
         baked.summed = Some(camera.clone());
-        let (picture, statistics) = (baked.splatter.picture(), baked.statistics);
+        let (picture, statistics) = (baked.splatter.picture().clone(), baked.statistics);
         self.publish(picture, kind, camera, start, statistics);
         Ok(())
     }
