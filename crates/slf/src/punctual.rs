@@ -1,0 +1,55 @@
+//! The laws of KHR_lights_punctual: what arrives of a light at a point, were nothing in between.
+
+use glam::{DVec3, Vec3};
+use scene::{Light, LightKind};
+
+/// Light that arrives at a point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Arrival {
+    /// Unit direction from which it comes.
+    pub from: DVec3,
+    /// The world position between which and the point nothing may stand.
+    pub source: DVec3,
+    /// Irradiance on a surface that faces it.
+    pub irradiance: Vec3,
+}
+
+/// What arrives of `light` at `position`; `None` if nothing does, or if it is ambient. `beyond` is a distance that leads
+/// out of the scene from anywhere in it: where directional light comes from.
+///
+/// | kind | irradiance |
+/// | --- | --- |
+/// | point | I·w/r², w = max(0, min(1, 1 − (r/range)⁴)) |
+/// | spot | the same, times clamp((cos θ − cos outer)/(cos inner − cos outer), 0, 1)², θ off the axis |
+/// | directional | E |
+pub(crate) fn arrival(light: &Light, position: DVec3, beyond: f64) -> Option<Arrival> {
+    let share = |share: f64| (share > 0.0).then(|| light.intensity * share as f32);
+    match light.kind {
+        LightKind::Ambient => None,
+        LightKind::Directional => {
+            let from = -light.direction;
+            Some(Arrival { from, source: position + from * beyond, irradiance: light.intensity })
+        }
+        LightKind::Point | LightKind::Spot { .. } => {
+            let toward = light.position - position;
+            let r2 = toward.length_squared();
+            let from = toward.normalize_or_zero();
+            let window = (1.0 - (r2 / light.range.powi(2)).powi(2)).clamp(0.0, 1.0);
+            let cone = match light.kind {
+                LightKind::Spot { inner, outer } => cone(light.direction.dot(-from), inner, outer),
+                _ => 1.0,
+            };
+            // At the light itself there is no direction, and no finite irradiance.
+            let irradiance = if r2 > 0.0 { share(window * cone / r2) } else { None };
+            Some(Arrival { from, source: light.position, irradiance: irradiance? })
+        }
+    }
+}
+
+/// A spot light's share of its intensity at an angle of cosine `cos` from its axis.
+fn cone(cos: f64, inner: f64, outer: f64) -> f64 {
+    // KHR_lights_punctual's own guard against a division by zero: the falloff is at least this wide.
+    const NARROWEST_FALLOFF: f64 = 1e-3;
+    let falloff = (inner.cos() - outer.cos()).max(NARROWEST_FALLOFF);
+    ((cos - outer.cos()) / falloff).clamp(0.0, 1.0).powi(2)
+}
