@@ -2,11 +2,16 @@
 
 use glam::{DVec2, Vec2};
 use scene::{Scene, SurfacePoint};
+use sha2::{Digest, Sha256};
+use std::fmt::Write;
 use std::ops::Range;
 
 /// Where every triangle of a scene lies in one texture. Texel coordinates: x right, y down, texel (i, j) is
 /// the square [i, i+1] × [j, j+1].
-#[derive(Clone, Debug)]
+///
+/// Charts do not overlap and lie at least [`crate::MIN_GUTTER`] empty texels apart. A triangle without area has a
+/// place without area.
+#[derive(Clone, Debug, PartialEq)]
 pub struct Atlas {
     /// Columns.
     pub width: u32,
@@ -20,10 +25,14 @@ pub struct Atlas {
     pub charts: Vec<Chart>,
     /// Hex SHA-256 of size and corners: focus maps name the atlas they belong to by it.
     pub hash: String,
+    /// Texels per unit of world length (charts below a texel are finer).
+    pub density: f64,
+    /// What did not go as asked, a sentence each. Not stored.
+    pub notes: Vec<String>,
 }
 
 /// A connected piece of surface in the atlas.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Chart {
     /// The part it belongs to.
     pub part: u32,
@@ -32,7 +41,7 @@ pub struct Chart {
 }
 
 /// What a texel covers.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AtlasTexel {
     /// Column.
     pub x: u32,
@@ -40,11 +49,47 @@ pub struct AtlasTexel {
     pub y: u32,
     /// Exact world area of texel ∩ surface.
     pub area: f64,
-    /// The surface point at the centroid of what it covers (of its largest piece where it covers several).
+    /// The surface point at the centroid of what it covers (of its largest piece, where it covers several and
+    /// the common centroid does not lie on that piece's triangle).
     pub centroid: SurfacePoint,
 }
 
 impl Atlas {
+    /// An atlas of these places; boxes of the charts and hash are computed. `part_of_chart` names the part of each
+    /// chart. Places must be finite, ≥ 0 and within the size.
+    pub fn new(
+        [width, height]: [u32; 2],
+        corners: Vec<[Vec2; 3]>,
+        chart_of: Vec<u32>,
+        part_of_chart: &[u32],
+        density: f64,
+    ) -> Self {
+        let mut boxes = vec![(Vec2::INFINITY, Vec2::NEG_INFINITY); part_of_chart.len()];
+        for (triangle, &chart) in corners.iter().zip(&chart_of) {
+            let (low, high) = &mut boxes[chart as usize];
+            for &corner in triangle {
+                *low = low.min(corner);
+                *high = high.max(corner);
+            }
+        }
+        let charts = part_of_chart
+            .iter()
+            .zip(boxes)
+            .map(|(&part, (low, high))| {
+                let range = |low: f32, high: f32, size: u32| {
+                    if low > high {
+                        return 0..0;
+                    }
+                    let start = (low as u32).min(size.saturating_sub(1));
+                    start..(high.ceil() as u32).clamp(start + 1, size.max(start + 1))
+                };
+                Chart { part, bounds: [range(low.x, high.x, width), range(low.y, high.y, height)] }
+            })
+            .collect();
+        let hash = hash_of(width, height, &corners);
+        Self { width, height, corners, chart_of, charts, hash, density, notes: Vec::new() }
+    }
+
     /// The atlas position of a surface point, in texel coordinates.
     pub fn position_of(&self, point: SurfacePoint) -> DVec2 {
         let [a, b, c] = self.corners[point.triangle as usize].map(Vec2::as_dvec2);
@@ -52,8 +97,25 @@ impl Atlas {
         a * wa + b * wb + c * wc
     }
 
-    /// Every texel that covers some surface, in row order.
-    pub fn texels(&self, _scene: &Scene) -> Vec<AtlasTexel> {
-        todo!()
+    /// Every texel that covers some surface, in row order. Their areas sum to the mesh's (promise P1).
+    pub fn texels(&self, scene: &Scene) -> Vec<AtlasTexel> {
+        crate::coverage::covered_texels(self, scene)
     }
+}
+
+/// SHA-256 over size and corners, little endian, as hex.
+pub(crate) fn hash_of(width: u32, height: u32, corners: &[[Vec2; 3]]) -> String {
+    let mut sha = Sha256::new();
+    sha.update(width.to_le_bytes());
+    sha.update(height.to_le_bytes());
+    let mut buffer = Vec::with_capacity(24 * 1024);
+    for block in corners.chunks(1024) {
+        buffer.clear();
+        buffer.extend(block.iter().flatten().flat_map(|c| [c.x, c.y]).flat_map(f32::to_le_bytes));
+        sha.update(&buffer);
+    }
+    sha.finalize().iter().fold(String::with_capacity(64), |mut hex, byte| {
+        write!(hex, "{byte:02x}").expect("writing to a string");
+        hex
+    })
 }

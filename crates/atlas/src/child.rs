@@ -1,0 +1,308 @@
+//! Engines in child processes: what crashes or hangs there is killed, and the program goes on.
+//!
+//! The child is the running program itself, started with a hidden first argument. Its standard input and output
+//! are unnamed temporary files: no pipe can fill up and block either side, and what a child finished before it
+//! died is read all the same.
+//!
+//! The parent looks after its children by asking them in turn and sleeping in between: waiting for a process
+//! *with a deadline and a cancel* is not in the standard library otherwise. This is the one place below
+//! `session` that reads a clock.
+
+use crate::engine::{Engine, Flattened, Patch};
+use progress::{Cancelled, Progress};
+use std::ffi::OsString;
+use std::fs::File;
+use std::io::{self, BufReader, BufWriter, Read, Seek, Write};
+use std::path::Path;
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+/// The hidden first argument that makes a program a child.
+const WORD: &str = "--unwrap-child";
+
+/// What a child says first. Without it the program is none that knows the word.
+const HELLO: &[u8; 8] = b"unwrap 1";
+
+/// How often the parent looks at its children.
+const POLL: Duration = Duration::from_millis(4);
+
+/// How much longer than its deadline an orphaned child lives.
+const ORPHAN: Duration = Duration::from_secs(5);
+
+/// Triangles or vertices of a patch that a child takes; more is a broken request.
+const LARGEST_PATCH: u32 = 1 << 26;
+
+/// Call this first in `main`: in a child it does the work and ends the process; otherwise it does nothing.
+pub fn run_if_asked() {
+    let arguments: Vec<OsString> = std::env::args_os().collect();
+    if arguments.get(1).is_none_or(|word| word != WORD) {
+        return;
+    }
+    let word = |n: usize| arguments.get(n).and_then(|a| a.to_str());
+    let engine = word(2).and_then(Engine::from_word);
+    let deadline = word(3).and_then(|ms| ms.parse().ok()).map(Duration::from_millis);
+    let (Some(engine), Some(deadline)) = (engine, deadline) else { std::process::exit(2) };
+    // If the parent dies, nobody kills a child that hangs.
+    std::thread::spawn(move || {
+        std::thread::sleep(deadline.saturating_add(ORPHAN));
+        std::process::exit(124);
+    });
+    let done = serve(engine, &mut BufReader::new(io::stdin().lock()), &mut io::stdout().lock());
+    std::process::exit(i32::from(done.is_err()));
+}
+
+/// Flattens patch after patch; every answer is out before the next patch may crash.
+fn serve(engine: Engine, input: &mut impl Read, output: &mut impl Write) -> io::Result<()> {
+    output.write_all(HELLO)?;
+    output.flush()?;
+    let count = read_u32(input)?;
+    for _ in 0..count {
+        let patch = Patch::read(input)?;
+        let flattened = engine.flatten(&patch);
+        let mut answer = Vec::new();
+        write_answer(flattened.as_ref(), &mut answer)?;
+        output.write_all(&answer)?;
+        output.flush()?;
+    }
+    Ok(())
+}
+
+/// What came of a batch of patches.
+pub(crate) struct Answers {
+    /// For each patch its flattening, or nothing.
+    pub flattened: Vec<Option<Flattened>>,
+    /// How many children crashed or were killed at their deadline.
+    pub lost: usize,
+}
+
+/// Why no child can be used.
+#[derive(Debug)]
+pub(crate) enum ChildError {
+    /// The watcher asked to stop; all children are dead.
+    Cancelled,
+    /// The program does not start, or does not know the hidden word.
+    Unusable(String),
+}
+
+/// A child at work on `first..first + count` of the patches.
+struct Running {
+    process: Child,
+    output: File,
+    first: usize,
+    count: usize,
+    started: Instant,
+}
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        // Both fail only for a process that has already ended.
+        let _ = self.process.kill();
+        let _ = self.process.wait();
+    }
+}
+
+/// Flattens patches with several children side by side, each working on at most about `batch` triangles.
+pub(crate) fn flatten(
+    program: &Path,
+    engine: Engine,
+    patches: &[&Patch],
+    batch: usize,
+    deadline: Duration,
+    progress: &dyn Progress,
+) -> Result<Answers, ChildError> {
+    let slots = std::thread::available_parallelism().map_or(1, usize::from);
+    let mut answers = Answers { flattened: vec![None; patches.len()], lost: 0 };
+    let mut waiting = batches(patches, batch).into_iter();
+    let mut running: Vec<Running> = Vec::new();
+    let mut done = 0;
+    loop {
+        while running.len() < slots
+            && let Some((first, count)) = waiting.next()
+        {
+            running.push(start(program, engine, patches, first, count, deadline).map_err(unusable(program))?);
+        }
+        if running.is_empty() {
+            return Ok(answers);
+        }
+        std::thread::sleep(POLL);
+        progress.check()?;
+        let mut still = Vec::new();
+        for mut child in running {
+            let ended = child.process.try_wait().map_err(unusable(program))?;
+            if ended.is_none() && child.started.elapsed() < deadline {
+                still.push(child);
+                continue;
+            }
+            let lost = ended.is_none_or(|status| !status.success());
+            answers.lost += usize::from(lost);
+            done += child.count;
+            collect(&mut child, &mut answers.flattened).map_err(unusable(program))?;
+            progress.report(done as f32 / patches.len() as f32);
+        }
+        running = still;
+    }
+}
+
+fn unusable(program: &Path) -> impl Fn(io::Error) -> ChildError + use<'_> {
+    move |error| ChildError::Unusable(format!("{}: {error}", program.display()))
+}
+
+impl From<Cancelled> for ChildError {
+    fn from(_: Cancelled) -> Self {
+        ChildError::Cancelled
+    }
+}
+
+/// Runs of patches of about so many triangles: first and count.
+fn batches(patches: &[&Patch], triangles: usize) -> Vec<(usize, usize)> {
+    let mut result: Vec<(usize, usize)> = Vec::new();
+    let mut size = usize::MAX;
+    for (i, patch) in patches.iter().enumerate() {
+        match result.last_mut() {
+            Some(last) if size + patch.corners.len() <= triangles => last.1 += 1,
+            _ => {
+                result.push((i, 1));
+                size = 0;
+            }
+        }
+        size += patch.corners.len();
+    }
+    result
+}
+
+fn start(
+    program: &Path,
+    engine: Engine,
+    patches: &[&Patch],
+    first: usize,
+    count: usize,
+    deadline: Duration,
+) -> io::Result<Running> {
+    let mut input = BufWriter::new(tempfile::tempfile()?);
+    input.write_all(&(count as u32).to_le_bytes())?;
+    patches[first..first + count].iter().try_for_each(|patch| patch.write(&mut input))?;
+    let mut input = input.into_inner()?;
+    input.rewind()?;
+    let output = tempfile::tempfile()?;
+    let process = Command::new(program)
+        .args([WORD, engine.word(), &deadline.as_millis().to_string()])
+        .stdin(Stdio::from(input))
+        .stdout(Stdio::from(output.try_clone()?))
+        .stderr(Stdio::null())
+        .spawn()?;
+    Ok(Running { process, output, first, count, started: Instant::now() })
+}
+
+/// Ends a child and takes the answers it gave. Fails where it is no child of ours.
+fn collect(child: &mut Running, flattened: &mut [Option<Flattened>]) -> io::Result<()> {
+    // An error means that it has ended by itself.
+    let _ = child.process.kill();
+    child.process.wait()?;
+    child.output.rewind()?;
+    let mut output = BufReader::new(&child.output);
+    let mut hello = [0; HELLO.len()];
+    if output.read_exact(&mut hello).is_err() || hello != *HELLO {
+        return Err(io::Error::other("does not answer as an unwrapping child"));
+    }
+    for place in &mut flattened[child.first..child.first + child.count] {
+        // A torn answer is that of the patch at which the child died.
+        let Ok(answer) = read_answer(&mut output) else { break };
+        *place = answer;
+    }
+    Ok(())
+}
+
+impl Patch {
+    fn write(&self, output: &mut impl Write) -> io::Result<()> {
+        output.write_all(&(self.positions.len() as u32).to_le_bytes())?;
+        output.write_all(&(self.corners.len() as u32).to_le_bytes())?;
+        self.positions.as_flattened().iter().try_for_each(|x| output.write_all(&x.to_le_bytes()))?;
+        self.corners.as_flattened().iter().try_for_each(|x| output.write_all(&x.to_le_bytes()))
+    }
+
+    fn read(input: &mut impl Read) -> io::Result<Self> {
+        let (vertices, triangles) = (read_count(input)?, read_count(input)?);
+        let mut positions = Vec::with_capacity(vertices);
+        for _ in 0..vertices {
+            positions.push([read_f32(input)?, read_f32(input)?, read_f32(input)?]);
+        }
+        let mut corners = Vec::with_capacity(triangles);
+        for _ in 0..triangles {
+            corners.push([read_u32(input)?, read_u32(input)?, read_u32(input)?]);
+        }
+        Ok(Self { positions, corners })
+    }
+}
+
+/// The number of triangles (0: the engine refused the patch), charts, corners.
+fn write_answer(flattened: Option<&Flattened>, output: &mut impl Write) -> io::Result<()> {
+    let Some(flattened) = flattened else { return output.write_all(&0u32.to_le_bytes()) };
+    output.write_all(&(flattened.chart.len() as u32).to_le_bytes())?;
+    flattened.chart.iter().try_for_each(|x| output.write_all(&x.to_le_bytes()))?;
+    let corners = flattened.corners.as_flattened().as_flattened();
+    corners.iter().try_for_each(|x| output.write_all(&x.to_le_bytes()))
+}
+
+fn read_answer(input: &mut impl Read) -> io::Result<Option<Flattened>> {
+    let triangles = read_count(input)?;
+    if triangles == 0 {
+        return Ok(None);
+    }
+    let mut flattened = Flattened::unplaced(triangles);
+    for chart in &mut flattened.chart {
+        *chart = read_u32(input)?;
+    }
+    for x in flattened.corners.as_flattened_mut().as_flattened_mut() {
+        *x = read_f32(input)?;
+    }
+    Ok(Some(flattened))
+}
+
+fn read_count(input: &mut impl Read) -> io::Result<usize> {
+    let count = read_u32(input)?;
+    if count > LARGEST_PATCH {
+        return Err(io::Error::new(io::ErrorKind::InvalidData, "a patch too large"));
+    }
+    Ok(count as usize)
+}
+
+fn read_u32(input: &mut impl Read) -> io::Result<u32> {
+    let mut bytes = [0; 4];
+    input.read_exact(&mut bytes)?;
+    Ok(u32::from_le_bytes(bytes))
+}
+
+fn read_f32(input: &mut impl Read) -> io::Result<f32> {
+    read_u32(input).map(f32::from_bits)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_request_and_its_answer_survive_the_wire() {
+        let patch = Patch {
+            positions: vec![[0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [0.0, 2.0, 0.0], [2.0, 2.0, 0.5]],
+            corners: vec![[0, 1, 2], [2, 1, 3]],
+        };
+        let mut request = 1u32.to_le_bytes().to_vec();
+        patch.write(&mut request).unwrap();
+        let mut output = Vec::new();
+        serve(Engine::Uvunwrap, &mut request.as_slice(), &mut output).unwrap();
+        let answer = read_answer(&mut &output[HELLO.len()..]).unwrap();
+        assert_eq!(answer, Engine::Uvunwrap.flatten(&patch));
+        assert!(answer.is_some());
+        assert!(
+            read_answer(&mut &output[HELLO.len()..output.len() - 1]).is_err(),
+            "a torn answer is no answer"
+        );
+    }
+
+    #[test]
+    fn batches_hold_at_least_one_patch() {
+        let patch = |n| Patch { positions: Vec::new(), corners: vec![[0; 3]; n] };
+        let patches = [patch(50), patch(3), patch(4), patch(90), patch(1)];
+        assert_eq!(batches(&patches.iter().collect::<Vec<_>>(), 10), [(0, 1), (1, 2), (3, 1), (4, 1)]);
+    }
+}

@@ -1,0 +1,113 @@
+//! The engines that flatten a patch, and what goes in and comes out.
+
+use crate::part_mesh::PartMesh;
+use glam::DVec3;
+use std::collections::HashMap;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+/// The chart of triangles that an engine left out.
+pub(crate) const UNPLACED: u32 = u32::MAX;
+
+/// A connected mesh in f32, centred and scaled to a mean triangle area of 1 (engines have absolute limits).
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Patch {
+    /// Vertex positions.
+    pub positions: Vec<[f32; 3]>,
+    /// Triangles.
+    pub corners: Vec<[u32; 3]>,
+}
+
+/// A patch in the plane, in any scale.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Flattened {
+    /// The chart of each triangle, or [`UNPLACED`].
+    pub chart: Vec<u32>,
+    /// The corners of each triangle.
+    pub corners: Vec<[[f32; 2]; 3]>,
+}
+
+impl Flattened {
+    /// No triangle has a place yet.
+    pub fn unplaced(triangles: usize) -> Self {
+        Self { chart: vec![UNPLACED; triangles], corners: vec![[[0.0; 2]; 3]; triangles] }
+    }
+}
+
+impl Patch {
+    /// Some triangles of a mesh.
+    pub fn new(mesh: &PartMesh, triangles: &[u32]) -> Self {
+        let area: f64 = triangles.iter().map(|&t| 0.5 * mesh.area_normal(t).length()).sum();
+        let scale = (triangles.len() as f64 / area).sqrt();
+        let center = mesh.middle(triangles[0]);
+        let mut patch = Self { positions: Vec::new(), corners: Vec::with_capacity(triangles.len()) };
+        let mut number: HashMap<u32, u32> = HashMap::new();
+        for &triangle in triangles {
+            let corners = mesh.corners[triangle as usize].map(|v| {
+                *number.entry(v).or_insert_with(|| {
+                    let position: DVec3 = (mesh.positions[v as usize] - center) * scale;
+                    patch.positions.push(position.as_vec3().to_array());
+                    patch.positions.len() as u32 - 1
+                })
+            });
+            patch.corners.push(corners);
+        }
+        patch
+    }
+}
+
+/// What flattens patches.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Engine {
+    /// The C++ library: low distortion and few charts, but it may crash or hang.
+    Xatlas,
+    /// The pure-Rust library.
+    Uvunwrap,
+}
+
+impl Engine {
+    /// Its name on the child's command line.
+    pub fn word(self) -> &'static str {
+        match self {
+            Engine::Xatlas => "xatlas",
+            Engine::Uvunwrap => "uvunwrap",
+        }
+    }
+
+    /// The engine of a name.
+    pub fn from_word(word: &str) -> Option<Self> {
+        [Engine::Xatlas, Engine::Uvunwrap].into_iter().find(|engine| engine.word() == word)
+    }
+
+    /// Flattens a patch; `None` where it cannot.
+    pub fn flatten(self, patch: &Patch) -> Option<Flattened> {
+        match self {
+            Engine::Xatlas => crate::xatlas::flatten(patch),
+            Engine::Uvunwrap => uvunwrap(patch, &|| false),
+        }
+    }
+}
+
+/// Flattens a patch with uvunwrap, until `cancelled`. A panic of the library counts as failure.
+pub(crate) fn uvunwrap(patch: &Patch, cancelled: &(dyn Fn() -> bool + Sync)) -> Option<Flattened> {
+    let mesh = uvunwrap::MeshInput::new(&patch.positions, patch.corners.as_flattened());
+    // Its packing is not used: the fastest will do, with charts large enough that f32 keeps their shape.
+    let options = uvunwrap::Options {
+        density: uvunwrap::Density::Fixed { texels_per_unit: 16.0, page_size: None },
+        packing: uvunwrap::Packing::Fast,
+        padding: 0,
+        ..uvunwrap::Options::default()
+    };
+    let unwrap = || uvunwrap::generate_with_progress(&[mesh], &options, |_| !cancelled());
+    let atlas = catch_unwind(AssertUnwindSafe(unwrap)).ok()?.ok()?;
+    let size = [atlas.width as f32, atlas.height as f32];
+    let mesh = atlas.meshes.first()?;
+    let mut flattened = Flattened::unplaced(patch.corners.len());
+    for (triangle, corners) in mesh.indices.chunks_exact(3).enumerate().take(patch.corners.len()) {
+        let [a, b, c] = [0, 1, 2].map(|k| mesh.vertices.get(corners[k] as usize));
+        let (a, b, c) = (a?, b?, c?);
+        let one_chart = a.chart == b.chart && b.chart == c.chart;
+        flattened.chart[triangle] = a.chart.filter(|_| one_chart).unwrap_or(UNPLACED);
+        flattened.corners[triangle] = [a, b, c].map(|v| [v.uv[0] * size[0], v.uv[1] * size[1]]);
+    }
+    Some(flattened)
+}

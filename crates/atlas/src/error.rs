@@ -1,0 +1,61 @@
+//! What can go wrong between a scene and its atlas.
+
+use progress::Cancelled;
+use std::path::PathBuf;
+
+/// Why there is no atlas, or why one cannot be used.
+#[derive(Debug, thiserror::Error)]
+pub enum AtlasError {
+    /// The watcher asked to stop.
+    #[error("cancelled")]
+    Cancelled,
+    /// The scene has nothing to unwrap.
+    #[error("the scene has no triangles (nothing to unwrap)")]
+    NoTriangles,
+    /// Even at one texel a chart the charts do not fit.
+    #[error(
+        "{charts} separate pieces of surface do not fit an atlas of {side}×{side} texels (join the mesh's faces, or remove parts)"
+    )]
+    TooManyCharts {
+        /// How many pieces.
+        charts: usize,
+        /// The largest atlas side.
+        side: u32,
+    },
+    /// Stored bytes are no atlas, or not of this scene.
+    #[error("the stored atlas is unusable: {reason} (unwrap the scene again)")]
+    Stored {
+        /// What is wrong with them.
+        reason: String,
+    },
+    /// A texture of the scene could not be encoded.
+    #[error("image {name}: cannot be written as PNG: {source} (check its size)")]
+    Texture {
+        /// The image's name.
+        name: String,
+        /// Why.
+        source: png::EncodingError,
+    },
+    /// The exported file would be larger than the format allows.
+    #[error(
+        "the exported file would take {bytes} bytes, more than a GLB can hold (export fewer parts or smaller textures)"
+    )]
+    GlbTooLarge {
+        /// Its size.
+        bytes: u64,
+    },
+    /// A file could not be written.
+    #[error("{}: {source} (check the folder and the free space)", path.display())]
+    Write {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: std::io::Error,
+    },
+}
+
+impl From<Cancelled> for AtlasError {
+    fn from(_: Cancelled) -> Self {
+        AtlasError::Cancelled
+    }
+}

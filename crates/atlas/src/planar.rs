@@ -1,0 +1,114 @@
+//! Unwrapping without an engine: project along the mean normal, split where that folds or overlaps.
+//!
+//! It cannot fail: a piece that does not project well is halved, and a single triangle is laid out true to shape.
+//! Used for flat pieces, where it is exact, and for whatever the engines could not do.
+
+use crate::chart::{LooseChart, area};
+use crate::overlap::overlaps;
+use crate::part_mesh::PartMesh;
+use glam::{DVec2, DVec3};
+
+/// Triangles grow into a piece while their normal is within this of its first triangle's (cos 45°).
+const GROW_COSINE: f64 = std::f64::consts::FRAC_1_SQRT_2;
+
+/// A piece counts as flat where every normal is this close to the mean one: 1 − cos of 0.5°.
+const FLAT: f64 = 4e-5;
+
+/// Charts of these triangles of a mesh.
+pub(crate) fn charts(mesh: &PartMesh, triangles: &[u32]) -> Vec<LooseChart> {
+    let mut charts = Vec::new();
+    for piece in cones(mesh, triangles) {
+        split_until_sound(mesh, piece, &mut charts);
+    }
+    charts
+}
+
+/// The chart of a connected piece if it is flat (and, projected, free of overlap).
+pub(crate) fn flat_chart(mesh: &PartMesh, triangles: &[u32]) -> Option<LooseChart> {
+    let normal = mean_normal(mesh, triangles)?;
+    let flat = |&t: &u32| mesh.area_normal(t).normalize_or_zero().dot(normal) > 1.0 - FLAT;
+    if !triangles.iter().all(flat) {
+        return None;
+    }
+    project(mesh, triangles)
+}
+
+/// Connected pieces whose normals lie within a cone, grown from the triangles in order.
+fn cones(mesh: &PartMesh, triangles: &[u32]) -> Vec<Vec<u32>> {
+    let normals: Vec<DVec3> =
+        (0..mesh.triangles.len() as u32).map(|t| mesh.area_normal(t).normalize_or_zero()).collect();
+    let mut waiting = vec![false; mesh.triangles.len()];
+    triangles.iter().for_each(|&t| waiting[t as usize] = true);
+    let mut pieces = Vec::new();
+    for &first in triangles {
+        if !std::mem::take(&mut waiting[first as usize]) {
+            continue;
+        }
+        let mut piece = vec![first];
+        let mut next = 0;
+        while let Some(&triangle) = piece.get(next) {
+            next += 1;
+            for neighbour in mesh.neighbours[triangle as usize] {
+                let within = |n: u32| normals[n as usize].dot(normals[first as usize]) > GROW_COSINE;
+                if waiting.get(neighbour as usize) == Some(&true) && within(neighbour) {
+                    waiting[neighbour as usize] = false;
+                    piece.push(neighbour);
+                }
+            }
+        }
+        pieces.push(piece);
+    }
+    pieces
+}
+
+fn split_until_sound(mesh: &PartMesh, piece: Vec<u32>, charts: &mut Vec<LooseChart>) {
+    let mut pieces = vec![piece];
+    while let Some(piece) = pieces.pop() {
+        if let [single] = piece[..] {
+            let corners = mesh.corner_positions(single);
+            charts.push(LooseChart::of_triangle(mesh.part, mesh.triangles[single as usize], corners));
+        } else if let Some(chart) = project(mesh, &piece) {
+            charts.push(chart);
+        } else {
+            for half in halves(mesh, piece) {
+                // A half need not hang together; a chart must.
+                pieces.extend(mesh.pieces(&half, |_, _| true));
+            }
+        }
+    }
+}
+
+/// The two halves of a piece by position along its longest extent.
+fn halves(mesh: &PartMesh, mut piece: Vec<u32>) -> [Vec<u32>; 2] {
+    let (low, high) = piece.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), &t| {
+        (low.min(mesh.middle(t)), high.max(mesh.middle(t)))
+    });
+    let axis = (high - low).max_position();
+    let at = piece.len() / 2;
+    let key = |t: &u32| mesh.middle(*t)[axis];
+    piece.select_nth_unstable_by(at, |a, b| key(a).total_cmp(&key(b)).then(a.cmp(b)));
+    let second = piece.split_off(at);
+    [piece, second]
+}
+
+fn mean_normal(mesh: &PartMesh, triangles: &[u32]) -> Option<DVec3> {
+    triangles.iter().map(|&t| mesh.area_normal(t)).sum::<DVec3>().try_normalize()
+}
+
+/// The projection along the mean normal, if every triangle faces it and none overlap.
+fn project(mesh: &PartMesh, triangles: &[u32]) -> Option<LooseChart> {
+    let normal = mean_normal(mesh, triangles)?;
+    let (x, y) = normal.any_orthonormal_pair();
+    let origin = mesh.middle(triangles[0]);
+    let flat = |p: DVec3| DVec2::new((p - origin).dot(x), (p - origin).dot(y));
+    let worlds: Vec<_> = triangles.iter().map(|&t| mesh.corner_positions(t)).collect();
+    let corners: Vec<_> = worlds.iter().map(|w| w.map(flat)).collect();
+    // The pair (x, y, normal) is right-handed, so that front faces run from x to y.
+    if !corners.iter().all(|&c| area(c) > 0.0) || overlaps(&corners) {
+        return None;
+    }
+    let scene_triangles = triangles.iter().map(|&t| mesh.triangles[t as usize]).collect();
+    let mut chart = LooseChart { part: mesh.part, triangles: scene_triangles, corners, turnable: true };
+    chart.scale_to_world(&worlds)?;
+    Some(chart)
+}

@@ -1,0 +1,70 @@
+//! From texels to the surface.
+
+use crate::dilation::{Dilation, dilations};
+use crate::{Atlas, AtlasTexel};
+use glam::{DVec3, Vec3};
+use rayon::prelude::*;
+use scene::Scene;
+
+/// The index of texels that cover no surface.
+pub const NO_TEXEL: u32 = u32::MAX;
+
+/// What every texel of an atlas covers, where that is in the world, and how the gutter is filled.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TexelMap {
+    /// Columns.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+    /// The covered texels in row order.
+    pub texels: Vec<AtlasTexel>,
+    /// For each texel of the atlas, row by row, its index in `texels`, or [`NO_TEXEL`].
+    pub index: Vec<u32>,
+    /// World position of each covered texel's centroid.
+    pub positions: Vec<DVec3>,
+    /// Unit geometric normal of each covered texel, on the front; zero only where the triangle's is not finite.
+    pub normals: Vec<Vec3>,
+    /// Gutter texels and their sources, sorted by source.
+    pub dilations: Vec<Dilation>,
+}
+
+impl TexelMap {
+    /// The covered texel at a column and row.
+    pub fn at(&self, x: u32, y: u32) -> Option<&AtlasTexel> {
+        if x >= self.width || y >= self.height {
+            return None;
+        }
+        self.texels.get(self.index[y as usize * self.width as usize + x as usize] as usize)
+    }
+}
+
+impl Atlas {
+    /// The way back from every texel to the surface. Takes a fraction of a second for 2048².
+    pub fn texel_map(&self, scene: &Scene) -> TexelMap {
+        let (width, height) = (self.width, self.height);
+        let texels = self.texels(scene);
+        let mut index = vec![NO_TEXEL; width as usize * height as usize];
+        for (i, texel) in texels.iter().enumerate() {
+            index[texel.y as usize * width as usize + texel.x as usize] = i as u32;
+        }
+        let surface = |texel: &AtlasTexel| {
+            let normal = scene.area_normal(texel.centroid.triangle).normalize_or_zero();
+            (texel.centroid.position(scene), normal.as_vec3())
+        };
+        let (positions, normals) = texels.par_iter().map(surface).unzip();
+        let dilations = dilations(width, height, &index);
+        TexelMap { width, height, texels, index, positions, normals, dilations }
+    }
+
+    /// Gives every gutter texel within [`crate::DILATION_RADIUS`] of a chart the value of the nearest covered texel.
+    /// `data` holds a value a texel, row by row; of a wrong length it is left as it is beyond what both have.
+    pub fn dilate<T: Copy>(&self, covered: &TexelMap, data: &mut [T]) {
+        for &Dilation { texel, source } in &covered.dilations {
+            if let Some(&value) = data.get(source as usize)
+                && let Some(place) = data.get_mut(texel as usize)
+            {
+                *place = value;
+            }
+        }
+    }
+}

@@ -1,0 +1,292 @@
+//! From a scene to its atlas.
+
+use crate::chart::{LooseChart, area};
+use crate::child::{self, ChildError};
+use crate::engine::{Engine, Flattened, Patch, UNPLACED, uvunwrap};
+use crate::islands::is_badly_stretched;
+use crate::overlap::overlaps;
+use crate::pack::{Packed, pack};
+use crate::part_mesh::{CheckedPart, PartMesh};
+use crate::patches::PATCH_TRIANGLES;
+use crate::{Atlas, AtlasError, UnwrapOptions, UvPolicy, islands, patches, planar};
+use glam::{DVec2, DVec3, Vec2};
+use progress::{Progress, Stage};
+use rayon::prelude::*;
+use scene::Scene;
+use std::collections::{BTreeMap, HashMap};
+
+impl Atlas {
+    /// Gives every triangle of the scene a place of its own.
+    ///
+    /// Every scene with a triangle gets an atlas: what the engines cannot do is projected, and triangles without
+    /// area get places without area. What did not go as asked is told in [`Atlas::notes`].
+    ///
+    /// # Errors
+    /// Cancelled; no triangle; more separate pieces than the largest atlas holds.
+    pub fn unwrap(
+        scene: &Scene,
+        options: &UnwrapOptions,
+        progress: &dyn Progress,
+    ) -> Result<Self, AtlasError> {
+        if scene.triangles.is_empty() {
+            return Err(AtlasError::NoTriangles);
+        }
+        let parts: Vec<PreparedPart> = (0..scene.parts.len() as u32)
+            .into_par_iter()
+            .map(|part| {
+                progress.check()?;
+                Ok(PreparedPart::new(scene, part, options.uv))
+            })
+            .collect::<Result<_, AtlasError>>()?;
+        progress.report(0.1);
+
+        let mut notes = Vec::new();
+        let mut charts = flatten_patches(&parts, options, &Stage::new(progress, 0.1, 0.8), &mut notes)?;
+        charts.extend(parts.iter().flat_map(|part| part.charts.iter().cloned()));
+        // A part of which nothing has area gets a chart of one point.
+        for (part, prepared) in parts.iter().enumerate() {
+            if prepared.meshes.is_empty() && !prepared.set_aside.is_empty() {
+                let triangles = prepared.set_aside.clone();
+                let corners = vec![[DVec2::ZERO; 3]; triangles.len()];
+                charts.push(LooseChart { part: part as u32, triangles, corners, turnable: false });
+            }
+        }
+        charts.sort_by_key(|chart| (chart.part, chart.triangles[0]));
+
+        let packed = pack(&charts, options.density, options.gutter, &Stage::new(progress, 0.8, 1.0))?;
+        notes.extend(packed.notes.iter().cloned());
+        let mut atlas = assemble(scene, &charts, packed, &parts);
+        atlas.notes = notes;
+        progress.report(1.0);
+        Ok(atlas)
+    }
+}
+
+/// A part on its way: what needs no engine is a chart already.
+struct PreparedPart {
+    meshes: Vec<PartMesh>,
+    set_aside: Vec<u32>,
+    charts: Vec<LooseChart>,
+    /// Pieces for the engines: the mesh and its triangles.
+    patches: Vec<(usize, Vec<u32>)>,
+}
+
+impl PreparedPart {
+    fn new(scene: &Scene, part: u32, policy: UvPolicy) -> Self {
+        let checked = CheckedPart::new(scene, part);
+        let kept = match policy {
+            UvPolicy::Auto => islands::kept(scene, part, &checked),
+            UvPolicy::Ignore => None,
+        };
+        let CheckedPart { meshes, set_aside } = checked;
+        let mut prepared = Self { meshes, set_aside, charts: Vec::new(), patches: Vec::new() };
+        match kept {
+            Some(charts) => prepared.charts = charts,
+            None => prepared.cut(),
+        }
+        prepared
+    }
+
+    /// Flat pieces become charts; the others patches.
+    fn cut(&mut self) {
+        for (index, mesh) in self.meshes.iter().enumerate() {
+            let all: Vec<u32> = (0..mesh.triangles.len() as u32).collect();
+            for piece in mesh.pieces(&all, |_, _| true) {
+                if let [single] = piece[..] {
+                    let triangle = mesh.triangles[single as usize];
+                    self.charts.push(LooseChart::of_triangle(
+                        mesh.part,
+                        triangle,
+                        mesh.corner_positions(single),
+                    ));
+                } else if let Some(chart) = planar::flat_chart(mesh, &piece) {
+                    self.charts.push(chart);
+                } else {
+                    self.patches.extend(patches::cut(mesh, piece).into_iter().map(|patch| (index, patch)));
+                }
+            }
+        }
+    }
+}
+
+/// The charts of all patches: by the engines in turn, and by projection where they fail.
+fn flatten_patches(
+    parts: &[PreparedPart],
+    options: &UnwrapOptions,
+    progress: &dyn Progress,
+    notes: &mut Vec<String>,
+) -> Result<Vec<LooseChart>, AtlasError> {
+    let work: Vec<(&PartMesh, &[u32])> = parts
+        .iter()
+        .flat_map(|part| part.patches.iter().map(|(mesh, patch)| (&part.meshes[*mesh], patch.as_slice())))
+        .collect();
+    if work.is_empty() {
+        return Ok(Vec::new());
+    }
+    let requests: Vec<Patch> = work.par_iter().map(|(mesh, triangles)| Patch::new(mesh, triangles)).collect();
+    let flattened = run_engines(&requests, options, progress, notes)?;
+    let charts: Vec<Vec<LooseChart>> = work
+        .par_iter()
+        .zip(&flattened)
+        .map(|(&(mesh, triangles), flattened)| {
+            progress.check()?;
+            Ok(match flattened {
+                Some(flattened) => sound_charts(mesh, triangles, flattened),
+                None => planar::charts(mesh, triangles),
+            })
+        })
+        .collect::<Result<_, AtlasError>>()?;
+    let failed = flattened.iter().filter(|f| f.is_none()).count();
+    if failed > 0 {
+        notes.push(format!(
+            "{failed} of {} patches were projected: no unwrapping engine could do them",
+            work.len()
+        ));
+    }
+    Ok(charts.concat())
+}
+
+fn run_engines(
+    patches: &[Patch],
+    options: &UnwrapOptions,
+    progress: &dyn Progress,
+    notes: &mut Vec<String>,
+) -> Result<Vec<Option<Flattened>>, AtlasError> {
+    let mut flattened: Vec<Option<Flattened>> = vec![None; patches.len()];
+    let open = |flattened: &[Option<Flattened>]| -> Vec<usize> {
+        (0..patches.len()).filter(|&i| flattened[i].is_none()).collect()
+    };
+    if let Some(program) = &options.child {
+        for engine in [Engine::Xatlas, Engine::Uvunwrap] {
+            let waiting = open(&flattened);
+            if waiting.is_empty() {
+                return Ok(flattened);
+            }
+            let requests: Vec<&Patch> = waiting.iter().map(|&i| &patches[i]).collect();
+            match child::flatten(
+                program,
+                engine,
+                &requests,
+                batch_size(&requests),
+                options.deadline,
+                progress,
+            ) {
+                Ok(answers) => {
+                    if answers.lost > 0 {
+                        notes.push(format!(
+                            "{} failed on {} batches of patches",
+                            engine.word(),
+                            answers.lost
+                        ));
+                    }
+                    for (&i, answer) in waiting.iter().zip(answers.flattened) {
+                        let triangles = patches[i].corners.len();
+                        flattened[i] = answer.filter(|answer| answer.chart.len() == triangles);
+                    }
+                }
+                Err(ChildError::Cancelled) => return Err(AtlasError::Cancelled),
+                Err(ChildError::Unusable(reason)) => {
+                    notes.push(format!("unwrapping ran in this process: {reason}"));
+                    break;
+                }
+            }
+            if engine == Engine::Uvunwrap {
+                return Ok(flattened);
+            }
+        }
+    }
+    let waiting = open(&flattened);
+    for (n, &i) in waiting.iter().enumerate() {
+        progress.check()?;
+        flattened[i] = uvunwrap(&patches[i], &|| progress.cancelled());
+        progress.report((n + 1) as f32 / waiting.len() as f32);
+    }
+    progress.check()?;
+    Ok(flattened)
+}
+
+/// Triangles of a child's batch: enough that starting it does not count, few enough that all cores stay busy.
+fn batch_size(patches: &[&Patch]) -> usize {
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    let triangles: usize = patches.iter().map(|p| p.corners.len()).sum();
+    (triangles / (3 * cores)).clamp(PATCH_TRIANGLES, 4 * PATCH_TRIANGLES)
+}
+
+/// An engine's charts, checked: whatever folds, overlaps or is badly stretched is projected instead.
+fn sound_charts(mesh: &PartMesh, triangles: &[u32], flattened: &Flattened) -> Vec<LooseChart> {
+    let mut by_chart: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
+    for (i, &chart) in flattened.chart.iter().enumerate() {
+        by_chart.entry(chart).or_default().push(i);
+    }
+    let mut charts = Vec::new();
+    let mut left: Vec<u32> = Vec::new();
+    for (number, mut members) in by_chart {
+        if number == UNPLACED {
+            left.extend(members.iter().map(|&i| triangles[i]));
+            continue;
+        }
+        let plane = |i: usize| flattened.corners[i].map(|[x, y]| DVec2::new(x.into(), y.into()));
+        let orientation = members.iter().map(|&i| area(plane(i))).sum::<f64>().signum();
+        members.retain(|&i| {
+            let sound = area(plane(i)) * orientation > 0.0;
+            if !sound {
+                left.push(triangles[i]);
+            }
+            sound
+        });
+        if members.is_empty() {
+            continue;
+        }
+        let worlds: Vec<[DVec3; 3]> = members.iter().map(|&i| mesh.corner_positions(triangles[i])).collect();
+        let mut chart = LooseChart {
+            part: mesh.part,
+            triangles: members.iter().map(|&i| mesh.triangles[triangles[i] as usize]).collect(),
+            corners: members.iter().map(|&i| plane(i)).collect(),
+            turnable: true,
+        };
+        let sound = chart.scale_to_world(&worlds).is_some()
+            && !is_badly_stretched(&chart, &worlds)
+            && !overlaps(&chart.corners);
+        if sound {
+            charts.push(chart);
+        } else {
+            left.extend(members.iter().map(|&i| triangles[i]));
+        }
+    }
+    charts.extend(planar::charts(mesh, &left));
+    charts
+}
+
+/// Puts the packed charts and what was set aside into the atlas.
+fn assemble(scene: &Scene, charts: &[LooseChart], packed: Packed, parts: &[PreparedPart]) -> Atlas {
+    let mut corners = vec![[Vec2::ZERO; 3]; scene.triangles.len()];
+    let mut chart_of = vec![0; scene.triangles.len()];
+    let mut placed = vec![false; scene.triangles.len()];
+    for (number, (chart, places)) in charts.iter().zip(&packed.corners).enumerate() {
+        for (&triangle, &place) in chart.triangles.iter().zip(places) {
+            corners[triangle as usize] = place;
+            chart_of[triangle as usize] = number as u32;
+            placed[triangle as usize] = true;
+        }
+    }
+    for prepared in parts.iter().filter(|part| !part.meshes.is_empty() && !part.set_aside.is_empty()) {
+        // A triangle without area lies in a corner of a neighbour, or else of the part's first triangle.
+        let mut at_vertex: HashMap<u32, (Vec2, u32)> = HashMap::new();
+        for &triangle in prepared.meshes.iter().flat_map(|mesh| &mesh.triangles) {
+            let vertices = scene.triangles[triangle as usize].vertices;
+            for (vertex, corner) in vertices.into_iter().zip(corners[triangle as usize]) {
+                at_vertex.entry(vertex).or_insert((corner, chart_of[triangle as usize]));
+            }
+        }
+        let first = prepared.meshes[0].triangles[0] as usize;
+        let fallback = (corners[first][0], chart_of[first]);
+        for &triangle in prepared.set_aside.iter().filter(|&&t| !placed[t as usize]) {
+            let vertices = scene.triangles[triangle as usize].vertices;
+            let (place, chart) = vertices.iter().find_map(|v| at_vertex.get(v).copied()).unwrap_or(fallback);
+            corners[triangle as usize] = [place; 3];
+            chart_of[triangle as usize] = chart;
+        }
+    }
+    let part_of_chart: Vec<u32> = charts.iter().map(|chart| chart.part).collect();
+    Atlas::new([packed.width, packed.height], corners, chart_of, &part_of_chart, packed.density)
+}
