@@ -1,5 +1,8 @@
 //! The window.
 
+mod false_colour;
+mod paint_view;
+
 use std::path::PathBuf;
 
 /// What the window starts with.

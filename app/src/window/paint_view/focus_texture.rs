@@ -1,0 +1,71 @@
+//! The focus map on the graphics card, kept up to date rectangle by rectangle.
+
+use super::graphics::{GraphicsError, guarded};
+use focus::FocusMap;
+use std::ops::Range;
+
+/// t and anchor a texel, as floats: t is too close to 1 for half floats to tell a pixel of blur.
+pub struct FocusTexture {
+    texture: wgpu::Texture,
+}
+
+impl FocusTexture {
+    /// The format: unfiltered, the shader interpolates.
+    const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rg32Float;
+
+    /// Copies the whole map.
+    pub fn new(device: &wgpu::Device, queue: &wgpu::Queue, map: &FocusMap) -> Result<Self, GraphicsError> {
+        let texture = guarded(device, || {
+            let texture = device.create_texture(&wgpu::TextureDescriptor {
+                label: Some("focus map"),
+                size: wgpu::Extent3d { width: map.width.max(1), height: map.height.max(1), depth_or_array_layers: 1 },
+                mip_level_count: 1,
+                sample_count: 1,
+                dimension: wgpu::TextureDimension::D2,
+                format: Self::FORMAT,
+                usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+                view_formats: &[],
+            });
+            Self { texture }
+        })?;
+        texture.update(queue, map, 0..map.width, 0..map.height);
+        Ok(texture)
+    }
+
+    /// Columns and rows.
+    pub fn size(&self) -> (u32, u32) {
+        (self.texture.width(), self.texture.height())
+    }
+
+    /// What the shader reads.
+    pub fn view(&self) -> wgpu::TextureView {
+        self.texture.create_view(&wgpu::TextureViewDescriptor::default())
+    }
+
+    /// Copies a rectangle of the map, which has the texture's size.
+    pub fn update(&self, queue: &wgpu::Queue, map: &FocusMap, columns: Range<u32>, rows: Range<u32>) {
+        let columns = columns.start.min(map.width)..columns.end.min(map.width);
+        let rows = rows.start.min(map.height)..rows.end.min(map.height);
+        if columns.is_empty() || rows.is_empty() || self.size() != (map.width, map.height) {
+            return;
+        }
+        let bytes_per_texel = size_of::<[f32; 2]>();
+        let first = rows.start as usize * map.width as usize + columns.start as usize;
+        let last = (rows.end as usize - 1) * map.width as usize + columns.end as usize;
+        queue.write_texture(
+            wgpu::TexelCopyTextureInfo {
+                texture: &self.texture,
+                mip_level: 0,
+                origin: wgpu::Origin3d { x: columns.start, y: rows.start, z: 0 },
+                aspect: wgpu::TextureAspect::All,
+            },
+            bytemuck::cast_slice(&map.texels[first..last]),
+            wgpu::TexelCopyBufferLayout {
+                offset: 0,
+                bytes_per_row: Some(map.width * bytes_per_texel as u32),
+                rows_per_image: None,
+            },
+            wgpu::Extent3d { width: columns.len() as u32, height: rows.len() as u32, depth_or_array_layers: 1 },
+        );
+    }
+}

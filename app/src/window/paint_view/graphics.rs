@@ -1,0 +1,41 @@
+//! Errors of the graphics card, caught where they happen instead of ending the program.
+
+use std::task::{Context, Poll, Waker};
+
+/// The graphics card could not do what was asked.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum GraphicsError {
+    /// Its memory is full.
+    #[error("paint view: the scene does not fit the graphics memory (close other programs, or open a smaller scene)")]
+    OutOfMemory,
+    /// It refused a resource.
+    #[error("paint view: the graphics driver refused the scene: {0} (update the driver, or open a smaller scene)")]
+    Refused(String),
+}
+
+/// Runs `work` and returns what went wrong on `device` meanwhile.
+pub fn guarded<T>(device: &wgpu::Device, work: impl FnOnce() -> T) -> Result<T, GraphicsError> {
+    let refused = device.push_error_scope(wgpu::ErrorFilter::Validation);
+    let memory = device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
+    let done = work();
+    if ready(memory.pop()).flatten().is_some() {
+        drop(refused);
+        return Err(GraphicsError::OutOfMemory);
+    }
+    match ready(refused.pop()).flatten() {
+        Some(error) => Err(GraphicsError::Refused(first_line(&error.to_string()))),
+        None => Ok(done),
+    }
+}
+
+/// The result of a future that native wgpu has ready at once.
+fn ready<T>(future: impl Future<Output = T>) -> Option<T> {
+    match std::pin::pin!(future).poll(&mut Context::from_waker(Waker::noop())) {
+        Poll::Ready(value) => Some(value),
+        Poll::Pending => None,
+    }
+}
+
+fn first_line(text: &str) -> String {
+    text.lines().map(str::trim).find(|line| !line.is_empty()).unwrap_or_default().to_string()
+}
