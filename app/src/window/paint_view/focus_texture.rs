@@ -18,7 +18,7 @@ impl FocusTexture {
         let texture = guarded(device, || {
             let texture = device.create_texture(&wgpu::TextureDescriptor {
                 label: Some("focus map"),
-                size: wgpu::Extent3d { width: map.width.max(1), height: map.height.max(1), depth_or_array_layers: 1 },
+                size: wgpu::Extent3d { width: map.width(), height: map.height(), depth_or_array_layers: 1 },
                 mip_level_count: 1,
                 sample_count: 1,
                 dimension: wgpu::TextureDimension::D2,
@@ -28,7 +28,7 @@ impl FocusTexture {
             });
             Self { texture }
         })?;
-        texture.update(queue, map, 0..map.width, 0..map.height);
+        texture.update(queue, map, 0..map.width(), 0..map.height());
         Ok(texture)
     }
 
@@ -44,14 +44,15 @@ impl FocusTexture {
 
     /// Copies a rectangle of the map, which has the texture's size.
     pub fn update(&self, queue: &wgpu::Queue, map: &FocusMap, columns: Range<u32>, rows: Range<u32>) {
-        let columns = columns.start.min(map.width)..columns.end.min(map.width);
-        let rows = rows.start.min(map.height)..rows.end.min(map.height);
-        if columns.is_empty() || rows.is_empty() || self.size() != (map.width, map.height) {
+        let columns = columns.start.min(map.width())..columns.end.min(map.width());
+        let rows = rows.start.min(map.height())..rows.end.min(map.height());
+        if columns.is_empty() || rows.is_empty() || self.size() != (map.width(), map.height()) {
             return;
         }
-        let bytes_per_texel = size_of::<[f32; 2]>();
-        let first = rows.start as usize * map.width as usize + columns.start as usize;
-        let last = (rows.end as usize - 1) * map.width as usize + columns.end as usize;
+        let mut texels = Vec::with_capacity(columns.len() * rows.len());
+        for y in rows.clone() {
+            texels.extend(columns.clone().map(|x| map.texel(x, y)));
+        }
         queue.write_texture(
             wgpu::TexelCopyTextureInfo {
                 texture: &self.texture,
@@ -59,10 +60,10 @@ impl FocusTexture {
                 origin: wgpu::Origin3d { x: columns.start, y: rows.start, z: 0 },
                 aspect: wgpu::TextureAspect::All,
             },
-            bytemuck::cast_slice(&map.texels[first..last]),
+            bytemuck::cast_slice(&texels),
             wgpu::TexelCopyBufferLayout {
                 offset: 0,
-                bytes_per_row: Some(map.width * bytes_per_texel as u32),
+                bytes_per_row: Some((columns.len() * size_of::<[f32; 2]>()) as u32),
                 rows_per_image: None,
             },
             wgpu::Extent3d { width: columns.len() as u32, height: rows.len() as u32, depth_or_array_layers: 1 },

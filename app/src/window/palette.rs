@@ -1,0 +1,119 @@
+//! The command palette: every command by a part of its name, with its key beside it.
+
+use egui::{Align2, Context, Id, Key, RichText};
+use session::{COMMANDS, CommandId, CommandInfo};
+
+/// The palette's state between frames.
+#[derive(Default)]
+pub struct Palette {
+    open: bool,
+    query: String,
+    chosen: usize,
+}
+
+impl Palette {
+    /// Opens it with an empty query, or closes it.
+    pub fn toggle(&mut self) {
+        *self = Self { open: !self.open, ..Self::default() };
+    }
+
+    /// Whether it has the keyboard.
+    pub fn is_open(&self) -> bool {
+        self.open
+    }
+
+    /// Draws it and returns the command that was chosen.
+    pub fn show(&mut self, context: &Context) -> Option<CommandId> {
+        if !self.open {
+            return None;
+        }
+        let found = matches(&self.query);
+        let mut run = None;
+        context.input_mut(|input| {
+            if input.consume_key(egui::Modifiers::NONE, Key::Escape) {
+                self.open = false;
+            }
+            if input.consume_key(egui::Modifiers::NONE, Key::ArrowDown) {
+                self.chosen += 1;
+            }
+            if input.consume_key(egui::Modifiers::NONE, Key::ArrowUp) {
+                self.chosen = self.chosen.saturating_sub(1);
+            }
+            if input.consume_key(egui::Modifiers::NONE, Key::Enter) {
+                run = found.get(self.chosen).map(|info| info.id);
+            }
+        });
+        self.chosen = self.chosen.min(found.len().saturating_sub(1));
+        let window = egui::Window::new("Command palette").id(Id::new("palette")).title_bar(false).resizable(false);
+        window.anchor(Align2::CENTER_TOP, [0.0, 70.0]).fixed_size([460.0, 380.0]).show(context, |ui| {
+            let edit = egui::TextEdit::singleline(&mut self.query);
+            let hint = "Type part of a command's name";
+            let response = ui.add(edit.hint_text(hint).desired_width(f32::INFINITY));
+            super::controls::named(&response, egui::WidgetType::TextEdit, "Find a command");
+            response.request_focus();
+            if response.changed() {
+                self.chosen = 0;
+            }
+            ui.add_space(4.0);
+            egui::ScrollArea::vertical().auto_shrink([false; 2]).show(ui, |ui| {
+                for (index, info) in found.iter().enumerate() {
+                    let chosen = index == self.chosen;
+                    let response = row(ui, info, chosen);
+                    if chosen && ui.input(|input| input.key_down(Key::ArrowDown) || input.key_down(Key::ArrowUp)) {
+                        response.scroll_to_me(None);
+                    }
+                    if response.clicked() {
+                        run = Some(info.id);
+                    }
+                }
+                if found.is_empty() {
+                    ui.weak("No command has that in its name.");
+                }
+            });
+        });
+        if run.is_some() {
+            self.open = false;
+        }
+        run
+    }
+}
+
+fn row(ui: &mut egui::Ui, info: &CommandInfo, chosen: bool) -> egui::Response {
+    let shortcut = info.shortcut.map(|key| key.to_string()).unwrap_or_default();
+    let label = format!("{}: {}", info.menu.title(), info.name);
+    let button = egui::Button::selectable(chosen, label).right_text(RichText::new(shortcut).weak());
+    ui.add_sized([ui.available_width(), 22.0], button).on_hover_text(info.tooltip)
+}
+
+/// The commands whose name or tooltip holds every word of the query; those whose name starts with it first.
+fn matches(query: &str) -> Vec<&'static CommandInfo> {
+    let query = query.trim().to_lowercase();
+    let words: Vec<_> = query.split_whitespace().collect();
+    let rank = |info: &CommandInfo| {
+        let name = info.name.to_lowercase();
+        let text = format!("{} {name} {}", info.menu.title().to_lowercase(), info.tooltip.to_lowercase());
+        match () {
+            _ if name.starts_with(&query) => Some(0),
+            _ if words.iter().all(|word| name.contains(word)) => Some(1),
+            _ if words.iter().all(|word| text.contains(word)) => Some(2),
+            _ => None,
+        }
+    };
+    let mut found: Vec<_> = COMMANDS.iter().filter_map(|info| Some((rank(info)?, info))).collect();
+    found.sort_by_key(|(rank, _)| *rank);
+    found.into_iter().map(|(_, info)| info).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn finds_by_start_by_words_and_by_what_it_does() {
+        assert_eq!(matches("").len(), COMMANDS.len());
+        assert_eq!(matches("und")[0].id, CommandId::Undo);
+        assert!(matches("focus map export").iter().any(|info| info.id == CommandId::ExportFocusMap));
+        assert!(matches("16-bit").iter().any(|info| info.id == CommandId::ExportFocusMap));
+        assert!(matches("no such thing").is_empty());
+    }
+}
