@@ -1,13 +1,101 @@
-//! The window.
+//! The window: a thin layer of egui over the `session` crate.
+//!
+//! * [`Shell`]: the application: one frame from top to bottom, what the commands do.
+//! * `paint_view`: the scene in 3D in the colours of its blur. `picture_view`: the refocused picture.
+//!   Both are painted on by the same pointer code.
+//! * `inspector`, `tool_bar`, `menu_bar`, `status_line`: read the document and emit [`Action`]s.
+//! * `palette`, `shortcuts`, `help`, `menu_bar`: views of the one command table in `session`.
+//! * `file_dialog`, `unsaved_question`, `toasts`: what the window asks and tells.
 
+mod action;
+mod brush_ring;
+mod controls;
+mod demo;
 mod false_colour;
+mod file_dialog;
+mod focus_slider;
+mod help;
+mod inspector;
+mod layout;
+mod menu_bar;
 mod paint_view;
+mod palette;
+mod picture_view;
+mod pointer;
+mod shell;
+mod shortcuts;
+mod status_line;
+mod theme;
+mod toasts;
+mod tool;
+mod tool_bar;
+mod unsaved_question;
+mod view_settings;
+
+pub use action::Action;
+pub use paint_view::PaintView;
+pub use picture_view::PictureView;
+pub use shell::Shell;
+pub use toasts::Severity;
+pub use tool::Tool;
+pub use view_settings::ViewSettings;
 
 use std::path::PathBuf;
+use std::sync::Arc;
 
 /// What the window starts with.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct WindowOptions {
-    /// A scene or project to open; the demo when there is none.
+    /// A scene or project to open.
     pub file: Option<PathBuf>,
+    /// Whether the demo is opened when there is no file.
+    pub demo: bool,
+    /// Whether settings and layout of the last run are taken up.
+    pub remember: bool,
+    /// The longest side that the preview is drawn at, px; none for the user's setting.
+    pub preview_size: Option<u32>,
+}
+
+impl Default for WindowOptions {
+    fn default() -> Self {
+        Self { file: None, demo: true, remember: true, preview_size: None }
+    }
+}
+
+/// Opens the window and stays until it is closed.
+pub fn run(options: WindowOptions) -> anyhow::Result<()> {
+    let native = eframe::NativeOptions {
+        viewport: egui::ViewportBuilder::default()
+            .with_title("Focus Brush")
+            .with_app_id("focus-brush")
+            .with_inner_size([1440.0, 860.0])
+            .with_min_inner_size([800.0, 500.0]),
+        wgpu_options: graphics(),
+        persist_window: options.remember,
+        ..Default::default()
+    };
+    eframe::run_native(
+        "focus-brush",
+        native,
+        Box::new(|creation| Ok(Box::new(Shell::new(creation, options).map_err(Box::new)?))),
+    )
+    .map_err(|error| {
+        anyhow::anyhow!("the window could not be opened: {error} (`focus-brush doctor` says what is missing)")
+    })
+}
+
+/// A device with the adapter's own limits of texture and buffer size: atlases and scenes are larger than the defaults.
+fn graphics() -> egui_wgpu::WgpuConfiguration {
+    let mut setup = egui_wgpu::WgpuSetupCreateNew::without_display_handle();
+    setup.device_descriptor = Arc::new(|adapter| {
+        let mut limits = adapter.limits();
+        if adapter.get_info().backend != wgpu::Backend::Gl {
+            let own = limits.clone();
+            limits = wgpu::Limits::default();
+            limits.max_texture_dimension_2d = own.max_texture_dimension_2d;
+            limits.max_buffer_size = own.max_buffer_size;
+        }
+        wgpu::DeviceDescriptor { label: Some("focus-brush"), required_limits: limits, ..Default::default() }
+    });
+    egui_wgpu::WgpuConfiguration { wgpu_setup: setup.into(), ..Default::default() }
 }

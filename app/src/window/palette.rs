@@ -44,12 +44,13 @@ impl Palette {
             }
         });
         self.chosen = self.chosen.min(found.len().saturating_sub(1));
-        let window = egui::Window::new("Command palette").id(Id::new("palette")).title_bar(false).resizable(false);
+        let window =
+            egui::Window::new("Command palette").id(Id::unique("palette")).title_bar(false).resizable(false);
         window.anchor(Align2::CENTER_TOP, [0.0, 70.0]).fixed_size([460.0, 380.0]).show(context, |ui| {
             let edit = egui::TextEdit::singleline(&mut self.query);
             let hint = "Type part of a command's name";
             let response = ui.add(edit.hint_text(hint).desired_width(f32::INFINITY));
-            super::controls::named(&response, egui::WidgetType::TextEdit, "Find a command");
+            super::controls::named(&response, "Find a command");
             response.request_focus();
             if response.changed() {
                 self.chosen = 0;
@@ -59,7 +60,9 @@ impl Palette {
                 for (index, info) in found.iter().enumerate() {
                     let chosen = index == self.chosen;
                     let response = row(ui, info, chosen);
-                    if chosen && ui.input(|input| input.key_down(Key::ArrowDown) || input.key_down(Key::ArrowUp)) {
+                    if chosen
+                        && ui.input(|input| input.key_down(Key::ArrowDown) || input.key_down(Key::ArrowUp))
+                    {
                         response.scroll_to_me(None);
                     }
                     if response.clicked() {

@@ -65,7 +65,7 @@ impl Toasts {
             return;
         }
         let mut closed = None;
-        let area = egui::Area::new(Id::new("toasts")).order(Order::Foreground);
+        let area = egui::Area::new(Id::unique("toasts")).order(Order::Foreground);
         area.anchor(Align2::LEFT_BOTTOM, [10.0, -36.0]).show(context, |ui| {
             for (index, toast) in self.shown.iter_mut().enumerate() {
                 let stay = if toast.severity == Severity::Error { ERROR_SECONDS } else { NOTICE_SECONDS };

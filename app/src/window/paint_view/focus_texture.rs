@@ -66,7 +66,11 @@ impl FocusTexture {
                 bytes_per_row: Some((columns.len() * size_of::<[f32; 2]>()) as u32),
                 rows_per_image: None,
             },
-            wgpu::Extent3d { width: columns.len() as u32, height: rows.len() as u32, depth_or_array_layers: 1 },
+            wgpu::Extent3d {
+                width: columns.len() as u32,
+                height: rows.len() as u32,
+                depth_or_array_layers: 1,
+            },
         );
     }
 }

@@ -6,10 +6,14 @@ use std::task::{Context, Poll, Waker};
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum GraphicsError {
     /// Its memory is full.
-    #[error("paint view: the scene does not fit the graphics memory (close other programs, or open a smaller scene)")]
+    #[error(
+        "paint view: the scene does not fit the graphics memory (close other programs, or open a smaller scene)"
+    )]
     OutOfMemory,
     /// It refused a resource.
-    #[error("paint view: the graphics driver refused the scene: {0} (update the driver, or open a smaller scene)")]
+    #[error(
+        "paint view: the graphics driver refused the scene: {0} (update the driver, or open a smaller scene)"
+    )]
     Refused(String),
 }
 

@@ -1,13 +1,21 @@
 //! The paint view: the scene in 3D, in the false colours of its focus, painted on directly.
+//!
+//! ```text
+//! scene, atlas ──▶ SurfaceMesh ─┐
+//! focus map ────▶ FocusTexture ─┼─▶ SurfaceRenderer ──▶ texture ──▶ PaintView (panel, pointer, ring)
+//! OrbitCamera, SurfaceLook ─────┘
+//! ```
 
 mod focus_texture;
 mod graphics;
 mod orbit_camera;
 mod surface_mesh;
 mod surface_renderer;
+mod view;
 
 pub use focus_texture::FocusTexture;
 pub use graphics::GraphicsError;
 pub use orbit_camera::OrbitCamera;
 pub use surface_mesh::SurfaceMesh;
 pub use surface_renderer::{SurfaceLook, SurfaceRenderer};
+pub use view::{PaintView, hint};

@@ -184,7 +184,8 @@ mod tests {
             camera.frame((low, high), aspect);
             for i in 0..8 {
                 let pick = |bit: u32, a: f64, b: f64| if i >> bit & 1 == 0 { a } else { b };
-                let corner = DVec3::new(pick(0, low.x, high.x), pick(1, low.y, high.y), pick(2, low.z, high.z));
+                let corner =
+                    DVec3::new(pick(0, low.x, high.x), pick(1, low.y, high.y), pick(2, low.z, high.z));
                 let seen = camera.project(corner, aspect).unwrap();
                 assert!(seen.abs().max_element() <= 1.0 + 1e-9, "{corner} at {seen}");
             }

@@ -80,7 +80,13 @@ impl SurfaceMesh {
         };
         device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("surface material"),
-            entries: &[entry(0, uniform), entry(1, texture), entry(2, sampler), entry(3, texture), entry(4, sampler)],
+            entries: &[
+                entry(0, uniform),
+                entry(1, texture),
+                entry(2, sampler),
+                entry(3, texture),
+                entry(4, sampler),
+            ],
         })
     }
 
@@ -187,7 +193,8 @@ struct MaterialUpload<'a> {
 impl<'a> MaterialUpload<'a> {
     fn new(device: &'a wgpu::Device, queue: &'a wgpu::Queue, scene: &'a Scene) -> Self {
         let layout = SurfaceMesh::material_layout(device);
-        let white = create_texture(device, queue, "white", &Level { width: 1, height: 1, rgba: vec![255; 4] });
+        let white =
+            create_texture(device, queue, "white", &Level { width: 1, height: 1, rgba: vec![255; 4] });
         Self { device, queue, scene, layout, white, views: HashMap::new() }
     }
 
@@ -223,13 +230,17 @@ impl<'a> MaterialUpload<'a> {
                 wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::TextureView(&base) },
                 wgpu::BindGroupEntry { binding: 2, resource: wgpu::BindingResource::Sampler(&base_sampler) },
                 wgpu::BindGroupEntry { binding: 3, resource: wgpu::BindingResource::TextureView(&emissive) },
-                wgpu::BindGroupEntry { binding: 4, resource: wgpu::BindingResource::Sampler(&emissive_sampler) },
+                wgpu::BindGroupEntry {
+                    binding: 4,
+                    resource: wgpu::BindingResource::Sampler(&emissive_sampler),
+                },
             ],
         })
     }
 
     fn view(&mut self, texture: Option<&TextureRef>) -> wgpu::TextureView {
-        let image = texture.and_then(|t| self.scene.images.get(t.image as usize).map(|image| (t.image, image)));
+        let image =
+            texture.and_then(|t| self.scene.images.get(t.image as usize).map(|image| (t.image, image)));
         let Some((index, image)) = image else { return self.white.clone() };
         let (device, queue) = (self.device, self.queue);
         self.views
@@ -300,7 +311,12 @@ impl Level {
 }
 
 /// A texture with all its mip levels.
-fn create_texture(device: &wgpu::Device, queue: &wgpu::Queue, label: &str, level: &Level) -> wgpu::TextureView {
+fn create_texture(
+    device: &wgpu::Device,
+    queue: &wgpu::Queue,
+    label: &str,
+    level: &Level,
+) -> wgpu::TextureView {
     let size = wgpu::Extent3d { width: level.width, height: level.height, depth_or_array_layers: 1 };
     let mip_level_count = size.max_mips(wgpu::TextureDimension::D2);
     let mut texels = level.rgba.clone();

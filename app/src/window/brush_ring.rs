@@ -1,0 +1,82 @@
+//! The brush drawn on the surface: a ring in the world around the point under the pointer, in its tangent plane.
+
+use super::false_colour;
+use egui::{Color32, Painter, Pos2, Shape, Stroke};
+use glam::DVec3;
+use session::SurfaceHit;
+
+/// Corners of the ring.
+const CORNERS: usize = 72;
+
+/// What the ring shows of the brush.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BrushRing {
+    /// Radius, world units.
+    pub radius: f64,
+    /// Share of the radius with full strength.
+    pub hardness: f64,
+    /// The blur that is painted, px: colours the middle.
+    pub circle_px: f64,
+}
+
+/// World positions of the ring around `hit`, in the plane of its normal.
+pub fn ring_points(hit: &SurfaceHit, radius: f64) -> impl Iterator<Item = DVec3> {
+    let normal = if hit.normal == DVec3::ZERO { DVec3::Z } else { hit.normal };
+    let (u, v) = normal.any_orthonormal_pair();
+    let center = hit.position;
+    (0..=CORNERS).map(move |k| {
+        let (sin, cos) = (std::f64::consts::TAU * k as f64 / CORNERS as f64).sin_cos();
+        center + (u * cos + v * sin) * radius
+    })
+}
+
+/// Draws the ring with a dark edge, so that it shows on any colour. `project` takes a world point to the screen.
+pub fn paint(painter: &Painter, hit: &SurfaceHit, ring: BrushRing, project: impl Fn(DVec3) -> Option<Pos2>) {
+    let line = |radius: f64, width: f32, color: Color32| {
+        let mut run = Vec::new();
+        let mut shapes = Vec::new();
+        // What lies behind the eye breaks the line.
+        for point in ring_points(hit, radius).map(&project) {
+            match point {
+                Some(point) => run.push(point),
+                None => shapes.push(Shape::line(std::mem::take(&mut run), Stroke::new(width, color))),
+            }
+        }
+        shapes.push(Shape::line(run, Stroke::new(width, color)));
+        painter.extend(
+            shapes.into_iter().filter(|shape| !matches!(shape, Shape::Path(path) if path.points.len() < 2)),
+        );
+    };
+    line(ring.radius, 3.5, Color32::from_black_alpha(150));
+    line(ring.radius, 1.5, Color32::WHITE);
+    if ring.hardness > 0.02 && ring.hardness < 0.98 {
+        line(ring.radius * ring.hardness, 1.0, Color32::from_white_alpha(90));
+    }
+    if let Some(center) = project(hit.position) {
+        painter.circle(
+            center,
+            3.5,
+            false_colour::color(ring.circle_px),
+            Stroke::new(1.0, Color32::from_gray(20)),
+        );
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DVec2;
+
+    #[test]
+    fn the_ring_lies_on_the_tangent_plane() {
+        let point = scene::SurfacePoint { triangle: 0, barycentric: DVec2::ZERO };
+        let normal = DVec3::new(1.0, 2.0, -0.5).normalize();
+        let hit = SurfaceHit { point, position: DVec3::new(3.0, 0.0, 1.0), normal, distance: 1.0 };
+        let points: Vec<_> = ring_points(&hit, 0.7).collect();
+        for p in &points {
+            assert!(((*p - hit.position).length() - 0.7).abs() < 1e-12);
+            assert!((*p - hit.position).dot(normal).abs() < 1e-12);
+        }
+        assert!(points[0].distance(points[CORNERS]) < 1e-12, "closed");
+    }
+}

@@ -1,0 +1,119 @@
+//! Rows of the inspector: a name, a control, a tooltip on both, and a name for screen readers.
+
+use super::Action;
+use egui::{DragValue, Response, Ui, WidgetText};
+use session::Command;
+
+/// Adds a row to a two-column grid: the label, then the control, which takes the label as its name.
+pub fn row(
+    ui: &mut Ui,
+    label: impl Into<WidgetText>,
+    tooltip: &str,
+    control: impl FnOnce(&mut Ui) -> Response,
+) -> Response {
+    let label = ui.label(label).on_hover_text(tooltip);
+    let response = control(ui).labelled_by(label.id).on_hover_text(tooltip);
+    ui.end_row();
+    response
+}
+
+/// A two-column grid for [`row`]s.
+pub fn rows(ui: &mut Ui, id: &str, add: impl FnOnce(&mut Ui)) {
+    egui::Grid::new(id).num_columns(2).min_col_width(84.0).spacing([8.0, 5.0]).show(ui, add);
+}
+
+/// Ends the run of edits of a control when it is let go, so that a drag is one step of undo.
+pub fn finish(response: &Response, actions: &mut Vec<Action>) {
+    if response.drag_stopped() || response.lost_focus() {
+        actions.push(Command::FinishEdit.into());
+    }
+}
+
+/// A number that changes in proportion to itself when dragged: for lengths and f-numbers.
+pub fn proportional<'a>(value: &'a mut f64, range: std::ops::RangeInclusive<f64>) -> DragValue<'a> {
+    let speed = value.abs().clamp(1e-6, 1e9) * 0.01;
+    DragValue::new(value).speed(speed).range(range)
+}
+
+/// Names a control that has no label of its own, for screen readers and tests.
+pub fn named(response: &Response, name: &str) {
+    response.ctx.accesskit_node_builder(response.id, |node| node.set_label(name));
+}
+
+/// A length with three significant digits, for labels.
+pub fn length(metres: f64) -> String {
+    if metres.is_infinite() { "∞".into() } else { format!("{} m", significant(metres)) }
+}
+
+/// A number with three significant digits.
+pub fn significant(value: f64) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return format!("{value}");
+    }
+    let magnitude = value.abs().log10().floor() as i32;
+    let decimals = (2 - magnitude).clamp(0, 9) as usize;
+    format!("{value:.decimals$}")
+}
+
+/// Three significant digits in a control, without trailing zeros; egui keeps more while typing.
+pub fn format_number(value: f64, _decimals: std::ops::RangeInclusive<usize>) -> String {
+    let text = significant(value);
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_string() } else { text }
+}
+
+/// Bytes for people.
+pub fn bytes(count: usize) -> String {
+    match count {
+        0..1_000 => format!("{count} B"),
+        1_000..1_000_000 => format!("{} kB", significant(count as f64 / 1e3)),
+        1_000_000..1_000_000_000 => format!("{} MB", significant(count as f64 / 1e6)),
+        _ => format!("{} GB", significant(count as f64 / 1e9)),
+    }
+}
+
+/// A count for people.
+pub fn count(n: usize) -> String {
+    match n {
+        0..10_000 => n.to_string(),
+        10_000..1_000_000 => format!("{} k", significant(n as f64 / 1e3)),
+        _ => format!("{} M", significant(n as f64 / 1e6)),
+    }
+}
+
+/// A duration for people.
+pub fn seconds(seconds: f64) -> String {
+    if seconds < 1.0 {
+        format!("{} ms", significant(seconds * 1e3))
+    } else {
+        format!("{} s", significant(seconds))
+    }
+}
+
+/// A signed circle of confusion in words: `near 12 px`, `sharp`, `far 3.1 px`.
+pub fn circle(px: f64) -> String {
+    match px {
+        _ if px.abs() < 0.05 => "sharp".into(),
+        _ if px < 0.0 => format!("near {} px", significant(-px)),
+        _ => format!("far {} px", significant(px)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_read_well() {
+        assert_eq!(significant(0.012345), "0.0123");
+        assert_eq!(significant(1234.5), "1234");
+        assert_eq!(significant(1.0), "1.00");
+        assert_eq!(format_number(1.4, 0..=3), "1.4");
+        assert_eq!(format_number(100.0, 0..=3), "100");
+        assert_eq!(length(f64::INFINITY), "∞");
+        assert_eq!(bytes(12_300_000), "12.3 MB");
+        assert_eq!(count(1_900_000), "1.90 M");
+        assert_eq!(seconds(0.021), "21.0 ms");
+        assert_eq!(circle(-12.0), "near 12.0 px");
+        assert_eq!(circle(0.0), "sharp");
+    }
+}

@@ -1,0 +1,372 @@
+//! Asking for a file: the system's dialog where there is one, else a field to type the path into.
+//!
+//! The system's dialog runs on its own thread, because it may take its time or never answer. It is left aside
+//! without a session bus (there is no portal to ask then), when `FOCUS_BRUSH_FILE_DIALOG=typed` says so, or when it ends at once
+//! without an answer, as it does where no portal and no fallback is installed.
+
+use egui::{Context, Id, Key};
+use std::path::{Path, PathBuf};
+use std::sync::mpsc;
+use std::time::{Duration, Instant};
+
+/// A dialog that ends sooner than a person could have cancelled it has failed.
+const FASTEST_PERSON: Duration = Duration::from_millis(400);
+/// Entries of a folder that are listed below the typed path.
+const LISTED: usize = 200;
+
+/// What a file is wanted for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Purpose {
+    /// A scene or a project to open.
+    Open,
+    /// The project.
+    SaveAs,
+    /// The picture.
+    ExportPicture,
+    /// The focus map.
+    ExportFocusMap,
+    /// The unwrapped scene.
+    ExportScene,
+    /// A focus map to read.
+    ImportFocusMap,
+    /// A picture of an aperture.
+    ApertureMask,
+}
+
+impl Purpose {
+    fn title(self) -> &'static str {
+        match self {
+            Self::Open => "Open a scene or a project",
+            Self::SaveAs => "Save the project as",
+            Self::ExportPicture => "Export the picture",
+            Self::ExportFocusMap => "Export the focus map",
+            Self::ExportScene => "Export the unwrapped scene",
+            Self::ImportFocusMap => "Import a focus map",
+            Self::ApertureMask => "Choose an aperture mask",
+        }
+    }
+
+    fn extensions(self) -> &'static [&'static str] {
+        match self {
+            Self::Open => &["glb", "gltf", "fbrush"],
+            Self::SaveAs => &["fbrush"],
+            Self::ExportPicture | Self::ExportFocusMap | Self::ImportFocusMap => &["exr", "png"],
+            Self::ExportScene => &["glb"],
+            Self::ApertureMask => &["png", "jpg", "jpeg", "exr"],
+        }
+    }
+
+    /// Whether a file is written.
+    pub fn writes(self) -> bool {
+        matches!(self, Self::SaveAs | Self::ExportPicture | Self::ExportFocusMap | Self::ExportScene)
+    }
+
+    fn verb(self) -> &'static str {
+        match self {
+            Self::Open => "Open",
+            Self::SaveAs => "Save",
+            Self::ExportPicture | Self::ExportFocusMap | Self::ExportScene => "Export",
+            Self::ImportFocusMap => "Import",
+            Self::ApertureMask => "Choose",
+        }
+    }
+}
+
+/// Where the question stands.
+enum State {
+    /// The system's dialog is open.
+    System { answer: mpsc::Receiver<Option<PathBuf>>, since: Instant },
+    /// The path is being typed.
+    Typed { text: String, focused: bool },
+}
+
+/// The question for a file. One at a time; a new one replaces the old.
+#[derive(Default)]
+pub struct FileDialog {
+    asking: Option<(Purpose, PathBuf, State)>,
+}
+
+impl FileDialog {
+    /// Asks for a file; `suggestion` is where to begin (a file name with its folder).
+    pub fn ask(&mut self, purpose: Purpose, suggestion: PathBuf, context: &Context) {
+        let state = match system_dialog(purpose, &suggestion, context) {
+            Some(answer) => State::System { answer, since: Instant::now() },
+            None => typed(purpose, &suggestion),
+        };
+        self.asking = Some((purpose, suggestion, state));
+    }
+
+    /// Whether a question is open.
+    pub fn is_open(&self) -> bool {
+        self.asking.is_some()
+    }
+
+    /// Draws the question and returns the answer once it is there.
+    pub fn show(&mut self, context: &Context) -> Option<(Purpose, PathBuf)> {
+        let (purpose, suggestion, state) = self.asking.as_mut()?;
+        let purpose = *purpose;
+        let step = match state {
+            State::System { answer, since } => match answer.try_recv() {
+                Ok(Some(path)) => Step::Answer(path),
+                Ok(None) if since.elapsed() < FASTEST_PERSON => Step::Type,
+                Ok(None) => Step::Cancel,
+                Err(mpsc::TryRecvError::Disconnected) => Step::Type,
+                Err(mpsc::TryRecvError::Empty) => waiting(context, purpose),
+            },
+            State::Typed { text, focused } => typed_dialog(context, purpose, text, focused),
+        };
+        match step {
+            Step::Wait => None,
+            Step::Type => {
+                *state = typed(purpose, suggestion);
+                context.request_repaint();
+                None
+            }
+            Step::Cancel => {
+                self.asking = None;
+                None
+            }
+            Step::Answer(path) => {
+                self.asking = None;
+                Some((purpose, with_extension(purpose, path)))
+            }
+        }
+    }
+}
+
+enum Step {
+    Wait,
+    Type,
+    Cancel,
+    Answer(PathBuf),
+}
+
+/// Opens the system's dialog, if there is one to open.
+fn system_dialog(
+    purpose: Purpose,
+    suggestion: &Path,
+    context: &Context,
+) -> Option<mpsc::Receiver<Option<PathBuf>>> {
+    let wants_typed = std::env::var_os("FOCUS_BRUSH_FILE_DIALOG").is_some_and(|value| value == "typed");
+    let no_portal = cfg!(target_os = "linux") && std::env::var_os("DBUS_SESSION_BUS_ADDRESS").is_none();
+    if wants_typed || no_portal || cfg!(test) {
+        return None;
+    }
+    let mut dialog = rfd::AsyncFileDialog::new().set_title(purpose.title());
+    dialog = dialog.add_filter(purpose.extensions().join(", "), purpose.extensions());
+    if let Some(folder) = suggestion.parent().filter(|folder| folder.is_dir()) {
+        dialog = dialog.set_directory(folder);
+    }
+    if let Some(name) = suggestion.file_name().filter(|_| purpose.writes()) {
+        dialog = dialog.set_file_name(name.to_string_lossy());
+    }
+    let (sender, receiver) = mpsc::channel();
+    let context = context.clone();
+    // Some systems want the dialog made on this thread; none minds where it is waited for.
+    let waiting: std::pin::Pin<Box<dyn Future<Output = Option<rfd::FileHandle>> + Send>> =
+        if purpose.writes() { Box::pin(dialog.save_file()) } else { Box::pin(dialog.pick_file()) };
+    let wait = move || {
+        let path = pollster::block_on(waiting).map(|file| file.path().to_path_buf());
+        // Nobody waits any more if a path was typed meanwhile.
+        let _ = sender.send(path);
+        context.request_repaint();
+    };
+    std::thread::Builder::new().name("file dialog".into()).spawn(wait).ok()?;
+    Some(receiver)
+}
+
+/// The small window beside the system's dialog: the way out if that never shows.
+fn waiting(context: &Context, purpose: Purpose) -> Step {
+    let mut step = Step::Wait;
+    let window =
+        egui::Window::new(purpose.title()).id(Id::unique("file dialog")).collapsible(false).resizable(false);
+    window.anchor(egui::Align2::CENTER_BOTTOM, [0.0, -50.0]).show(context, |ui| {
+        ui.horizontal(|ui| {
+            ui.label("The system's file dialog is open.");
+            if ui.button("Type a path instead").on_hover_text("Use this if no dialog shows.").clicked() {
+                step = Step::Type;
+            }
+            if ui.button("Cancel").on_hover_text("Ask no more.").clicked() {
+                step = Step::Cancel;
+            }
+        });
+    });
+    step
+}
+
+fn typed(purpose: Purpose, suggestion: &Path) -> State {
+    let mut text = suggestion.display().to_string();
+    if !purpose.writes() {
+        let folder = if suggestion.is_dir() { Some(suggestion) } else { suggestion.parent() };
+        text = folder.map_or_else(String::new, |folder| folder.display().to_string());
+        if !text.is_empty() && !text.ends_with(std::path::MAIN_SEPARATOR) {
+            text.push(std::path::MAIN_SEPARATOR);
+        }
+    }
+    State::Typed { text, focused: false }
+}
+
+/// The path field, what lies in its folder, and the two buttons.
+fn typed_dialog(context: &Context, purpose: Purpose, text: &mut String, focused: &mut bool) -> Step {
+    let mut step = Step::Wait;
+    let modal = egui::Modal::new(Id::unique("file dialog")).show(context, |ui| {
+        ui.set_width(560.0);
+        ui.heading(purpose.title());
+        ui.add_space(4.0);
+        let mut chosen: Option<PathBuf> = None;
+        let edit =
+            egui::TextEdit::singleline(text).hint_text("path of the file").desired_width(f32::INFINITY);
+        let output = edit.show(ui);
+        let response = output.response.response;
+        super::controls::named(&response, "Path");
+        if !*focused {
+            response.request_focus();
+            let mut state = output.state;
+            let end = egui::text::CCursor::new(text.chars().count());
+            state.cursor.set_char_range(Some(egui::text::CCursorRange::one(end)));
+            state.store(ui.ctx(), response.id);
+            *focused = true;
+        }
+        ui.add_space(4.0);
+        egui::ScrollArea::vertical().auto_shrink([false; 2]).max_height(240.0).show(ui, |ui| {
+            for entry in entries(purpose, text) {
+                let name =
+                    entry.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+                let folder = entry.is_dir();
+                let label = if folder { format!("{name}{}", std::path::MAIN_SEPARATOR) } else { name };
+                let button =
+                    ui.add_sized([ui.available_width(), 20.0], egui::Button::selectable(false, label));
+                if button.clicked() {
+                    *text = entry.display().to_string();
+                    if folder {
+                        text.push(std::path::MAIN_SEPARATOR);
+                        *focused = false;
+                    }
+                }
+                if button.double_clicked() && !folder {
+                    chosen = Some(entry);
+                }
+            }
+        });
+        ui.add_space(6.0);
+        let path = PathBuf::from(text.trim());
+        let target = with_extension(purpose, path.clone());
+        let problem = problem(purpose, &path);
+        ui.horizontal(|ui| {
+            let accept = ui.add_enabled(problem.is_none(), egui::Button::new(purpose.verb()));
+            let entered = ui.input(|input| input.key_pressed(Key::Enter)) && problem.is_none();
+            if accept.clicked() || entered {
+                chosen = Some(path.clone());
+            }
+            if ui.button("Cancel").clicked() {
+                step = Step::Cancel;
+            }
+            match problem {
+                Some(problem) if !text.trim().is_empty() => {
+                    ui.weak(problem);
+                }
+                None if purpose.writes() && target.exists() => {
+                    ui.colored_label(ui.visuals().warn_fg_color, "This file exists and will be replaced.");
+                }
+                _ => {}
+            }
+        });
+        if let Some(path) = chosen {
+            step = Step::Answer(path);
+        }
+    });
+    if modal.should_close() {
+        step = Step::Cancel;
+    }
+    step
+}
+
+/// Why the path cannot be used yet.
+fn problem(purpose: Purpose, path: &Path) -> Option<&'static str> {
+    if path.as_os_str().is_empty() {
+        return Some("Type a path.");
+    }
+    if path.is_dir() {
+        return Some("This is a folder.");
+    }
+    if !purpose.writes() {
+        return (!path.exists()).then_some("There is no such file.");
+    }
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+    (folder.is_some_and(|folder| !folder.is_dir())).then_some("There is no such folder.")
+}
+
+/// The path with the first of the purpose's extensions, unless it has one of them.
+fn with_extension(purpose: Purpose, path: PathBuf) -> PathBuf {
+    let has = path.extension().and_then(|e| e.to_str()).map(str::to_lowercase);
+    if !purpose.writes() || has.is_some_and(|extension| purpose.extensions().contains(&extension.as_str())) {
+        return path;
+    }
+    let mut name = path.into_os_string();
+    name.push(".");
+    name.push(purpose.extensions()[0]);
+    name.into()
+}
+
+/// Folders and fitting files whose name begins with what is typed.
+fn entries(purpose: Purpose, text: &str) -> Vec<PathBuf> {
+    let typed = Path::new(text);
+    let (folder, start) = if text.is_empty() || text.ends_with(['/', std::path::MAIN_SEPARATOR]) {
+        (typed, String::new())
+    } else {
+        let start = typed.file_name().map(|name| name.to_string_lossy().to_lowercase()).unwrap_or_default();
+        (typed.parent().unwrap_or(Path::new("")), start)
+    };
+    let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+    let Ok(listing) = std::fs::read_dir(folder) else { return Vec::new() };
+    let fits = |path: &PathBuf| {
+        let name = path.file_name().map(|name| name.to_string_lossy().to_lowercase()).unwrap_or_default();
+        let extension = path.extension().and_then(|e| e.to_str()).map(str::to_lowercase).unwrap_or_default();
+        let known = path.is_dir() || purpose.extensions().contains(&extension.as_str());
+        let shown = !name.starts_with('.') || start.starts_with('.');
+        known && shown && (name.starts_with(&start) || purpose.writes())
+    };
+    let mut found: Vec<_> = listing.filter_map(|entry| Some(entry.ok()?.path())).filter(fits).collect();
+    found.sort_by_key(|path| (!path.is_dir(), path.file_name().map(|n| n.to_string_lossy().to_lowercase())));
+    found.truncate(LISTED);
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_list_follows_what_is_typed() {
+        let folder = tempfile::tempdir().unwrap();
+        for name in ["a.glb", "b.GLTF", "b.txt", ".hidden.glb"] {
+            std::fs::write(folder.path().join(name), "").unwrap();
+        }
+        std::fs::create_dir(folder.path().join("deep")).unwrap();
+        let at = |text: &str| {
+            let text = format!("{}/{text}", folder.path().display());
+            let name = |path: &PathBuf| path.file_name().unwrap().to_string_lossy().into_owned();
+            entries(Purpose::Open, &text).iter().map(name).collect::<Vec<_>>()
+        };
+        assert_eq!(at(""), ["deep", "a.glb", "b.GLTF"], "folders first, nothing that cannot be opened");
+        assert_eq!(at("B"), ["b.GLTF"]);
+        assert_eq!(at("nothing/"), Vec::<String>::new());
+    }
+
+    #[test]
+    fn a_written_file_gets_its_extension() {
+        assert_eq!(with_extension(Purpose::SaveAs, "x".into()), Path::new("x.fbrush"));
+        assert_eq!(with_extension(Purpose::SaveAs, "x.v2".into()), Path::new("x.v2.fbrush"));
+        assert_eq!(with_extension(Purpose::ExportPicture, "x.PNG".into()), Path::new("x.PNG"));
+        assert_eq!(with_extension(Purpose::Open, "x".into()), Path::new("x"));
+    }
+
+    #[test]
+    fn a_path_is_checked_before_it_is_used() {
+        let folder = tempfile::tempdir().unwrap();
+        assert!(problem(Purpose::Open, folder.path()).is_some());
+        assert!(problem(Purpose::Open, &folder.path().join("none.glb")).is_some());
+        assert!(problem(Purpose::SaveAs, &folder.path().join("none/x.fbrush")).is_some());
+        assert_eq!(problem(Purpose::SaveAs, &folder.path().join("x.fbrush")), None);
+    }
+}

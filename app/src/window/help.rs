@@ -1,0 +1,68 @@
+//! The help windows: every shortcut by the command table, and what this program is.
+
+use egui::{Context, Grid, RichText, ScrollArea, Window};
+use session::{COMMANDS, Menu};
+
+/// Pointer gestures, which no command table knows.
+const GESTURES: [(&str, &str); 9] = [
+    ("Left drag", "paint, in either view"),
+    ("Esc during a stroke", "take the stroke back"),
+    ("Middle drag, Alt+left drag", "turn the paint view; slide the picture"),
+    ("Shift+middle drag, Shift+Alt+left drag", "slide the paint view"),
+    ("Ctrl+middle drag", "bring the paint view nearer"),
+    ("Wheel, pinch", "come nearer, in either view"),
+    ("Double click with the middle button", "fit the picture"),
+    ("Drop a file on the window", "open it"),
+    ("Tab, arrow keys", "reach and move every control"),
+];
+
+/// Which windows are open.
+#[derive(Default)]
+pub struct Help {
+    /// The list of shortcuts.
+    pub shortcuts: bool,
+    /// Version and licence.
+    pub about: bool,
+}
+
+impl Help {
+    /// Draws the open ones.
+    pub fn show(&mut self, context: &Context, adapter: &str) {
+        let shortcuts =
+            Window::new("Keyboard and mouse").open(&mut self.shortcuts).default_size([560.0, 460.0]);
+        shortcuts.collapsible(false).show(context, |ui| {
+            ScrollArea::vertical().auto_shrink([false; 2]).show(ui, |ui| {
+                table(ui, "Mouse and pen", GESTURES.iter().map(|(key, what)| (key.to_string(), *what)));
+                for menu in Menu::ALL {
+                    let rows = COMMANDS.iter().filter(|info| info.menu == menu);
+                    let rows = rows.filter_map(|info| Some((info.shortcut?.to_string(), info.tooltip)));
+                    table(ui, menu.title(), rows);
+                }
+            });
+        });
+        let about = Window::new("About Focus Brush").open(&mut self.about).default_width(400.0);
+        about.collapsible(false).resizable(false).show(context, |ui| {
+            ui.label(RichText::new(concat!("Focus Brush ", env!("CARGO_PKG_VERSION"))).strong());
+            ui.label("Paint onto a 3D scene how it is focused, and see the picture that rays through a wide aperture form.");
+            ui.add_space(6.0);
+            ui.label("Licence: MIT or Apache-2.0, as you like.");
+            ui.label(format!("The window is drawn by: {adapter}"));
+        });
+    }
+}
+
+fn table(ui: &mut egui::Ui, title: &str, rows: impl Iterator<Item = (String, &'static str)>) {
+    let rows: Vec<_> = rows.collect();
+    if rows.is_empty() {
+        return;
+    }
+    ui.label(RichText::new(title).strong());
+    Grid::new(title).num_columns(2).min_col_width(150.0).show(ui, |ui| {
+        for (key, what) in rows {
+            ui.monospace(key);
+            ui.label(what);
+            ui.end_row();
+        }
+    });
+    ui.add_space(8.0);
+}

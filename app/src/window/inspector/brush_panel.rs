@@ -1,0 +1,88 @@
+//! The brush's shape and manner.
+
+use crate::window::Action;
+use crate::window::controls::{self, format_number, proportional, row, rows};
+use crate::window::tool_bar::{SIZE_TIP, STRENGTH_TIP, largest_radius, push_brush};
+use egui::{ComboBox, DragValue, Slider, Ui};
+use focus::{BrushMode, Channels};
+use session::{Document, SurfaceHit};
+
+/// Size, strength, hardness, spacing, mode and limits.
+pub fn brush_panel(ui: &mut Ui, document: &Document, hover: Option<SurfaceHit>, actions: &mut Vec<Action>) {
+    let mut brush = document.brush.clone();
+    rows(ui, "brush", |ui| {
+        row(ui, "Size", SIZE_TIP, |ui| {
+            ui.horizontal(|ui| {
+                let largest = largest_radius(document);
+                let value = proportional(&mut brush.radius, largest * 1e-4..=largest).custom_formatter(format_number);
+                let response = ui.add(value.suffix(" m"));
+                ui.weak(format!("{} px", controls::significant(radius_px(document, hover, brush.radius))))
+                    .on_hover_text("The same on the picture, at the depth under the pointer or else at the focus distance.");
+                response
+            })
+            .inner
+        });
+        row(ui, "Strength", STRENGTH_TIP, |ui| {
+            ui.add(Slider::new(&mut brush.strength, 0.0..=1.0).max_decimals(2))
+        });
+        let tip = "The share of the radius with full strength; beyond it the brush fades. Keys: Shift+[ and Shift+].";
+        row(ui, "Hardness", tip, |ui| ui.add(Slider::new(&mut brush.hardness, 0.0..=1.0).max_decimals(2)));
+        let tip = "Distance between dabs as a share of the radius.";
+        row(ui, "Spacing", tip, |ui| {
+            ui.add(DragValue::new(&mut brush.spacing).range(0.01..=10.0).speed(0.005).max_decimals(2))
+        });
+        let tip = "Set moves the focus to the chosen one. Add and Subtract shift what is there by it.";
+        row(ui, "Mode", tip, |ui| {
+            let modes = [(BrushMode::Set, "Set"), (BrushMode::Add, "Add"), (BrushMode::Subtract, "Subtract")];
+            let name =
+                modes.iter().find(|(mode, _)| *mode == brush.mode).map_or("by the tool", |(_, name)| name);
+            let combo = ComboBox::from_id_salt("brush mode").selected_text(name).width(110.0);
+            combo
+                .show_ui(ui, |ui| {
+                    for (mode, name) in modes {
+                        ui.selectable_value(&mut brush.mode, mode, name);
+                    }
+                })
+                .response
+        });
+        let tip = "Which of the two painted numbers the brush touches: the blur t, what it is relative to, or both.";
+        row(ui, "Touches", tip, |ui| {
+            let channels = [
+                (Channels::Both, "blur and anchor"),
+                (Channels::T, "blur only"),
+                (Channels::Anchor, "anchor only"),
+            ];
+            let name =
+                channels.iter().find(|(channel, _)| *channel == brush.channels).map_or("", |(_, name)| name);
+            let combo = ComboBox::from_id_salt("brush channels").selected_text(name).width(130.0);
+            combo
+                .show_ui(ui, |ui| {
+                    for (channel, name) in channels {
+                        ui.selectable_value(&mut brush.channels, channel, name);
+                    }
+                })
+                .response
+        });
+        let tip = "Surfaces turned away from the one under the pointer by more than this stay unpainted: 90° keeps thin walls from being painted through.";
+        row(ui, "Facing", tip, |ui| {
+            ui.add(
+                DragValue::new(&mut brush.normal_limit_degrees)
+                    .range(0.0..=180.0)
+                    .speed(0.5)
+                    .suffix("°")
+                    .max_decimals(0),
+            )
+        });
+    });
+    push_brush(document, brush, actions);
+}
+
+/// The brush's radius on the full-size picture.
+fn radius_px(document: &Document, hover: Option<SurfaceHit>, radius: f64) -> f64 {
+    let camera = &document.camera;
+    let inverse_depth = match hover.map(|hit| camera.camera_from_world(hit.position).z) {
+        Some(depth) if depth > 0.0 => 1.0 / depth,
+        _ => 1.0 / camera.focus_distance,
+    };
+    radius * inverse_depth / (camera.yfov / 2.0).tan() * camera.height as f64 / 2.0
+}

@@ -1,0 +1,87 @@
+//! What is painted: blur first, the raw numbers for who wants them.
+
+use crate::window::Action;
+use crate::window::controls::{self, row, rows};
+use crate::window::tool_bar::{push_brush, signed_circle_px, target_slider};
+use egui::{Button, DragValue, RichText, Ui};
+use lens::FocusOffset;
+use session::{Command, CommandId, Document};
+
+/// The brush's focus, its anchor, and what to fill with it.
+pub fn focus_panel(ui: &mut Ui, document: &Document, actions: &mut Vec<Action>) {
+    let mut brush = document.brush.clone();
+    let optics = document.camera.optics();
+    let px = signed_circle_px(&optics, brush.target.t);
+    ui.horizontal(|ui| {
+        ui.label(RichText::new("near").weak());
+        let width = (ui.available_width() - 40.0).clamp(80.0, 260.0);
+        if let Some(target) = target_slider(ui, &optics, brush.target, width) {
+            brush.target = target;
+        }
+        ui.label(RichText::new("far").weak());
+    });
+    rows(ui, "focus", |ui| {
+        let mut shown = px;
+        let tip = "Diameter of the circle of confusion on the full-size picture: negative is near blur, positive far blur.";
+        let response = row(ui, "Blur", tip, |ui| {
+            let value = DragValue::new(&mut shown).speed(0.1).max_decimals(2).suffix(" px");
+            ui.add_enabled(optics.aperture_radius > 0.0, value)
+        });
+        if response.changed()
+            && let Some(kappa) = optics.kappa_for_circle_px(shown)
+            && let Some(t) = optics.offset_for_kappa(kappa, optics.inverse_focus_distance, 1.0)
+        {
+            brush.target.t = t;
+        }
+        let tip = "The raw focus offset: the share of the anchor's distance that rays travel behind the lens. 1 is no offset.";
+        row(ui, "t", tip, |ui| ui.add(DragValue::new(&mut brush.target.t).speed(0.0005).fixed_decimals(4)));
+        let tip = "What the blur is relative to. Lens: it still changes with depth and focus distance. Point: this blur, wherever the camera focuses. Key: A.";
+        row(ui, "Anchor", tip, |ui| {
+            ui.horizontal(|ui| {
+                for (anchor, label) in [(0.0, "Lens"), (1.0, "Point")] {
+                    if ui
+                        .add(Button::selectable(brush.target.anchor == anchor, label))
+                        .on_hover_text(tip)
+                        .clicked()
+                    {
+                        brush.target.anchor = anchor;
+                    }
+                }
+                let mix = ui.add(
+                    DragValue::new(&mut brush.target.anchor).range(0.0..=1.0).speed(0.005).fixed_decimals(2),
+                );
+                controls::named(&mix, "Anchor mix");
+                mix
+            })
+            .inner
+        });
+    });
+    ui.add(egui::Label::new(RichText::new(in_words(brush.target, px)).weak()).wrap());
+    ui.horizontal_wrapped(|ui| {
+        fill_button(ui, CommandId::FillAll, "Fill everything", actions);
+        let tip = "Give the background, what lies behind everything, the chosen focus.";
+        if ui.button("Fill background").on_hover_text(tip).clicked() {
+            actions.push(Command::SetBackgroundFocus(brush.target).into());
+        }
+        fill_button(ui, CommandId::ResetMap, "Reset all", actions);
+    });
+    push_brush(document, brush, actions);
+}
+
+fn fill_button(ui: &mut Ui, id: CommandId, label: &str, actions: &mut Vec<Action>) {
+    if ui.button(label).on_hover_text(id.info().tooltip).clicked() {
+        actions.push(id.into());
+    }
+}
+
+/// What the focus does, in one sentence.
+fn in_words(target: FocusOffset, px: f64) -> String {
+    let blur = controls::circle(px);
+    match target.anchor {
+        _ if target == FocusOffset::STANDARD => "Paints the ordinary lens.".into(),
+        1.0 if blur == "sharp" => "Paints perfectly sharp, wherever the lens focuses.".into(),
+        1.0 => format!("Paints {blur} of blur, wherever the lens focuses."),
+        0.0 => format!("Paints the lens's own blur, shifted by {blur}."),
+        anchor => format!("Paints {blur}; {:.0} % of the lens's own blur stays.", (1.0 - anchor) * 100.0),
+    }
+}

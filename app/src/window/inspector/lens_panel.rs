@@ -1,0 +1,215 @@
+//! The lens as a photographer knows it, and the picture it makes.
+
+use super::shape_panel::shape_panel;
+use crate::window::controls::{self, finish, format_number, proportional, row, rows};
+use crate::window::{Action, ViewSettings};
+use egui::{Button, ComboBox, DragValue, Ui};
+use lens::Exposure;
+use session::{CameraEdit, Command, CommandId, Document};
+
+/// Full stops that the f-number's menu offers.
+const STOPS: [f64; 9] = [0.7, 1.0, 1.4, 2.0, 2.8, 4.0, 5.6, 8.0, 16.0];
+
+/// f-number, focal length, focus distance, aperture radius and shape, pose and angle of view.
+pub fn lens_panel(ui: &mut Ui, document: &Document, actions: &mut Vec<Action>) {
+    let camera = &document.camera;
+    let optics = camera.optics();
+    let edit = |edit: CameraEdit| Action::from(Command::Camera(edit));
+    rows(ui, "lens", |ui| {
+        if document.scene_cameras().count() > 1 {
+            scene_camera_row(ui, document, actions);
+        }
+        let mut number = camera.f_number();
+        let tip = "The f-number: focal length over the aperture's diameter. Smaller means more blur. Keys: + and −.";
+        let response = row(ui, "f-number", tip, |ui| {
+            ui.horizontal(|ui| {
+                let value = proportional(&mut number, 0.05..=1e6)
+                    .prefix("f/")
+                    .custom_formatter(|n, d| if n.is_finite() { format_number(n, d) } else { "∞".into() });
+                let response = ui.add(value);
+                ui.menu_button("Stops", |ui| {
+                    for stop in STOPS {
+                        if ui.button(format!("f/{stop}")).clicked() {
+                            actions.push(edit(CameraEdit::FNumber(stop)));
+                            actions.push(Command::FinishEdit.into());
+                            ui.close();
+                        }
+                    }
+                })
+                .response
+                .on_hover_text("Choose a full stop.");
+                response
+            })
+            .inner
+        });
+        if response.changed() {
+            actions.push(edit(CameraEdit::FNumber(number)));
+        }
+        finish(&response, actions);
+
+        let mut radius = camera.aperture_radius * 1e3;
+        let tip = "Half the width of the square that the aperture lies in, mm if the scene is in metres. 0 is a pinhole.";
+        let response = row(ui, "Aperture radius", tip, |ui| {
+            ui.add(proportional(&mut radius, 0.0..=1e6).suffix(" mm").custom_formatter(format_number))
+        });
+        if response.changed() {
+            actions.push(edit(CameraEdit::ApertureRadius(radius / 1e3)));
+        }
+        finish(&response, actions);
+
+        let tip = "Thin lens: follows from sensor height, angle of view and focus distance.";
+        row(ui, "Focal length", tip, |ui| {
+            ui.label(format!("{} mm", controls::significant(optics.focal_length() * 1e3)))
+        });
+        focus_distance_row(ui, document, actions);
+
+        let mut degrees = camera.yfov.to_degrees();
+        let response = row(ui, "Angle of view", "Full vertical angle of view.", |ui| {
+            ui.add(DragValue::new(&mut degrees).speed(0.1).range(0.1..=179.0).suffix("°").max_decimals(2))
+        });
+        if response.changed() {
+            actions.push(edit(CameraEdit::YFov(degrees.to_radians())));
+        }
+        finish(&response, actions);
+
+        let mut sensor = camera.sensor_height * 1e3;
+        let tip = "Height of the sensor: decides how much blur a focus offset means.";
+        let response = row(ui, "Sensor height", tip, |ui| {
+            ui.add(proportional(&mut sensor, 1e-3..=1e6).suffix(" mm").custom_formatter(format_number))
+        });
+        if response.changed() {
+            actions.push(edit(CameraEdit::SensorHeight(sensor / 1e3)));
+        }
+        finish(&response, actions);
+        shape_panel(ui, camera, actions);
+    });
+}
+
+fn focus_distance_row(ui: &mut Ui, document: &Document, actions: &mut Vec<Action>) {
+    let camera = &document.camera;
+    let mut distance = camera.focus_distance;
+    let tip = "Distance to the plane that the lens focuses on, along its axis. Keys: Shift+, and Shift+.";
+    let response = row(ui, "Focus distance", tip, |ui| {
+        ui.horizontal(|ui| {
+            let value = proportional(&mut distance, 1e-6..=f64::INFINITY).custom_formatter(|n, d| {
+                if n.is_finite() { format!("{} m", format_number(n, d)) } else { "∞".into() }
+            });
+            let value = value.custom_parser(|text| match text.trim().trim_end_matches('m').trim() {
+                "inf" | "∞" | "infinity" => Some(f64::INFINITY),
+                number => number.parse().ok(),
+            });
+            let response = ui.add(value);
+            let pick = CommandId::FocusHere.info();
+            if ui.button("Pick").on_hover_text(pick.tooltip).clicked() {
+                actions.push(pick.id.into());
+            }
+            if ui
+                .add(Button::selectable(distance.is_infinite(), "∞"))
+                .on_hover_text("Focus at infinity, or back at 10 m.")
+                .clicked()
+            {
+                let distance = if distance.is_infinite() { 10.0 } else { f64::INFINITY };
+                actions.push(Command::Camera(CameraEdit::FocusDistance(distance)).into());
+                actions.push(Command::FinishEdit.into());
+            }
+            response
+        })
+        .inner
+    });
+    if response.changed() && distance != camera.focus_distance {
+        actions.push(Command::Camera(CameraEdit::FocusDistance(distance)).into());
+    }
+    finish(&response, actions);
+}
+
+fn scene_camera_row(ui: &mut Ui, document: &Document, actions: &mut Vec<Action>) {
+    let current = document
+        .scene_cameras()
+        .find(|(_, camera)| camera.camera_to_world == document.camera.camera_to_world);
+    let name = current.map_or("own", |(name, _)| name).to_string();
+    row(ui, "Camera", "A camera of the scene; the lens stays as it is.", |ui| {
+        let combo = ComboBox::from_id_salt("camera").selected_text(&name).width(150.0);
+        combo
+            .show_ui(ui, |ui| {
+                for (candidate, camera) in document.scene_cameras() {
+                    if ui.selectable_label(candidate == name, candidate).clicked() {
+                        actions.push(Command::Camera(CameraEdit::Whole(camera)).into());
+                        actions.push(Command::FinishEdit.into());
+                    }
+                }
+            })
+            .response
+    });
+}
+
+/// Size, exposure, and how large the preview is drawn.
+pub fn picture_panel(
+    ui: &mut Ui,
+    document: &Document,
+    settings: &mut ViewSettings,
+    actions: &mut Vec<Action>,
+) {
+    let camera = &document.camera;
+    rows(ui, "picture", |ui| {
+        let (mut width, mut height) = (camera.width, camera.height);
+        let side = 1..=lens::Camera::LARGEST_SIDE_PX;
+        let tip = "Size of the exported picture.";
+        let response = row(ui, "Size", tip, |ui| {
+            ui.horizontal(|ui| {
+                let first =
+                    ui.add(DragValue::new(&mut width).range(side.clone()).update_while_editing(false));
+                controls::named(&first, "Picture width, px");
+                ui.label("×");
+                let second = ui.add(DragValue::new(&mut height).range(side).update_while_editing(false));
+                controls::named(&second, "Picture height, px");
+                ui.label("px");
+                first.union(second)
+            })
+            .inner
+        });
+        if (width, height) != (camera.width, camera.height) {
+            actions.push(Command::Camera(CameraEdit::Size(width, height)).into());
+        }
+        finish(&response, actions);
+
+        let tip = "Normalise keeps a white scene white. Conserve shows the energy of the model, with rims where the focus steps. Key: N.";
+        row(ui, "Exposure", tip, |ui| {
+            ui.horizontal(|ui| {
+                for (exposure, label) in
+                    [(Exposure::Normalise, "Normalise"), (Exposure::Conserve, "Conserve")]
+                {
+                    if ui
+                        .add(Button::selectable(document.exposure == exposure, label))
+                        .on_hover_text(tip)
+                        .clicked()
+                    {
+                        actions.push(Command::SetExposure(exposure).into());
+                    }
+                }
+            })
+            .response
+        });
+
+        row(ui, "Display", "Brightness of the screen only; exported pictures do not change.", |ui| {
+            let value = DragValue::new(&mut settings.display_stops).speed(0.02).range(-10.0..=10.0);
+            ui.add(value.suffix(" stops").max_decimals(2))
+        });
+
+        let tip = "Longest side of the live picture: smaller is faster. Exports are always at full size.";
+        row(ui, "Preview", tip, |ui| {
+            let text = |size: u32| format!("{size} px");
+            let combo =
+                ComboBox::from_id_salt("preview size").selected_text(text(settings.preview_size)).width(90.0);
+            combo
+                .show_ui(ui, |ui| {
+                    for size in [320, 640, 960, 1280, 1920] {
+                        if ui.selectable_label(settings.preview_size == size, text(size)).clicked() {
+                            settings.preview_size = size;
+                            actions.push(Command::SetPreviewSize(size).into());
+                        }
+                    }
+                })
+                .response
+        });
+    });
+}

@@ -1,0 +1,83 @@
+//! The aperture's shape: what out-of-focus lights look like.
+
+use crate::window::Action;
+use crate::window::controls::{finish, row};
+use egui::{ComboBox, DragValue, Ui};
+use lens::{Aperture, ApertureShape, Camera};
+use session::{CameraEdit, Command};
+
+/// Blades of a polygon that was just chosen.
+const BLADES: u32 = 6;
+
+/// Rows for the shape; they stand in the lens's grid.
+pub fn shape_panel(ui: &mut Ui, camera: &Camera, actions: &mut Vec<Action>) {
+    let mut aperture = camera.aperture.clone();
+    let tip = "What a light far out of focus looks like.";
+    row(ui, "Bokeh", tip, |ui| {
+        let combo =
+            ComboBox::from_id_salt("aperture shape").selected_text(name(&aperture.shape)).width(150.0);
+        combo
+            .show_ui(ui, |ui| {
+                let polygon = ApertureShape::Polygon { blades: BLADES, rotation: 0.0, roundness: 0.0 };
+                for shape in [ApertureShape::Disc, polygon, ApertureShape::Square] {
+                    let chosen = name(&shape) == name(&aperture.shape);
+                    if ui.selectable_label(chosen, name(&shape)).clicked() && !chosen {
+                        aperture.shape = shape;
+                    }
+                }
+                if ui.selectable_label(matches!(aperture.shape, ApertureShape::Mask(_)), "Mask…").clicked()
+                {
+                    actions.push(Action::ChooseMask);
+                }
+            })
+            .response
+    });
+    let mut responses = Vec::new();
+    match &mut aperture.shape {
+        ApertureShape::Polygon { blades, rotation, roundness } => {
+            responses.push(row(ui, "Blades", "Corners of the polygon.", |ui| {
+                ui.add(DragValue::new(blades).range(3..=64).speed(0.1))
+            }));
+            let mut degrees = rotation.to_degrees();
+            let response =
+                row(ui, "Rotation", "Angle of the first corner from the right, counter-clockwise.", |ui| {
+                    ui.add(DragValue::new(&mut degrees).suffix("°").speed(0.5).max_decimals(1))
+                });
+            if response.changed() {
+                *rotation = degrees.to_radians();
+            }
+            responses.push(response);
+            responses.push(row(ui, "Roundness", "0: straight edges; 1: a disc.", |ui| {
+                ui.add(egui::Slider::new(roundness, 0.0..=1.0).max_decimals(2))
+            }));
+        }
+        ApertureShape::Mask(mask) => {
+            let text = format!("{} ({} × {})", mask.file, mask.width, mask.height);
+            row(ui, "Mask", &text, |ui| ui.add(egui::Label::new(&mask.file).truncate()));
+        }
+        ApertureShape::Disc | ApertureShape::Square => {}
+    }
+    let tip = "Anamorphic squeeze: above 1 the shape is this many times as high as wide.";
+    responses.push(row(ui, "Ratio", tip, |ui| {
+        ui.add(DragValue::new(&mut aperture.ratio).range(0.05..=20.0).speed(0.01).max_decimals(3))
+    }));
+    emit(camera, aperture, actions);
+    for response in responses {
+        finish(&response, actions);
+    }
+}
+
+fn emit(camera: &Camera, aperture: Aperture, actions: &mut Vec<Action>) {
+    if aperture != camera.aperture {
+        actions.push(Command::Camera(CameraEdit::Aperture(aperture)).into());
+    }
+}
+
+fn name(shape: &ApertureShape) -> &'static str {
+    match shape {
+        ApertureShape::Disc => "Disc",
+        ApertureShape::Polygon { .. } => "Polygon",
+        ApertureShape::Square => "Square",
+        ApertureShape::Mask(_) => "Mask",
+    }
+}

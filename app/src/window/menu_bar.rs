@@ -1,0 +1,108 @@
+//! The menus, straight from the command table.
+
+use super::{Action, ViewSettings};
+use egui::{Button, Ui};
+use session::{COMMANDS, CommandId, CommandInfo, Document, Menu};
+
+/// What the menus need to know.
+pub struct MenuState<'a> {
+    /// The open document.
+    pub document: Option<&'a Document>,
+    /// What can be toggled.
+    pub settings: &'a ViewSettings,
+    /// Whether anything runs that Stop would stop.
+    pub working: bool,
+}
+
+/// Draws the menu bar.
+pub fn menu_bar(ui: &mut Ui, state: &MenuState<'_>, actions: &mut Vec<Action>) {
+    egui::MenuBar::new().ui(ui, |ui| {
+        for menu in Menu::ALL {
+            ui.menu_button(menu.title(), |ui| {
+                ui.set_min_width(230.0);
+                for info in COMMANDS.iter().filter(|info| info.menu == menu) {
+                    if begins_group(info.id) {
+                        ui.separator();
+                    }
+                    item(ui, info, state, actions);
+                    if info.id == CommandId::Open {
+                        recent(ui, state.settings, actions);
+                    }
+                }
+            });
+        }
+    });
+}
+
+/// Whether a separator stands before the command.
+fn begins_group(id: CommandId) -> bool {
+    use CommandId::*;
+    matches!(
+        id,
+        Save | ExportPicture
+            | Quit
+            | PictureFit
+            | ShowFocus
+            | ResetLayout
+            | FillPart
+            | FocusHere
+            | ResetMap
+            | BrushLarger
+            | BrushNearer
+            | FocusNearer
+            | CameraFromView
+            | Bake
+            | Stop
+            | About
+    )
+}
+
+fn item(ui: &mut Ui, info: &CommandInfo, state: &MenuState<'_>, actions: &mut Vec<Action>) {
+    let name = match (info.id, state.document) {
+        (CommandId::Undo, Some(document)) => with_what(info.name, document.undo_name()),
+        (CommandId::Redo, Some(document)) => with_what(info.name, document.redo_name()),
+        _ => info.name.to_string(),
+    };
+    let mut button = Button::new(name);
+    if let Some(shortcut) = info.shortcut {
+        button = button.shortcut_text(shortcut.to_string());
+    }
+    let response = ui.add_enabled(is_possible(info.id, state), button).on_hover_text(info.tooltip);
+    if response.on_disabled_hover_text(info.tooltip).clicked() {
+        actions.push(info.id.into());
+        ui.close();
+    }
+}
+
+fn with_what(name: &str, what: Option<&str>) -> String {
+    what.map_or_else(|| name.to_string(), |what| format!("{name}: {what}"))
+}
+
+/// Whether a command can do something now.
+pub fn is_possible(id: CommandId, state: &MenuState<'_>) -> bool {
+    use CommandId::*;
+    match id {
+        Open | OpenDemo | Quit | ResetLayout | Palette | Shortcuts | About => true,
+        Undo => state.document.is_some_and(|document| document.undo_name().is_some()),
+        Redo => state.document.is_some_and(|document| document.redo_name().is_some()),
+        Stop => state.working,
+        _ => state.document.is_some(),
+    }
+}
+
+fn recent(ui: &mut Ui, settings: &ViewSettings, actions: &mut Vec<Action>) {
+    ui.add_enabled_ui(!settings.recent.is_empty(), |ui| {
+        ui.menu_button("Open recent", |ui| {
+            ui.set_max_width(480.0);
+            for path in &settings.recent {
+                let name = path
+                    .file_name()
+                    .map_or_else(|| path.display().to_string(), |n| n.to_string_lossy().into());
+                if ui.button(name).on_hover_text(path.display().to_string()).clicked() {
+                    actions.push(Action::Open(path.clone()));
+                    ui.close();
+                }
+            }
+        });
+    });
+}

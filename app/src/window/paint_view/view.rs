@@ -1,0 +1,345 @@
+//! The paint view as a panel: the drawn surface, its pointer, the brush ring, the shot camera's frame.
+
+use super::{FocusTexture, GraphicsError, OrbitCamera, SurfaceLook, SurfaceMesh, SurfaceRenderer};
+use crate::window::brush_ring::{self, BrushRing};
+use crate::window::pointer::StrokeInput;
+use crate::window::{Action, Tool, theme};
+use egui::{Color32, PointerButton, Pos2, Rect, Response, Sense, Stroke, TextureId, Ui, pos2, vec2};
+use glam::{DVec2, DVec3};
+use lens::Camera;
+use session::{Document, Session, SurfaceHit};
+use std::ops::Range;
+use std::sync::mpsc;
+use trace::Ray;
+
+/// Points of the wheel that make one step.
+const POINTS_PER_STEP: f64 = 40.0;
+
+/// The 3D view that is painted on.
+pub struct PaintView {
+    state: Option<egui_wgpu::RenderState>,
+    renderer: Option<SurfaceRenderer>,
+    mesh: Option<SurfaceMesh>,
+    upload: Option<mpsc::Receiver<Result<SurfaceMesh, GraphicsError>>>,
+    focus: Option<FocusTexture>,
+    revision: u64,
+    texture: Option<TextureId>,
+    problem: Option<String>,
+    camera: OrbitCamera,
+    stroke: StrokeInput,
+    /// What lies under the pointer.
+    hover: Option<SurfaceHit>,
+    rect: Rect,
+}
+
+impl PaintView {
+    /// A view with nothing to show yet. Without a graphics state it only says so.
+    pub fn new(state: Option<&egui_wgpu::RenderState>) -> Self {
+        let mut problem = None;
+        let renderer = state.and_then(|state| match SurfaceRenderer::new(state) {
+            Ok(renderer) => Some(renderer),
+            Err(error) => {
+                problem = Some(error.to_string());
+                None
+            }
+        });
+        if state.is_none() {
+            problem = Some("paint view: there is no graphics adapter (install a Vulkan driver; painting in the picture works)".into());
+        }
+        Self {
+            state: state.cloned(),
+            renderer,
+            mesh: None,
+            upload: None,
+            focus: None,
+            revision: 0,
+            texture: None,
+            problem,
+            camera: OrbitCamera::default(),
+            stroke: StrokeInput::default(),
+            hover: None,
+            rect: Rect::NOTHING,
+        }
+    }
+
+    /// Takes up another document: its surface is copied to the graphics card in the background.
+    pub fn opened(&mut self, document: &Document, context: &egui::Context) {
+        self.look_through(&document.camera);
+        let Some(renderer) = &self.renderer else { return };
+        let (device, queue) = renderer.device();
+        self.mesh = None;
+        match FocusTexture::new(device, queue, &document.map) {
+            Ok(focus) => self.focus = Some(focus),
+            Err(error) => self.problem = Some(error.to_string()),
+        }
+        let (sender, receiver) = mpsc::channel();
+        self.upload = Some(receiver);
+        let (device, queue, context) = (device.clone(), queue.clone(), context.clone());
+        let (scene, atlas) = (document.stage.scene.clone(), document.stage.atlas.clone());
+        let upload = move || {
+            // The view may be gone, or show another scene by now.
+            let _ = sender.send(SurfaceMesh::upload(&device, &queue, &scene, &atlas));
+            context.request_repaint();
+        };
+        let thread = std::thread::Builder::new().name("surface upload".into());
+        if let Err(error) = thread.spawn(upload) {
+            self.problem =
+                Some(format!("paint view: no thread could be started: {error} (close other programs)"));
+        }
+    }
+
+    /// Takes up changed texels of the focus map.
+    pub fn map_changed(&mut self, document: &Document, columns: Range<u32>, rows: Range<u32>) {
+        let (Some(renderer), Some(focus)) = (&self.renderer, &self.focus) else { return };
+        focus.update(renderer.device().1, &document.map, columns, rows);
+        self.revision += 1;
+    }
+
+    /// Whether the surface is drawn.
+    pub fn is_ready(&self) -> bool {
+        self.mesh.is_some() && self.texture.is_some()
+    }
+
+    /// Where the view is on screen.
+    pub fn rect(&self) -> Rect {
+        self.rect
+    }
+
+    /// The view's own camera.
+    pub fn camera(&self) -> &OrbitCamera {
+        &self.camera
+    }
+
+    /// What lies under the pointer.
+    pub fn hover(&self) -> Option<SurfaceHit> {
+        self.hover
+    }
+
+    /// Where a world point is on screen.
+    pub fn screen_from_world(&self, point: DVec3) -> Option<Pos2> {
+        let at = self.camera.project(point, aspect(self.rect))?;
+        Some(screen_from_view(self.rect, at))
+    }
+
+    /// Looks from where the shot camera stands, turning around what it focuses on.
+    pub fn look_through(&mut self, camera: &Camera) {
+        let distance = if camera.focus_distance.is_finite() { camera.focus_distance } else { 10.0 };
+        self.camera = OrbitCamera::from_shot(camera, distance);
+    }
+
+    /// Shows the whole scene.
+    pub fn frame_all(&mut self, document: &Document) {
+        self.camera.frame(document.scene().bounds(), aspect(self.rect));
+    }
+
+    /// Turns around what lies under the pointer from now on; around everything if that is nothing.
+    pub fn frame_cursor(&mut self, document: &Document) {
+        match self.hover {
+            Some(hit) => self.camera.center_on(hit.position),
+            None => self.frame_all(document),
+        }
+    }
+
+    /// Draws the view into the rest of `ui` and turns the pointer into actions.
+    pub fn ui(
+        &mut self,
+        ui: &mut Ui,
+        session: &Session,
+        tool: Tool,
+        look: SurfaceLook,
+        ring: Option<BrushRing>,
+        actions: &mut Vec<Action>,
+    ) {
+        let (rect, response) =
+            ui.allocate_exact_size(ui.available_size().max(vec2(8.0, 8.0)), Sense::click_and_drag());
+        self.rect = rect;
+        crate::window::controls::named(&response, "Paint view");
+        ui.painter().rect_filled(rect, 0.0, Color32::from_gray(32));
+        let Some(document) = session.document() else {
+            hint(ui, rect, "Drop a glTF scene or a project here, or press Ctrl+O.");
+            return;
+        };
+        self.receive_mesh(actions);
+        self.navigate(ui, &response);
+        self.draw(ui, document, look, actions);
+        self.stroke.update(
+            ui,
+            &response,
+            session,
+            tool,
+            |at| Some(view_ray(&self.camera, rect, at)),
+            actions,
+        );
+        let pointer = response.hover_pos().or_else(|| response.interact_pointer_pos());
+        self.hover = pointer.and_then(|at| session.pick(&view_ray(&self.camera, rect, at)));
+        let painter = ui.painter_at(rect);
+        self.paint_shot_camera(&painter, &document.camera, document.scene().bounds());
+        if let (Some(hit), Some(ring)) = (self.hover, ring) {
+            brush_ring::paint(&painter, &hit, ring, |point| self.screen_from_world(point));
+        }
+        if response.hovered() {
+            ui.set_cursor_icon(egui::CursorIcon::Crosshair);
+        }
+        match &self.problem {
+            Some(problem) => hint(ui, rect, problem),
+            None if self.mesh.is_none() => hint(ui, rect, "Preparing the view…"),
+            None => {}
+        }
+    }
+
+    fn receive_mesh(&mut self, actions: &mut Vec<Action>) {
+        let Some(received) = self.upload.as_ref().and_then(|receiver| receiver.try_recv().ok()) else {
+            return;
+        };
+        self.upload = None;
+        self.revision += 1;
+        match received {
+            Ok(mesh) => {
+                self.problem = None;
+                self.mesh = Some(mesh);
+            }
+            Err(error) => {
+                self.problem = Some(error.to_string());
+                actions.push(Action::Complain(error.to_string()));
+            }
+        }
+    }
+
+    /// Middle drag or Alt+drag orbits, with Shift slides, with Ctrl comes nearer; the wheel comes nearer; two fingers do all.
+    fn navigate(&mut self, ui: &Ui, response: &Response) {
+        let modifiers = ui.input(|input| input.modifiers);
+        let alt_drag = response.dragged_by(PointerButton::Primary) && modifiers.alt;
+        if response.dragged_by(PointerButton::Middle) || alt_drag {
+            let delta = DVec2::new(response.drag_delta().x as f64, response.drag_delta().y as f64);
+            if modifiers.shift {
+                self.camera.pan(delta, self.rect.height() as f64);
+            } else if modifiers.command {
+                self.camera.zoom(-delta.y / POINTS_PER_STEP * 2.0);
+            } else {
+                self.camera.orbit(delta);
+            }
+        }
+        if response.contains_pointer() {
+            let (scroll, touch) =
+                ui.input(|input| (input.smooth_scroll_delta().y as f64, input.multi_touch()));
+            if scroll != 0.0 {
+                self.camera.zoom(scroll / POINTS_PER_STEP);
+            }
+            if let Some(touch) = touch {
+                self.camera.zoom((touch.zoom_delta as f64).ln() / -0.88f64.ln());
+                let delta = touch.translation_delta;
+                self.camera.pan(DVec2::new(delta.x as f64, delta.y as f64), self.rect.height() as f64);
+            }
+        }
+    }
+
+    fn draw(&mut self, ui: &Ui, document: &Document, look: SurfaceLook, actions: &mut Vec<Action>) {
+        let (Some(state), Some(renderer), Some(mesh), Some(focus)) =
+            (&self.state, &mut self.renderer, &self.mesh, &self.focus)
+        else {
+            return;
+        };
+        let scale = ui.ctx().pixels_per_point();
+        let size = [self.rect.width(), self.rect.height()].map(|side| (side * scale).round().max(1.0) as u32);
+        match renderer.draw(mesh, focus, &self.camera, &document.camera, look, size, self.revision) {
+            Ok(new_texture) => {
+                if let Some(view) = renderer.view().filter(|_| new_texture || self.texture.is_none()) {
+                    let mut egui_renderer = state.renderer.write();
+                    let filter = wgpu::FilterMode::Linear;
+                    match self.texture {
+                        Some(id) => {
+                            egui_renderer.update_egui_texture_from_wgpu_texture(
+                                &state.device,
+                                view,
+                                filter,
+                                id,
+                            );
+                        }
+                        None => {
+                            self.texture =
+                                Some(egui_renderer.register_native_texture(&state.device, view, filter));
+                        }
+                    }
+                }
+            }
+            Err(error) => {
+                let text = error.to_string();
+                if self.problem.as_ref() != Some(&text) {
+                    actions.push(Action::Complain(text.clone()));
+                    self.problem = Some(text);
+                }
+            }
+        }
+        if let Some(texture) = self.texture {
+            let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
+            ui.painter().image(texture, self.rect, whole, Color32::WHITE);
+        }
+    }
+
+    /// The shot camera: its frame at the focus distance, and the four edges from the eye to it. Not while one looks through it.
+    fn paint_shot_camera(&self, painter: &egui::Painter, camera: &Camera, bounds: (DVec3, DVec3)) {
+        let extent = (bounds.1 - bounds.0).length();
+        if self.camera.eye().distance(camera.position()) < 1e-3 * extent {
+            return;
+        }
+        let depth = if camera.focus_distance.is_finite() { camera.focus_distance } else { extent };
+        let half = (camera.yfov / 2.0).tan() * depth;
+        let corner = |x: f64, y: f64| {
+            camera.world_from_camera(DVec3::new(x * half * camera.aspect(), y * half, depth))
+        };
+        let corners = [corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)];
+        let frame = Stroke::new(1.0, Color32::from_white_alpha(120));
+        let edge = Stroke::new(1.0, Color32::from_white_alpha(45));
+        for k in 0..4 {
+            self.paint_segment(painter, corners[k], corners[(k + 1) % 4], frame);
+            self.paint_segment(painter, camera.position(), corners[k], edge);
+        }
+    }
+
+    /// A world segment, cut off at the eye.
+    fn paint_segment(&self, painter: &egui::Painter, a: DVec3, b: DVec3, stroke: Stroke) {
+        let forward = self.camera.orientation * DVec3::NEG_Z;
+        let depth = |p: DVec3| (p - self.camera.eye()).dot(forward);
+        let near = 1e-3 * self.camera.distance;
+        let (za, zb) = (depth(a), depth(b));
+        if za < near && zb < near {
+            return;
+        }
+        let cut = |p: DVec3, zp: f64, q: DVec3, zq: f64| {
+            if zp >= near { p } else { p + (q - p) * ((near - zp) / (zq - zp)) }
+        };
+        let ends = [cut(a, za, b, zb), cut(b, zb, a, za)].map(|p| self.screen_from_world(p));
+        if let [Some(a), Some(b)] = ends {
+            painter.line_segment([a, b], stroke);
+        }
+    }
+}
+
+/// A line of text in the middle of an empty view.
+pub fn hint(ui: &Ui, rect: Rect, text: &str) {
+    let width = (rect.width() - 40.0).max(60.0);
+    let color = Color32::from_gray(190);
+    let galley = ui.painter().layout(text.into(), egui::FontId::proportional(14.0), color, width);
+    let at = rect.center() - galley.size() / 2.0;
+    ui.painter().rect_filled(Rect::from_min_size(at, galley.size()).expand(8.0), 4.0, theme::SURROUNDINGS);
+    ui.painter().galley(at, galley, color);
+}
+
+fn aspect(rect: Rect) -> f64 {
+    (rect.width().max(1.0) / rect.height().max(1.0)) as f64
+}
+
+/// The ray of a screen position.
+fn view_ray(camera: &OrbitCamera, rect: Rect, at: Pos2) -> Ray {
+    let x = 2.0 * ((at.x - rect.left()) / rect.width().max(1.0)) as f64 - 1.0;
+    let y = 1.0 - 2.0 * ((at.y - rect.top()) / rect.height().max(1.0)) as f64;
+    let (origin, direction) = camera.ray(DVec2::new(x, y), aspect(rect));
+    Ray { origin, direction, t_min: 0.0, t_max: f64::INFINITY, skip: None }
+}
+
+fn screen_from_view(rect: Rect, at: DVec2) -> Pos2 {
+    pos2(
+        rect.left() + (at.x as f32 + 1.0) / 2.0 * rect.width(),
+        rect.top() + (1.0 - at.y as f32) / 2.0 * rect.height(),
+    )
+}

@@ -1,0 +1,265 @@
+//! The picture view: the latest refocused picture, as the shot camera sees it, painted on directly.
+
+mod tone;
+
+use super::brush_ring::{self, BrushRing};
+use super::paint_view::hint;
+use super::pointer::StrokeInput;
+use super::{Action, Tool, controls, theme};
+use egui::{
+    ColorImage, PointerButton, Pos2, Rect, Response, Sense, TextureHandle, TextureOptions, Ui, Vec2, pos2,
+    vec2,
+};
+use glam::{DVec2, DVec3};
+use lens::Camera;
+use session::{PreviewActivity, PreviewKind, Session, SurfaceHit};
+use tone::{Tone, to_screen};
+
+/// Wheel points that double the picture.
+const POINTS_PER_DOUBLING: f32 = 240.0;
+/// Screen pixels of a picture pixel beyond which pixels are shown as squares.
+const SQUARES_FROM: f32 = 3.0;
+
+/// Which picture is shown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum Shown {
+    /// The live picture.
+    #[default]
+    Painted,
+    /// The ray-traced picture.
+    Truth,
+}
+
+/// Scale and place of the picture in its view.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Zoom {
+    /// As large as fits.
+    Fit,
+    /// Screen points of a picture pixel, and the picture position (in [0, 1]²) in the view's middle.
+    Free { scale: f32, middle: Vec2 },
+}
+
+/// The view of the picture.
+pub struct PictureView {
+    texture: Option<TextureHandle>,
+    /// What the texture holds: which picture, its id, and how it was put on screen.
+    holds: Option<(Shown, u64, Tone)>,
+    truths: u64,
+    /// Which picture is shown.
+    pub shown: Shown,
+    zoom: Zoom,
+    stroke: StrokeInput,
+    hover: Option<SurfaceHit>,
+    rect: Rect,
+    image: Rect,
+}
+
+impl Default for PictureView {
+    fn default() -> Self {
+        Self {
+            texture: None,
+            holds: None,
+            truths: 0,
+            shown: Shown::Painted,
+            zoom: Zoom::Fit,
+            stroke: StrokeInput::default(),
+            hover: None,
+            rect: Rect::NOTHING,
+            image: Rect::NOTHING,
+        }
+    }
+}
+
+impl PictureView {
+    /// Another document: the old picture goes, and one sees the whole of the new.
+    pub fn opened(&mut self) {
+        *self = Self { truths: self.truths, ..Self::default() };
+    }
+
+    /// A ray-traced picture is there: show it.
+    pub fn truth_ready(&mut self) {
+        self.truths += 1;
+        self.shown = Shown::Truth;
+    }
+
+    /// As large as fits.
+    pub fn fit(&mut self) {
+        self.zoom = Zoom::Fit;
+    }
+
+    /// One picture pixel on one screen pixel, around the middle.
+    pub fn actual_size(&mut self, pixels_per_point: f32) {
+        let middle = match self.zoom {
+            Zoom::Fit => vec2(0.5, 0.5),
+            Zoom::Free { middle, .. } => middle,
+        };
+        self.zoom = Zoom::Free { scale: 1.0 / pixels_per_point, middle };
+    }
+
+    /// Where the picture is on screen.
+    pub fn image_rect(&self) -> Rect {
+        self.image
+    }
+
+    /// What lies under the pointer.
+    pub fn hover(&self) -> Option<SurfaceHit> {
+        self.hover
+    }
+
+    /// Screen pixels of a picture pixel, in percent.
+    pub fn percent(&self, session: &Session, pixels_per_point: f32) -> Option<f32> {
+        let width = session.document()?.camera.width as f32;
+        Some(self.image.width() * pixels_per_point / width * 100.0)
+    }
+
+    /// Draws the view into the rest of `ui` and turns the pointer into actions.
+    pub fn ui(
+        &mut self,
+        ui: &mut Ui,
+        session: &Session,
+        tool: Tool,
+        stops: f32,
+        ring: Option<BrushRing>,
+        actions: &mut Vec<Action>,
+    ) {
+        let (rect, response) =
+            ui.allocate_exact_size(ui.available_size().max(vec2(8.0, 8.0)), Sense::click_and_drag());
+        self.rect = rect;
+        controls::named(&response, "Picture");
+        ui.painter().rect_filled(rect, 0.0, theme::SURROUNDINGS);
+        let Some(document) = session.document() else { return };
+        if session.truth().is_none() {
+            self.shown = Shown::Painted;
+        }
+        self.refresh(ui, session, Tone { exposure: document.exposure, stops });
+        let size = vec2(document.camera.width as f32, document.camera.height as f32);
+        self.navigate(ui, &response, size);
+        self.image = self.place(size);
+        let painter = ui.painter_at(rect);
+        match &self.texture {
+            Some(texture) => {
+                let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
+                painter.image(texture.id(), self.image, whole, egui::Color32::WHITE);
+            }
+            None => hint(ui, rect, "Drawing the first picture…"),
+        }
+        let image = self.image;
+        let ray = |at: Pos2| session.picture_ray(picture_position(image, at));
+        self.stroke.update(ui, &response, session, tool, ray, actions);
+        let pointer = response.hover_pos().or_else(|| response.interact_pointer_pos());
+        let pointer = pointer.filter(|at| image.contains(*at));
+        self.hover = pointer.and_then(|at| session.pick(&session.picture_ray(picture_position(image, at))?));
+        if let (Some(hit), Some(ring)) = (self.hover, ring) {
+            brush_ring::paint(&painter, &hit, ring, |point| self.screen_from_world(&document.camera, point));
+        }
+        if response.hovered() {
+            ui.set_cursor_icon(egui::CursorIcon::Crosshair);
+        }
+        self.notice(ui, session);
+    }
+
+    /// Where a world point is on screen.
+    pub fn screen_from_world(&self, camera: &Camera, point: DVec3) -> Option<Pos2> {
+        let seen = camera.camera_from_world(point);
+        let pixel = camera.pixel_from_q(camera.optics().chief(seen));
+        let share = vec2((pixel.x / camera.width as f64) as f32, (pixel.y / camera.height as f64) as f32);
+        (seen.z > 0.0).then(|| self.image.min + share * self.image.size())
+    }
+
+    /// Brings the texture up to date.
+    fn refresh(&mut self, ui: &Ui, session: &Session, tone: Tone) {
+        let (id, picture) = match self.shown {
+            Shown::Painted => session.preview().map(|preview| (preview.id, &preview.picture)),
+            Shown::Truth => session.truth().map(|truth| (self.truths, &truth.picture)),
+        }
+        .unzip();
+        let (Some(id), Some(picture)) = (id, picture) else { return };
+        let holds = Some((self.shown, id, tone));
+        if self.holds == holds {
+            return;
+        }
+        let size = [picture.width as usize, picture.height as usize];
+        let image = ColorImage::new(size, to_screen(picture, tone));
+        let squares = self.image.width() > SQUARES_FROM * picture.width as f32;
+        let options = TextureOptions {
+            magnification: if squares { egui::TextureFilter::Nearest } else { egui::TextureFilter::Linear },
+            ..TextureOptions::LINEAR
+        };
+        match &mut self.texture {
+            Some(texture) => texture.set(image, options),
+            None => self.texture = Some(ui.ctx().load_texture("picture", image, options)),
+        }
+        self.holds = holds;
+    }
+
+    /// Middle drag (or Alt+drag) slides, the wheel comes nearer to what is under the pointer, a double click with the
+    /// middle button fits.
+    fn navigate(&mut self, ui: &Ui, response: &Response, size: Vec2) {
+        if response.double_clicked_by(PointerButton::Middle) {
+            self.zoom = Zoom::Fit;
+            return;
+        }
+        let alt = ui.input(|input| input.modifiers.alt);
+        let sliding = response.dragged_by(PointerButton::Middle)
+            || (alt && response.dragged_by(PointerButton::Primary));
+        if sliding {
+            let image = self.place(size);
+            self.zoom = self.free(image.translate(response.drag_delta()), size);
+        }
+        let Some(pointer) = response.hover_pos() else { return };
+        let (scroll, pinch) = ui.input(|input| (input.smooth_scroll_delta().y, input.zoom_delta()));
+        let factor = (scroll / POINTS_PER_DOUBLING).exp2() * pinch;
+        if factor != 1.0 {
+            let image = self.place(size);
+            let scale = image.width() / size.x;
+            let factor = (scale * factor).clamp(0.02, 64.0) / scale;
+            let zoomed = Rect::from_min_max(
+                pointer + (image.min - pointer) * factor,
+                pointer + (image.max - pointer) * factor,
+            );
+            self.zoom = self.free(zoomed, size);
+        }
+    }
+
+    /// The zoom that shows the picture at `image`.
+    fn free(&self, image: Rect, size: Vec2) -> Zoom {
+        let middle = (self.rect.center() - image.min) / image.size();
+        let middle = vec2(middle.x.clamp(0.0, 1.0), middle.y.clamp(0.0, 1.0));
+        Zoom::Free { scale: image.width() / size.x, middle }
+    }
+
+    /// Where the picture of `size` px goes.
+    fn place(&self, size: Vec2) -> Rect {
+        match self.zoom {
+            Zoom::Fit => {
+                let room = self.rect.shrink(8.0).size();
+                let scale = (room.x / size.x).min(room.y / size.y).max(1e-3);
+                Rect::from_center_size(self.rect.center(), size * scale)
+            }
+            Zoom::Free { scale, middle } => {
+                let drawn = size * scale;
+                Rect::from_min_size(self.rect.center() - middle * drawn, drawn)
+            }
+        }
+    }
+
+    /// Says quietly that the picture on screen is not the last word.
+    fn notice(&self, ui: &Ui, session: &Session) {
+        let pinhole = session.preview().is_some_and(|preview| preview.kind == PreviewKind::Pinhole);
+        let text = match session.preview_activity() {
+            PreviewActivity::Baking if pinhole => "rebuilding the light field, shown without blur meanwhile",
+            PreviewActivity::Baking => "rebuilding the light field",
+            _ if pinhole => "shown without blur: the light field was not built (F5 builds it)",
+            _ => return,
+        };
+        let at = self.rect.left_bottom() + vec2(8.0, -6.0);
+        let font = egui::FontId::proportional(12.0);
+        ui.painter().text(at, egui::Align2::LEFT_BOTTOM, text, font, egui::Color32::from_gray(200));
+    }
+}
+
+/// A screen position in the picture: (0, 0) its upper left corner, (1, 1) its lower right.
+fn picture_position(image: Rect, at: Pos2) -> DVec2 {
+    let share = (at - image.min) / image.size();
+    DVec2::new(share.x as f64, share.y as f64)
+}

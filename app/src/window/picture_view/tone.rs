@@ -1,0 +1,75 @@
+//! From linear radiance to the screen: exposure, display gain, clamp, sRGB encoding.
+
+use egui::Color32;
+use lens::{Exposure, Picture};
+use rayon::prelude::*;
+use std::sync::LazyLock;
+
+/// Entries of the encoding table: an 8-bit step is at least three entries wide even in the shadows.
+const ENTRIES: usize = 1 << 13;
+
+/// sRGB encoding of the middle of each of [`ENTRIES`] cells of [0, 1].
+static ENCODED: LazyLock<Vec<u8>> = LazyLock::new(|| {
+    let encode = |linear: f32| {
+        if linear <= 0.0031308 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 }
+    };
+    (0..ENTRIES).map(|k| (encode((k as f32 + 0.5) / ENTRIES as f32) * 255.0).round() as u8).collect()
+});
+
+/// How a picture is put on screen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tone {
+    /// Conserved or normalised.
+    pub exposure: Exposure,
+    /// Gain of the display, stops; no part of the picture.
+    pub stops: f32,
+}
+
+/// One channel on screen; what is no number is black.
+fn encoded(linear: f32) -> u8 {
+    ENCODED[((linear.max(0.0) * ENTRIES as f32) as usize).min(ENTRIES - 1)]
+}
+
+/// The picture as the screen shows it, row by row.
+pub fn to_screen(picture: &Picture, tone: Tone) -> Vec<Color32> {
+    let gain = tone.stops.exp2();
+    let pixel = |(rgb, &coverage): (&[f32; 3], &f32)| {
+        let scale = match tone.exposure {
+            Exposure::Conserve => gain,
+            Exposure::Normalise if coverage > 0.0 => gain / coverage,
+            Exposure::Normalise => 0.0,
+        };
+        let [r, g, b] = rgb.map(|c| encoded(c * scale));
+        Color32::from_rgb(r, g, b)
+    };
+    picture.radiance.par_iter().zip(&picture.coverage).with_min_len(1 << 14).map(pixel).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn black_grey_and_white_are_encoded() {
+        let mut picture = Picture::black(5, 1);
+        picture.radiance = vec![[0.0; 3], [0.2140; 3], [1.0; 3], [7.0; 3], [f32::NAN; 3]];
+        picture.coverage = vec![1.0; 5];
+        let tone = Tone { exposure: Exposure::Conserve, stops: 0.0 };
+        let shown: Vec<u8> = to_screen(&picture, tone).iter().map(|c| c.r()).collect();
+        assert_eq!(shown[0], 0);
+        assert!(shown[1].abs_diff(127) <= 1, "{}", shown[1]);
+        assert_eq!(shown[2..], [255, 255, 0]);
+    }
+
+    #[test]
+    fn normalising_divides_by_coverage_and_a_stop_doubles() {
+        let mut picture = Picture::black(2, 1);
+        picture.radiance = vec![[0.5; 3], [0.25; 3]];
+        picture.coverage = vec![2.0, 0.0];
+        let shown = to_screen(&picture, Tone { exposure: Exposure::Normalise, stops: 0.0 });
+        assert_eq!(shown[1], Color32::BLACK, "what nothing covers is black");
+        let conserved = to_screen(&picture, Tone { exposure: Exposure::Conserve, stops: 1.0 });
+        assert_eq!(shown[0], to_screen(&picture, Tone { exposure: Exposure::Conserve, stops: -1.0 })[0]);
+        assert_eq!(conserved[0].r(), 255);
+    }
+}

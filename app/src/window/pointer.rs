@@ -1,0 +1,91 @@
+//! What the pointer does to a view that can be painted on: strokes and clicks of the tool, the same in both views.
+
+use super::{Action, Tool};
+use egui::{Event, PointerButton, Pos2, Response, Ui};
+use session::{Command, FillRegion, Session, StrokePoint};
+use trace::Ray;
+
+/// The stroke of one view.
+#[derive(Default)]
+pub struct StrokeInput {
+    painting: bool,
+    last: Option<Pos2>,
+}
+
+impl StrokeInput {
+    /// Turns the left button on `response` into strokes and clicks. `ray` takes a screen position to the view's ray.
+    pub fn update(
+        &mut self,
+        ui: &Ui,
+        response: &Response,
+        session: &Session,
+        tool: Tool,
+        ray: impl Fn(Pos2) -> Option<Ray>,
+        actions: &mut Vec<Action>,
+    ) {
+        let Some(document) = session.document() else { return };
+        let (pressed, down, modifiers) = ui.input(|input| {
+            let pointer = &input.pointer;
+            (pointer.button_pressed(PointerButton::Primary), pointer.primary_down(), input.modifiers)
+        });
+        if self.painting && !session.is_painting() {
+            // Taken back meanwhile, by Esc or undo: the rest of the drag paints nothing.
+            self.painting = false;
+        }
+        let start = response.is_pointer_button_down_on() && pressed && !modifiers.alt && !modifiers.command;
+        if start && let Some(position) = response.interact_pointer_pos() {
+            response.request_focus();
+            let Some(ray) = ray(position) else { return };
+            if tool.paints() {
+                let mode = tool.mode(document.brush.mode);
+                if mode != document.brush.mode {
+                    actions.push(Command::SetBrush(focus::Brush { mode, ..document.brush.clone() }).into());
+                }
+                actions.push(Command::BeginStroke(StrokePoint::ray(ray)).into());
+                self.painting = true;
+                self.last = Some(position);
+            } else {
+                click(session, tool, &ray, actions);
+            }
+            return;
+        }
+        if !self.painting {
+            return;
+        }
+        // Every motion event, not only the frame's last: a fast stroke stays round.
+        let moves = ui.input(|input| {
+            let moved = |event: &Event| match event {
+                Event::PointerMoved(position) => Some(*position),
+                _ => None,
+            };
+            input.events.iter().filter_map(moved).collect::<Vec<_>>()
+        });
+        for position in moves {
+            if Some(position) != self.last
+                && let Some(ray) = ray(position)
+            {
+                actions.push(Command::ExtendStroke(StrokePoint::ray(ray)).into());
+                self.last = Some(position);
+            }
+        }
+        if !down {
+            actions.push(Command::CommitStroke.into());
+            self.painting = false;
+        }
+    }
+}
+
+/// What a tool that does not paint does where it is clicked.
+fn click(session: &Session, tool: Tool, ray: &Ray, actions: &mut Vec<Action>) {
+    let (Some(document), Some(hit)) = (session.document(), session.pick(ray)) else { return };
+    let target = document.brush.target;
+    let command = match tool {
+        Tool::FillObject => Command::Fill(FillRegion::Node(hit), target),
+        Tool::FillMaterial => Command::Fill(FillRegion::Material(hit), target),
+        Tool::FillChart => Command::Fill(FillRegion::Chart(hit), target),
+        Tool::FocusHere => Command::FocusHere(hit),
+        Tool::Pick => Command::Pick(hit),
+        Tool::Brush | Tool::Smooth | Tool::Reset => return,
+    };
+    actions.push(command.into());
+}

@@ -1,0 +1,717 @@
+//! The window: one frame from top to bottom, and what the commands do.
+//!
+//! ```text
+//! session events ─▶ views          keys, menus, panels, views ─▶ actions ─▶ session
+//! ```
+//!
+//! A frame first takes up what happened, then draws everything from the document as it is; what is asked for is collected in a
+//! list of [`Action`]s and carried out at the end.
+
+use super::brush_ring::BrushRing;
+use super::file_dialog::{FileDialog, Purpose};
+use super::help::Help;
+use super::inspector::Inspector;
+use super::layout::{self, Pane, Panes};
+use super::menu_bar::{MenuState, is_possible, menu_bar};
+use super::paint_view::PaintView;
+use super::palette::Palette;
+use super::picture_view::{PictureView, Shown};
+use super::status_line::{Hover, status_line};
+use super::toasts::{Severity, Toasts};
+use super::tool_bar::{largest_radius, signed_circle_px, tool_bar};
+use super::unsaved_question::{Answer, Next, UnsavedQuestion};
+use super::{Action, Tool, ViewSettings, WindowOptions, demo, shortcuts, theme};
+use eframe::{CreationContext, Frame, Storage};
+use egui::{Button, CentralPanel, Context, Panel, Ui, ViewportCommand};
+use egui_tiles::Tree;
+use focus::Brush;
+use lens::{Exposure, FocusOffset};
+use session::{CameraEdit, Command, CommandId, Event, FillRegion, Session, SessionError, SessionOptions};
+use std::path::PathBuf;
+use std::sync::Arc;
+
+/// Where eframe keeps the settings between runs.
+const SETTINGS_KEY: &str = "settings";
+/// Where eframe keeps the layout between runs.
+const LAYOUT_KEY: &str = "layout";
+/// What a key changes of size, focus distance and hardness.
+const SIZE_STEP: f64 = 1.15;
+/// A third of a stop, as a ratio of f-numbers.
+const THIRD_STOP: f64 = 1.122_462_048_309_373;
+/// A twentieth nearer or farther.
+const DISTANCE_STEP: f64 = 1.05;
+/// What a key moves the brush's blur on the map from near to far.
+const BLUR_STEP: f64 = 0.05;
+/// Rays a pixel of the ray-traced comparison.
+const TRUTH_SAMPLES: u32 = 64;
+
+/// The window's application.
+pub struct Shell {
+    session: Session,
+    tool: Tool,
+    settings: ViewSettings,
+    layout: Tree<Pane>,
+    paint: PaintView,
+    picture: PictureView,
+    inspector: Inspector,
+    toasts: Toasts,
+    palette: Palette,
+    help: Help,
+    dialog: FileDialog,
+    question: UnsavedQuestion,
+    /// What waits for a save to end well.
+    after_save: Option<Next>,
+    /// Whether the window may close without a question.
+    may_close: bool,
+    title: String,
+    adapter: String,
+    showing_demo: bool,
+    opening: Option<PathBuf>,
+}
+
+impl Shell {
+    /// The window's application, with the file of `options` (or the demo) being opened.
+    pub fn new(creation: &CreationContext<'_>, options: WindowOptions) -> Result<Self, SessionError> {
+        theme::apply(&creation.egui_ctx);
+        let stored =
+            |key| creation.storage.filter(|_| options.remember).and_then(|storage| storage.get_string(key));
+        let settings: ViewSettings =
+            stored(SETTINGS_KEY).and_then(|text| serde_json::from_str(&text).ok()).unwrap_or_default();
+        let tree = stored(LAYOUT_KEY).and_then(|text| serde_json::from_str(&text).ok());
+        let layout = tree.filter(layout::is_whole).unwrap_or_else(layout::initial);
+        let context = creation.egui_ctx.clone();
+        let session = Session::new(SessionOptions {
+            preview_size: options.preview_size.unwrap_or(settings.preview_size),
+            waker: Arc::new(move || context.request_repaint()),
+            ..SessionOptions::default()
+        })?;
+        let state = creation.wgpu_render_state.as_ref();
+        let mut shell = Self {
+            session,
+            tool: Tool::default(),
+            settings,
+            layout,
+            paint: PaintView::new(state),
+            picture: PictureView::default(),
+            inspector: Inspector::default(),
+            toasts: Toasts::default(),
+            palette: Palette::default(),
+            help: Help::default(),
+            dialog: FileDialog::default(),
+            question: UnsavedQuestion::default(),
+            after_save: None,
+            may_close: false,
+            title: String::new(),
+            adapter: state
+                .map_or_else(|| "no graphics adapter".into(), |state| state.adapter.get_info().name),
+            showing_demo: false,
+            opening: None,
+        };
+        match options.file {
+            Some(file) => shell.open(file),
+            None if options.demo => shell.open_demo(),
+            None => {}
+        }
+        Ok(shell)
+    }
+
+    /// The session.
+    pub fn session(&self) -> &Session {
+        &self.session
+    }
+
+    /// The paint view.
+    pub fn paint_view(&self) -> &PaintView {
+        &self.paint
+    }
+
+    /// The picture view.
+    pub fn picture_view(&self) -> &PictureView {
+        &self.picture
+    }
+
+    /// The chosen tool.
+    pub fn tool(&self) -> Tool {
+        self.tool
+    }
+
+    /// The messages on screen, oldest first.
+    pub fn messages(&self) -> impl Iterator<Item = (Severity, &str)> {
+        self.toasts.texts()
+    }
+
+    /// The window's title.
+    pub fn title(&self) -> &str {
+        &self.title
+    }
+
+    /// Does what a command of the table says, as its menu entry does.
+    pub fn run(&mut self, id: CommandId, context: &Context) {
+        let state = MenuState {
+            document: self.session.document(),
+            settings: &self.settings,
+            working: !self.session.jobs().is_empty(),
+        };
+        if is_possible(id, &state) {
+            self.carry_out(id, context);
+        }
+    }
+
+    /// Sends a command to the session; a failure becomes a message.
+    pub fn apply(&mut self, command: Command) {
+        match self.session.apply(command) {
+            Ok(()) | Err(SessionError::Cancelled) => {}
+            Err(error) => self.toasts.error(error.to_string()),
+        }
+    }
+
+    fn open(&mut self, path: PathBuf) {
+        self.showing_demo = false;
+        self.opening = Some(path.clone());
+        self.apply(Command::Open(path));
+    }
+
+    fn open_demo(&mut self) {
+        match demo::find() {
+            Some(path) => {
+                self.open(path);
+                self.showing_demo = true;
+            }
+            None => self.toasts.error("assets/demo: the demo is not installed (open a scene with Ctrl+O)"),
+        }
+    }
+
+    /// Does `next` now, or after the question about unsaved changes.
+    fn ask_then(&mut self, next: Next, context: &Context) {
+        if self.session.document().is_some_and(|document| document.is_unsaved()) {
+            self.question.ask(next);
+        } else {
+            self.go_on(next, context);
+        }
+    }
+
+    fn go_on(&mut self, next: Next, context: &Context) {
+        match next {
+            Next::Quit => {
+                self.may_close = true;
+                context.send_viewport_cmd(ViewportCommand::Close);
+            }
+            Next::Open(path) => self.open(path),
+            Next::AskOpen => {
+                let folder = self.settings.recent.first().and_then(|path| Some(path.parent()?.to_path_buf()));
+                let folder = folder.or_else(|| std::env::current_dir().ok()).unwrap_or_default();
+                self.dialog.ask(Purpose::Open, folder.join(""), context);
+            }
+        }
+    }
+
+    fn save(&mut self, context: &Context) {
+        let Some(document) = self.session.document() else { return };
+        if document.path.is_some() {
+            self.apply(Command::Save);
+        } else {
+            self.ask_for(Purpose::SaveAs, context);
+        }
+    }
+
+    /// Asks for a file to write, beside the document and named after it.
+    fn ask_for(&mut self, purpose: Purpose, context: &Context) {
+        let Some(document) = self.session.document() else { return };
+        let base = document.path.clone().unwrap_or_else(|| document.scene().path.clone());
+        let stem = base.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
+        let name = match purpose {
+            Purpose::SaveAs => format!("{stem}.fbrush"),
+            Purpose::ExportPicture => format!("{stem}.png"),
+            Purpose::ExportFocusMap => format!("{stem}-focus.exr"),
+            Purpose::ExportScene => format!("{stem}-unwrapped.glb"),
+            Purpose::Open | Purpose::ImportFocusMap | Purpose::ApertureMask => String::new(),
+        };
+        self.dialog.ask(purpose, base.with_file_name("").join(name), context);
+    }
+
+    fn answered(&mut self, purpose: Purpose, path: PathBuf) {
+        match purpose {
+            Purpose::Open => self.open(path),
+            Purpose::SaveAs => self.apply(Command::SaveAs(path)),
+            Purpose::ExportPicture => self.apply(Command::ExportPicture(path)),
+            Purpose::ExportFocusMap => self.apply(Command::ExportFocusMap(path)),
+            Purpose::ExportScene => self.apply(Command::ExportScene(path)),
+            Purpose::ImportFocusMap => self.apply(Command::ImportFocusMap(path)),
+            Purpose::ApertureMask => self.use_mask(path),
+        }
+    }
+
+    fn use_mask(&mut self, path: PathBuf) {
+        let Some(document) = self.session.document() else { return };
+        let ratio = document.camera.aperture.ratio;
+        match project::read_aperture_mask(&path, &path.display().to_string()) {
+            Ok(mask) => {
+                let shape = lens::ApertureShape::Mask(Arc::new(mask));
+                self.apply(Command::Camera(CameraEdit::Aperture(lens::Aperture { shape, ratio })));
+                self.apply(Command::FinishEdit);
+            }
+            Err(error) => self.toasts.error(error.to_string()),
+        }
+    }
+
+    fn carry_out(&mut self, id: CommandId, context: &Context) {
+        match id {
+            CommandId::Open => self.ask_then(Next::AskOpen, context),
+            CommandId::OpenDemo => match demo::find() {
+                Some(path) => self.ask_then(Next::Open(path), context),
+                None => self.open_demo(),
+            },
+            CommandId::Save => self.save(context),
+            CommandId::SaveAs => self.ask_for(Purpose::SaveAs, context),
+            CommandId::ExportPicture => self.ask_for(Purpose::ExportPicture, context),
+            CommandId::ExportFocusMap => self.ask_for(Purpose::ExportFocusMap, context),
+            CommandId::ExportScene => self.ask_for(Purpose::ExportScene, context),
+            CommandId::ImportFocusMap => self.ask_for(Purpose::ImportFocusMap, context),
+            CommandId::Quit => self.ask_then(Next::Quit, context),
+            CommandId::Undo => self.apply(Command::Undo),
+            CommandId::Redo => self.apply(Command::Redo),
+            CommandId::FrameAll => self.with_document(|paint, document| paint.frame_all(document)),
+            CommandId::FrameCursor => self.with_document(|paint, document| paint.frame_cursor(document)),
+            CommandId::ViewFromCamera => {
+                self.with_document(|paint, document| paint.look_through(&document.camera))
+            }
+            CommandId::PictureFit => self.picture.fit(),
+            CommandId::PictureActualSize => self.picture.actual_size(context.pixels_per_point()),
+            CommandId::ShowFocus => self.settings.focus_share = ViewSettings::default().focus_share,
+            CommandId::ShowSurface => self.settings.focus_share = 0.0,
+            CommandId::ResetLayout => {
+                self.layout = layout::initial();
+                self.settings.inspector = true;
+            }
+            CommandId::Brush => self.choose(Tool::Brush),
+            CommandId::Smooth => self.choose(Tool::Smooth),
+            CommandId::Erase => self.choose(Tool::Reset),
+            CommandId::FillPart => self.choose(Tool::FillObject),
+            CommandId::FillMaterial => self.choose(Tool::FillMaterial),
+            CommandId::FillChart => self.choose(Tool::FillChart),
+            CommandId::FocusHere => self.choose(Tool::FocusHere),
+            CommandId::Pick => self.choose(Tool::Pick),
+            CommandId::FillAll => {
+                if let Some(target) = self.session.document().map(|document| document.brush.target) {
+                    self.apply(Command::Fill(FillRegion::All, target));
+                }
+            }
+            CommandId::ResetMap => self.apply(Command::ResetMap),
+            CommandId::BrushLarger => {
+                self.edit_brush(|brush, most| brush.radius = (brush.radius * SIZE_STEP).min(most))
+            }
+            CommandId::BrushSmaller => {
+                self.edit_brush(|brush, most| brush.radius = (brush.radius / SIZE_STEP).max(most * 1e-4));
+            }
+            CommandId::BrushHarder => {
+                self.edit_brush(|brush, _| brush.hardness = (brush.hardness + 0.1).min(1.0))
+            }
+            CommandId::BrushSofter => {
+                self.edit_brush(|brush, _| brush.hardness = (brush.hardness - 0.1).max(0.0))
+            }
+            CommandId::BrushNearer => self.move_blur(-BLUR_STEP),
+            CommandId::BrushFarther => self.move_blur(BLUR_STEP),
+            CommandId::BrushSharp => self.edit_brush(|brush, _| brush.target = FocusOffset::SHARP),
+            CommandId::ToggleAnchor => self.edit_brush(|brush, _| {
+                brush.target.anchor = if brush.target.anchor < 0.5 { 1.0 } else { 0.0 };
+            }),
+            CommandId::OpenAperture => {
+                self.edit_camera(|camera| CameraEdit::FNumber(camera.f_number() / THIRD_STOP))
+            }
+            CommandId::CloseAperture => {
+                self.edit_camera(|camera| CameraEdit::FNumber(camera.f_number() * THIRD_STOP))
+            }
+            CommandId::FocusNearer => {
+                self.edit_camera(|camera| CameraEdit::FocusDistance(camera.focus_distance / DISTANCE_STEP));
+            }
+            CommandId::FocusFarther => {
+                self.edit_camera(|camera| CameraEdit::FocusDistance(camera.focus_distance * DISTANCE_STEP));
+            }
+            CommandId::CameraFromView => {
+                let pose = self.paint.camera().pose();
+                self.edit_camera(|_| CameraEdit::Pose(pose));
+            }
+            CommandId::Normalise => {
+                if let Some(document) = self.session.document() {
+                    let other = match document.exposure {
+                        Exposure::Normalise => Exposure::Conserve,
+                        Exposure::Conserve => Exposure::Normalise,
+                    };
+                    self.apply(Command::SetExposure(other));
+                }
+            }
+            CommandId::Bake => self.apply(Command::Bake),
+            CommandId::RenderTruth => self.apply(Command::RenderTruth { samples_per_pixel: TRUTH_SAMPLES }),
+            CommandId::Stop => self.apply(Command::CancelAll),
+            CommandId::Palette => self.palette.toggle(),
+            CommandId::Shortcuts => self.help.shortcuts = !self.help.shortcuts,
+            CommandId::About => self.help.about = !self.help.about,
+        }
+    }
+
+    fn with_document(&mut self, act: impl FnOnce(&mut PaintView, &session::Document)) {
+        if let Some(document) = self.session.document() {
+            act(&mut self.paint, document);
+        }
+    }
+
+    fn choose(&mut self, tool: Tool) {
+        let Some(document) = self.session.document() else { return };
+        // Back from another tool's mode to one that paints the chosen focus.
+        let own = matches!(
+            document.brush.mode,
+            focus::BrushMode::Set | focus::BrushMode::Add | focus::BrushMode::Subtract
+        );
+        let mode = tool.mode(if own { document.brush.mode } else { focus::BrushMode::Set });
+        self.edit_brush(|brush, _| brush.mode = mode);
+        self.tool = tool;
+    }
+
+    fn edit_brush(&mut self, edit: impl FnOnce(&mut Brush, f64)) {
+        let Some(document) = self.session.document() else { return };
+        let mut brush = document.brush.clone();
+        edit(&mut brush, largest_radius(document));
+        self.apply(Command::SetBrush(brush));
+    }
+
+    fn edit_camera(&mut self, edit: impl FnOnce(&lens::Camera) -> CameraEdit) {
+        let Some(document) = self.session.document() else { return };
+        let edit = edit(&document.camera);
+        self.apply(Command::Camera(edit));
+        self.apply(Command::FinishEdit);
+    }
+
+    /// Moves the brush's blur on the map from near to far, stopping at sharp when it comes by.
+    fn move_blur(&mut self, step: f64) {
+        use super::false_colour::{circle_px, position};
+        let Some(document) = self.session.document() else { return };
+        let optics = document.camera.optics();
+        let before = position(signed_circle_px(&optics, document.brush.target.t));
+        let mut after = (before + step).clamp(-1.0, 1.0);
+        if before * after < 0.0 || after.abs() < BLUR_STEP / 4.0 {
+            after = 0.0;
+        }
+        let kappa = optics.kappa_for_circle_px(circle_px(after));
+        let t = kappa.and_then(|kappa| optics.offset_for_kappa(kappa, optics.inverse_focus_distance, 1.0));
+        match t {
+            Some(t) => self.edit_brush(|brush, _| brush.target.t = t),
+            None => self.toasts.notice("A pinhole blurs nothing: open the aperture first."),
+        }
+    }
+
+    /// Takes up what happened in the session.
+    fn take_events(&mut self, context: &Context) {
+        for event in self.session.poll() {
+            match event {
+                Event::Opened => self.document_opened(context),
+                Event::MapChanged(columns, rows) => {
+                    if let Some(document) = self.session.document() {
+                        self.paint.map_changed(document, columns, rows);
+                    }
+                }
+                Event::TruthReady => self.picture.truth_ready(),
+                Event::Written(path) => self.written(path, context),
+                Event::Failed(text) => {
+                    self.after_save = None;
+                    self.toasts.error(text);
+                }
+                Event::Notice(text) => self.toasts.notice(text),
+                Event::CameraChanged | Event::BrushChanged | Event::PreviewReady(_) | Event::Progress(_) => {}
+            }
+        }
+    }
+
+    fn document_opened(&mut self, context: &Context) {
+        self.tool = Tool::Brush;
+        self.picture.opened();
+        let opening = self.opening.take();
+        if let Some(document) = self.session.document() {
+            self.paint.opened(document, context);
+            if let Some(path) = opening.filter(|_| !self.showing_demo) {
+                self.settings.remember(&path);
+            }
+            let warnings = document.scene().warnings.len();
+            if warnings > 0 {
+                let first = &document.scene().warnings[0];
+                let more = if warnings > 1 {
+                    format!(" (and {} more, see Scene)", warnings - 1)
+                } else {
+                    String::new()
+                };
+                self.toasts.notice(format!("{first}{more}"));
+            }
+        }
+    }
+
+    fn written(&mut self, path: PathBuf, context: &Context) {
+        self.toasts.notice(format!("Wrote {}", path.display()));
+        let Some(document) = self.session.document() else { return };
+        if document.path.as_ref() == Some(&path) {
+            self.settings.remember(&path);
+            if let Some(next) = self.after_save.take() {
+                self.go_on(next, context);
+            }
+        }
+    }
+
+    fn update_title(&mut self, context: &Context) {
+        let title = match self.session.document() {
+            Some(document) => {
+                let star = if document.is_unsaved() { " *" } else { "" };
+                format!("{}{star} – Focus Brush", document.name())
+            }
+            None => "Focus Brush".into(),
+        };
+        if title != self.title {
+            context.send_viewport_cmd(ViewportCommand::Title(title.clone()));
+            self.title = title;
+        }
+    }
+
+    /// Asks before the window closes over unsaved changes.
+    fn guard_close(&mut self, context: &Context) {
+        let closing = context.input(|input| input.viewport().close_requested());
+        let unsaved = self.session.document().is_some_and(|document| document.is_unsaved());
+        if closing && unsaved && !self.may_close {
+            context.send_viewport_cmd(ViewportCommand::CancelClose);
+            self.question.ask(Next::Quit);
+        }
+    }
+
+    fn answer_questions(&mut self, context: &Context) {
+        let name = self.session.document().map(|document| document.name()).unwrap_or_default();
+        match self.question.show(context, &name) {
+            Some(Answer::Save(next)) => {
+                self.after_save = Some(next);
+                self.save(context);
+            }
+            Some(Answer::Discard(next)) => self.go_on(next, context),
+            Some(Answer::Stay) | None => {}
+        }
+        let was_open = self.dialog.is_open();
+        match self.dialog.show(context) {
+            Some((purpose, path)) => self.answered(purpose, path),
+            None if was_open && !self.dialog.is_open() => self.after_save = None,
+            None => {}
+        }
+    }
+
+    fn dropped_files(&mut self, context: &Context) {
+        let dropped =
+            context.input(|input| input.raw.dropped_files.first().map(|file| file.path().to_path_buf()));
+        if let Some(path) = dropped {
+            self.ask_then(Next::Open(path), context);
+        }
+    }
+
+    /// Keys: Esc takes a stroke back; the rest is the command table's.
+    fn keys(&mut self, context: &Context, actions: &mut Vec<Action>) {
+        if self.palette.is_open() || self.dialog.is_open() || self.question.is_open() {
+            return;
+        }
+        let escape = context.input(|input| input.key_pressed(egui::Key::Escape));
+        if escape && self.session.is_painting() {
+            actions.push(Command::AbortStroke.into());
+        }
+        actions.extend(shortcuts::pressed(context).into_iter().map(Action::Run));
+    }
+
+    fn perform(&mut self, actions: Vec<Action>, context: &Context) {
+        if !actions.is_empty() {
+            context.request_repaint();
+        }
+        for action in actions {
+            match action {
+                Action::Run(id) => self.run(id, context),
+                Action::Do(command) => self.apply(*command),
+                Action::Open(path) => self.ask_then(Next::Open(path), context),
+                Action::ChooseMask => self.ask_for(Purpose::ApertureMask, context),
+                Action::Complain(text) => self.toasts.error(text),
+            }
+        }
+    }
+
+    fn hovered(&self) -> Option<session::SurfaceHit> {
+        self.paint.hover().or(self.picture.hover())
+    }
+
+    /// What lies under the pointer, in numbers.
+    fn hover_numbers(&self) -> Option<Hover> {
+        let hit = self.hovered()?;
+        let document = self.session.document()?;
+        let focus = self.session.focus_at(&hit)?;
+        let depth = document.camera.camera_from_world(hit.position).z;
+        let optics = document.camera.optics();
+        let circle_px = 2.0 * optics.splat_radius_px(optics.kappa(1.0 / depth, focus));
+        (depth > 0.0).then_some(Hover { depth, circle_px, t: focus.t, anchor: focus.anchor })
+    }
+
+    fn ring(&self) -> Option<BrushRing> {
+        let document = self.session.document().filter(|_| self.tool.paints())?;
+        let brush = &document.brush;
+        let circle_px = match self.tool {
+            Tool::Brush => signed_circle_px(&document.camera.optics(), brush.target.t),
+            _ => 0.0,
+        };
+        Some(BrushRing { radius: brush.radius, hardness: brush.hardness, circle_px })
+    }
+
+    fn views(&mut self, ui: &mut Ui, actions: &mut Vec<Action>) {
+        let ring = self.ring();
+        let Self { layout, paint, picture, session, settings, tool, .. } = self;
+        let mut panes = Panes {
+            pane_ui: |ui: &mut Ui, pane: Pane| {
+                let dragged = header(ui, pane, session, settings, picture, actions);
+                match pane {
+                    Pane::Paint => paint.ui(ui, session, *tool, settings.look(), ring, actions),
+                    Pane::Picture => picture.ui(ui, session, *tool, settings.display_stops, ring, actions),
+                }
+                dragged
+            },
+        };
+        layout.ui(&mut panes, ui);
+    }
+
+    /// The hint of the first start: three lines over the demo, until it is put away.
+    fn first_hint(&mut self, context: &Context) {
+        if !self.showing_demo || self.settings.hint_seen || self.session.document().is_none() {
+            return;
+        }
+        let rect = self.paint.rect();
+        let area = egui::Window::new("Try this").collapsible(false).resizable(false).title_bar(false);
+        area.fixed_pos(rect.left_top() + egui::vec2(12.0, 12.0)).show(context, |ui| {
+            ui.set_max_width((rect.width() - 60.0).clamp(160.0, 420.0));
+            ui.label("Drag over the scene here, or over the picture: what you paint becomes sharp.");
+            ui.label("Move the slider above from near to far to paint blur instead.");
+            ui.label("Middle drag (or Alt+drag) turns this view; Ctrl+Z takes anything back.");
+            if ui.button("Got it").clicked() {
+                self.settings.hint_seen = true;
+            }
+        });
+    }
+}
+
+/// The line above a view. Returns whether the view is being dragged elsewhere by its name.
+fn header(
+    ui: &mut Ui,
+    pane: Pane,
+    session: &Session,
+    settings: &mut ViewSettings,
+    picture: &mut PictureView,
+    actions: &mut Vec<Action>,
+) -> bool {
+    let frame = egui::Frame::new().inner_margin(egui::Margin::symmetric(8, 3)).fill(ui.visuals().panel_fill);
+    let title = match pane {
+        Pane::Paint => "Paint",
+        Pane::Picture => "Picture",
+    };
+    frame
+        .show(ui, |ui| {
+            ui.horizontal(|ui| {
+                let name = egui::Label::new(egui::RichText::new(title).strong()).selectable(false);
+                let name = ui
+                    .add(name.sense(egui::Sense::drag()))
+                    .on_hover_text("Drag to place this view elsewhere.");
+                match pane {
+                    Pane::Paint => paint_header(ui, settings),
+                    Pane::Picture => picture_header(ui, session, picture, actions),
+                }
+                ui.allocate_space(egui::vec2(ui.available_width(), 0.0));
+                name.drag_started()
+            })
+            .inner
+        })
+        .inner
+}
+
+fn paint_header(ui: &mut Ui, settings: &mut ViewSettings) {
+    ui.label("Surface").on_hover_text("The scene's own colours.");
+    let mix = egui::Slider::new(&mut settings.focus_share, 0.0..=1.0).show_value(false);
+    let tip =
+        "From the scene's own colours (V) to the colours of blur (C): near orange, sharp white, far blue.";
+    ui.spacing_mut().slider_width = 70.0;
+    super::controls::named(&ui.add(mix).on_hover_text(tip), "Share of false colour");
+    ui.label("Blur").on_hover_text("The false colour of blur.");
+    ui.checkbox(&mut settings.contours, "Contours")
+        .on_hover_text("Lines where the blur is 1, 4 and 16 px wide.");
+}
+
+fn picture_header(ui: &mut Ui, session: &Session, picture: &mut PictureView, actions: &mut Vec<Action>) {
+    if session.truth().is_some() {
+        ui.selectable_value(&mut picture.shown, Shown::Painted, "Live").on_hover_text("The live picture.");
+        ui.selectable_value(&mut picture.shown, Shown::Truth, "Ray traced")
+            .on_hover_text("The ray-traced picture, to compare with (F12 traces it anew).");
+    }
+    for (id, label) in [(CommandId::PictureFit, "Fit"), (CommandId::PictureActualSize, "100 %")] {
+        if ui.add(Button::new(label)).on_hover_text(id.info().tooltip).clicked() {
+            actions.push(id.into());
+        }
+    }
+    if let Some(percent) = picture.percent(session, ui.ctx().pixels_per_point()).filter(|p| p.is_finite()) {
+        ui.weak(format!("{percent:.0} %")).on_hover_text("Screen pixels of a picture pixel.");
+    }
+}
+
+impl eframe::App for Shell {
+    fn logic(&mut self, context: &Context, _frame: &mut Frame) {
+        self.take_events(context);
+        self.guard_close(context);
+        self.update_title(context);
+    }
+
+    fn ui(&mut self, ui: &mut Ui, _frame: &mut Frame) {
+        let context = ui.ctx().clone();
+        let mut actions = Vec::new();
+        self.dropped_files(&context);
+        self.keys(&context, &mut actions);
+        Panel::top("menu").show(ui, |ui| {
+            let working = !self.session.jobs().is_empty();
+            let state = MenuState { document: self.session.document(), settings: &self.settings, working };
+            menu_bar(ui, &state, &mut actions);
+        });
+        Panel::top("tools").show(ui, |ui| tool_bar(ui, self.session.document(), self.tool, &mut actions));
+        Panel::bottom("status").show(ui, |ui| {
+            let tip = self
+                .session
+                .document()
+                .map_or("Open a scene with Ctrl+O, or drop one here.", |_| self.tool.tip());
+            status_line(ui, &self.session, self.hover_numbers(), tip, &mut actions);
+        });
+        if self.settings.inspector {
+            Panel::right("inspector").resizable(true).default_size(300.0).size_range(250.0..=460.0).show(
+                ui,
+                |ui| {
+                    let hover = self.hovered();
+                    self.inspector.ui(ui, &self.session, &mut self.settings, hover, &mut actions);
+                },
+            );
+        }
+        let bare = egui::Frame::new().fill(ui.visuals().extreme_bg_color);
+        CentralPanel::default().frame(bare).show(ui, |ui| self.views(ui, &mut actions));
+        self.first_hint(&context);
+        if let Some(id) = self.palette.show(&context) {
+            actions.push(id.into());
+        }
+        self.help.show(&context, &self.adapter);
+        self.answer_questions(&context);
+        self.toasts.show(&context);
+        self.perform(actions, &context);
+        // While work goes on, its progress is shown four times a second.
+        if !self.session.jobs().is_empty() {
+            context.request_repaint_after_secs(0.25);
+        }
+    }
+
+    fn save(&mut self, storage: &mut dyn Storage) {
+        if let Ok(text) = serde_json::to_string(&self.settings) {
+            storage.set_string(SETTINGS_KEY, text);
+        }
+        if let Ok(text) = serde_json::to_string(&self.layout) {
+            storage.set_string(LAYOUT_KEY, text);
+        }
+    }
+
+    fn persist_egui_memory(&self) -> bool {
+        false
+    }
+}

@@ -1,0 +1,83 @@
+//! One line at the bottom: what is being worked on, how fast, and what to try.
+
+use super::{Action, controls};
+use egui::{Align, Layout, ProgressBar, Ui};
+use session::{Command, JobStatus, PreviewKind, Session};
+
+/// What lies under the pointer.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hover {
+    /// Axial depth in the shot camera.
+    pub depth: f64,
+    /// Signed circle of confusion on the full-size picture, px.
+    pub circle_px: f64,
+    /// The painted t.
+    pub t: f64,
+    /// The painted anchor.
+    pub anchor: f64,
+}
+
+/// Draws the status line.
+pub fn status_line(
+    ui: &mut Ui,
+    session: &Session,
+    hover: Option<Hover>,
+    tip: &str,
+    actions: &mut Vec<Action>,
+) {
+    ui.horizontal(|ui| {
+        if let Some(preview) = session.preview().filter(|_| session.document().is_some()) {
+            let what = match preview.kind {
+                PreviewKind::Pinhole => "pinhole",
+                PreviewKind::Splat => "splat",
+                PreviewKind::Update => "dab",
+            };
+            ui.label(format!("{what} {}", controls::seconds(preview.seconds))).on_hover_text(
+                "How long the last picture took to draw, and whether all or only the painted part was drawn.",
+            );
+            ui.separator();
+            let samples =
+                preview.statistics.open + preview.statistics.partial + preview.statistics.background;
+            if samples > 0 {
+                ui.label(format!("{} samples", controls::count(samples)))
+                    .on_hover_text("Samples of the light field that the picture is summed from.");
+                ui.separator();
+            }
+        }
+        if let Some(document) = session.document() {
+            ui.label(format!("undo {}", controls::bytes(document.undo_bytes())))
+                .on_hover_text("Memory that the undo steps hold.");
+            ui.separator();
+        }
+        for job in session.jobs() {
+            job_ui(ui, &job, actions);
+            ui.separator();
+        }
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            if let Some(hover) = hover {
+                let text = format!(
+                    "{} deep · {} · t {:.4} · anchor {:.2}",
+                    controls::length(hover.depth),
+                    controls::circle(hover.circle_px),
+                    hover.t,
+                    hover.anchor
+                );
+                ui.label(text)
+                    .on_hover_text("What lies under the pointer: depth, blur, and the painted focus.");
+                ui.separator();
+            }
+            ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+                ui.add(egui::Label::new(egui::RichText::new(tip).weak()).truncate());
+            });
+        });
+    });
+}
+
+fn job_ui(ui: &mut Ui, job: &JobStatus, actions: &mut Vec<Action>) {
+    ui.label(&job.label);
+    let bar = ProgressBar::new(job.fraction).desired_width(90.0).show_percentage();
+    controls::named(&ui.add(bar), &job.label);
+    if ui.add_enabled(job.can_cancel, egui::Button::new("Stop")).on_hover_text("Stop this work.").clicked() {
+        actions.push(Command::Cancel(job.id).into());
+    }
+}

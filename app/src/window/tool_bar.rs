@@ -1,0 +1,104 @@
+//! The tools and the brush's three numbers, always at hand.
+
+use super::focus_slider::focus_slider;
+use super::{Action, Tool, controls};
+use egui::{Button, Ui};
+use focus::Brush;
+use lens::{FocusOffset, Optics};
+use session::{Command, Document};
+
+/// Draws the tool bar.
+pub fn tool_bar(ui: &mut Ui, document: Option<&Document>, tool: Tool, actions: &mut Vec<Action>) {
+    ui.horizontal(|ui| {
+        for candidate in Tool::BAR {
+            let chosen = candidate == tool
+                || (candidate == Tool::FillObject && matches!(tool, Tool::FillMaterial | Tool::FillChart));
+            let label = if chosen { tool.label() } else { candidate.label() };
+            let info = candidate.command().info();
+            let response = ui.add(Button::selectable(chosen, label));
+            let key = info.shortcut.map(|key| format!(" ({key})")).unwrap_or_default();
+            if response.on_hover_text(format!("{}{key}", info.tooltip)).clicked() {
+                actions.push(candidate.command().into());
+            }
+        }
+        let Some(document) = document else { return };
+        ui.separator();
+        let mut brush = document.brush.clone();
+        ui.label("Size").on_hover_text(SIZE_TIP);
+        let largest = largest_radius(document);
+        let size = egui::Slider::new(&mut brush.radius, largest * 1e-3..=largest)
+            .logarithmic(true)
+            .show_value(false);
+        super::controls::named(&ui.add(size).on_hover_text(SIZE_TIP), "Brush size");
+        ui.label("Strength").on_hover_text(STRENGTH_TIP);
+        let strength = egui::Slider::new(&mut brush.strength, 0.0..=1.0).show_value(false);
+        super::controls::named(&ui.add(strength).on_hover_text(STRENGTH_TIP), "Brush strength");
+        ui.separator();
+        let optics = document.camera.optics();
+        if let Some(target) = target_slider(ui, &optics, brush.target, 170.0) {
+            brush.target = target;
+        }
+        let px = signed_circle_px(&optics, brush.target.t);
+        ui.label(controls::circle(px))
+            .on_hover_text("The blur that the brush paints, on the full-size picture.");
+        push_brush(document, brush, actions);
+    });
+}
+
+/// Sends the brush if it changed.
+pub fn push_brush(document: &Document, brush: Brush, actions: &mut Vec<Action>) {
+    if brush != document.brush {
+        actions.push(Command::SetBrush(brush).into());
+    }
+}
+
+/// What the size slider says.
+pub const SIZE_TIP: &str = "Radius of the brush on the surface. Keys: [ and ].";
+/// What the strength slider says.
+pub const STRENGTH_TIP: &str = "How far one stroke moves the focus toward the brush's.";
+
+/// The largest brush: a quarter of the scene.
+pub fn largest_radius(document: &Document) -> f64 {
+    let (low, high) = document.scene().bounds();
+    let diagonal = (high - low).length();
+    if diagonal > 0.0 && diagonal.is_finite() { diagonal / 4.0 } else { 1.0 }
+}
+
+/// The signed circle of confusion, px, that t alone gives: at the focus plane, or anywhere with the anchor at the point.
+pub fn signed_circle_px(optics: &Optics, t: f64) -> f64 {
+    let kappa = optics.kappa(optics.inverse_focus_distance, FocusOffset::new(t, 1.0));
+    2.0 * optics.splat_radius_px(kappa)
+}
+
+/// The near–sharp–far slider for a focus. Returns the new focus when it was moved.
+pub fn target_slider(ui: &mut Ui, optics: &Optics, target: FocusOffset, width: f32) -> Option<FocusOffset> {
+    let mut circle_px = signed_circle_px(optics, target.t);
+    let enabled = optics.aperture_radius > 0.0;
+    let response = ui.add_enabled_ui(enabled, |ui| focus_slider(ui, &mut circle_px, width)).inner;
+    let changed = response.changed();
+    response
+        .on_hover_text(
+            "What the brush paints: near blur ← sharp → far blur. Keys: , and . to move, X for sharp.",
+        )
+        .on_disabled_hover_text("A pinhole blurs nothing: open the aperture first.");
+    let kappa = optics.kappa_for_circle_px(circle_px).filter(|_| changed)?;
+    let t = optics.offset_for_kappa(kappa, optics.inverse_focus_distance, 1.0)?;
+    Some(FocusOffset::new(t, target.anchor))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use lens::Camera;
+
+    #[test]
+    fn the_slider_speaks_of_the_circle_that_the_lens_draws() {
+        let optics = Camera::default().optics();
+        for t in [0.9, 1.0, 1.02] {
+            let px = signed_circle_px(&optics, t);
+            let kappa = optics.kappa(0.1, FocusOffset::new(t, 1.0));
+            assert!((px.abs() - optics.circle_of_confusion_px(kappa)).abs() < 1e-9);
+            assert_eq!(px < 0.0, t < 1.0, "near is negative");
+        }
+    }
+}

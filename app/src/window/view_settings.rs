@@ -1,0 +1,73 @@
+//! How things are shown. Kept between runs, not part of any document.
+
+use super::paint_view::SurfaceLook;
+use serde::{Deserialize, Serialize};
+use std::path::{Path, PathBuf};
+
+/// Files that the Open recent menu remembers.
+const RECENT: usize = 8;
+
+/// The user's own settings of the window.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct ViewSettings {
+    /// Share of false colour in the paint view, in [0, 1].
+    pub focus_share: f32,
+    /// Contour lines of blur.
+    pub contours: bool,
+    /// Whether the inspector is shown.
+    pub inspector: bool,
+    /// The longest side that the preview is drawn at, px.
+    pub preview_size: u32,
+    /// Exposure of the display, stops.
+    pub display_stops: f32,
+    /// Files opened lately, the latest first.
+    pub recent: Vec<PathBuf>,
+    /// Whether the hint of the first start was put away.
+    pub hint_seen: bool,
+}
+
+impl Default for ViewSettings {
+    fn default() -> Self {
+        let look = SurfaceLook::default();
+        Self {
+            focus_share: look.focus_share,
+            contours: look.contours,
+            inspector: true,
+            preview_size: 640,
+            display_stops: 0.0,
+            recent: Vec::new(),
+            hint_seen: false,
+        }
+    }
+}
+
+impl ViewSettings {
+    /// The paint view's look.
+    pub fn look(&self) -> SurfaceLook {
+        SurfaceLook { focus_share: self.focus_share, contours: self.contours }
+    }
+
+    /// Notes that a file was opened or saved.
+    pub fn remember(&mut self, path: &Path) {
+        self.recent.retain(|recent| recent != path);
+        self.recent.insert(0, path.to_path_buf());
+        self.recent.truncate(RECENT);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_latest_file_is_first_and_stands_once() {
+        let mut settings = ViewSettings::default();
+        for k in 0..12 {
+            settings.remember(Path::new(&format!("{}.glb", k % 9)));
+        }
+        assert_eq!(settings.recent.len(), 8);
+        assert_eq!(settings.recent[0], Path::new("2.glb"));
+        assert_eq!(settings.recent.iter().filter(|path| **path == Path::new("2.glb")).count(), 1);
+    }
+}
