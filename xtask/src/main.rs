@@ -11,6 +11,7 @@
 mod chore;
 mod ci;
 mod crate_directions;
+mod demo;
 mod licences;
 mod packages;
 mod run;
@@ -23,7 +24,13 @@ usage: cargo xtask CHORE
   run [FILE…]   install what is missing, build focus-brush and open it
                 (with no display: render the demo to a picture)
   test [ARG…]   install what is missing and run all tests; ARGs go to cargo test
+  demo          make the demo scene in assets/demo anew
   ci            crate directions, licences, formatting, lints, docs, tests";
+
+/// Rays a texel for `demo`: the one argument it takes, for drafts.
+fn sky_rays(arguments: &[std::ffi::OsString]) -> usize {
+    arguments.first().and_then(|a| a.to_str()?.parse().ok()).unwrap_or(96)
+}
 
 fn main() -> std::process::ExitCode {
     let mut arguments = std::env::args_os().skip(1);
@@ -33,6 +40,7 @@ fn main() -> std::process::ExitCode {
         "run" => run::run(&rest),
         "test" => run::test(&rest),
         "ci" => ci::ci(),
+        "demo" => demo::demo(sky_rays(&rest)),
         "" | "help" | "-h" | "--help" => {
             println!("{USAGE}");
             Ok(())
