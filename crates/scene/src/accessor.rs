@@ -94,6 +94,11 @@ impl Shape {
         self.rows * self.columns
     }
 
+    /// Whether it is a matrix.
+    pub fn is_matrix(self) -> bool {
+        self.columns > 1
+    }
+
     /// Bytes from column to column: a matrix's columns start at multiples of 4.
     fn column_size(self, component: Component) -> usize {
         let size = self.rows * component.size();
@@ -129,6 +134,7 @@ pub(crate) struct Accessor<'a> {
     base: Option<Elements<'a>>,
     /// Replaced elements, sorted by index, and their values.
     replaced: Vec<(u32, u32)>,
+    replacements_increase: bool,
     values: Option<Elements<'a>>,
 }
 
@@ -160,6 +166,7 @@ impl<'a> Accessor<'a> {
             normalized: object.flag("normalized")?,
             base,
             replaced: Vec::new(),
+            replacements_increase: true,
             values: None,
         };
         if let Some(sparse) = object.object("sparse")? {
@@ -202,8 +209,19 @@ impl<'a> Accessor<'a> {
             }
             self.replaced.push((index, i as u32));
         }
+        self.replacements_increase = self.replaced.windows(2).all(|pair| pair[0].0 < pair[1].0);
         self.replaced.sort_unstable();
         Ok(())
+    }
+
+    /// Whether it has data of its own; else it is all zeros, to be filled in by an extension perhaps.
+    pub fn has_data(&self) -> bool {
+        self.base.is_some() || self.values.is_some()
+    }
+
+    /// Whether the indices of its sparse replacements increase, as they must.
+    pub fn replacements_increase(&self) -> bool {
+        self.replacements_increase
     }
 
     /// The stored value of component `component` of element `index`, which must be below `count`.

@@ -54,6 +54,12 @@ pub enum Fault {
         /// What is wrong and what to do.
         what: String,
     },
+    /// A buffer has neither a URI nor a binary chunk: its data come from elsewhere, as glTF allows.
+    #[error("{place}: the file does not contain its data (export the scene with its buffers)")]
+    NoData {
+        /// JSON pointer to the buffer.
+        place: String,
+    },
     /// The file needs an extension that is not understood.
     #[error("it requires the extension {extension}, which is not supported ({cure})")]
     Extension {

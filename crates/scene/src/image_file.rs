@@ -5,6 +5,7 @@ use crate::error::Fault;
 use crate::json_object::Object;
 use crate::{Image, ImageLevel};
 use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader, Limits};
+use std::borrow::Cow;
 use std::io::Cursor;
 
 /// glTF's name of an image format, for those that glTF knows.
@@ -19,7 +20,7 @@ pub(crate) fn mime_type(bytes: &[u8]) -> Option<&'static str> {
 
 impl Document<'_> {
     /// The encoded bytes of an image.
-    pub fn image_bytes(&self, image: &Object<'_>) -> Result<std::borrow::Cow<'_, [u8]>, Fault> {
+    pub fn image_bytes(&self, image: &Object<'_>) -> Result<Cow<'_, [u8]>, Fault> {
         match (image.text("uri")?, image.index("bufferView")?) {
             (Some(uri), _) => Ok(self.resource(image, uri)?.into()),
             (None, Some(view)) => {
@@ -76,6 +77,9 @@ impl Document<'_> {
             false => ImageLevel::Bits8(picture.into_rgba8().into_raw()),
         };
         self.budget.release(decoding);
+        if let Cow::Owned(bytes) = bytes {
+            self.budget.release(bytes.len() as u64);
+        }
         let uri = object.text("uri")?.filter(|uri| crate::resource::data_uri(uri).is_none());
         let name = object.name().or(uri).map_or_else(|| format!("image {index}"), String::from);
         Ok(Image { name, width, height, texels })

@@ -123,6 +123,11 @@ impl<'a> Object<'a> {
     pub fn list(&self, key: &str) -> Result<&'a [Value], Fault> {
         Ok(self.read(key, "an array", |value| value.as_array().map(Vec::as_slice))?.unwrap_or_default())
     }
+
+    /// Its properties.
+    pub fn entries(&self) -> impl Iterator<Item = (&'a str, &'a Value)> + use<'a> {
+        self.map.iter().map(|(key, value)| (key.as_str(), value))
+    }
 }
 
 /// A whole number ≥ 0, also if it is written as a float.

@@ -15,7 +15,7 @@
 //!
 //! The road of a file: `container` (GLB chunks, JSON text) → `document` → `hierarchy` (which nodes, where) →
 //! `primitive` (checked `accessor`s to triangles, morphed) → `assembly` (instances and skins into the world) →
-//! `material_file` (materials, images) → `view`, `punctual_light` (what is missing is made up).
+//! `material_file` (materials, images) → `view`, `punctual_light` (what is missing is made up). `flaws` tells authors what else is out of order.
 
 mod accessor;
 mod assembly;
@@ -23,6 +23,7 @@ mod container;
 mod document;
 mod error;
 mod extension;
+mod flaws;
 mod hierarchy;
 mod image_file;
 mod inspection;

@@ -9,7 +9,7 @@ use crate::material_file::{MaterialReader, default_material};
 use crate::primitive::Primitive;
 use crate::triangulation::MODE_NAMES;
 use crate::{Inspection, LoadOptions, Material, Node, Scene, SceneError};
-use crate::{extension, instancing, punctual_light, skin, view};
+use crate::{extension, flaws, instancing, punctual_light, skin, view};
 use glam::{DMat4, Vec3};
 use progress::{Progress, Unwatched};
 use std::collections::HashMap;
@@ -31,7 +31,7 @@ pub fn load(path: &Path, options: &LoadOptions, progress: &dyn Progress) -> Resu
         let why = match (inspection.meshes, others.is_empty()) {
             (0, _) => "the file has no mesh".into(),
             (_, true) => "its meshes are empty".into(),
-            (_, false) => format!("the shown scene has none; the file has {}", others.join(", ")),
+            (_, false) => format!("the file has {}, none of which shows a triangle", others.join(", ")),
         };
         return Err(SceneError::NoTriangles { file: path.into(), why });
     }
@@ -93,6 +93,7 @@ fn read(path: &Path, options: &LoadOptions, progress: &dyn Progress) -> Result<(
     scene.images = materials.images;
     scene.normals.iter_mut().for_each(|normal| *normal = normal.normalize_or_zero());
     complete(&mut scene);
+    flaws::check(&document);
     scene.warnings = document.warnings();
     let inspection = inspection(&document, &scene);
     Ok((scene, inspection))
@@ -174,6 +175,10 @@ impl MeshNode<'_> {
         let Some(mesh) = node.index("mesh")? else { return Ok(()) };
         let mesh = document.item("meshes", mesh, &format!("{}/mesh", node.place))?;
         let weights = node.number_list("weights")?.or(mesh.number_list("weights")?).unwrap_or_default();
+        let primitives = self.primitives(&mesh, &weights, used, progress)?;
+        if primitives.is_empty() {
+            return Ok(());
+        }
         let joints = match node.index("skin")? {
             Some(skin) => {
                 Some(skin::joint_matrices(document, self.hierarchy, skin, &format!("{}/skin", node.place))?)
@@ -184,14 +189,6 @@ impl MeshNode<'_> {
             Some(_) => vec![DMat4::IDENTITY],
             None => instancing::instances(document, node)?,
         };
-        let mut primitives = Vec::new();
-        for primitive in mesh.objects("primitives")? {
-            progress.check()?;
-            if let Some(primitive) = Primitive::read(document, &primitive, &weights)? {
-                let material = used.index(document, primitive.material, &primitive.place)?;
-                primitives.push((primitive, material));
-            }
-        }
         for (i, instance) in instances.into_iter().enumerate() {
             let first_part = scene.parts.len();
             for (primitive, material) in &primitives {
@@ -212,6 +209,33 @@ impl MeshNode<'_> {
         }
         primitives.into_iter().for_each(|(primitive, _)| primitive.release(document));
         Ok(())
+    }
+
+    /// The primitives of a mesh that have triangles, and their materials in the scene.
+    fn primitives(
+        &self,
+        mesh: &Object<'_>,
+        weights: &[f64],
+        used: &mut UsedMaterials,
+        progress: &dyn Progress,
+    ) -> Result<Vec<(Primitive, u32)>, Stop> {
+        let document = self.document;
+        let mut primitives = Vec::new();
+        for object in mesh.objects("primitives")? {
+            progress.check()?;
+            match Primitive::read(document, &object, weights) {
+                Ok(Some(primitive)) => {
+                    let material = used.index(document, primitive.material, &primitive.place)?;
+                    primitives.push((primitive, material));
+                }
+                Ok(None) => {}
+                Err(fault @ Fault::NoData { .. }) => {
+                    document.warn(format!("{}: left out, because of {fault}", object.place))
+                }
+                Err(fault) => return Err(fault.into()),
+            }
+        }
+        Ok(primitives)
     }
 }
 

@@ -48,9 +48,7 @@ impl<'a> Document<'a> {
                 cell.get().map_or(&[], Vec::as_slice)
             }
             (None, Some(chunk)) if index == 0 => chunk,
-            (None, _) => {
-                return Err(buffer.malformed("uri", "is missing, and there is no binary chunk for it"));
-            }
+            (None, _) => return Err(Fault::NoData { place: buffer.place }),
         };
         if bytes.len() < declared {
             self.warn(format!(

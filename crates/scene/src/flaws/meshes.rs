@@ -1,0 +1,300 @@
+//! Meshes: names, formats and numbers of attributes, indices, morph targets, and what materials need of them.
+
+use super::vertex_data;
+use crate::accessor::{Accessor, Component};
+use crate::document::Document;
+use crate::extension;
+use crate::json_object::Object;
+use std::collections::HashMap;
+
+pub(super) fn check(document: &Document<'_>) {
+    let quantized =
+        extension::names(document, "extensionsUsed").iter().any(|name| name == "KHR_mesh_quantization");
+    let mut check =
+        MeshCheck { document, quantized, views: HashMap::new(), vertex_accessors: HashMap::new() };
+    for index in 0..document.len("meshes") {
+        if let Ok(mesh) = document.item("meshes", index, "") {
+            check.mesh(&mesh);
+        }
+    }
+    check.shared_views();
+}
+
+#[derive(Clone, Copy, PartialEq)]
+enum Use {
+    Vertices,
+    Indices,
+}
+
+struct MeshCheck<'a> {
+    document: &'a Document<'a>,
+    quantized: bool,
+    /// What the first accessor used a buffer view for.
+    views: HashMap<usize, Use>,
+    /// The vertex accessors of each buffer view that has no stride.
+    vertex_accessors: HashMap<usize, Vec<usize>>,
+}
+
+/// An attribute's name, taken apart.
+struct Semantic<'a> {
+    base: &'a str,
+    set: Option<usize>,
+}
+
+impl<'a> Semantic<'a> {
+    /// `None` for a name that glTF does not know.
+    fn of(name: &'a str) -> Option<Self> {
+        if matches!(name, "POSITION" | "NORMAL" | "TANGENT") || name.starts_with('_') && name.len() > 1 {
+            return Some(Self { base: name, set: None });
+        }
+        let (base, set) = name.split_once('_')?;
+        let canonical = set == "0" || !set.starts_with('0') && set.bytes().all(|byte| byte.is_ascii_digit());
+        let known = matches!(base, "TEXCOORD" | "COLOR" | "JOINTS" | "WEIGHTS");
+        (known && canonical).then(|| set.parse().ok()).flatten().map(|set| Self { base, set: Some(set) })
+    }
+}
+
+impl<'a> MeshCheck<'a> {
+    fn warn(&self, place: &str, what: impl std::fmt::Display) {
+        self.document.warn(format!("{place}: {what}"));
+    }
+
+    fn mesh(&mut self, mesh: &Object<'a>) {
+        let primitives = mesh.objects("primitives").unwrap_or_default();
+        let targets = |primitive: &Object<'_>| primitive.list("targets").map_or(0, <[_]>::len);
+        let Some(expected) = primitives.first().map(targets) else { return };
+        for primitive in &primitives {
+            if targets(primitive) != expected {
+                let count = targets(primitive);
+                self.warn(
+                    &primitive.place,
+                    format!("has {count} morph targets, the mesh's first primitive {expected}"),
+                );
+            }
+            self.primitive(primitive);
+        }
+        if let Ok(Some(weights)) = mesh.number_list("weights") {
+            if weights.len() != expected {
+                self.warn(&mesh.place, format!("has {} weights for {expected} morph targets", weights.len()));
+            }
+        }
+    }
+
+    fn primitive(&mut self, primitive: &Object<'a>) {
+        let Ok(Some(attributes)) = primitive.object("attributes") else { return };
+        self.names(&attributes);
+        let mut count = None;
+        for (name, _) in attributes.entries() {
+            let Some((place, index, accessor)) = self.object(&attributes, name) else { continue };
+            self.vertex_view(&place, index, &accessor);
+            self.format(&place, name, &accessor, false);
+            let own = accessor.integer("count").ok().flatten();
+            if count.is_some() && own.is_some() && own != count {
+                self.warn(&place, "its number of elements differs from that of the other attributes");
+            }
+            count = count.or(own);
+            if name == "POSITION" && (accessor.get("min").is_none() || accessor.get("max").is_none()) {
+                self.warn(&place, "its accessor must have min and max");
+            }
+            if let Some(accessor) =
+                Accessor::open(self.document, index, &place).ok().filter(Accessor::has_data)
+            {
+                vertex_data::check(self.document, &place, name, &accessor);
+            }
+        }
+        vertex_data::check_weights(self.document, &attributes);
+        self.indices(primitive, count);
+        for target in primitive.objects("targets").unwrap_or_default() {
+            self.target(&target, &attributes, count);
+        }
+        self.material(primitive, &attributes);
+    }
+
+    /// The accessor that an attribute refers to.
+    fn object(&self, owner: &Object<'a>, name: &str) -> Option<(String, usize, Object<'a>)> {
+        let index = owner.index(name).ok()??;
+        let accessor = self.document.item("accessors", index, "").ok()?;
+        Some((format!("{}/{name}", owner.place), index, accessor))
+    }
+
+    fn names(&self, attributes: &Object<'_>) {
+        let mut sets: HashMap<&str, Vec<usize>> = HashMap::new();
+        for (name, _) in attributes.entries() {
+            match Semantic::of(name) {
+                Some(Semantic { base, set: Some(set) }) => sets.entry(base).or_default().push(set),
+                Some(_) => {}
+                None => self.warn(&format!("{}/{name}", attributes.place), "is no name of an attribute"),
+            }
+        }
+        for (base, mut sets) in sets.clone() {
+            sets.sort_unstable();
+            if sets.iter().enumerate().any(|(i, &set)| i != set) {
+                self.warn(&attributes.place, format!("the sets of {base} do not count from 0 without gaps"));
+            }
+        }
+        let count = |base| sets.get(base).map_or(0, Vec::len);
+        if count("JOINTS") != count("WEIGHTS") {
+            self.warn(&attributes.place, "has not as many sets of WEIGHTS as of JOINTS");
+        }
+    }
+
+    /// Whether an accessor's type suits its attribute.
+    fn format(&self, place: &str, name: &str, accessor: &Object<'_>, target: bool) {
+        use Component::{F32, I8, I16, U8, U16, U32};
+        let Some(Semantic { base, .. }) = Semantic::of(name) else { return };
+        let component = accessor.integer("componentType").ok().flatten().and_then(Component::of);
+        let (Some(component), Ok(Some(shape))) = (component, accessor.text("type")) else { return };
+        let normalized = accessor.flag("normalized").unwrap_or(false);
+        if base.starts_with('_') {
+            if component == U32 {
+                self.warn(place, "attributes cannot be unsigned 32 bit integers");
+            }
+            return;
+        }
+        let float = component == F32;
+        let signed = matches!(component, I8 | I16) && normalized;
+        let unsigned = matches!(component, U8 | U16) && normalized;
+        let small = matches!(component, I8 | I16 | U8 | U16);
+        let fits = match (base, target) {
+            ("POSITION", false) => shape == "VEC3" && (float || self.quantized && small),
+            ("POSITION", true) => {
+                shape == "VEC3" && (float || self.quantized && matches!(component, I8 | I16))
+            }
+            ("NORMAL", _) | ("TANGENT", true) => shape == "VEC3" && (float || self.quantized && signed),
+            ("TANGENT", false) => shape == "VEC4" && (float || self.quantized && signed),
+            ("TEXCOORD", _) => {
+                shape == "VEC2" && (float || unsigned || self.quantized && small || target && signed)
+            }
+            ("COLOR", _) => ["VEC3", "VEC4"].contains(&shape) && (float || unsigned || target && signed),
+            ("JOINTS", _) => shape == "VEC4" && matches!(component, U8 | U16) && !normalized,
+            ("WEIGHTS", _) => shape == "VEC4" && (float || unsigned),
+            _ => true,
+        };
+        if !fits {
+            let code = accessor.integer("componentType").ok().flatten().unwrap_or(0);
+            let kind = if normalized { "normalised " } else { "" };
+            self.warn(place, format!("{shape} of {kind}{code} is no format for {base}"));
+        }
+    }
+
+    /// Alignment and exclusive use of the buffer view of a vertex accessor.
+    fn vertex_view(&mut self, place: &str, index: usize, accessor: &Object<'_>) {
+        let component = accessor.integer("componentType").ok().flatten().and_then(Component::of);
+        let shape = accessor.text("type").ok().flatten().and_then(crate::accessor::Shape::of);
+        let Some((view_index, view)) = self.view(place, accessor, Use::Vertices) else { return };
+        let stride = view.integer("byteStride").ok().flatten();
+        if stride.is_none() {
+            let users = self.vertex_accessors.entry(view_index).or_default();
+            if !users.contains(&index) {
+                users.push(index);
+            }
+        }
+        let (Some(component), Some(shape)) = (component, shape) else { return };
+        let step = stride.unwrap_or(shape.size(component) as u64);
+        let offset = accessor.integer("byteOffset").ok().flatten().unwrap_or(0);
+        if step % 4 != 0 || offset % 4 != 0 {
+            self.warn(place, "vertices must start at multiples of 4 bytes");
+        }
+    }
+
+    /// The buffer view of an accessor; warns if it serves another purpose too.
+    fn view(&mut self, place: &str, accessor: &Object<'_>, purpose: Use) -> Option<(usize, Object<'a>)> {
+        let index = accessor.index("bufferView").ok()??;
+        let view = self.document.item("bufferViews", index, "").ok()?;
+        let declared = match view.integer("target").ok().flatten() {
+            Some(34962) => Some(Use::Vertices),
+            Some(34963) => Some(Use::Indices),
+            _ => None,
+        };
+        let first = *self.views.entry(index).or_insert(declared.unwrap_or(purpose));
+        if first != purpose {
+            self.warn(place, format!("{} serves both vertices and indices", view.place));
+        }
+        Some((index, view))
+    }
+
+    /// Several vertex accessors in one view need a stride.
+    fn shared_views(&self) {
+        let mut shared: Vec<usize> = self
+            .vertex_accessors
+            .iter()
+            .filter(|(_, users)| users.len() > 1)
+            .map(|(&view, _)| view)
+            .collect();
+        shared.sort_unstable();
+        for view in shared {
+            self.warn(
+                &format!("/bufferViews/{view}"),
+                "needs a byteStride, because several attributes share it",
+            );
+        }
+    }
+
+    fn indices(&mut self, primitive: &Object<'a>, count: Option<u64>) {
+        let Some((place, index, accessor)) = self.object(primitive, "indices") else { return };
+        if let Some((_, view)) = self.view(&place, &accessor, Use::Indices) {
+            if view.get("byteStride").is_some() {
+                self.warn(&place, "a view of indices cannot have a byteStride");
+            }
+        }
+        let code = accessor.integer("componentType").ok().flatten();
+        let scalar = accessor.text("type").ok().flatten() == Some("SCALAR");
+        if !scalar
+            || !matches!(code, Some(5121 | 5123 | 5125))
+            || accessor.flag("normalized").unwrap_or(false)
+        {
+            self.warn(&place, "indices must be SCALAR unsigned integers");
+        }
+        let Ok(accessor) = Accessor::open(self.document, index, &place) else { return };
+        if accessor.shape.components() == 1 {
+            vertex_data::check_indices(self.document, &place, &accessor, count.unwrap_or(u64::MAX));
+        }
+    }
+
+    fn target(&mut self, target: &Object<'a>, attributes: &Object<'a>, count: Option<u64>) {
+        for (name, _) in target.entries() {
+            let place = format!("{}/{name}", target.place);
+            if Semantic::of(name).is_none() {
+                self.warn(&place, "is no name of an attribute");
+            }
+            if attributes.get(name).is_none() {
+                self.warn(&place, "changes an attribute that the primitive does not have");
+            }
+            let Some((place, index, accessor)) = self.object(target, name) else { continue };
+            self.vertex_view(&place, index, &accessor);
+            self.format(&place, name, &accessor, true);
+            let own = accessor.integer("count").ok().flatten();
+            if count.is_some() && own.is_some() && own != count {
+                self.warn(&place, "its number of elements differs from that of the attributes");
+            }
+        }
+    }
+
+    /// The texture coordinates that the material's textures need.
+    fn material(&self, primitive: &Object<'_>, attributes: &Object<'_>) {
+        let Ok(Some(material)) = primitive.index("material") else { return };
+        let Ok(material) = self.document.item("materials", material, "") else { return };
+        let mut owners = vec![material.clone()];
+        owners.extend(material.object("pbrMetallicRoughness").ok().flatten());
+        let extensions = material.object("extensions").ok().flatten();
+        for (name, _) in extensions.iter().flat_map(Object::entries) {
+            owners.extend(material.extension(name).ok().flatten());
+        }
+        for owner in &owners {
+            for (name, _) in owner.entries().filter(|(name, _)| name.ends_with("Texture")) {
+                let Ok(Some(info)) = owner.object(name) else { continue };
+                let transform = info.extension("KHR_texture_transform").ok().flatten();
+                let own = transform.and_then(|transform| transform.integer("texCoord").ok().flatten());
+                let plain = info.integer("texCoord").ok().flatten().unwrap_or(0);
+                for set in [Some(plain), own].into_iter().flatten() {
+                    if attributes.get(&format!("TEXCOORD_{set}")).is_none() {
+                        self.warn(
+                            &primitive.place,
+                            format!("{} needs TEXCOORD_{set}, which is missing", info.place),
+                        );
+                    }
+                }
+            }
+        }
+    }
+}

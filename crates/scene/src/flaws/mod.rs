@@ -1,0 +1,60 @@
+//! Flaws of a document that reading it would not notice, because the picture does not depend on them.
+//!
+//! They are told as warnings, each with the place of the flaw, in the spirit of the Khronos validator: an author
+//! learns that a file is out of order even if it opens here. Nothing in this folder stops a file from opening.
+
+mod accessors;
+mod animations;
+mod images;
+mod meshes;
+mod nodes;
+mod properties;
+mod schema;
+mod vertex_data;
+
+use crate::document::Document;
+use crate::extension;
+
+/// Warns of everything that is out of order.
+pub(crate) fn check(document: &Document<'_>) {
+    properties::check(document);
+    versions_and_extensions(document);
+    accessors::check(document);
+    images::check(document);
+    meshes::check(document);
+    nodes::check(document);
+    animations::check(document);
+}
+
+/// The asset's versions, and whether extensions are declared as they must be.
+fn versions_and_extensions(document: &Document<'_>) {
+    let asset = document.root().object("asset").ok().flatten();
+    let version = |key: &str| {
+        let text = asset.as_ref()?.text(key).ok()??;
+        let parsed = text.split_once('.').and_then(|(major, minor)| Some((digits(major)?, digits(minor)?)));
+        if parsed.is_none() {
+            document.warn(format!("/asset/{key}: {text:?} is not of the form 2.0"));
+        }
+        parsed
+    };
+    if let (Some(version), Some(least)) = (version("version"), version("minVersion")) {
+        if least > version {
+            document.warn("/asset/minVersion: is greater than the version");
+        }
+    }
+    let used = extension::names(document, "extensionsUsed");
+    let required = extension::names(document, "extensionsRequired");
+    for name in &required {
+        if !used.contains(name) {
+            document.warn(format!("/extensionsRequired: {name} is not in extensionsUsed"));
+        }
+    }
+    const QUANTIZATION: &str = "KHR_mesh_quantization";
+    if used.iter().any(|name| name == QUANTIZATION) && !required.iter().any(|name| name == QUANTIZATION) {
+        document.warn(format!("/extensionsUsed: {QUANTIZATION} must be required too"));
+    }
+}
+
+fn digits(text: &str) -> Option<u32> {
+    text.bytes().all(|byte| byte.is_ascii_digit()).then(|| text.parse().ok()).flatten()
+}

@@ -1,0 +1,180 @@
+//! Checks every property of the document against the tables.
+
+use super::schema::{Kind, ROOT, Spec};
+use crate::document::Document;
+use crate::extension;
+use crate::json_object::integer;
+use serde_json::{Map, Value};
+
+/// Warns of every property that is missing, of the wrong type, out of its range or refers to nothing.
+pub(super) fn check(document: &Document<'_>) {
+    let walk = Walk { document, declared: extension::names(document, "extensionsUsed") };
+    walk.object(document.value(), &ROOT, String::new());
+}
+
+struct Walk<'a> {
+    document: &'a Document<'a>,
+    declared: Vec<String>,
+}
+
+impl Walk<'_> {
+    fn warn(&self, place: &str, what: &str) {
+        self.document.warn(format!("{place}: {what}"));
+    }
+
+    fn object(&self, value: &Value, spec: &Spec, place: String) {
+        let Some(map) = value.as_object() else { return self.warn(&place, "is not an object") };
+        for (key, kind) in spec.required {
+            match map.get(*key) {
+                Some(value) => self.property(value, kind, format!("{place}/{key}")),
+                None => self.warn(&place, &format!("its {key} is missing")),
+            }
+        }
+        for (key, kind) in spec.optional {
+            if let Some(value) = map.get(*key) {
+                self.property(value, kind, format!("{place}/{key}"));
+            }
+        }
+        for (key, needed) in spec.needs {
+            if map.contains_key(*key) && !map.contains_key(*needed) {
+                self.warn(&format!("{place}/{key}"), &format!("needs {needed}, which is missing"));
+            }
+        }
+        if !spec.one_of.is_empty() && spec.one_of.iter().filter(|key| map.contains_key(**key)).count() != 1 {
+            self.warn(&place, &format!("must have exactly one of {}", spec.one_of.join(", ")));
+        }
+        if let Some(extensions) = map.get("extensions") {
+            self.extensions(extensions, spec, format!("{place}/extensions"));
+        }
+    }
+
+    fn extensions(&self, value: &Value, spec: &Spec, place: String) {
+        let Some(map) = value.as_object() else { return self.warn(&place, "is not an object") };
+        for (name, value) in map {
+            let place = format!("{place}/{name}");
+            if !self.declared.contains(name) {
+                self.warn(&place, "is not declared in extensionsUsed");
+            }
+            match spec.extensions.iter().find(|(known, _)| known == name) {
+                Some((_, spec)) => self.object(value, spec, place),
+                None if extension::SUPPORTED.contains(&name.as_str()) && name != "KHR_mesh_quantization" => {
+                    self.warn(&place, "this extension has no meaning here");
+                }
+                None if !value.is_object() => self.warn(&place, "is not an object"),
+                None => {}
+            }
+        }
+    }
+
+    fn property(&self, value: &Value, kind: &Kind, place: String) {
+        let warn = |what: &str| self.warn(&place, what);
+        let in_range = |number: f64, low: f64, high: f64| {
+            if !(low..=high).contains(&number) {
+                warn(&format!("{number} is not between {low} and {high}"));
+            }
+        };
+        match kind {
+            Kind::Flag if !value.is_boolean() => warn("is not true or false"),
+            Kind::Text if !value.is_string() => warn("is not a text"),
+            Kind::Flag | Kind::Text => {}
+            Kind::Number(low, high) => match value.as_f64() {
+                Some(number) => in_range(number, *low, *high),
+                None => warn("is not a number"),
+            },
+            Kind::Above(limit) => match value.as_f64() {
+                Some(number) if number > *limit => {}
+                Some(number) => warn(&format!("{number} is not above {limit}")),
+                None => warn("is not a number"),
+            },
+            Kind::Integer(low, high) | Kind::MultipleOf4(low, high) => match integer(value) {
+                Some(number) if number < *low || number > *high => {
+                    warn(&format!("{number} is not between {low} and {high}"));
+                }
+                Some(number) if matches!(kind, Kind::MultipleOf4(..)) && number % 4 != 0 => {
+                    warn(&format!("{number} is not a multiple of 4"));
+                }
+                Some(_) => {}
+                None => warn("is not a whole number"),
+            },
+            Kind::Code(codes) => match integer(value) {
+                Some(number) if codes.contains(&number) => {}
+                _ => warn(&format!("is none of {codes:?}")),
+            },
+            Kind::Word(words) => match value.as_str() {
+                Some(text) if words.contains(&text) => {}
+                Some(_) => warn(&format!("is none of {}", words.join(", "))),
+                None => warn("is not a text"),
+            },
+            Kind::Numbers(least, most, low, high) => match value.as_array() {
+                Some(list) if list.len() < *least || list.len() > *most => {
+                    warn(&format!("has {} numbers instead of {least}", list.len()));
+                }
+                Some(list) => {
+                    for number in list {
+                        match number.as_f64() {
+                            Some(number) => in_range(number, *low, *high),
+                            None => return warn("is not an array of numbers"),
+                        }
+                    }
+                }
+                None => warn("is not an array of numbers"),
+            },
+            Kind::Index(collection) => self.reference(value, collection, &place),
+            Kind::Indices(collection) => self.list(value, &place, |value, place| {
+                self.reference(value, collection, place);
+            }),
+            Kind::Texts => self.list(value, &place, |value, place| {
+                if !value.is_string() {
+                    self.warn(place, "is not a text");
+                }
+            }),
+            Kind::Object(spec) => self.object(value, spec, place),
+            Kind::List(spec) => self.items(value, &place, |value, place| self.object(value, spec, place)),
+            Kind::Attributes => self.attributes(value, place),
+            Kind::Targets => self.items(value, &place, |value, place| self.attributes(value, place)),
+        }
+    }
+
+    fn reference(&self, value: &Value, collection: &str, place: &str) {
+        match integer(value) {
+            Some(index) if index < self.document.len(collection) as u64 => {}
+            Some(index) => {
+                self.warn(place, &format!("refers to {collection}[{index}], which does not exist"))
+            }
+            None => self.warn(place, "is not an index"),
+        }
+    }
+
+    /// An array that is not empty.
+    fn items(&self, value: &Value, place: &str, check: impl Fn(&Value, String)) {
+        match value.as_array() {
+            Some(list) if list.is_empty() => self.warn(place, "is empty"),
+            Some(list) => list.iter().enumerate().for_each(|(i, value)| check(value, format!("{place}/{i}"))),
+            None => self.warn(place, "is not an array"),
+        }
+    }
+
+    /// An array of different things that is not empty.
+    fn list(&self, value: &Value, place: &str, check: impl Fn(&Value, &str)) {
+        self.items(value, place, |value, place| check(value, &place));
+        let mut seen: Vec<String> = value.as_array().into_iter().flatten().map(Value::to_string).collect();
+        seen.sort_unstable();
+        if let Some(twice) = seen.windows(2).find(|pair| pair[0] == pair[1]) {
+            self.warn(place, &format!("has {} more than once", twice[0]));
+        }
+    }
+
+    fn attributes(&self, value: &Value, place: String) {
+        match value.as_object() {
+            Some(map) if map.is_empty() => self.warn(&place, "is empty"),
+            Some(map) => self.accessors(map, &place),
+            None => self.warn(&place, "is not an object"),
+        }
+    }
+
+    fn accessors(&self, map: &Map<String, Value>, place: &str) {
+        for (name, value) in map {
+            self.reference(value, "accessors", &format!("{place}/{name}"));
+        }
+    }
+}
