@@ -9,6 +9,7 @@
 mod bake;
 mod domain;
 mod edge_on;
+mod file;
 mod jitter;
 mod layers;
 mod margin;
@@ -18,4 +19,5 @@ mod view;
 mod visibility;
 
 pub use bake::{BakeOptions, bake};
+pub use file::{SalfFile, SalfFileError};
 pub use sample::{Salf, SalfStatistics, Sample, Visibility};

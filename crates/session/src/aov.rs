@@ -46,7 +46,12 @@ impl Aov {
     }
 
     /// Its channels. `hits` may be missing only if the AOV needs none.
-    pub(crate) fn channels(self, picture: &Picture, hits: Option<&FirstHits>, camera: &Camera) -> Vec<Channel> {
+    pub(crate) fn channels(
+        self,
+        picture: &Picture,
+        hits: Option<&FirstHits>,
+        camera: &Camera,
+    ) -> Vec<Channel> {
         let channel = |name, values| Channel { name, values };
         match (self, hits) {
             (Self::Coverage, _) => vec![channel("coverage", picture.coverage.clone())],

@@ -13,6 +13,7 @@
 //! session.preview()                                             // the last good picture, always
 //! ```
 
+mod aov;
 mod camera_edit;
 mod command;
 mod command_table;
@@ -24,11 +25,14 @@ mod job;
 mod picking;
 mod preview;
 mod preview_worker;
+mod render;
 mod sample_index;
 mod session;
 mod stage;
+mod steps;
 mod undo;
 
+pub use aov::{Aov, Channel};
 pub use camera_edit::CameraEdit;
 pub use command::{Command, Event, FillRegion, StrokePoint, StrokeTarget};
 pub use command_table::{COMMANDS, CommandId, CommandInfo, Menu, Shortcut};
@@ -37,6 +41,9 @@ pub use error::SessionError;
 pub use first_hits::FirstHits;
 pub use job::{JobId, JobProgress, JobStatus, Waker, guarded};
 pub use picking::{SurfaceHit, chief_ray, pick};
-pub use preview::{Preview, PreviewActivity, PreviewKind, SalfStatistics};
+pub use preview::{Preview, PreviewActivity, PreviewKind};
+pub use render::{RenderCost, RenderOptions, Rendered, Renderer, bake, render, render_salf};
+pub use salf::SalfStatistics;
 pub use session::{Session, SessionOptions, Truth};
 pub use stage::{Stage, load_scene};
+pub use steps::Steps;

@@ -19,6 +19,7 @@ use crate::{SessionError, Stage};
 use focus::FocusMap;
 use lens::{Camera, Picture};
 use progress::{Cancelled, Progress};
+use salf::SalfStatistics;
 use std::sync::atomic::{AtomicU8, Ordering};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard};
 
@@ -37,19 +38,6 @@ pub struct Preview {
     pub seconds: f64,
     /// Samples of the light field; none for a pinhole picture.
     pub statistics: SalfStatistics,
-}
-
-/// How many samples a light field has, and what they take.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct SalfStatistics {
-    /// Samples that see the whole aperture.
-    pub open: usize,
-    /// Samples that see part of it.
-    pub partial: usize,
-    /// Samples of the background.
-    pub background: usize,
-    /// Bytes of all samples.
-    pub bytes: usize,
 }
 
 /// How a preview was made.
@@ -83,6 +71,8 @@ pub(crate) struct Wishes {
     pub map: Option<FocusMap>,
     pub changed: Changes,
     pub bake: bool,
+    /// Nothing more is to come for now: room for things that take longer.
+    pub settle: bool,
     quit: bool,
 }
 
@@ -112,7 +102,7 @@ impl Changes {
 
 impl Wishes {
     fn any(&self) -> bool {
-        self.stage.is_some() || self.camera.is_some() || self.map.is_some() || self.bake || self.quit
+        self.stage.is_some() || self.camera.is_some() || self.map.is_some() || self.bake || self.settle || self.quit
     }
 }
 
@@ -140,6 +130,11 @@ impl Shared {
         self.activity.store(PreviewActivity::Splatting as u8, Ordering::Relaxed);
         let wishes = std::mem::take(&mut *wishes);
         (!wishes.quit).then_some(wishes)
+    }
+
+    /// Whether nothing is wished for.
+    pub fn is_quiet(&self) -> bool {
+        !lock(&self.wishes).any()
     }
 
     /// Notes what the thread does now, unless it was asked to stop.
@@ -212,13 +207,21 @@ impl PreviewThread {
         self.post(true, |wishes| {
             let (stage, camera, map) = (Some(stage), Some(camera), Some(map));
             *wishes =
-                Wishes { stage, camera, map, changed: Changes::Everything, bake: false, quit: wishes.quit };
+                Wishes { stage, camera, map, changed: Changes::Everything, quit: wishes.quit, ..Wishes::default() };
         });
     }
 
     /// Another camera, at the preview's size. `light_field_stays` where the old light field serves it.
     pub fn set_camera(&self, camera: Camera, light_field_stays: bool) {
-        self.post(!light_field_stays, |wishes| wishes.camera = Some(camera));
+        self.post(!light_field_stays, |wishes| {
+            wishes.camera = Some(camera);
+            wishes.settle = true;
+        });
+    }
+
+    /// A stroke or another edit is complete.
+    pub fn settle(&self) {
+        self.post(false, |wishes| wishes.settle = true);
     }
 
     /// Another state of the map; `changed` is what is new in it.

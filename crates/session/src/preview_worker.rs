@@ -2,18 +2,22 @@
 
 use crate::first_hits::FirstHits;
 use crate::job::guarded;
-use crate::preview::SalfStatistics;
 use crate::preview::{Changes, Shared, Wishes, serves};
+use crate::render::light;
 use crate::sample_index::SampleIndex;
 use crate::{Preview, PreviewActivity, PreviewKind, SessionError, Stage};
 use focus::{Focus, FocusMap};
-use glam::DVec3;
 use lens::{Camera, Picture};
-use salf::BakeOptions;
-use slf::DirectLight;
+use salf::{BakeOptions, SalfStatistics};
 use splat::{SplatError, Splatter};
 use std::sync::Arc;
 use std::time::Instant;
+
+/// The margin is baked this much wider than the paint needs, so that the next strokes find room.
+const MARGIN_HEADROOM: f64 = 1.5;
+
+/// The least margin that is baked, in picture heights.
+const LEAST_MARGIN: f64 = 0.1;
 
 /// The thread's own state.
 pub(crate) struct Worker {
@@ -84,7 +88,22 @@ impl Worker {
         if !self.baked.as_ref().is_some_and(|baked| serves(&baked.splatter.salf().camera, &camera)) {
             self.bake(&stage, &camera, &focus)?;
         }
-        self.splat(&camera, &focus, &wishes.changed)
+        self.splat(&camera, &focus, &wishes.changed)?;
+        if wishes.settle && self.shared.is_quiet() {
+            self.widen(&stage, &camera, &focus)?;
+        }
+        Ok(())
+    }
+
+    /// Bakes again with a wider margin where paint or lens has come to spread light from further outside.
+    fn widen(&mut self, stage: &Stage, camera: &Camera, focus: &Focus) -> Result<(), SessionError> {
+        let Some(baked) = &self.baked else { return Ok(()) };
+        let needed = BakeOptions::for_focus(&stage.tracer, camera, focus).margin_px;
+        if needed <= baked.splatter.salf().margin_px as f64 {
+            return Ok(());
+        }
+        self.bake(stage, camera, focus)?;
+        self.splat(camera, focus, &Changes::Everything)
     }
 
     /// Shows the pinhole picture, then makes the light field.
@@ -92,17 +111,18 @@ impl Worker {
         let start = Instant::now();
         self.shared.begin(PreviewActivity::Baking)?;
         let progress = &self.shared.progress;
-        let [r, g, b] = camera.background;
-        let radiance = DirectLight::new(stage.tracer.clone(), DVec3::new(r, g, b).as_vec3());
+        let radiance = light(&stage.tracer, camera);
         if !self.shown.as_ref().is_some_and(|shown| same_view(shown, camera)) {
             let hits = FirstHits::trace(&stage.tracer, &radiance, focus, camera, progress)?;
             self.publish(hits.picture(), PreviewKind::Pinhole, camera, start, SalfStatistics::default());
         }
-        let options = BakeOptions::default();
+        let needed = BakeOptions::for_focus(&stage.tracer, camera, focus).margin_px;
+        let options =
+            BakeOptions { margin_px: (needed * MARGIN_HEADROOM).max(camera.height as f64 * LEAST_MARGIN) };
         let salf = Arc::new(salf::bake(&stage.tracer, &radiance, camera, &options, &self.shared.progress)?);
         self.baked = Some(Baked {
             index: SampleIndex::new(&salf, &stage.atlas),
-            statistics: SalfStatistics { open: salf.samples.len(), ..SalfStatistics::default() },
+            statistics: salf.statistics(),
             splatter: Splatter::new(salf),
             summed: None,
         });

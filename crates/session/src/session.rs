@@ -369,6 +369,7 @@ impl Session {
         if let Some(edit) = stroke.commit(&document.map) {
             document.undo.push_paint(edit);
             document.revision += 1;
+            self.preview_thread.settle();
         }
         Ok(())
     }
@@ -455,6 +456,9 @@ impl Session {
         let map = self.opened()?.map.clone();
         let changes = if background { Changes::Everything } else { Changes::Texels(changed.texels) };
         self.preview_thread.set_map(map, changes);
+        if self.stroke.is_none() {
+            self.preview_thread.settle();
+        }
         self.events.push(Event::MapChanged(columns, rows));
         Ok(())
     }
