@@ -1,15 +1,18 @@
 //! What is open: the scene, its focus and its camera.
 
-use crate::Stage;
+use crate::input::{Input, InputKind};
 use crate::undo::Undo;
+use crate::{SessionError, Stage, Steps};
+use atlas::UnwrapOptions;
 use focus::{Brush, FocusMap};
 use lens::{Camera, Exposure};
+use project::{NamedCamera, ProjectFile};
 use scene::{Scene, SceneCamera};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// An open document. Focus map and camera are saved and can be undone; brush, exposure and what is known of the
-/// scene are not part of its history.
+/// An open document. Focus map and camera are saved and can be undone; brush, exposure and view are saved with
+/// them and are not part of the history.
 pub struct Document {
     /// Scene, atlas and what works on them.
     pub stage: Arc<Stage>,
@@ -21,8 +24,14 @@ pub struct Document {
     pub exposure: Exposure,
     /// The brush of the strokes to come.
     pub brush: Brush,
+    /// Layout and viewpoint as the window wants them, any JSON.
+    pub view: serde_json::Value,
     /// The project file; none before the first save.
     pub path: Option<PathBuf>,
+    /// What is odd about its files but does no harm, a sentence each.
+    pub warnings: Vec<String>,
+    /// What is saved beside the fields above.
+    template: ProjectFile,
     /// Steps of undo and redo.
     pub(crate) undo: Undo,
     /// Counts changes of what is saved.
@@ -31,24 +40,81 @@ pub struct Document {
     pub(crate) saved: u64,
 }
 
+/// What the saved camera of a new document is called.
+const SHOT: &str = "shot";
+
 impl Document {
-    /// A scene just opened, nothing painted.
-    pub fn new(stage: Arc<Stage>) -> Self {
-        let camera = camera_of(&stage.scene, &stage.scene.cameras[0], &Camera::default());
-        let map = FocusMap::new(stage.atlas.width, stage.atlas.height, lens::FocusOffset::STANDARD);
-        let (low, high) = stage.scene.bounds();
-        let brush = Brush { radius: brush_radius((high - low).length()), ..Brush::default() };
-        Self {
-            stage,
+    /// Opens a scene or a project. Work that was not saved when the program last ended is restored: the document
+    /// is then unsaved, and its warnings say so.
+    pub fn open(path: &Path, unwrap: &UnwrapOptions, steps: &dyn Steps) -> Result<Self, SessionError> {
+        let kind = InputKind::of(path)?;
+        if kind == InputKind::LightField {
+            let what = "a light field has no surface to paint on (open the scene or project it was baked from)";
+            return Err(SessionError::bad(path, what));
+        }
+        let is_project = kind == InputKind::Project;
+        let recovery = recovery_path(path, is_project);
+        let recovered = project::find_recovery(&recovery, is_project.then_some(path));
+        let is_recovered = recovered.is_some();
+        let input = match recovered {
+            Some(project) => Input::open_project(path, project, steps)?,
+            None => Input::open(path, steps)?,
+        };
+        let mut document = Self::of(input, unwrap, steps)?;
+        document.path = is_project.then(|| path.into());
+        if is_recovered {
+            document.revision += 1;
+            let what = "unsaved work from before the program ended was restored (save it, or undo nothing and close)";
+            document.warnings.push(format!("{}: {what}", path.display()));
+        }
+        Ok(document)
+    }
+
+    fn of(input: Input, unwrap: &UnwrapOptions, steps: &dyn Steps) -> Result<Self, SessionError> {
+        let (stage, map) = input.stage(unwrap, steps)?;
+        let template = match &input.project {
+            Some(project) => project.clone(),
+            None => {
+                let shot = NamedCamera { name: SHOT.into(), camera: input.camera.clone() };
+                let (low, high) = input.scene.bounds();
+                let radius = brush_radius((high - low).length());
+                let brush = Brush { radius, ..Brush::default() };
+                ProjectFile { brush, ..ProjectFile::new(&input.scene.path, vec![shot])? }
+            }
+        };
+        Ok(Self {
+            stage: Arc::new(stage),
             map,
-            camera,
-            exposure: Exposure::Normalise,
-            brush,
+            camera: input.camera.clone(),
+            exposure: input.exposure(),
+            brush: template.brush.clone(),
+            view: template.view.clone(),
             path: None,
+            warnings: input.warnings,
+            template,
             undo: Undo::default(),
             revision: 0,
             saved: 0,
-        }
+        })
+    }
+
+    /// The document as it is saved now.
+    pub fn to_project(&self) -> ProjectFile {
+        let mut project = self.template.clone();
+        project.cameras[project.active_camera].camera = self.camera.clone();
+        project.exposure = self.exposure;
+        project.brush = self.brush.clone();
+        project.view = self.view.clone();
+        project.atlas = Some(self.stage.atlas.to_bytes());
+        project.background_focus = self.map.background;
+        project.focus_map = Some(self.map.clone());
+        project
+    }
+
+    /// Where unsaved work is kept.
+    pub(crate) fn recovery_path(&self) -> PathBuf {
+        let file = self.path.as_deref().unwrap_or(&self.stage.scene.path);
+        recovery_path(file, self.path.is_some())
     }
 
     /// The scene.
@@ -76,6 +142,11 @@ impl Document {
         self.undo.redo_name()
     }
 
+    /// All that can be undone, oldest first.
+    pub fn undo_names(&self) -> impl Iterator<Item = &str> {
+        self.undo.names()
+    }
+
     /// Bytes that the undo steps hold.
     pub fn undo_bytes(&self) -> usize {
         self.undo.bytes()
@@ -84,11 +155,15 @@ impl Document {
     /// The cameras of the scene by name, as shot cameras: with the lens of the current one.
     pub fn scene_cameras(&self) -> impl Iterator<Item = (&str, Camera)> {
         let cameras = self.stage.scene.cameras.iter();
-        cameras.map(|camera| (camera.name.as_str(), camera_of(&self.stage.scene, camera, &self.camera)))
+        cameras.map(|camera| (camera.name.as_str(), camera_of(camera, &self.camera)))
     }
 }
 
-/// A twentieth of the scene, or 0.1 for a scene that is a point.
+fn recovery_path(file: &Path, is_project: bool) -> PathBuf {
+    if is_project { project::recovery_path_for(file) } else { project::unsaved_recovery_path(file) }
+}
+
+/// A twentieth of the scene, or the brush's default for a scene that is a point.
 fn brush_radius(diagonal: f64) -> f64 {
     if diagonal > 0.0 && diagonal.is_finite() { diagonal / 20.0 } else { Brush::default().radius }
 }
@@ -97,7 +172,7 @@ fn brush_radius(diagonal: f64) -> f64 {
 ///
 /// Where the camera says its aspect, the width follows it. The lens keeps its numbers: they are lengths of a
 /// real camera, whatever the scene.
-pub fn camera_of(_scene: &Scene, camera: &SceneCamera, lens: &Camera) -> Camera {
+pub fn camera_of(camera: &SceneCamera, lens: &Camera) -> Camera {
     let width = camera.aspect.map_or(lens.width, |aspect| {
         (lens.height as f64 * aspect).round().clamp(1.0, Camera::LARGEST_SIDE_PX as f64) as u32
     });

@@ -38,6 +38,8 @@ pub struct Preview {
     pub seconds: f64,
     /// Samples of the light field; none for a pinhole picture.
     pub statistics: SalfStatistics,
+    /// Which of the session's documents it shows.
+    pub(crate) generation: u64,
 }
 
 /// How a preview was made.
@@ -65,7 +67,8 @@ pub enum PreviewActivity {
 /// Everything that changed since the thread last looked.
 #[derive(Default)]
 pub(crate) struct Wishes {
-    pub stage: Option<Arc<Stage>>,
+    /// Another scene, and which of the session's documents it is.
+    pub stage: Option<(Arc<Stage>, u64)>,
     pub camera: Option<Camera>,
     /// A snapshot of the map, and the texels that changed since the one before.
     pub map: Option<FocusMap>,
@@ -203,7 +206,7 @@ impl PreviewThread {
     }
 
     /// Another scene, with its focus.
-    pub fn set_stage(&self, stage: Arc<Stage>, map: FocusMap, camera: Camera) {
+    pub fn set_stage(&self, stage: (Arc<Stage>, u64), map: FocusMap, camera: Camera) {
         self.post(true, |wishes| {
             let (stage, camera, map) = (Some(stage), Some(camera), Some(map));
             *wishes =
@@ -257,10 +260,13 @@ impl PreviewThread {
         (newer, std::mem::take(&mut published.failures))
     }
 
-    /// Whether everything that was posted is in the newest picture.
-    pub fn is_settled(&self) -> bool {
+    /// Whether everything that was posted has been followed, and nothing newer than `id` waits to be taken.
+    pub fn is_settled(&self, id: u64) -> bool {
         let wishes = lock(&self.shared.wishes);
-        !wishes.any() && self.shared.activity.load(Ordering::Relaxed) == 0
+        let idle = self.shared.activity.load(Ordering::Relaxed) == PreviewActivity::Idle as u8;
+        let published = lock(&self.shared.published);
+        let seen = published.failures.is_empty() && published.latest.as_ref().is_none_or(|p| p.id <= id);
+        !wishes.any() && idle && seen
     }
 }
 

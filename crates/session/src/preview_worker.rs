@@ -13,11 +13,9 @@ use splat::{SplatError, Splatter};
 use std::sync::Arc;
 use std::time::Instant;
 
-/// The margin is baked this much wider than the paint needs, so that the next strokes find room.
-const MARGIN_HEADROOM: f64 = 1.5;
-
-/// The least margin that is baked, in picture heights.
-const LEAST_MARGIN: f64 = 0.1;
+/// The margin is baked this much wider than the paint needs, in picture heights, so that the next strokes find
+/// room: a tenth of the height is a circle of confusion as wide as paint usually gives.
+const MARGIN_HEADROOM: f64 = 0.1;
 
 /// The thread's own state.
 pub(crate) struct Worker {
@@ -28,6 +26,7 @@ pub(crate) struct Worker {
     baked: Option<Baked>,
     /// The camera of the newest picture.
     shown: Option<Camera>,
+    generation: u64,
     last_id: u64,
 }
 
@@ -51,7 +50,7 @@ impl From<SplatError> for SessionError {
 
 impl Worker {
     pub fn new(shared: Arc<Shared>) -> Self {
-        Self { shared, stage: None, camera: None, map: None, baked: None, shown: None, last_id: 0 }
+        Self { shared, stage: None, camera: None, map: None, baked: None, shown: None, generation: 0, last_id: 0 }
     }
 
     /// Follows wishes until the session goes.
@@ -70,8 +69,9 @@ impl Worker {
     }
 
     fn follow(&mut self, wishes: Wishes) -> Result<(), SessionError> {
-        if let Some(stage) = wishes.stage {
+        if let Some((stage, generation)) = wishes.stage {
             self.stage = Some(stage);
+            self.generation = generation;
             self.baked = None;
             self.shown = None;
         }
@@ -117,8 +117,7 @@ impl Worker {
             self.publish(hits.picture(), PreviewKind::Pinhole, camera, start, SalfStatistics::default());
         }
         let needed = BakeOptions::for_focus(&stage.tracer, camera, focus).margin_px;
-        let options =
-            BakeOptions { margin_px: (needed * MARGIN_HEADROOM).max(camera.height as f64 * LEAST_MARGIN) };
+        let options = BakeOptions { margin_px: needed + MARGIN_HEADROOM * camera.height as f64 };
         let salf = Arc::new(salf::bake(&stage.tracer, &radiance, camera, &options, &self.shared.progress)?);
         self.baked = Some(Baked {
             index: SampleIndex::new(&salf, &stage.atlas),
@@ -174,6 +173,7 @@ impl Worker {
             camera: camera.clone(),
             seconds: start.elapsed().as_secs_f64(),
             statistics,
+            generation: self.generation,
         });
     }
 }

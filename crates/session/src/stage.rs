@@ -1,7 +1,7 @@
 //! What stays while a document is open: the scene, its atlas and what answers rays and dabs on it.
 
 use crate::SessionError;
-use atlas::Atlas;
+use atlas::{Atlas, AtlasError, TexelMap};
 use focus::Canvas;
 use progress::Progress;
 use scene::{LoadOptions, Scene, SceneError};
@@ -17,6 +17,8 @@ pub struct Stage {
     pub atlas: Arc<Atlas>,
     /// What answers rays.
     pub tracer: Arc<Tracer>,
+    /// The way back from texels to the surface.
+    pub texels: Arc<TexelMap>,
     /// What dabs are painted on.
     pub canvas: Arc<Canvas>,
 }
@@ -30,26 +32,34 @@ impl From<SceneError> for SessionError {
     }
 }
 
+/// What an error about the atlas of the scene at `path` means.
+pub(crate) fn atlas_error(path: &Path, error: AtlasError) -> SessionError {
+    match error {
+        AtlasError::Cancelled => SessionError::Cancelled,
+        AtlasError::Write { path, source } => SessionError::io(&path, &source),
+        other => SessionError::bad(path, other),
+    }
+}
+
 /// Reads a scene within the usual limits.
 pub fn load_scene(path: &Path, progress: &dyn Progress) -> Result<Arc<Scene>, SessionError> {
     Ok(Arc::new(scene::load(path, &LoadOptions::default(), progress)?))
 }
 
 impl Stage {
-    /// Unwraps `scene` and prepares it for rays and dabs.
-    pub fn unwrap(scene: Arc<Scene>, progress: &dyn Progress) -> Result<Self, SessionError> {
-        progress.check()?;
-        Err(SessionError::Internal(format!("{}: scenes cannot be unwrapped yet", scene.path.display())))
-    }
-
     /// Prepares a scene whose atlas is known.
     pub fn of(scene: Arc<Scene>, atlas: Arc<Atlas>, progress: &dyn Progress) -> Result<Self, SessionError> {
         progress.check()?;
         let tracer = Arc::new(Tracer::new(scene.clone()));
         progress.report(0.3);
         progress.check()?;
-        let canvas = Arc::new(Canvas::new(&scene, &atlas, &atlas.texels(&scene), &[]));
+        let texels = Arc::new(atlas.texel_map(&scene));
+        progress.report(0.7);
+        progress.check()?;
+        let place = |address: u32| [address % atlas.width, address / atlas.width];
+        let gutters: Vec<_> = texels.dilations.iter().map(|d| [place(d.texel), place(d.source)]).collect();
+        let canvas = Arc::new(Canvas::new(&scene, &atlas, &texels.texels, &gutters));
         progress.report(1.0);
-        Ok(Self { scene, atlas, tracer, canvas })
+        Ok(Self { scene, atlas, tracer, texels, canvas })
     }
 }
