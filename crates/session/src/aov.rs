@@ -2,6 +2,7 @@
 
 use crate::FirstHits;
 use lens::{Camera, Picture};
+use project::Layer;
 
 /// An extra channel of a rendered picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -15,15 +16,6 @@ pub enum Aov {
     Depth,
     /// The focus offset t, and with it the anchor a.
     Focus,
-}
-
-/// One channel, a value a pixel, row 0 on top.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Channel {
-    /// Its name in an EXR file.
-    pub name: &'static str,
-    /// Its values.
-    pub values: Vec<f32>,
 }
 
 impl Aov {
@@ -45,23 +37,16 @@ impl Aov {
         self != Self::Coverage
     }
 
-    /// Its channels. `hits` may be missing only if the AOV needs none.
-    pub(crate) fn channels(
-        self,
-        picture: &Picture,
-        hits: Option<&FirstHits>,
-        camera: &Camera,
-    ) -> Vec<Channel> {
-        let channel = |name, values| Channel { name, values };
+    /// Its layers. `hits` may be missing only if the AOV needs none.
+    pub(crate) fn layers(self, picture: &Picture, hits: Option<&FirstHits>, camera: &Camera) -> Vec<Layer> {
+        let layer = |name: &str, values| Layer { name: name.into(), values };
         match (self, hits) {
-            (Self::Coverage, _) => vec![channel("coverage", picture.coverage.clone())],
-            (Self::CircleOfConfusion, Some(hits)) => {
-                vec![channel("coc", hits.circle_of_confusion_px(camera))]
-            }
-            (Self::Depth, Some(hits)) => vec![channel("depth.Z", hits.depth.clone())],
+            (Self::Coverage, _) => vec![Layer::coverage(picture)],
+            (Self::CircleOfConfusion, Some(hits)) => vec![layer("coc", hits.circle_of_confusion_px(camera))],
+            (Self::Depth, Some(hits)) => vec![layer("depth", hits.depth.clone())],
             (Self::Focus, Some(hits)) => vec![
-                channel("focus.t", hits.focus.iter().map(|focus| focus.t as f32).collect()),
-                channel("focus.anchor", hits.focus.iter().map(|focus| focus.anchor as f32).collect()),
+                layer("t", hits.focus.iter().map(|focus| focus.t as f32).collect()),
+                layer("anchor", hits.focus.iter().map(|focus| focus.anchor as f32).collect()),
             ],
             (_, None) => Vec::new(),
         }

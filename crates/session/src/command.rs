@@ -34,6 +34,8 @@ pub enum Command {
     Camera(CameraEdit),
     /// Ends a run of edits (a slider was let go): the next one is a step of undo of its own.
     FinishEdit,
+    /// Layout and viewpoint, to be saved with the document; any JSON.
+    SetView(serde_json::Value),
     /// How the sum becomes the picture.
     SetExposure(Exposure),
     /// The longest side that the preview is drawn at, px; the picture's own size if that is smaller.

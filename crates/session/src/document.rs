@@ -49,7 +49,8 @@ impl Document {
     pub fn open(path: &Path, unwrap: &UnwrapOptions, steps: &dyn Steps) -> Result<Self, SessionError> {
         let kind = InputKind::of(path)?;
         if kind == InputKind::LightField {
-            let what = "a light field has no surface to paint on (open the scene or project it was baked from)";
+            let what =
+                "a light field has no surface to paint on (open the scene or project it was baked from)";
             return Err(SessionError::bad(path, what));
         }
         let is_project = kind == InputKind::Project;

@@ -76,7 +76,10 @@ impl InputKind {
             _ if !path.exists() => Err(SessionError::bad(path, "no such file (check the path)")),
             _ => {
                 let known = format!(".glb, .gltf, .{} or .salf", ProjectFile::EXTENSION);
-                Err(SessionError::bad(path, format!("neither scene, project nor light field (give a {known} file)")))
+                Err(SessionError::bad(
+                    path,
+                    format!("neither scene, project nor light field (give a {known} file)"),
+                ))
             }
         }
     }
@@ -135,7 +138,8 @@ impl Input {
         }
         let baked_from = Self::open(&beside, steps)?;
         if baked_from.scene.triangles.len() != triangles as usize {
-            let what = format!("the scene it was baked from, {}, has changed since (bake again)", beside.display());
+            let what =
+                format!("the scene it was baked from, {}, has changed since (bake again)", beside.display());
             return Err(SessionError::bad(path, what));
         }
         Ok(Self { path: path.into(), camera: salf.camera.clone(), salf: Some(Arc::new(salf)), ..baked_from })
@@ -151,7 +155,8 @@ impl Input {
                 let mut saved = saved.filter(|named| named.name == *name).map(|named| named.camera.clone());
                 let in_scene = || self.scene.cameras.iter().find(|camera| camera.name == *name);
                 saved.next().or_else(|| in_scene().map(|c| camera_of(c, &self.camera))).ok_or_else(|| {
-                    let names: Vec<_> = self.scene.cameras.iter().map(|c| format!("\"{}\"", c.name)).collect();
+                    let names: Vec<_> =
+                        self.scene.cameras.iter().map(|c| format!("\"{}\"", c.name)).collect();
                     let there_are = format!("there are {}; a camera file ends in .json", names.join(", "));
                     SessionError::bad(&self.path, format!("no camera is called \"{name}\" ({there_are})"))
                 })
@@ -214,7 +219,10 @@ impl Input {
         if map.size() == [atlas.width, atlas.height] {
             return Ok(());
         }
-        Err(SessionError::bad(&self.path, "its focus map does not fit its atlas (restore the file from a copy)"))
+        Err(SessionError::bad(
+            &self.path,
+            "its focus map does not fit its atlas (restore the file from a copy)",
+        ))
     }
 
     /// The atlas: the project's, or the scene unwrapped.

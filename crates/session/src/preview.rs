@@ -105,7 +105,12 @@ impl Changes {
 
 impl Wishes {
     fn any(&self) -> bool {
-        self.stage.is_some() || self.camera.is_some() || self.map.is_some() || self.bake || self.settle || self.quit
+        self.stage.is_some()
+            || self.camera.is_some()
+            || self.map.is_some()
+            || self.bake
+            || self.settle
+            || self.quit
     }
 }
 
@@ -209,8 +214,14 @@ impl PreviewThread {
     pub fn set_stage(&self, stage: (Arc<Stage>, u64), map: FocusMap, camera: Camera) {
         self.post(true, |wishes| {
             let (stage, camera, map) = (Some(stage), Some(camera), Some(map));
-            *wishes =
-                Wishes { stage, camera, map, changed: Changes::Everything, quit: wishes.quit, ..Wishes::default() };
+            *wishes = Wishes {
+                stage,
+                camera,
+                map,
+                changed: Changes::Everything,
+                quit: wishes.quit,
+                ..Wishes::default()
+            };
         });
     }
 

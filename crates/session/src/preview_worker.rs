@@ -50,7 +50,16 @@ impl From<SplatError> for SessionError {
 
 impl Worker {
     pub fn new(shared: Arc<Shared>) -> Self {
-        Self { shared, stage: None, camera: None, map: None, baked: None, shown: None, generation: 0, last_id: 0 }
+        Self {
+            shared,
+            stage: None,
+            camera: None,
+            map: None,
+            baked: None,
+            shown: None,
+            generation: 0,
+            last_id: 0,
+        }
     }
 
     /// Follows wishes until the session goes.

@@ -2,10 +2,11 @@
 
 use crate::depth_blur::depth_blur;
 use crate::first_hits::FirstHits;
-use crate::{Aov, Channel, SessionError, Steps};
+use crate::{Aov, SessionError, Steps};
 use focus::Focus;
 use glam::DVec3;
 use lens::{Camera, Picture};
+use project::Layer;
 use salf::{BakeOptions, Salf, SalfStatistics};
 use serde::Serialize;
 use slf::DirectLight;
@@ -51,8 +52,8 @@ impl Default for RenderOptions {
 pub struct Rendered {
     /// The picture, radiance and coverage.
     pub picture: Picture,
-    /// The channels of the AOVs, in the order in which they were asked for.
-    pub channels: Vec<Channel>,
+    /// The layers of the AOVs, in the order in which they were asked for.
+    pub layers: Vec<Layer>,
     /// What it cost.
     pub cost: RenderCost,
 }
@@ -129,8 +130,8 @@ pub fn render(
             let hits = first_hits(tracer, camera, focus, steps)?;
             let picture = depth_blur(&hits, camera, &*steps.begin("blurring"))?;
             cost.picture_seconds = start.elapsed().as_secs_f64();
-            let channels = channels(&options.aovs, &picture, Some(&hits), camera);
-            return Ok(Rendered { picture, channels, cost });
+            let layers = layers(&options.aovs, &picture, Some(&hits), camera);
+            return Ok(Rendered { picture, layers, cost });
         }
     };
     cost.picture_seconds = start.elapsed().as_secs_f64();
@@ -151,9 +152,9 @@ pub fn render_salf(
     let start = Instant::now();
     let mut splatter = Splatter::new(salf);
     splatter.render(camera, focus, &*steps.begin("splatting"))?;
-    let picture = splatter.picture();
+    let picture = splatter.picture().clone();
     cost.picture_seconds = start.elapsed().as_secs_f64();
-    finish(picture.clone(), tracer, camera, focus, options, cost, steps)
+    finish(picture, tracer, camera, focus, options, cost, steps)
 }
 
 fn finish(
@@ -171,12 +172,12 @@ fn finish(
         }
         _ => None,
     };
-    let channels = channels(&options.aovs, &picture, hits.as_ref(), camera);
-    Ok(Rendered { picture, channels, cost })
+    let layers = layers(&options.aovs, &picture, hits.as_ref(), camera);
+    Ok(Rendered { picture, layers, cost })
 }
 
-fn channels(aovs: &[Aov], picture: &Picture, hits: Option<&FirstHits>, camera: &Camera) -> Vec<Channel> {
-    aovs.iter().flat_map(|aov| aov.channels(picture, hits, camera)).collect()
+fn layers(aovs: &[Aov], picture: &Picture, hits: Option<&FirstHits>, camera: &Camera) -> Vec<Layer> {
+    aovs.iter().flat_map(|aov| aov.layers(picture, hits, camera)).collect()
 }
 
 fn first_hits(

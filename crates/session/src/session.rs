@@ -1,25 +1,30 @@
 //! The session: commands in, events out, one document open at a time.
 
+mod files;
+mod painting;
+
 use crate::document::Document;
 use crate::job::{Job, JobProgress, Waker};
 use crate::picking::{chief_ray, pick};
 use crate::preview::{Changes, PreviewThread, serves};
 use crate::undo::Undone;
 use crate::{
-    CameraEdit, Command, Event, FillRegion, JobId, JobStatus, Preview, PreviewActivity, SessionError, Stage,
-    StrokePoint, StrokeTarget, SurfaceHit,
+    CameraEdit, Command, Event, JobId, JobStatus, Preview, PreviewActivity, SessionError, SurfaceHit,
 };
-use focus::{Changed, Channels, Edit, FillTarget, PenSample, Stroke, fill};
+use atlas::UnwrapOptions;
+use focus::{Changed, FillTarget, Stroke};
 use glam::DVec2;
 use lens::{Camera, FocusOffset, Picture};
-use progress::Progress;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::{Arc, mpsc};
+use std::time::Instant;
 use trace::Ray;
 
 /// How a session works.
 #[derive(Clone)]
 pub struct SessionOptions {
+    /// How scenes are unwrapped.
+    pub unwrap: UnwrapOptions,
     /// The longest side that the preview is drawn at, px.
     pub preview_size: u32,
     /// Called from any thread when there is something to poll.
@@ -28,17 +33,39 @@ pub struct SessionOptions {
 
 impl Default for SessionOptions {
     fn default() -> Self {
-        Self { preview_size: 640, waker: Arc::new(|| {}) }
+        Self { unwrap: UnwrapOptions::default(), preview_size: 640, waker: Arc::new(|| {}) }
     }
 }
 
 /// The job id of the preview's own work.
 const PREVIEW_JOB: JobId = JobId(0);
 
+/// Unsaved work, kept for after a crash.
+#[derive(Default)]
+struct Recovery {
+    /// The file that holds it, if there is one.
+    file: Option<PathBuf>,
+    /// The revision that the file, or the saved project, holds.
+    kept: u64,
+    /// When the first change after that was seen.
+    changed: Option<Instant>,
+}
+
 /// What a finished job hands to the session.
 pub(crate) enum Outcome {
     Opened(Box<Document>),
-    Written(PathBuf),
+    /// A project file that holds this revision of this document.
+    Saved {
+        path: PathBuf,
+        revision: u64,
+        generation: u64,
+    },
+    /// A recovery file that holds this revision.
+    Kept {
+        path: PathBuf,
+        revision: u64,
+    },
+    Written(PathBuf, Vec<String>),
     Truth(Box<Truth>),
 }
 
@@ -59,9 +86,14 @@ pub struct Truth {
 pub struct Session {
     options: SessionOptions,
     document: Option<Document>,
+    /// Counts opened documents.
+    generation: u64,
     stroke: Option<Stroke>,
     preview_thread: PreviewThread,
     preview: Option<Preview>,
+    /// The newest preview that was seen, of whatever document.
+    seen_preview: u64,
+    recovery: Recovery,
     truth: Option<Truth>,
     jobs: Vec<Job>,
     last_job: u64,
@@ -79,8 +111,11 @@ impl Session {
             preview_thread: PreviewThread::start(options.waker.clone())?,
             options,
             document: None,
+            generation: 0,
             stroke: None,
             preview: None,
+            seen_preview: 0,
+            recovery: Recovery::default(),
             truth: None,
             jobs: Vec::new(),
             last_job: PREVIEW_JOB.0,
@@ -118,7 +153,7 @@ impl Session {
 
     /// Whether all background work is done and the preview shows the document as it is.
     pub fn is_settled(&self) -> bool {
-        self.jobs.is_empty() && self.preview_thread.is_settled()
+        self.jobs.is_empty() && self.preview_thread.is_settled(self.seen_preview)
     }
 
     /// All background work that is going on.
@@ -159,30 +194,61 @@ impl Session {
                 Err(error) => self.events.push(Event::Failed(error.to_string())),
             }
         }
-        let (newer, failures) = self.preview_thread.take(self.preview.as_ref().map_or(0, |p| p.id));
+        let (newer, failures) = self.preview_thread.take(self.seen_preview);
         if let Some(preview) = newer {
-            self.events.push(Event::PreviewReady(preview.id));
-            self.preview = Some(preview);
+            self.seen_preview = preview.id;
+            if preview.generation == self.generation {
+                self.events.push(Event::PreviewReady(preview.id));
+                self.preview = Some(preview);
+            }
         }
         self.events.extend(failures.into_iter().map(Event::Failed));
         let jobs = self.jobs();
         let moved = jobs.iter().filter(|job| !self.reported.contains(job)).cloned();
         self.events.extend(moved.map(Event::Progress));
         self.reported = jobs;
+        self.keep_unsaved_work();
         std::mem::take(&mut self.events)
     }
 
     fn take(&mut self, outcome: Outcome) {
         match outcome {
             Outcome::Opened(document) => {
-                self.stroke = None;
-                self.truth = None;
+                self.forget_recovery();
+                self.generation += 1;
+                (self.stroke, self.truth, self.preview) = (None, None, None);
                 let camera = self.preview_camera(&document.camera);
-                self.preview_thread.set_stage(document.stage.clone(), document.map.clone(), camera);
-                self.document = Some(*document);
+                let stage = (document.stage.clone(), self.generation);
+                self.preview_thread.set_stage(stage, document.map.clone(), camera);
                 self.events.push(Event::Opened);
+                self.events.extend(document.warnings.iter().cloned().map(Event::Notice));
+                // What was restored is in its file already; a document as saved has none.
+                self.recovery = Recovery {
+                    file: document.is_unsaved().then(|| document.recovery_path()),
+                    kept: document.revision,
+                    changed: None,
+                };
+                self.document = Some(*document);
             }
-            Outcome::Written(path) => self.events.push(Event::Written(path)),
+            Outcome::Saved { path, revision, generation } => {
+                if generation == self.generation {
+                    self.forget_recovery();
+                    if let Some(document) = &mut self.document {
+                        document.saved = revision;
+                        document.path = Some(path.clone());
+                    }
+                    self.recovery.kept = revision;
+                }
+                self.events.push(Event::Written(path));
+            }
+            Outcome::Kept { path, revision } => {
+                self.recovery.file = Some(path);
+                self.recovery.kept = revision;
+            }
+            Outcome::Written(path, notices) => {
+                self.events.extend(notices.into_iter().map(Event::Notice));
+                self.events.push(Event::Written(path));
+            }
             Outcome::Truth(truth) => {
                 self.truth = Some(*truth);
                 self.events.push(Event::TruthReady);
@@ -199,6 +265,10 @@ impl Session {
             Command::Camera(edit) => self.edit_camera(edit),
             Command::FinishEdit => {
                 self.opened()?.undo.finish_run();
+                Ok(())
+            }
+            Command::SetView(view) => {
+                self.opened()?.view = view;
                 Ok(())
             }
             Command::SetExposure(exposure) => {
@@ -256,7 +326,13 @@ impl Session {
                 self.jobs.iter().for_each(|job| job.progress.cancel());
                 Ok(())
             }
-            other => Err(SessionError::Internal(format!("{other:?} is not connected"))),
+            Command::Save => self.save(None),
+            Command::SaveAs(path) => self.save(Some(path)),
+            Command::ExportPicture(path) => self.export_picture(path),
+            Command::ExportFocusMap(path) => self.export_focus_map(path),
+            Command::ExportScene(path) => self.export_scene(path),
+            Command::ImportFocusMap(path) => self.import_focus_map(path),
+            Command::RenderTruth { samples_per_pixel } => self.render_truth(samples_per_pixel),
         }
     }
 
@@ -280,11 +356,6 @@ impl Session {
         })?;
         self.jobs.push(job);
         Ok(())
-    }
-
-    fn open(&mut self, path: PathBuf) -> Result<(), SessionError> {
-        let label = format!("opening {}", crate::error::file_name(&path));
-        self.start(label, move |progress| Ok(Outcome::Opened(Box::new(open(&path, progress)?))))
     }
 
     fn step_back(&mut self) -> Result<(), SessionError> {
@@ -336,117 +407,6 @@ impl Session {
         Ok(())
     }
 
-    fn begin_stroke(&mut self, point: StrokePoint) -> Result<(), SessionError> {
-        if self.stroke.is_some() {
-            self.commit_stroke()?;
-        }
-        let document = self.opened()?;
-        let stroke = Stroke::begin(&document.map, document.stage.canvas.clone(), document.brush.clone());
-        self.stroke = Some(stroke.map_err(|error| SessionError::BadInput(error.to_string()))?);
-        self.extend_stroke(point)
-    }
-
-    fn extend_stroke(&mut self, point: StrokePoint) -> Result<(), SessionError> {
-        let Some(document) = &mut self.document else { return Err(SessionError::NothingOpen) };
-        let Some(stroke) = &mut self.stroke else { return Ok(()) };
-        let hit = match point.at {
-            StrokeTarget::Surface(hit) => Some(hit),
-            StrokeTarget::Ray(ray) => pick(&document.stage.tracer, &ray),
-        };
-        let Some(hit) = hit else {
-            stroke.lift();
-            return Ok(());
-        };
-        let front = document.stage.scene.area_normal(hit.point.triangle).try_normalize();
-        let hit = focus::SurfaceHit { position: hit.position, normal: front.map(|n| n.as_vec3()) };
-        let changed = stroke.extend(&mut document.map, hit, PenSample { pressure: point.pressure as f64 });
-        self.show_paint(changed, false)
-    }
-
-    fn commit_stroke(&mut self) -> Result<(), SessionError> {
-        let Some(stroke) = self.stroke.take() else { return Ok(()) };
-        let document = self.opened()?;
-        if let Some(edit) = stroke.commit(&document.map) {
-            document.undo.push_paint(edit);
-            document.revision += 1;
-            self.preview_thread.settle();
-        }
-        Ok(())
-    }
-
-    fn abort_stroke(&mut self) -> Result<(), SessionError> {
-        let Some(stroke) = self.stroke.take() else { return Ok(()) };
-        let changed = stroke.abort(&mut self.opened()?.map);
-        self.show_paint(changed, false)
-    }
-
-    fn fill(&mut self, region: FillRegion, focus: FocusOffset) -> Result<(), SessionError> {
-        let stage = self.opened()?.stage.clone();
-        let part_of = |hit: SurfaceHit| stage.scene.triangles[hit.point.triangle as usize].part;
-        let (name, target) = match region {
-            FillRegion::Node(hit) => {
-                ("Fill object", FillTarget::Node(stage.scene.parts[part_of(hit) as usize].node))
-            }
-            FillRegion::Part(hit) => ("Fill part", FillTarget::Part(part_of(hit))),
-            FillRegion::Material(hit) => {
-                ("Fill material", FillTarget::Material(stage.scene.parts[part_of(hit) as usize].material))
-            }
-            FillRegion::Chart(hit) => {
-                ("Fill chart", FillTarget::Chart(stage.atlas.chart_of[hit.point.triangle as usize]))
-            }
-            FillRegion::All => ("Fill everything", FillTarget::Everything),
-        };
-        self.fill_target(name, target, focus)
-    }
-
-    fn fill_target(
-        &mut self,
-        name: &str,
-        target: FillTarget,
-        focus: FocusOffset,
-    ) -> Result<(), SessionError> {
-        self.commit_stroke()?;
-        let document = self.opened()?;
-        let before = document.map.clone();
-        let changed = fill(&mut document.map, &document.stage.canvas, target, focus, Channels::Both)
-            .map_err(|error| SessionError::BadInput(error.to_string()))?;
-        self.finish_edit(name, &before, changed)
-    }
-
-    fn reset_map(&mut self) -> Result<(), SessionError> {
-        self.commit_stroke()?;
-        let document = self.opened()?;
-        let [width, height] = document.map.size();
-        let blank = focus::FocusMap::new(width, height, FocusOffset::STANDARD);
-        self.replace_map("Reset all paint", blank)
-    }
-
-    /// Puts another map in the place of the document's, as one step of undo.
-    fn replace_map(&mut self, name: &str, map: focus::FocusMap) -> Result<(), SessionError> {
-        let document = self.opened()?;
-        let Some(edit) = Edit::between(name, &document.map, &map) else { return Ok(()) };
-        let texels = edit.apply(&mut document.map);
-        let background = edit.changes_background();
-        document.undo.push_paint(edit);
-        document.revision += 1;
-        self.show_paint(texels, background)
-    }
-
-    /// Takes up a change that was made to the map.
-    fn finish_edit(
-        &mut self,
-        name: &str,
-        before: &focus::FocusMap,
-        changed: Changed,
-    ) -> Result<(), SessionError> {
-        let document = self.opened()?;
-        let Some(edit) = Edit::between(name, before, &document.map) else { return Ok(()) };
-        let background = edit.changes_background();
-        document.undo.push_paint(edit);
-        document.revision += 1;
-        self.show_paint(changed, background)
-    }
-
     /// Shows changed texels in the views.
     fn show_paint(&mut self, changed: Changed, background: bool) -> Result<(), SessionError> {
         if changed.is_empty() && !background {
@@ -478,11 +438,4 @@ impl Session {
         let scaled = |side: u32| ((side as f64 * scale).round() as u32).max(1);
         Camera { width: scaled(camera.width), height: scaled(camera.height), ..camera.clone() }
     }
-}
-
-/// Opens a scene or a project.
-fn open(path: &Path, progress: &dyn Progress) -> Result<Document, SessionError> {
-    let scene = crate::stage::load_scene(path, &progress::Stage::new(progress, 0.0, 0.2))?;
-    let stage = Stage::unwrap(scene, &progress::Stage::new(progress, 0.2, 1.0))?;
-    Ok(Document::new(Arc::new(stage)))
 }

@@ -1,0 +1,170 @@
+//! Opening, saving, exporting and keeping unsaved work: all in the background.
+
+use super::{Outcome, Session, Truth};
+use crate::document::Document;
+use crate::error::file_name;
+use crate::render::{RenderOptions, Renderer, render};
+use crate::steps::JobSteps;
+use crate::{Aov, SessionError};
+use focus::{Focus, FocusMap};
+use project::{FocusFile, FocusMapFile, PictureOptions, write_focus_map, write_picture};
+use scene::SurfaceField;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+/// How long after a change unsaved work is written: with the time that writing takes, well below the 30 s that a
+/// crash may cost.
+const KEEP_AFTER: Duration = Duration::from_secs(15);
+
+/// What the job that keeps unsaved work is called; it is not news.
+const KEEPING: &str = "keeping unsaved work";
+
+impl Session {
+    pub(super) fn open(&mut self, path: PathBuf) -> Result<(), SessionError> {
+        let unwrap = self.options.unwrap.clone();
+        let label = format!("opening {}", file_name(&path));
+        self.start(label, move |progress| {
+            let document = Document::open(&path, &unwrap, &JobSteps { progress })?;
+            Ok(Outcome::Opened(Box::new(document)))
+        })
+    }
+
+    pub(super) fn save(&mut self, to: Option<PathBuf>) -> Result<(), SessionError> {
+        self.commit_stroke()?;
+        let generation = self.generation;
+        let document = self.opened()?;
+        let Some(path) = to.or_else(|| document.path.clone()) else {
+            let what = "no project file yet (choose one with Save as)";
+            return Err(SessionError::bad(&document.stage.scene.path, what));
+        };
+        let (project, revision) = (document.to_project(), document.revision);
+        self.start(format!("saving {}", file_name(&path)), move |_| {
+            project.save(&path)?;
+            Ok(Outcome::Saved { path, revision, generation })
+        })
+    }
+
+    /// Writes unsaved work to its recovery file when it has waited long enough. Called at every poll.
+    pub(super) fn keep_unsaved_work(&mut self) {
+        let Some(document) = &self.document else { return };
+        let is_kept = document.revision == self.recovery.kept || !document.is_unsaved();
+        if is_kept || self.jobs.iter().any(|job| job.label == KEEPING) {
+            self.recovery.changed = None;
+            return;
+        }
+        let changed = *self.recovery.changed.get_or_insert_with(Instant::now);
+        if changed.elapsed() < KEEP_AFTER {
+            return;
+        }
+        let (project, revision, path) = (document.to_project(), document.revision, document.recovery_path());
+        let kept = self.start(KEEPING.into(), move |_| {
+            project.save(&path)?;
+            Ok(Outcome::Kept { path, revision })
+        });
+        if let Err(error) = kept {
+            self.events.push(crate::Event::Failed(error.to_string()));
+        }
+        self.recovery.changed = None;
+    }
+
+    /// Removes the recovery file: what it holds is saved, or given up.
+    pub(super) fn forget_recovery(&mut self) {
+        if let Some(file) = self.recovery.file.take()
+            && let Err(error) = project::remove_recovery(&file)
+        {
+            self.events.push(crate::Event::Notice(error.to_string()));
+        }
+    }
+
+    pub(super) fn export_picture(&mut self, path: PathBuf) -> Result<(), SessionError> {
+        let document = self.opened()?;
+        let (stage, camera, exposure) = (document.stage.clone(), document.camera.clone(), document.exposure);
+        let focus = Focus::painted(stage.scene.clone(), stage.atlas.clone(), Arc::new(document.map.clone()));
+        self.start(format!("rendering {}", file_name(&path)), move |progress| {
+            let options = RenderOptions { aovs: vec![Aov::Coverage], ..RenderOptions::default() };
+            let rendered = render(&stage.tracer, &camera, &focus, &options, &JobSteps { progress })?;
+            let written = PictureOptions { exposure, half: false };
+            // A PNG would get its coverage as a second file that nobody asked for.
+            let is_exr = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("exr"));
+            let layers = if is_exr { rendered.layers } else { Vec::new() };
+            write_picture(&path, &rendered.picture, &layers, written)?;
+            Ok(Outcome::Written(path, Vec::new()))
+        })
+    }
+
+    pub(super) fn export_focus_map(&mut self, path: PathBuf) -> Result<(), SessionError> {
+        let document = self.opened()?;
+        let (map, atlas) = (document.map.clone(), document.stage.atlas.clone());
+        self.start(format!("writing {}", file_name(&path)), move |_| {
+            let lost = write_focus_map(&path, &FocusMapFile::of_atlas(&map, &atlas))?;
+            let lost = lost.iter().map(|what| format!("{}: {what}", path.display())).collect();
+            Ok(Outcome::Written(path, lost))
+        })
+    }
+
+    pub(super) fn export_scene(&mut self, path: PathBuf) -> Result<(), SessionError> {
+        let stage = self.opened()?.stage.clone();
+        let what = "unwrapped scenes cannot be written by this version";
+        Err(SessionError::bad(&path, format!("{what} ({} triangles)", stage.scene.triangles.len())))
+    }
+
+    /// Replaces the painted focus by a map or a recipe. Quick enough to wait for: a file is read, texels are set.
+    pub(super) fn import_focus_map(&mut self, path: PathBuf) -> Result<(), SessionError> {
+        self.commit_stroke()?;
+        let document = self.opened()?;
+        let map = imported(&path, document)?;
+        self.replace_map("Import focus", map)
+    }
+
+    pub(super) fn render_truth(&mut self, samples_per_pixel: u32) -> Result<(), SessionError> {
+        let document = self.opened()?;
+        let stage = document.stage.clone();
+        let focus = Focus::painted(stage.scene.clone(), stage.atlas.clone(), Arc::new(document.map.clone()));
+        let shot = document.camera.clone();
+        let camera = self.preview_camera(&shot);
+        self.start("tracing the ground truth".into(), move |progress| {
+            let start = Instant::now();
+            let options =
+                RenderOptions { renderer: Renderer::Truth, samples_per_pixel, ..Default::default() };
+            let rendered = render(&stage.tracer, &camera, &focus, &options, &JobSteps { progress })?;
+            Ok(Outcome::Truth(Box::new(Truth {
+                picture: Arc::new(rendered.picture),
+                camera,
+                samples_per_pixel,
+                seconds: start.elapsed().as_secs_f64(),
+            })))
+        })
+    }
+}
+
+impl Drop for Session {
+    /// Closing in good order gives up what was not saved (the window has asked); a crash keeps it.
+    fn drop(&mut self) {
+        if !std::thread::panicking() {
+            self.forget_recovery();
+        }
+    }
+}
+
+/// The focus map that a file gives a document.
+fn imported(path: &Path, document: &Document) -> Result<FocusMap, SessionError> {
+    let stage = &document.stage;
+    let recipe = match project::read_focus(path)? {
+        FocusFile::Map(map) if map.atlas_hash.is_some() => return Ok(map.into_atlas_map(path, &stage.atlas)?),
+        FocusFile::Map(map) => focus::FocusRecipe {
+            background: map.background.map(focus::RecipeEntry::Value),
+            default: focus::RecipeEntry::Map(Arc::new(map.image)),
+            ..Default::default()
+        },
+        FocusFile::Recipe(recipe) => recipe,
+    };
+    let focus = recipe.evaluate(&stage.scene).map_err(|error| SessionError::bad(path, error))?;
+    let mut map = FocusMap::new(stage.atlas.width, stage.atlas.height, focus.at_infinity());
+    for texel in &stage.texels.texels {
+        let value = focus.at(texel.centroid);
+        map.set(texel.x, texel.y, [value.t as f32, value.anchor as f32]);
+    }
+    stage.canvas.dilate(&mut map);
+    Ok(map)
+}
