@@ -64,8 +64,8 @@ impl Smoothed {
     pub fn at(&self, offset: Vec3, otherwise: [f32; 2]) -> [f32; 2] {
         let mut sums = [0.0; 3];
         for (cell, share) in self.around(offset) {
-            for k in 0..3 {
-                sums[k] += share * self.cells[cell][k];
+            for (sum, value) in sums.iter_mut().zip(self.cells[cell]) {
+                *sum += share * value;
             }
         }
         if sums[0] > 0.0 {

@@ -57,7 +57,6 @@ pub fn compare(a: &LinearPicture, b: &LinearPicture) -> Result<Comparison, Proje
     }
     let mean_square = sums.square_clipped / count;
     let relative = |difference: f64, mean: f64| if difference == 0.0 { 0.0 } else { difference / mean };
-    // Not f64::max, which would hide a NaN.
     let psnr = if mean_square < 1e-20 { HIGHEST_PSNR } else { -10.0 * mean_square.log10() };
     Ok(Comparison {
         width: a.width,
@@ -115,7 +114,8 @@ impl Sums {
         self.reference += b;
         self.difference_clipped += clipped;
         self.reference_clipped += b.clamp(0.0, 1.0);
-        if !(difference.abs() <= self.largest) {
+        // Not f64::max, which would hide a NaN.
+        if difference.abs() > self.largest || difference.is_nan() {
             self.largest = difference.abs();
         }
     }

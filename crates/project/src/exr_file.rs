@@ -89,8 +89,9 @@ fn decode_unguarded(bytes: &[u8]) -> Result<ExrImage, String> {
     if samples > MOST_SAMPLES {
         return Err("it is larger than 4 GiB".to_string());
     }
+    // Not in parallel: a panic on a worker thread could not be caught.
     let reader = ox::read().no_deep_data().largest_resolution_level().all_channels().all_layers();
-    let read = reader.all_attributes().from_buffered(Cursor::new(bytes)).map_err(text)?;
+    let read = reader.all_attributes().non_parallel().from_buffered(Cursor::new(bytes)).map_err(text)?;
     let first = read.layer_data.first().ok_or("it has no layer")?;
     let size = first.size;
     let mut image =
@@ -136,8 +137,8 @@ fn encode(image: &ExrImage, samples: ExrSamples) -> Result<Vec<u8>, String> {
         ox::AnyChannel::new(name.as_str(), data)
     };
     let channels = ox::AnyChannels::sort(image.channels.iter().map(channel).collect());
-    let mut attributes = ox::LayerAttributes::default();
-    attributes.software_name = Some(Text::from("Focus Brush"));
+    let software_name = Some(Text::from("Focus Brush"));
+    let mut attributes = ox::LayerAttributes { software_name, ..ox::LayerAttributes::default() };
     for (name, value) in &image.attributes {
         let value = match value {
             ExrAttribute::Text(text) => AttributeValue::Text(Text::from(text.as_str())),

@@ -1,0 +1,100 @@
+//! Recipes on a small scene: which entry wins, and what cannot be.
+
+use focus::{FocusError, FocusImage, FocusRecipe, RecipeEntry};
+use glam::{DVec2, DVec3, Vec2, Vec3, Vec4};
+use lens::FocusOffset;
+use scene::{AlphaMode, Material, Node, Part, Scene, SurfaceField, SurfacePoint, Triangle};
+use std::sync::Arc;
+
+fn material(name: &str) -> Material {
+    Material {
+        name: name.to_string(),
+        base_color: Vec4::ONE,
+        base_color_texture: None,
+        emissive: Vec3::ZERO,
+        emissive_texture: None,
+        metallic: 0.0,
+        roughness: 1.0,
+        specular: 1.0,
+        unlit: true,
+        alpha: AlphaMode::Opaque,
+        double_sided: true,
+    }
+}
+
+/// One triangle a part: (left, wall), (left, roof), (right, wall), (right, roof); the last without UVs.
+fn scene() -> Arc<Scene> {
+    let part = |i: u32| Part {
+        node: i / 2,
+        material: i % 2,
+        triangles: i..i + 1,
+        has_uv: [i < 3, false],
+        mirrored: false,
+    };
+    Arc::new(Scene {
+        positions: [DVec3::ZERO, DVec3::X, DVec3::Y].repeat(4),
+        uv: [[Vec2::ZERO, Vec2::X, Vec2::Y].repeat(4), Vec::new()],
+        triangles: (0..4).map(|i| Triangle { vertices: [3 * i, 3 * i + 1, 3 * i + 2], part: i }).collect(),
+        parts: (0..4).map(part).collect(),
+        nodes: vec![Node { name: "left".into(), index: 0 }, Node { name: "right".into(), index: 1 }],
+        materials: vec![material("wall"), material("roof")],
+        ..Scene::default()
+    })
+}
+
+fn value(t: f64) -> RecipeEntry {
+    RecipeEntry::Value(FocusOffset::new(t, 0.5))
+}
+
+fn offsets(recipe: &FocusRecipe) -> Result<Vec<f64>, FocusError> {
+    let focus = recipe.evaluate(&scene())?;
+    let at = |triangle| focus.at(SurfacePoint { triangle, barycentric: DVec2::new(0.375, 0.125) }).t;
+    Ok((0..4).map(at).chain([focus.at_infinity().t]).collect())
+}
+
+#[test]
+fn nodes_win_over_materials_and_later_over_earlier() {
+    let mut recipe = FocusRecipe { default: value(2.0), ..FocusRecipe::default() };
+    assert_eq!(offsets(&recipe).unwrap(), [2.0, 2.0, 2.0, 2.0, 2.0]);
+    recipe.background = Some(value(3.0));
+    recipe.materials = vec![("wall".into(), value(4.0)), ("wall".into(), value(5.0))];
+    assert_eq!(offsets(&recipe).unwrap(), [5.0, 2.0, 5.0, 2.0, 3.0]);
+    recipe.nodes = vec![("right".into(), value(6.0))];
+    assert_eq!(offsets(&recipe).unwrap(), [5.0, 2.0, 6.0, 6.0, 3.0]);
+    assert_eq!(offsets(&FocusRecipe::default()).unwrap(), [1.0; 5]);
+}
+
+#[test]
+fn a_map_lies_in_the_first_uv_set() {
+    let image = FocusImage { width: 2, height: 2, texels: vec![[1.0, 0.0], [2.0, 0.0], [3.0, 0.0], [4.0, 0.0]] };
+    let map = RecipeEntry::Map(Arc::new(image));
+    let recipe = FocusRecipe { materials: vec![("wall".into(), map.clone())], ..FocusRecipe::default() };
+    // uv (0.375, 0.125): a quarter past the centre of column 0, a quarter before that of row 0, where it
+    // repeats: row 1 a quarter. 1 + 0.25 + 0.25·2.
+    assert_eq!(offsets(&recipe).unwrap(), [1.75, 1.0, 1.75, 1.0, 1.0]);
+
+    let on_bare = FocusRecipe { nodes: vec![("right".into(), map.clone())], ..FocusRecipe::default() };
+    let error = offsets(&on_bare).unwrap_err().to_string();
+    assert!(error.contains("nodes \"right\"") && error.contains("\"roof\"") && error.contains("TEXCOORD_0"));
+    let behind = FocusRecipe { background: Some(map), ..FocusRecipe::default() };
+    assert_eq!(offsets(&behind).unwrap_err(), FocusError::BackgroundMap);
+}
+
+#[test]
+fn unknown_names_are_told_with_near_ones() {
+    let recipe = |name: &str| FocusRecipe { materials: vec![(name.into(), value(2.0))], ..FocusRecipe::default() };
+    let message = |name: &str| offsets(&recipe(name)).unwrap_err().to_string();
+    assert_eq!(message("Wal"), "no material is called \"Wal\" (did you mean \"wall\"?)");
+    assert_eq!(message("xylophone"), "no material is called \"xylophone\" (there are \"roof\", \"wall\")");
+    let node = FocusRecipe { nodes: vec![("wall".into(), value(2.0))], ..FocusRecipe::default() };
+    assert!(offsets(&node).unwrap_err().to_string().starts_with("no node is called \"wall\""));
+}
+
+#[test]
+fn numbers_that_cannot_be_used_are_told_with_their_entry() {
+    let bad = RecipeEntry::Value(FocusOffset::new(f64::NAN, 0.0));
+    let recipe = FocusRecipe { nodes: vec![("left".into(), bad.clone())], ..FocusRecipe::default() };
+    assert!(offsets(&recipe).unwrap_err().to_string().starts_with("nodes \"left\""));
+    let recipe = FocusRecipe { background: Some(bad), ..FocusRecipe::default() };
+    assert!(offsets(&recipe).unwrap_err().to_string().starts_with("background"));
+}

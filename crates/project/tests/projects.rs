@@ -1,0 +1,218 @@
+//! Saving and loading documents.
+
+mod common;
+
+use common::{damage, is_one_line};
+use focus::{Brush, BrushMode, FocusMap};
+use lens::{Aperture, ApertureMask, ApertureShape, Camera, Exposure, FocusOffset};
+use project::{
+    NamedCamera, ProjectError, ProjectFile, SceneState, find_recovery, recovery_path_for, remove_recovery,
+    unsaved_recovery_path,
+};
+use std::io::{Read, Write};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use tempfile::TempDir;
+
+fn document(folder: &Path) -> ProjectFile {
+    std::fs::create_dir_all(folder.join("models")).unwrap();
+    let scene = folder.join("models/scene.glb");
+    std::fs::write(&scene, b"a scene").unwrap();
+    let transmission = vec![0.0, 0.25, 1.0 / 3.0, 0.5, 0.75, 1.0];
+    let mask = ApertureMask { width: 3, height: 2, transmission, file: "bokeh/heart.png".into() };
+    let masked = Camera {
+        yfov: 0.1 + 0.2,
+        focus_distance: f64::INFINITY,
+        aperture: Aperture { shape: ApertureShape::Mask(Arc::new(mask)), ratio: 1.5 },
+        ..Camera::default()
+    };
+    let mut map = FocusMap::new(130, 70, FocusOffset::STANDARD);
+    map.background = FocusOffset::new(1.1, 0.3);
+    for i in 0..70 {
+        map.set(i, i, [i as f32 / 7.0, 1.0 / (1.0 + i as f32)]);
+    }
+    let cameras = [("shot", Camera::default()), ("masked", masked)];
+    let cameras = cameras.map(|(name, camera)| NamedCamera { name: name.into(), camera });
+    ProjectFile {
+        active_camera: 1,
+        exposure: Exposure::Conserve,
+        brush: Brush { radius: 1.0 / 3.0, mode: BrushMode::Smooth, ..Brush::default() },
+        view: serde_json::json!({"panels": [1, 2], "orbit": 0.1}),
+        atlas: Some((0..=255).cycle().take(5000).collect()),
+        background_focus: map.background,
+        focus_map: Some(map),
+        ..ProjectFile::new(&scene, cameras.into()).unwrap()
+    }
+}
+
+#[test]
+fn documents_come_back_the_same() {
+    let folder = TempDir::new().unwrap();
+    let file = folder.path().join("work.fbrush");
+    let document = document(folder.path());
+    document.save(&file).unwrap();
+    let read = ProjectFile::load(&file).unwrap();
+    assert_eq!(read, document);
+    assert_eq!(read.scene_state(), SceneState::Same);
+    // The same document gives the same bytes, and a save leaves nothing else in the folder.
+    let bytes = std::fs::read(&file).unwrap();
+    read.save(&file).unwrap();
+    assert_eq!(std::fs::read(&file).unwrap(), bytes);
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 2);
+
+    let bare = ProjectFile { atlas: None, focus_map: None, view: serde_json::Value::Null, ..document };
+    bare.save(&file).unwrap();
+    assert_eq!(ProjectFile::load(&file).unwrap(), bare);
+}
+
+#[test]
+fn the_manifest_is_first_and_is_json() {
+    let folder = TempDir::new().unwrap();
+    let file = folder.path().join("work.fbrush");
+    document(folder.path()).save(&file).unwrap();
+    let mut zip = zip::ZipArchive::new(std::fs::File::open(&file).unwrap()).unwrap();
+    let mut text = String::new();
+    let mut first = zip.by_index(0).unwrap();
+    assert_eq!(first.name().unwrap(), "manifest.json");
+    first.read_to_string(&mut text).unwrap();
+    let manifest: serde_json::Value = serde_json::from_str(&text).unwrap();
+    assert_eq!(manifest["scene"]["path"], "models/scene.glb");
+    assert_eq!(manifest["version"], 1);
+}
+
+#[test]
+fn project_and_scene_move_together() {
+    let folder = TempDir::new().unwrap();
+    let (old, new) = (folder.path().join("old"), folder.path().join("new"));
+    let document = document(&old);
+    std::fs::create_dir(old.join("shots")).unwrap();
+    document.save(&old.join("shots/work.fbrush")).unwrap();
+    std::fs::rename(&old, &new).unwrap();
+    let read = ProjectFile::load(&new.join("shots/work.fbrush")).unwrap();
+    assert_eq!(read.scene, new.join("models/scene.glb"));
+    assert_eq!(read.scene_state(), SceneState::Same);
+    std::fs::write(&read.scene, b"another scene").unwrap();
+    assert_eq!(read.scene_state(), SceneState::Changed);
+    std::fs::remove_file(&read.scene).unwrap();
+    assert_eq!(read.scene_state(), SceneState::Missing);
+}
+
+#[test]
+fn damaged_projects_are_errors() {
+    let folder = TempDir::new().unwrap();
+    let file = folder.path().join("work.fbrush");
+    let document = document(folder.path());
+    document.save(&file).unwrap();
+    // A changed byte is found by a checksum, or lies where nothing is read (dates, say): then all is the same.
+    damage(&file, |file| {
+        let read = ProjectFile::load(file)?;
+        assert_eq!(ProjectFile { scene: document.scene.clone(), ..read }, document);
+        Ok::<_, ProjectError>(())
+    });
+    let whole = std::fs::read(&file).unwrap();
+    for place in (0..whole.len()).step_by(7) {
+        let mut changed = whole.clone();
+        changed[place] ^= 0xff;
+        std::fs::write(&file, &changed).unwrap();
+        match ProjectFile::load(&file) {
+            Ok(read) => assert_eq!(read, document, "byte {place}"),
+            Err(error) => is_one_line(&error.to_string(), &file),
+        }
+    }
+}
+
+/// The entries of a project, changed, in a new file.
+fn repack(file: &Path, change: impl Fn(&str, Vec<u8>) -> Vec<u8>) -> PathBuf {
+    let mut zip = zip::ZipArchive::new(std::fs::File::open(file).unwrap()).unwrap();
+    let target = file.with_file_name("repacked.fbrush");
+    let mut new = zip::ZipWriter::new(std::fs::File::create(&target).unwrap());
+    for index in 0..zip.len() {
+        let mut entry = zip.by_index(index).unwrap();
+        let name = entry.name().unwrap().into_owned();
+        let mut bytes = Vec::new();
+        entry.read_to_end(&mut bytes).unwrap();
+        new.start_file(&*name, zip::write::SimpleFileOptions::default()).unwrap();
+        new.write_all(&change(&name, bytes)).unwrap();
+    }
+    new.finish().unwrap();
+    target
+}
+
+#[test]
+fn wrong_content_is_told_with_its_entry() {
+    let folder = TempDir::new().unwrap();
+    let file = folder.path().join("work.fbrush");
+    document(folder.path()).save(&file).unwrap();
+    let in_manifest = |from: &'static str, to: &'static str| {
+        move |name: &str, bytes: Vec<u8>| match name {
+            "manifest.json" => String::from_utf8(bytes).unwrap().replacen(from, to, 1).into_bytes(),
+            _ => bytes,
+        }
+    };
+    let load = |change: &dyn Fn(&str, Vec<u8>) -> Vec<u8>| {
+        let target = repack(&file, change);
+        let result = ProjectFile::load(&target);
+        if let Err(error) = &result {
+            is_one_line(&error.to_string(), &target);
+        }
+        result.map_err(|error| error.to_string())
+    };
+    assert!(load(&|_, bytes| bytes).is_ok());
+    let cases: [(&dyn Fn(&str, Vec<u8>) -> Vec<u8>, &str); 8] = [
+        (&in_manifest("\"version\": 1", "\"version\": 2"), "update the program"),
+        (&in_manifest("focus-brush project", "shopping list"), "shopping list"),
+        (&in_manifest("\"active_camera\": 1", "\"active_camera\": 2"), "camera 2 of 2"),
+        (&in_manifest("\"width\": 130", "\"width\": 131"), "focus.f32"),
+        (&in_manifest("\"width\": 130", "\"width\": 4000000000"), "focus.f32"),
+        (&in_manifest("\"yfov\": ", "\"yfov\": -"), "yfov"),
+        (&|name, bytes| if name == "focus.f32" { bytes[8..].into() } else { bytes }, "focus.f32: is damaged"),
+        // Much larger than it says: unpacking stops at the limit.
+        (&|name, bytes| if name == "focus.f32" { vec![0; 64 << 20] } else { bytes }, "focus.f32: is larger"),
+    ];
+    for (change, expected) in cases {
+        let error = load(change).unwrap_err();
+        assert!(error.contains(expected), "{error} should contain {expected}");
+    }
+    // A field that a later program of the same version adds is let pass.
+    load(&in_manifest("\"version\": 1", "\"version\": 1, \"mood\": \"good\"")).unwrap();
+}
+
+#[test]
+fn the_old_file_survives_a_save_that_fails() {
+    let folder = TempDir::new().unwrap();
+    let file = folder.path().join("work.fbrush");
+    let good = document(folder.path());
+    good.save(&file).unwrap();
+    let mut bad = good.clone();
+    bad.focus_map.as_mut().unwrap().set(3, 3, [f32::NAN, 0.0]);
+    is_one_line(&bad.save(&file).unwrap_err().to_string(), &file);
+    let bad = ProjectFile { active_camera: 7, ..good.clone() };
+    assert!(bad.save(&file).is_err());
+    assert!(matches!(good.save(&folder.path().join("no/such/work.fbrush")), Err(ProjectError::Write { .. })));
+    assert!(matches!(good.save(folder.path()), Err(ProjectError::Write { .. })));
+    assert_eq!(ProjectFile::load(&file).unwrap(), good);
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 2, "no temporary file is left");
+}
+
+#[test]
+fn recovery_is_found_while_it_is_newer() {
+    let folder = TempDir::new().unwrap();
+    let file = folder.path().join("work.fbrush");
+    let saved = document(folder.path());
+    saved.save(&file).unwrap();
+    let recovery = recovery_path_for(&file);
+    assert_eq!(recovery, folder.path().join("work.fbrush.recovery"));
+    assert_eq!(find_recovery(&recovery, Some(&file)), None);
+    let unsaved = ProjectFile { active_camera: 0, ..saved.clone() };
+    unsaved.save(&recovery).unwrap();
+    assert_eq!(find_recovery(&recovery, Some(&file)), Some(unsaved.clone()));
+    assert_eq!(find_recovery(&recovery, None), Some(unsaved));
+    let later = std::time::SystemTime::now() + std::time::Duration::from_secs(10);
+    std::fs::File::options().write(true).open(&file).unwrap().set_modified(later).unwrap();
+    assert_eq!(find_recovery(&recovery, Some(&file)), None, "saved since");
+    remove_recovery(&recovery).unwrap();
+    remove_recovery(&recovery).unwrap();
+    assert!(!recovery.exists());
+    let unsaved = ["a/scene.glb", "b/scene.glb"].map(|scene| unsaved_recovery_path(Path::new(scene)));
+    assert!(unsaved[0] != unsaved[1] && unsaved[0].to_string_lossy().contains("scene-"));
+}
