@@ -8,6 +8,7 @@
 //! * [`fill`]: the same value over a node, part, material or chart.
 //! * [`History`]: undo and redo under a byte budget.
 
+mod bake;
 mod brush;
 mod canvas;
 mod changed;

@@ -199,7 +199,10 @@ fn a_dab_smaller_than_a_texel_takes_the_texel_under_it() {
     draw(&mut map, &canvas, &tiny, &[[1.0, 0.5]]).unwrap();
     let painted = canvas.texels().iter().filter(|t| map.at(t.x, t.y) != FocusOffset::STANDARD).count();
     assert_eq!(painted, 1);
-    assert!(draw(&mut map, &canvas, &tiny, &[[1.0, 1.5]]).is_none(), "off the surface there is nothing to paint");
+    assert!(
+        draw(&mut map, &canvas, &tiny, &[[1.0, 1.5]]).is_none(),
+        "off the surface there is nothing to paint"
+    );
 }
 
 #[test]
@@ -262,7 +265,8 @@ fn a_thousand_edits_undo_and_redo_to_the_bit() {
         (seed >> 8) as f64 / (1 << 24) as f64
     };
     while states.len() <= 1000 {
-        let modes = [BrushMode::Set, BrushMode::Add, BrushMode::Subtract, BrushMode::Smooth, BrushMode::Reset];
+        let modes =
+            [BrushMode::Set, BrushMode::Add, BrushMode::Subtract, BrushMode::Smooth, BrushMode::Reset];
         let target = FocusOffset::new(2.0 * random(), random());
         let brush = Brush {
             radius: 0.05 + 0.2 * random(),
@@ -275,7 +279,8 @@ fn a_thousand_edits_undo_and_redo_to_the_bit() {
             0 => {
                 let before = map.clone();
                 let target = [FillTarget::Chart(0), FillTarget::Node(1), FillTarget::Background];
-                fill(&mut map, &canvas, target[(random() * 3.0) as usize], brush.target, Channels::Both).unwrap();
+                fill(&mut map, &canvas, target[(random() * 3.0) as usize], brush.target, Channels::Both)
+                    .unwrap();
                 Edit::between("Fill", &before, &map)
             }
             _ => {

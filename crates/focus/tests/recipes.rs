@@ -1,6 +1,9 @@
-//! Recipes on a small scene: which entry wins, and what cannot be.
+//! Recipes on a small scene: which entry wins, what cannot be, and how they become a map.
 
-use focus::{FocusError, FocusImage, FocusRecipe, RecipeEntry};
+use atlas::Atlas;
+use focus::{
+    Canvas, Channels, FillTarget, Focus, FocusError, FocusImage, FocusMap, FocusRecipe, RecipeEntry,
+};
 use glam::{DVec2, DVec3, Vec2, Vec3, Vec4};
 use lens::FocusOffset;
 use scene::{AlphaMode, Material, Node, Part, Scene, SurfaceField, SurfacePoint, Triangle};
@@ -66,7 +69,8 @@ fn nodes_win_over_materials_and_later_over_earlier() {
 
 #[test]
 fn a_map_lies_in_the_first_uv_set() {
-    let image = FocusImage { width: 2, height: 2, texels: vec![[1.0, 0.0], [2.0, 0.0], [3.0, 0.0], [4.0, 0.0]] };
+    let image =
+        FocusImage { width: 2, height: 2, texels: vec![[1.0, 0.0], [2.0, 0.0], [3.0, 0.0], [4.0, 0.0]] };
     let map = RecipeEntry::Map(Arc::new(image));
     let recipe = FocusRecipe { materials: vec![("wall".into(), map.clone())], ..FocusRecipe::default() };
     // uv (0.375, 0.125): a quarter past the centre of column 0, a quarter before that of row 0, where it
@@ -82,7 +86,8 @@ fn a_map_lies_in_the_first_uv_set() {
 
 #[test]
 fn unknown_names_are_told_with_near_ones() {
-    let recipe = |name: &str| FocusRecipe { materials: vec![(name.into(), value(2.0))], ..FocusRecipe::default() };
+    let recipe =
+        |name: &str| FocusRecipe { materials: vec![(name.into(), value(2.0))], ..FocusRecipe::default() };
     let message = |name: &str| offsets(&recipe(name)).unwrap_err().to_string();
     assert_eq!(message("Wal"), "no material is called \"Wal\" (did you mean \"wall\"?)");
     assert_eq!(message("xylophone"), "no material is called \"xylophone\" (there are \"roof\", \"wall\")");
@@ -97,4 +102,53 @@ fn numbers_that_cannot_be_used_are_told_with_their_entry() {
     assert!(offsets(&recipe).unwrap_err().to_string().starts_with("nodes \"left\""));
     let recipe = FocusRecipe { background: Some(bad), ..FocusRecipe::default() };
     assert!(offsets(&recipe).unwrap_err().to_string().starts_with("background"));
+}
+
+#[test]
+fn a_baked_recipe_gives_the_recipes_values() {
+    let scene = scene();
+    // A 20-texel triangle for each part, side by side.
+    let place =
+        |i: u32| [[0.0, 0.0], [20.0, 0.0], [0.0, 20.0]].map(|[x, y]| Vec2::new(x + 30.0 * i as f32, y) + 4.0);
+    let atlas =
+        Arc::new(Atlas::new([128, 32], (0..4).map(place).collect(), (0..4).collect(), &[0, 1, 2, 3], 20.0));
+    let mut recipe =
+        FocusRecipe { default: value(0.1), background: Some(value(0.3)), ..FocusRecipe::default() };
+    recipe.nodes = vec![("left".into(), RecipeEntry::Value(FocusOffset::STANDARD))];
+    // t = 1 + u, away from where it repeats.
+    let ramp = (0..64).map(|i| [1.0 + (i as f32 + 0.5) / 64.0, 0.25]).collect();
+    let ramp = FocusImage { width: 64, height: 1, texels: ramp };
+    recipe.materials = vec![("wall".into(), RecipeEntry::Map(Arc::new(ramp)))];
+
+    let focus = recipe.evaluate(&scene).unwrap();
+    let texels = atlas.texel_map(&scene);
+    let baked = Arc::new(focus.bake(&texels));
+    assert_eq!(baked.background, FocusOffset::new(0.3, 0.5));
+    let painted = Focus::painted(scene.clone(), atlas.clone(), baked.clone());
+    for triangle in 0..4 {
+        for i in 0..200 {
+            let b =
+                DVec2::new(0.02 + 0.9 * (i as f64 * 0.618).fract(), 0.02 + 0.9 * (i as f64 * 0.755).fract());
+            let point = SurfacePoint {
+                triangle,
+                barycentric: if b.element_sum() > 1.0 { DVec2::ONE - b } else { b },
+            };
+            let (exact, found) = (focus.at(point), painted.at(point));
+            // Exact where the texels agree (to f32), else within the texel that borders are extended by.
+            let tolerance = if triangle == 2 { 1.5 / 20.0 } else { 1e-7 };
+            assert!((exact.t - found.t).abs() < tolerance && (exact.anchor - found.anchor).abs() < 1e-7);
+            assert!(triangle > 1 || found == FocusOffset::STANDARD);
+        }
+    }
+    // Painted values reach the bilinear lookup at the very border through the gutters.
+    let gutters: Vec<_> =
+        texels.dilations.iter().map(|d| [d.texel, d.source].map(|i| [i % 128, i / 128])).collect();
+    let canvas = Canvas::new(&scene, &atlas, &texels.texels, &gutters);
+    let mut map = FocusMap::clone(&baked);
+    focus::fill(&mut map, &canvas, FillTarget::Part(3), FocusOffset::SHARP, Channels::Both).unwrap();
+    let painted = Focus::painted(scene, atlas, Arc::new(map));
+    for barycentric in [DVec2::ZERO, DVec2::X, DVec2::Y, DVec2::new(0.5, 0.5)] {
+        assert_eq!(painted.at(SurfacePoint { triangle: 3, barycentric }), FocusOffset::SHARP);
+        assert_eq!(painted.at(SurfacePoint { triangle: 1, barycentric }), FocusOffset::STANDARD);
+    }
 }

@@ -1,12 +1,14 @@
 //! Camera and recipe files: what they mean, and what is said of bad ones.
 
-mod common;
+mod damage;
+mod shared_data;
 
-use common::{damage, is_one_line, shared};
+use damage::{damage, is_one_line};
 use focus::RecipeEntry;
 use glam::{DMat4, DQuat, DVec3};
 use lens::{Aperture, ApertureMask, ApertureShape, Camera, FocusOffset};
 use project::{FocusFile, read_camera, read_focus, read_recipe, write_camera, write_rgb};
+use shared_data::shared;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use tempfile::TempDir;
@@ -114,13 +116,17 @@ fn bad_cameras_are_told_with_file_and_field() {
         is_one_line(&error, &file);
         assert!(error.contains(expected), "{error} should contain {expected}");
     }
-    is_one_line(&read_camera(Path::new("/no/such"), &Camera::default()).unwrap_err().to_string(), Path::new("/no/such"));
+    is_one_line(
+        &read_camera(Path::new("/no/such"), &Camera::default()).unwrap_err().to_string(),
+        Path::new("/no/such"),
+    );
 }
 
 #[test]
 fn recipes_keep_order_and_repetition() {
     let folder = TempDir::new().unwrap();
-    let text = r#"{"nodes": {"b": {"t": 2}, "a": {"anchor": 1}, "b": {}}, "default": {"t": 1.5, "anchor": 0.25}}"#;
+    let text =
+        r#"{"nodes": {"b": {"t": 2}, "a": {"anchor": 1}, "b": {}}, "default": {"t": 1.5, "anchor": 0.25}}"#;
     let file = write(&folder, "focus.json", text);
     let recipe = read_recipe(&file).unwrap();
     let value = |t, anchor| RecipeEntry::Value(FocusOffset { t, anchor });

@@ -1,14 +1,16 @@
 //! Pictures, focus maps and their comparison.
 
-mod common;
+mod damage;
+mod shared_data;
 
-use common::{damage, is_one_line, shared};
+use damage::{damage, is_one_line};
 use focus::{FocusImage, FocusMap};
 use lens::{Exposure, FocusOffset, Picture};
 use project::{
     FocusMapFile, Layer, LinearPicture, PictureOptions, compare, error_maps, read_picture, write_focus_map,
     write_picture, write_rgb,
 };
+use shared_data::shared;
 use tempfile::TempDir;
 
 /// Deterministic numbers in [0, 1).
@@ -37,7 +39,7 @@ fn exr_keeps_every_bit_and_its_layers() {
     let layers = [Layer::coverage(&picture), depth.clone()];
     for exposure in [Exposure::Conserve, Exposure::Normalise] {
         let options = PictureOptions { exposure, half: false };
-        assert_eq!(write_picture(&file, &picture, &layers, options).unwrap(), [file.clone()]);
+        assert_eq!(write_picture(&file, &picture, &layers, options).unwrap(), std::slice::from_ref(&file));
         let read = read_picture(&file).unwrap();
         assert_eq!(read.rgb, picture.exposed(exposure));
         assert_eq!(read.layers["coverage"], picture.coverage);
@@ -228,7 +230,8 @@ fn a_shift_by_one_pixel_shows() {
 #[test]
 fn reference_pictures_are_read() {
     if let Some(folder) = shared("data/dof-reference/helmet_cake") {
-        let [near, far] = ["dof_near.exr", "dof_far.exr"].map(|name| read_picture(&folder.join(name)).unwrap());
+        let [near, far] =
+            ["dof_near.exr", "dof_far.exr"].map(|name| read_picture(&folder.join(name)).unwrap());
         assert_eq!([near.width, near.height], [512, 384]);
         let found = compare(&near, &far).unwrap();
         println!("near against far focus: {found:?}");

@@ -1,8 +1,8 @@
 //! Saving and loading documents.
 
-mod common;
+mod damage;
 
-use common::{damage, is_one_line};
+use damage::{damage, is_one_line};
 use focus::{Brush, BrushMode, FocusMap};
 use lens::{Aperture, ApertureMask, ApertureShape, Camera, Exposure, FocusOffset};
 use project::{
@@ -121,8 +121,11 @@ fn damaged_projects_are_errors() {
     }
 }
 
+/// What to make of an entry, by its name and bytes.
+type Change<'a> = &'a dyn Fn(&str, Vec<u8>) -> Vec<u8>;
+
 /// The entries of a project, changed, in a new file.
-fn repack(file: &Path, change: impl Fn(&str, Vec<u8>) -> Vec<u8>) -> PathBuf {
+fn repack(file: &Path, change: Change<'_>) -> PathBuf {
     let mut zip = zip::ZipArchive::new(std::fs::File::open(file).unwrap()).unwrap();
     let target = file.with_file_name("repacked.fbrush");
     let mut new = zip::ZipWriter::new(std::fs::File::create(&target).unwrap());
@@ -149,7 +152,7 @@ fn wrong_content_is_told_with_its_entry() {
             _ => bytes,
         }
     };
-    let load = |change: &dyn Fn(&str, Vec<u8>) -> Vec<u8>| {
+    let load = |change: Change<'_>| {
         let target = repack(&file, change);
         let result = ProjectFile::load(&target);
         if let Err(error) = &result {
@@ -158,7 +161,7 @@ fn wrong_content_is_told_with_its_entry() {
         result.map_err(|error| error.to_string())
     };
     assert!(load(&|_, bytes| bytes).is_ok());
-    let cases: [(&dyn Fn(&str, Vec<u8>) -> Vec<u8>, &str); 8] = [
+    let cases: [(Change<'_>, &str); 8] = [
         (&in_manifest("\"version\": 1", "\"version\": 2"), "update the program"),
         (&in_manifest("focus-brush project", "shopping list"), "shopping list"),
         (&in_manifest("\"active_camera\": 1", "\"active_camera\": 2"), "camera 2 of 2"),

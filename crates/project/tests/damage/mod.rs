@@ -1,16 +1,6 @@
-//! What the tests of several formats share.
+//! Checks that every format's reader has to pass.
 
-use std::path::{Path, PathBuf};
-
-/// A folder of the shared reference data, if it is there.
-pub fn shared(folder: &str) -> Option<PathBuf> {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared").join(folder);
-    if path.exists() {
-        return Some(path);
-    }
-    eprintln!("SKIPPED: {} is not there", path.display());
-    None
-}
+use std::path::Path;
 
 /// Reads damaged copies of `file` with `read`: cut off after each eighth of its length, which must be an
 /// error, and with a byte changed there, which must not panic. Returns how many changed copies were read
@@ -41,6 +31,7 @@ pub fn damage<T, E: std::fmt::Display>(file: &Path, read: impl Fn(&Path) -> Resu
 
 /// Checks the form `FILE: what is wrong (what to do)`.
 pub fn is_one_line(message: &str, file: &Path) {
-    let form = message.starts_with(&file.display().to_string()) && message.ends_with(')') && message.contains(" (");
+    let form =
+        message.starts_with(&file.display().to_string()) && message.ends_with(')') && message.contains(" (");
     assert!(form && !message.contains('\n'), "not `FILE: what is wrong (what to do)`: {message}");
 }

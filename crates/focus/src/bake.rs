@@ -1,0 +1,28 @@
+//! From any focus to a map that can be painted on.
+
+use crate::focus_map::texel_of;
+use crate::{Focus, FocusMap};
+use atlas::TexelMap;
+use lens::FocusOffset;
+use rayon::prelude::*;
+use scene::SurfaceField;
+
+impl Focus {
+    /// The focus at the centroid of every covered texel, gutters filled, and the background's: a recipe made
+    /// paintable. Where no surface is near, the map is standard.
+    pub fn bake(&self, texels: &TexelMap) -> FocusMap {
+        let (width, height) = (texels.width, texels.height);
+        let values: Vec<[f32; 2]> =
+            texels.texels.par_iter().map(|texel| texel_of(self.at(texel.centroid))).collect();
+        let mut map = FocusMap::new(width, height, FocusOffset::STANDARD);
+        map.background = self.background;
+        for (texel, value) in texels.texels.iter().zip(values) {
+            map.set(texel.x, texel.y, value);
+        }
+        for gutter in &texels.dilations {
+            let [from, to] = [gutter.source, gutter.texel].map(|index| [index % width, index / width]);
+            map.set(to[0], to[1], map.texel(from[0], from[1]));
+        }
+        map
+    }
+}
