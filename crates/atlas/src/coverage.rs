@@ -113,7 +113,7 @@ impl<'a> Bands<'a> {
         let scale = world_area / atlas_area;
         let (low, high) = bounds(&corners);
         let first_row = (low.y as u32).max(top);
-        let last_row = (high.y as u32).min(top + rows - 1);
+        let last_row = last_cell(high.y).min(top + rows - 1);
         // What lies above the first row was or will be added by the bands before.
         let mut rest = whole;
         if low.y < f64::from(first_row) {
@@ -128,7 +128,7 @@ impl<'a> Bands<'a> {
             if left.x > right.x {
                 continue;
             }
-            for x in left.x as u32..=(right.x as u32).min(width - 1) {
+            for x in left.x as u32..=last_cell(right.x).min(width - 1) {
                 let mut piece = strip;
                 if right.x > f64::from(x + 1) {
                     (piece, strip) = strip.split(0, f64::from(x + 1));
@@ -172,6 +172,11 @@ fn rows_of(corners: &[Vec2; 3], bands: usize) -> (u32, u32) {
     let high = corners[0].y.max(corners[1].y).max(corners[2].y) as u32 / BAND_ROWS;
     let last = bands as u32 - 1;
     (low.min(last), high.min(last))
+}
+
+/// The last row or column of something that ends here: what ends at a border does not reach over it.
+fn last_cell(end: f64) -> u32 {
+    (end.ceil() as u32).saturating_sub(1)
 }
 
 fn bounds(corners: &[DVec2]) -> (DVec2, DVec2) {

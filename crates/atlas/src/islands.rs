@@ -80,8 +80,8 @@ fn stretched_area(chart: &LooseChart, worlds: &[[DVec3; 3]]) -> (f64, f64) {
         let largest =
             (0.5 * (squares + (squares * squares - 4.0 * determinant * determinant).max(0.0).sqrt())).sqrt();
         let least = determinant.abs() / largest;
-        // Not finite: a needle whose shape rounding has eaten.
-        if !(least >= LEAST_DENSITY) {
+        // Not a number: a needle whose shape rounding has eaten.
+        if least.is_nan() || least < LEAST_DENSITY {
             stretched += world_area;
         }
     }

@@ -209,8 +209,8 @@ impl Packer<'_> {
         self.progress.check()?;
         // More turns pack closer and take longer; with very many charts the small ones fill the gaps anyway.
         let turns: &[u32] = match self.boxed.len() {
-            ..=3_000 => &[0, 1, 2, 3],
-            ..=15_000 => &[0, 1],
+            0..3_000 => &[0, 1, 2, 3],
+            3_000..15_000 => &[0, 1],
             _ => &[0],
         };
         let grown: Vec<Vec<Shape>> = self

@@ -56,7 +56,8 @@ fn add_edge(columns: &mut [(u32, u32)], from: DVec2, to: DVec2, height: u32) {
     let last = columns.len() - 1;
     let first = (left.x as usize).min(last);
     let slope = if right.x > left.x { (right.y - left.y) / (right.x - left.x) } else { 0.0 };
-    for column in first..=(right.x as usize).min(last) {
+    let touched = &mut columns[first..=(right.x as usize).min(last)];
+    for (column, range) in (first..).zip(touched) {
         let y_at = |x: f64| {
             let between = left.y + slope * (x - left.x);
             if x <= left.x {
@@ -72,7 +73,6 @@ fn add_edge(columns: &mut [(u32, u32)], from: DVec2, to: DVec2, height: u32) {
             if upright { (left.y, right.y) } else { (y_at(column as f64), y_at(column as f64 + 1.0)) };
         let low = (y0.min(y1) as u32).min(height - 1);
         let high = (y0.max(y1).ceil() as u32).clamp(low + 1, height);
-        let range = &mut columns[column];
         *range = (range.0.min(low), range.1.max(high));
     }
 }

@@ -1,41 +1,34 @@
-//! Unwrapping as a whole, with the test program as its own child.
+//! Unwrapping as a whole. The test program is its own unwrapping child, and so has a main of its own.
 
+mod children;
+mod export;
+mod layout;
 mod meshes;
+mod nasty;
+mod storage;
+mod surface;
 
-use atlas::{Atlas, UnwrapOptions};
-use glam::DVec3;
-use progress::Unwatched;
-use std::time::Instant;
+use std::panic::catch_unwind;
+use std::process::ExitCode;
 
-fn main() {
+/// What a test is called and what it does.
+type Test = (&'static str, fn());
+
+fn main() -> ExitCode {
+    children::misbehave_if_asked();
     atlas::child::run_if_asked();
-    for child in [false, true] {
-        for n in [8u32, 40, 143] {
-            let scene = meshes::scene(vec![meshes::sphere(n, 1.0, DVec3::ZERO)]);
-            let options = UnwrapOptions {
-                child: child.then(|| std::env::current_exe().unwrap()),
-                ..UnwrapOptions::default()
-            };
-            let start = Instant::now();
-            let atlas = Atlas::unwrap(&scene, &options, &Unwatched).unwrap();
-            let took = start.elapsed();
-            let start = Instant::now();
-            let texels = atlas.texels(&scene);
-            let took2 = start.elapsed();
-            let area: f64 = texels.iter().map(|t| t.area).sum();
-            let mesh: f64 =
-                (0..scene.triangles.len() as u32).map(|t| 0.5 * scene.area_normal(t).length()).sum();
-            println!(
-                "{} tris child {child}: {took:?}, {}x{} {} charts density {:.1} cover {:.3}, texels {took2:?} area err {:e} notes {:?}",
-                scene.triangles.len(),
-                atlas.width,
-                atlas.height,
-                atlas.charts.len(),
-                atlas.density,
-                texels.len() as f64 / (atlas.width * atlas.height) as f64,
-                area / mesh - 1.0,
-                atlas.notes
-            );
-        }
-    }
+    let filters: Vec<String> = std::env::args().skip(1).filter(|a| !a.starts_with('-')).collect();
+    let groups: [&[Test]; 6] =
+        [layout::TESTS, surface::TESTS, nasty::TESTS, children::TESTS, storage::TESTS, export::TESTS];
+    let wanted = |name: &str| filters.is_empty() || filters.iter().any(|f| name.contains(f.as_str()));
+    let tests: Vec<&Test> = groups.into_iter().flatten().filter(|test| wanted(test.0)).collect();
+    println!("\nrunning {} tests", tests.len());
+    let failed = tests.iter().filter(|(name, test)| {
+        let ok = catch_unwind(test).is_ok();
+        println!("test {name} ... {}", if ok { "ok" } else { "FAILED" });
+        !ok
+    });
+    let failed = failed.count();
+    println!("\ntest result: {} passed; {failed} failed", tests.len() - failed);
+    if failed == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE }
 }
