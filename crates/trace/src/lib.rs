@@ -25,5 +25,6 @@ pub trait Radiance: Sync {
     /// Linear RGB radiance leaving `point` toward the world position `eye`.
     fn toward(&self, point: SurfacePoint, eye: DVec3) -> Vec3;
     /// Linear RGB radiance arriving from the world direction `direction` where no surface is.
+    #[allow(clippy::wrong_self_convention, reason = "light comes from infinity; nothing is converted")]
     fn from_infinity(&self, direction: DVec3) -> Vec3;
 }

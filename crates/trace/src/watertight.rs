@@ -78,15 +78,50 @@ pub(crate) fn has_area([a, b, c]: &[DVec3; 3]) -> bool {
 
 /// Whether `point` lies in the triangle's plane as far as f64 can tell.
 ///
-/// With n = (B − A) × (C − A) and r = P − A, the distance n·r/|n| is 0 within the rounding of P (a sum of three
-/// products, so off by up to 3u in each coordinate for coordinates up to m), of n (up to 8u·|B − A||C − A|) and of
-/// the sum itself. The bound 16u·(|n|₁·m + |B − A||C − A||r|), u = 2⁻⁵³, covers all of them: the thickness of the plane is some
-/// 3e-15 of the coordinates for a well-shaped triangle.
+/// With C the corner opposite the longest side, e and g the sides that meet there, n = e × g and r = P − C, the distance n·r/|n| is
+/// 0 within the rounding of P (a sum of three products, so off by up to 3u in each coordinate for coordinates
+/// up to m), of n (up to 8u·|e||g|) and of the sum itself. The bound 16u·(|n|₁·m + |e||g||r|), u = 2⁻⁵³, covers all of them: the
+/// plane of a well-shaped triangle is some 3e-15 of the coordinates thick. Taking the two shorter sides keeps it thin for
+/// long and narrow triangles too.
 pub(crate) fn in_plane(corners: &[DVec3; 3], point: DVec3) -> bool {
-    let [a, b, c] = *corners;
-    let (ab, ac, r) = (b - a, c - a, point - a);
-    let n = ab.cross(ac);
-    let m = a.abs().max(b.abs()).max(c.abs()).max(point.abs()).max_element();
-    let bound = n.abs().element_sum() * m + ab.length() * ac.length() * r.length();
+    let opposite = |k: usize| corners[(k + 1) % 3].distance_squared(corners[(k + 2) % 3]);
+    let k =
+        (0..3).max_by(|&i, &j| opposite(i).total_cmp(&opposite(j))).expect("a triangle has three corners");
+    let corner = corners[k];
+    let (e, g, r) = (corners[(k + 1) % 3] - corner, corners[(k + 2) % 3] - corner, point - corner);
+    let n = e.cross(g);
+    let m = corners.iter().fold(point.abs(), |m, corner| m.max(corner.abs())).max_element();
+    let bound = n.abs().element_sum() * m + e.length() * g.length() * r.length();
     n.dot(r).abs() <= 8.0 * f64::EPSILON * bound
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn planes_are_thin() {
+        let x = DVec3::X;
+        for (corners, thickness) in [
+            ([DVec3::ZERO, x, DVec3::Z], 1e-14),
+            ([DVec3::ZERO, 1e4 * x, DVec3::new(1e4, 0.0, 1e-3)], 1e-10),
+            ([DVec3::ZERO, 1e4 * x, DVec3::new(5e3, 0.0, 5e3)], 1e-10),
+        ] {
+            for turn in 0..3 {
+                let corners = [0, 1, 2].map(|k| corners[(k + turn) % 3]);
+                for weights in [[0.2, 0.3, 0.5], [0.0, 0.1, 0.9], [0.0, 0.0, 1.0]] {
+                    let point = corners[0] * weights[0] + corners[1] * weights[1] + corners[2] * weights[2];
+                    assert!(in_plane(&corners, point));
+                    assert!(!in_plane(&corners, point + thickness * DVec3::Y), "{corners:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn only_triangles_with_an_area_have_one() {
+        let triangle = |c: DVec3| has_area(&[DVec3::ZERO, DVec3::X, c]);
+        assert!(triangle(DVec3::Y) && triangle(DVec3::new(0.5, 1e-12, 0.0)));
+        assert!(!triangle(DVec3::X) && !triangle(0.3 * DVec3::X) && !triangle(DVec3::new(0.3, 1e-17, 0.0)));
+    }
 }

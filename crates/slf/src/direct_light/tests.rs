@@ -69,13 +69,13 @@ fn a_point_light_over_a_plane() {
     let point = light(LightKind::Point, at, DVec3::ZERO);
     // albedo/π · I cosθ/r², cosθ = 0.8, r = 2.
     let expected = ALBEDO * INTENSITY * (0.8 / 4.0 / PI) as f32;
-    let scene = scene_of(&[floor(GREY)], &[point.clone()]);
+    let scene = scene_of(&[floor(GREY)], std::slice::from_ref(&point));
     assert_near(direct(scene.clone()).toward(MIDDLE, ABOVE), expected);
     assert_eq!(direct(scene).toward(MIDDLE, -ABOVE), Vec3::ZERO, "from below, where no light arrives");
 
     // Whatever the winding: the side that faces the eye counts.
     let turned = Rectangle(DVec3::new(-1.0, 0.0, -1.0), DVec3::X * 2.0, DVec3::Z * 2.0, GREY);
-    assert_near(direct(scene_of(&[turned], &[point.clone()])).toward(MIDDLE, ABOVE), expected);
+    assert_near(direct(scene_of(&[turned], std::slice::from_ref(&point))).toward(MIDDLE, ABOVE), expected);
 
     let windowed = Light { range: 4.0, ..point.clone() };
     let scene = scene_of(&[floor(GREY)], &[windowed]);

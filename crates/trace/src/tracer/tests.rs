@@ -251,3 +251,62 @@ fn blending_lets_its_share_of_rays_pass() {
         assert!((found / rays as f64 - expected).abs() <= 4.0 * deviation, "{by_depth:?}");
     }
 }
+
+#[test]
+#[ignore = "prints rays a second; run it alone"]
+fn rays_a_second() {
+    let mut random = Random(8);
+    for (spheres, rings) in [(40, 50), (100, 71)] {
+        let mut meshes: Vec<_> = (0..spheres)
+            .map(|_| {
+                (sphere(random.in_cube() * 3.0 - DVec3::Z * 6.0, 0.2 + 0.5 * random.unit(), rings), WHITE)
+            })
+            .collect();
+        let ground = rectangle(DVec3::new(-50.0, -3.0, 50.0), DVec3::X * 100.0, DVec3::Z * -100.0);
+        meshes.push((ground, WHITE));
+        let scene = scene_of(&meshes);
+        let start = std::time::Instant::now();
+        let tracer = Tracer::new(scene.clone());
+        println!("{} triangles, built in {:?}", scene.triangles.len(), start.elapsed());
+        let rate = |what: &str, rays: usize, start: std::time::Instant| {
+            println!("{what:>28}: {:.2} M/s", rays as f64 / start.elapsed().as_secs_f64() * 1e-6);
+        };
+
+        let side = 1000;
+        let start = std::time::Instant::now();
+        let coherent = |k: usize| {
+            let slope = DVec2::new((k % side) as f64, (k / side) as f64) / side as f64 * 1.2 - 0.6;
+            ray(DVec3::ZERO, slope.extend(-1.0))
+        };
+        let hits: Vec<_> = (0..side * side).filter_map(|k| tracer.first_hit(&coherent(k))).collect();
+        rate("pinhole first hit", side * side, start);
+
+        let start = std::time::Instant::now();
+        let mut sum = 0;
+        for k in 0..side * side / 16 {
+            for _ in 0..16 {
+                let Ray { direction, .. } = coherent(k * 16);
+                let u = DVec3::new(random.unit() - 0.5, random.unit() - 0.5, 0.0) * 0.1;
+                sum += usize::from(tracer.first_hit(&ray(u, direction * 4.0 - u)).is_some());
+            }
+        }
+        rate("thin lens first hit", side * side, start);
+
+        let start = std::time::Instant::now();
+        for hit in hits.iter().step_by(8) {
+            for _ in 0..8 {
+                let eye = DVec3::new(random.unit() - 0.5, random.unit() - 0.5, 0.0) * 0.1;
+                sum += usize::from(tracer.occluded(hit.point, eye));
+            }
+        }
+        rate("surface to aperture", hits.len(), start);
+
+        let start = std::time::Instant::now();
+        for _ in 0..200_000 {
+            let origin = random.in_cube() * 3.0 - DVec3::Z * 6.0;
+            sum += usize::from(tracer.first_hit(&ray(origin, random.direction())).is_some());
+        }
+        rate("random first hit", 200_000, start);
+        println!("{sum} rays met something");
+    }
+}

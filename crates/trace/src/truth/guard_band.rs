@@ -6,7 +6,7 @@ use progress::{Cancelled, Progress};
 use rayon::prelude::*;
 
 /// Probing rays a step.
-const PROBES: u32 = 1 << 19;
+const PROBES: u32 = 1 << 18;
 /// The first band that is probed, half-heights.
 const FIRST_BAND: f64 = 0.5;
 /// The widest band, half-heights.
