@@ -13,7 +13,7 @@
 //! energy is conserved, and a standard hit keeps its pixel exactly.
 //!
 //! It shares the optics with the splat and nothing else. Sums are integers, so that any order and any number of
-//! threads gives the same bits (`sensor`); samples come from a scrambled Sobol' sequence a pixel (`pixel_samples`); the guard
+//! threads gives the same bits (`sensor`); samples are the same low-discrepancy points in every pixel (`pixel_samples`); the guard
 //! band is as wide as probing rays say (`guard_band`).
 
 mod guard_band;
@@ -24,8 +24,8 @@ mod sensor;
 use crate::{Radiance, Tracer};
 use glam::{DVec2, Vec3};
 use lens::{Camera, FocusOffset, Picture};
-use pixel_samples::PixelSamples;
-use progress::{Cancelled, Progress};
+use pixel_samples::PixelSample;
+use progress::{Cancelled, Progress, Stage};
 use rayon::prelude::*;
 use sample_ray::SampleRays;
 use scene::SurfaceField;
@@ -68,8 +68,12 @@ pub fn render(
     let mut quantiser = Quantiser::for_samples(samples);
     loop {
         let sensor = Sensor::new(camera, quantiser);
-        let frame = Frame { rays: &rays, radiance, sensor: &sensor, samples, seed: options.seed };
-        frame.expose(guard_px, progress)?;
+        let batches = pixel_samples::batches(camera, samples, options.seed);
+        let count = batches.len() as f32;
+        for (k, batch) in batches.enumerate() {
+            let exposure = Exposure { rays: &rays, radiance, sensor: &sensor, samples: &batch };
+            exposure.expose(guard_px, &Stage::new(progress, k as f32 / count, (k + 1) as f32 / count))?;
+        }
         match sensor.develop(samples) {
             Some(picture) => return Ok(picture),
             // Brighter than the integers were made for: once more with coarser ones.
@@ -78,16 +82,15 @@ pub fn render(
     }
 }
 
-/// One exposure of a sensor.
-struct Frame<'a> {
+/// One exposure of a sensor to a batch of samples of each pixel.
+struct Exposure<'a> {
     rays: &'a SampleRays<'a>,
     radiance: &'a dyn Radiance,
     sensor: &'a Sensor,
-    samples: u32,
-    seed: u32,
+    samples: &'a [PixelSample],
 }
 
-impl Frame<'_> {
+impl Exposure<'_> {
     /// Sends the rays of the frame and of `guard_px` pixels around it.
     fn expose(&self, guard_px: i64, progress: &dyn Progress) -> Result<(), Cancelled> {
         let (width, height) = self.sensor.size();
@@ -114,9 +117,9 @@ impl Frame<'_> {
         let own = self.sensor.pixel(corner);
         // What stays in this pixel is summed here first.
         let mut stays = sensor::Sum::default();
-        for [px, py, a, b] in PixelSamples::new(x, y, self.seed).take(self.samples as usize) {
-            let from = corner + DVec2::new(px, py);
-            let sample = self.rays.trace(from, a, b);
+        for sample in self.samples {
+            let from = corner + sample.within_px;
+            let sample = self.rays.trace(from, sample.u);
             let Some(pixel) = self.sensor.pixel(from + sample.displacement_px) else { continue };
             let light = self.sensor.quantise(self.light(&sample));
             if Some(pixel) == own {

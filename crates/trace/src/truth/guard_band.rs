@@ -2,6 +2,7 @@
 
 use super::sample_ray::SampleRays;
 use glam::DVec2;
+use lens::ApertureSampler;
 use progress::{Cancelled, Progress};
 use rayon::prelude::*;
 
@@ -38,10 +39,12 @@ pub(super) fn width_px(rays: &SampleRays, progress: &dyn Progress) -> Result<i64
 /// The largest displacement, along either axis, among rays that start at most `band_px` outside of the frame and land inside.
 fn farthest_displacement(rays: &SampleRays, band_px: f64) -> f64 {
     let size = DVec2::new(rays.camera.width as f64, rays.camera.height as f64);
+    let aperture = ApertureSampler::new(&rays.camera.aperture);
     let displacement = |probe: u32| {
         let [x, y, a, b] = STEPS.map(|step| (0.5 + step * f64::from(probe)).fract());
         let from = DVec2::new(x, y) * (size + 2.0 * band_px) - band_px;
-        let displacement = rays.trace(from, a, b).displacement_px;
+        let u = aperture.sample(a, b) * rays.camera.aperture_radius;
+        let displacement = rays.trace(from, u).displacement_px;
         let to = from + displacement;
         let lands = to.cmpge(DVec2::ZERO).all() && to.cmplt(size).all();
         if lands { displacement.abs().max_element() } else { 0.0 }

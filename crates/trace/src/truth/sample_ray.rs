@@ -2,7 +2,7 @@
 
 use crate::{Ray, Tracer};
 use glam::{DVec2, DVec3};
-use lens::{ApertureSampler, Camera, FocusOffset, Optics};
+use lens::{Camera, FocusOffset, Optics};
 use scene::{SurfaceField, SurfacePoint};
 
 /// Makes and traces the rays of a camera.
@@ -11,7 +11,6 @@ pub(super) struct SampleRays<'a> {
     focus: &'a dyn SurfaceField<FocusOffset>,
     pub camera: &'a Camera,
     optics: Optics,
-    aperture: ApertureSampler,
 }
 
 /// What a ray found.
@@ -28,14 +27,12 @@ pub(super) struct Sample {
 
 impl<'a> SampleRays<'a> {
     pub fn new(tracer: &'a Tracer, focus: &'a dyn SurfaceField<FocusOffset>, camera: &'a Camera) -> Self {
-        let aperture = ApertureSampler::new(&camera.aperture);
-        Self { tracer, focus, camera, optics: camera.optics(), aperture }
+        Self { tracer, focus, camera, optics: camera.optics() }
     }
 
-    /// Traces the ray that leaves the picture at `pixel` and the aperture at the uniform numbers a and b.
-    pub fn trace(&self, pixel: DVec2, a: f64, b: f64) -> Sample {
+    /// Traces the ray that passes the picture at `pixel` and the aperture at `u`.
+    pub fn trace(&self, pixel: DVec2, u: DVec2) -> Sample {
         let optics = &self.optics;
-        let u = self.aperture.sample(a, b) * optics.aperture_radius;
         let p = self.camera.q_from_pixel(pixel);
         // Toward the point that p shows on the focus plane; of depth 1, so that t is the depth z.
         let slope = p * optics.tan_half_yfov - u * optics.inverse_focus_distance;
