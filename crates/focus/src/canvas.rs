@@ -178,20 +178,28 @@ impl Canvas {
 /// The gutters sorted by the texel that they copy, and where each texel's start. Gutters of texels that
 /// are not covered are left out.
 fn gutters_by_texel(
-    size: [u32; 2],
+    [width, height]: [u32; 2],
     texels: &[CanvasTexel],
     gutters: &[[[u32; 2]; 2]],
 ) -> (Vec<u32>, Vec<[u32; 2]>) {
-    let address = |[x, y]: [u32; 2]| y as u64 * size[0] as u64 + x as u64;
-    let mut indices: Vec<(u64, u32)> = (0..).zip(texels).map(|(i, t)| (address([t.x, t.y]), i)).collect();
-    indices.sort_unstable();
-    let index_of = |texel: [u32; 2]| {
-        let found = indices.binary_search_by_key(&address(texel), |entry| entry.0).ok()?;
-        Some(indices[found].1)
+    const NOT_COVERED: u32 = u32::MAX;
+    let address = |[x, y]: [u32; 2]| y as usize * width as usize + x as usize;
+    let mut index_at = vec![NOT_COVERED; width as usize * height as usize];
+    for (index, texel) in (0..).zip(texels) {
+        index_at[address([texel.x, texel.y])] = index;
+    }
+    let index_of = |&[gutter, source]: &[[u32; 2]; 2]| {
+        let index = index_at[address(source)];
+        (index != NOT_COVERED).then_some((index, gutter))
     };
-    let mut sorted: Vec<(u32, [u32; 2])> =
-        gutters.iter().filter_map(|&[gutter, source]| Some((index_of(source)?, gutter))).collect();
+    let mut sorted: Vec<(u32, [u32; 2])> = gutters.iter().filter_map(index_of).collect();
     sorted.sort_unstable();
-    let starts = (0..=texels.len() as u32).map(|i| sorted.partition_point(|entry| entry.0 < i) as u32);
-    (starts.collect(), sorted.into_iter().map(|entry| entry.1).collect())
+    let mut starts = vec![0; texels.len() + 1];
+    for (index, _) in &sorted {
+        starts[*index as usize + 1] += 1;
+    }
+    for index in 0..texels.len() {
+        starts[index + 1] += starts[index];
+    }
+    (starts, sorted.into_iter().map(|entry| entry.1).collect())
 }
