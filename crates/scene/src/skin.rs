@@ -1,6 +1,8 @@
 //! Skins in their default pose: a vertex stands where its joints carry it.
 //!
-//!     world from mesh = Σ weight · (world from joint) · (inverse bind matrix)
+//! ```text
+//! world from mesh = Σ weight · (world from joint) · (inverse bind matrix)
+//! ```
 //!
 //! The transform of the skinned node itself does not count (glTF 2.0 §3.7.3.3).
 
