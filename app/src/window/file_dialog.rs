@@ -1,8 +1,7 @@
 //! Asking for a file: the system's dialog where there is one, else a field to type the path into.
 //!
-//! The system's dialog runs on its own thread, because it may take its time or never answer. It is left aside
-//! without a session bus (there is no portal to ask then), when `FOCUS_BRUSH_FILE_DIALOG=typed` says so, or when it ends at once
-//! without an answer, as it does where no portal and no fallback is installed.
+//! The system's dialog runs on its own thread, because it may take its time or never answer. When it ends at once without an
+//! answer, as it does where nothing is installed that could show it, the path is typed.
 
 use egui::{Context, Id, Key};
 use std::path::{Path, PathBuf};
@@ -81,15 +80,21 @@ enum State {
 }
 
 /// The question for a file. One at a time; a new one replaces the old.
-#[derive(Default)]
 pub struct FileDialog {
+    system: bool,
     asking: Option<(Purpose, PathBuf, State)>,
 }
 
 impl FileDialog {
+    /// No question yet. `system` is whether the system's dialogs are asked for.
+    pub fn new(system: bool) -> Self {
+        Self { system, asking: None }
+    }
+
     /// Asks for a file; `suggestion` is where to begin (a file name with its folder).
     pub fn ask(&mut self, purpose: Purpose, suggestion: PathBuf, context: &Context) {
-        let state = match system_dialog(purpose, &suggestion, context) {
+        let answer = self.system.then(|| system_dialog(purpose, &suggestion, context)).flatten();
+        let state = match answer {
             Some(answer) => State::System { answer, since: Instant::now() },
             None => typed(purpose, &suggestion),
         };
@@ -147,11 +152,6 @@ fn system_dialog(
     suggestion: &Path,
     context: &Context,
 ) -> Option<mpsc::Receiver<Option<PathBuf>>> {
-    let wants_typed = std::env::var_os("FOCUS_BRUSH_FILE_DIALOG").is_some_and(|value| value == "typed");
-    let no_portal = cfg!(target_os = "linux") && std::env::var_os("DBUS_SESSION_BUS_ADDRESS").is_none();
-    if wants_typed || no_portal || cfg!(test) {
-        return None;
-    }
     let mut dialog = rfd::AsyncFileDialog::new().set_title(purpose.title());
     dialog = dialog.add_filter(purpose.extensions().join(", "), purpose.extensions());
     if let Some(folder) = suggestion.parent().filter(|folder| folder.is_dir()) {

@@ -54,12 +54,22 @@ pub struct WindowOptions {
     pub remember: bool,
     /// The longest side that the preview is drawn at, px; none for the user's setting.
     pub preview_size: Option<u32>,
+    /// Whether the system is asked for its file dialogs; else paths are typed.
+    pub system_dialogs: bool,
 }
 
 impl Default for WindowOptions {
     fn default() -> Self {
-        Self { file: None, demo: true, remember: true, preview_size: None }
+        Self { file: None, demo: true, remember: true, preview_size: None, system_dialogs: system_dialogs() }
     }
+}
+
+/// Whether the system's file dialogs are worth asking: not without a session bus (no portal answers then), and not when
+/// `FOCUS_BRUSH_FILE_DIALOG=typed` says so.
+fn system_dialogs() -> bool {
+    let wants_typed = std::env::var_os("FOCUS_BRUSH_FILE_DIALOG").is_some_and(|value| value == "typed");
+    let no_portal = cfg!(target_os = "linux") && std::env::var_os("DBUS_SESSION_BUS_ADDRESS").is_none();
+    !(wants_typed || no_portal)
 }
 
 /// Opens the window and stays until it is closed.

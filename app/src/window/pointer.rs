@@ -24,15 +24,21 @@ impl StrokeInput {
         actions: &mut Vec<Action>,
     ) {
         let Some(document) = session.document() else { return };
-        let (pressed, down, modifiers) = ui.input(|input| {
-            let pointer = &input.pointer;
-            (pointer.button_pressed(PointerButton::Primary), pointer.primary_down(), input.modifiers)
+        // The modifiers of the press itself: a frame may hold more than one event.
+        let pressed = ui.input(|input| {
+            let press = |event: &Event| match event {
+                Event::PointerButton { button: PointerButton::Primary, pressed: true, modifiers, .. } => Some(*modifiers),
+                _ => None,
+            };
+            input.events.iter().find_map(press)
         });
+        let down = ui.input(|input| input.pointer.primary_down());
         if self.painting && !session.is_painting() {
             // Taken back meanwhile, by Esc or undo: the rest of the drag paints nothing.
             self.painting = false;
         }
-        let start = response.is_pointer_button_down_on() && pressed && !modifiers.alt && !modifiers.command;
+        let plain = pressed.is_some_and(|modifiers| !modifiers.alt && !modifiers.command);
+        let start = response.is_pointer_button_down_on() && plain;
         if start && let Some(position) = response.interact_pointer_pos() {
             response.request_focus();
             let Some(ray) = ray(position) else { return };

@@ -97,7 +97,7 @@ impl Shell {
             toasts: Toasts::default(),
             palette: Palette::default(),
             help: Help::default(),
-            dialog: FileDialog::default(),
+            dialog: FileDialog::new(options.system_dialogs),
             question: UnsavedQuestion::default(),
             after_save: None,
             may_close: false,

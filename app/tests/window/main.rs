@@ -1,0 +1,7 @@
+//! The window, acted on by pointer and keys, headless.
+
+mod acting;
+mod controls;
+mod documents;
+mod painting;
+mod small_scene;

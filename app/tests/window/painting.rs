@@ -1,0 +1,155 @@
+//! Painting in both views: the map, the colours and the picture follow; undo and redo; Esc.
+
+use crate::acting::{Person, at, color_at, difference};
+use crate::small_scene;
+use egui::{Key, Modifiers, Pos2};
+use lens::FocusOffset;
+
+fn opened() -> (Person, tempfile::TempDir) {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("wall.glb");
+    small_scene::write(&file);
+    (Person::opens(&file), folder)
+}
+
+/// Chooses strong far blur by the keys.
+fn chooses_blur(person: &mut Person) {
+    for _ in 0..12 {
+        person.presses(Modifiers::NONE, Key::Period);
+    }
+    let target = person.document().brush.target;
+    assert!(target.t > 1.0 && target.anchor == 1.0, "far blur, anchored at the point: {target:?}");
+}
+
+fn line(rect: egui::Rect, from: [f32; 2], to: [f32; 2]) -> Vec<Pos2> {
+    let step = |k: usize| k as f32 / 12.0;
+    (0..=12).map(|k| at(rect, from[0] + (to[0] - from[0]) * step(k), from[1] + (to[1] - from[1]) * step(k))).collect()
+}
+
+#[test]
+fn a_stroke_in_the_paint_view_shows_while_it_goes_on_and_can_be_undone() {
+    let (mut person, _folder) = opened();
+    chooses_blur(&mut person);
+    let (map, picture) = (person.document().map.clone(), person.picture());
+    let before = person.window.render().unwrap();
+
+    let path = line(person.paint_rect(), [0.6, 0.3], [0.7, 0.7]);
+    person.drags(&path);
+    assert!(person.shell().session().is_painting());
+    assert_ne!(person.document().map, map, "the map follows the stroke");
+    person.wait_until("the picture follows the stroke", |shell| {
+        shell.session().preview().is_some_and(|preview| difference(&preview.picture, &picture) > 0.05)
+    });
+    assert!(person.shell().session().is_painting(), "all that before the button is let go");
+    person.lets_go(path[12]);
+    person.waits();
+    let (painted, painted_picture) = (person.document().map.clone(), person.picture());
+
+    person.window.remove_cursor();
+    person.window.run_steps(2);
+    let after = person.window.render().unwrap();
+    let (old, new) = (color_at(&before, path[6]), color_at(&after, path[6]));
+    assert!(new[2] - new[0] > old[2] - old[0] + 40.0, "far blur is blue: {old:?} became {new:?}");
+    let aside = at(person.paint_rect(), 0.95, 0.1);
+    assert_eq!(color_at(&before, aside), color_at(&after, aside), "and only under the brush");
+
+    person.presses(Modifiers::COMMAND, Key::Z);
+    person.waits();
+    assert_eq!(person.document().map, map);
+    assert_eq!(difference(&person.picture(), &picture), 0.0, "undo brings the very picture back");
+    person.presses(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
+    person.waits();
+    assert_eq!(person.document().map, painted);
+    assert_eq!(difference(&person.picture(), &painted_picture), 0.0);
+    assert!(person.complaints().is_empty(), "{:?}", person.complaints());
+}
+
+#[test]
+fn a_stroke_in_the_picture_paints_what_is_seen_there() {
+    let (mut person, _folder) = opened();
+    chooses_blur(&mut person);
+    let picture = person.picture();
+    let path = line(person.picture_rect(), [0.7, 0.3], [0.7, 0.6]);
+    person.paints(&path);
+    assert!(difference(&person.picture(), &picture) > 0.05);
+
+    // The point under the pen got the brush's focus; the card, which was not touched, kept the lens's.
+    let session = person.shell().session();
+    let focus_at = |x: f64, y: f64| {
+        let hit = session.pick(&session.picture_ray(glam::DVec2::new(x, y)).unwrap()).unwrap();
+        session.focus_at(&hit).unwrap()
+    };
+    let target = person.document().brush.target;
+    assert!((focus_at(0.7, 0.45).t - target.t).abs() < 1e-4);
+    assert_eq!(focus_at(0.25, 0.5), FocusOffset::STANDARD);
+}
+
+#[test]
+fn escape_takes_a_stroke_back_without_a_trace() {
+    let (mut person, _folder) = opened();
+    chooses_blur(&mut person);
+    let map = person.document().map.clone();
+    let path = line(person.paint_rect(), [0.55, 0.4], [0.75, 0.4]);
+    person.drags(&path);
+    assert_ne!(person.document().map, map);
+    person.presses(Modifiers::NONE, Key::Escape);
+    assert_eq!(person.document().map, map);
+    // The rest of the drag paints nothing.
+    person.window.hover_at(path[3]);
+    person.window.run_steps(2);
+    person.lets_go(path[3]);
+    person.waits();
+    assert_eq!(person.document().map, map);
+    assert_eq!(person.document().undo_name(), None);
+    assert!(!person.document().is_unsaved());
+}
+
+#[test]
+fn navigating_paints_nothing() {
+    let (mut person, _folder) = opened();
+    let map = person.document().map.clone();
+    let eye = person.shell().paint_view().camera().eye();
+    let path = line(person.paint_rect(), [0.4, 0.5], [0.7, 0.6]);
+    person.window.event(egui::Event::ModifiersChanged(Modifiers::ALT));
+    person.window.hover_at(path[0]);
+    person.window.step();
+    let button = |pos, pressed| egui::Event::PointerButton {
+        pos,
+        button: egui::PointerButton::Primary,
+        pressed,
+        modifiers: Modifiers::ALT,
+    };
+    person.window.event(button(path[0], true));
+    person.window.step();
+    for position in &path[1..] {
+        person.window.hover_at(*position);
+        person.window.step();
+    }
+    person.window.event(button(path[12], false));
+    person.window.step();
+    person.window.event(egui::Event::ModifiersChanged(Modifiers::NONE));
+    person.waits();
+    assert!(person.shell().paint_view().camera().eye().distance(eye) > 0.5, "Alt+drag turned the view");
+    assert_eq!(person.document().map, map);
+    person.presses(Modifiers::NONE, Key::Num0);
+    assert!(person.shell().paint_view().camera().eye().distance(eye) < 1e-9, "0 looks through the lens again");
+}
+
+#[test]
+fn clicking_tools_fill_focus_and_pick() {
+    let (mut person, _folder) = opened();
+    person.presses(Modifiers::NONE, Key::G);
+    let card = at(person.picture_rect(), 0.25, 0.5);
+    person.clicks(card);
+    assert_eq!(person.document().undo_name(), Some("Fill object"));
+
+    person.presses(Modifiers::NONE, Key::H);
+    person.clicks(card);
+    assert!((person.document().camera.focus_distance - 2.0).abs() < 1e-6);
+
+    chooses_blur(&mut person);
+    person.presses(Modifiers::NONE, Key::I);
+    person.clicks(card);
+    assert_eq!(person.document().brush.target, FocusOffset::SHARP, "picked what the fill painted");
+    assert!(person.complaints().is_empty(), "{:?}", person.complaints());
+}
