@@ -4,7 +4,7 @@
 //! the common colour-blindnesses, and lightness falls on both sides, so that amount reads without hue. The position on the map is
 //! logarithmic in the circle of confusion: the first pixels matter most.
 
-use egui::Color32;
+use egui::{Color32, Mesh, Painter, Rect, Shape, pos2};
 
 /// The circle of confusion at the ends of the map, px.
 pub const LARGEST_CIRCLE_PX: f64 = 96.0;
@@ -47,6 +47,24 @@ pub fn color_at(position: f64) -> [f32; 3] {
 pub fn color(circle_px: f64) -> Color32 {
     let [r, g, b] = color_at(position(circle_px)).map(|c| (c * 255.0).round() as u8);
     Color32::from_rgb(r, g, b)
+}
+
+/// Draws the map as a bar from the nearest blur to the farthest; `fade` below 1 for a control that is off.
+pub fn paint_bar(painter: &Painter, rect: Rect, fade: f32) {
+    let mut mesh = Mesh::default();
+    let last = STOPS.len() - 1;
+    for (index, stop) in STOPS.iter().enumerate() {
+        let [r, g, b] = stop.map(|c| (c * 255.0).round() as u8);
+        let color = Color32::from_rgb(r, g, b).gamma_multiply(fade);
+        let x = rect.left() + rect.width() * index as f32 / last as f32;
+        mesh.colored_vertex(pos2(x, rect.top()), color);
+        mesh.colored_vertex(pos2(x, rect.bottom()), color);
+    }
+    for k in 0..last as u32 {
+        mesh.add_triangle(2 * k, 2 * k + 1, 2 * k + 2);
+        mesh.add_triangle(2 * k + 1, 2 * k + 2, 2 * k + 3);
+    }
+    painter.add(Shape::mesh(mesh));
 }
 
 #[cfg(test)]

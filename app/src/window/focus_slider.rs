@@ -9,8 +9,6 @@ use egui::{
 const SNAP: f64 = 0.035;
 /// What an arrow key moves.
 const KEY_STEP: f64 = 0.04;
-/// Colours along the track.
-const TRACK_CELLS: usize = 48;
 
 /// Shows a slider for a signed circle of confusion in px (negative near, positive far). `Response::changed` tells of a new value.
 pub fn focus_slider(ui: &mut Ui, circle_px: &mut f64, width: f32) -> Response {
@@ -54,14 +52,7 @@ fn snapped(place: f64) -> f64 {
 fn paint(ui: &Ui, rect: Rect, track: Rect, circle_px: f64, response: &Response) {
     let painter = ui.painter();
     let fade = if ui.is_enabled() { 1.0 } else { 0.35 };
-    let cell = track.width() / TRACK_CELLS as f32;
-    for k in 0..TRACK_CELLS {
-        let place = 2.0 * (k as f64 + 0.5) / TRACK_CELLS as f64 - 1.0;
-        let [r, g, b] = false_colour::color_at(place).map(|c| (c * 255.0) as u8);
-        let left = track.left() + cell * k as f32;
-        let cell = Rect::from_min_max(pos2(left, track.top()), pos2(left + cell + 0.5, track.bottom()));
-        painter.rect_filled(cell, 0.0, Color32::from_rgb(r, g, b).gamma_multiply(fade));
-    }
+    false_colour::paint_bar(painter, track, fade);
     let middle = Stroke::new(1.0, Color32::from_gray(40));
     painter.vline(track.center().x, track.y_range(), middle);
     let x = track.center().x + false_colour::position(circle_px) as f32 * track.width() / 2.0;

@@ -18,7 +18,7 @@ pub fn initial() -> Tree<Pane> {
     let mut tiles = Tiles::default();
     let paint = tiles.insert_pane(Pane::Paint);
     let picture = tiles.insert_pane(Pane::Picture);
-    let row = Linear::new_binary(LinearDir::Horizontal, [paint, picture], 0.5);
+    let row = Linear::new_binary(LinearDir::Horizontal, [paint, picture], 0.46);
     let root = tiles.insert_container(row);
     Tree::new(egui::Id::unique("views"), root, tiles)
 }

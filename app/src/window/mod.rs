@@ -30,6 +30,7 @@ mod toasts;
 mod tool;
 mod tool_bar;
 mod unsaved_question;
+mod view_header;
 mod view_settings;
 
 pub use action::Action;

@@ -27,7 +27,9 @@ impl StrokeInput {
         // The modifiers of the press itself: a frame may hold more than one event.
         let pressed = ui.input(|input| {
             let press = |event: &Event| match event {
-                Event::PointerButton { button: PointerButton::Primary, pressed: true, modifiers, .. } => Some(*modifiers),
+                Event::PointerButton { button: PointerButton::Primary, pressed: true, modifiers, .. } => {
+                    Some(*modifiers)
+                }
                 _ => None,
             };
             input.events.iter().find_map(press)

@@ -8,6 +8,8 @@
 //! list of [`Action`]s and carried out at the end.
 
 use super::brush_ring::BrushRing;
+mod commands;
+
 use super::file_dialog::{FileDialog, Purpose};
 use super::help::Help;
 use super::inspector::Inspector;
@@ -15,18 +17,17 @@ use super::layout::{self, Pane, Panes};
 use super::menu_bar::{MenuState, is_possible, menu_bar};
 use super::paint_view::PaintView;
 use super::palette::Palette;
-use super::picture_view::{PictureView, Shown};
+use super::picture_view::PictureView;
 use super::status_line::{Hover, status_line};
 use super::toasts::{Severity, Toasts};
-use super::tool_bar::{largest_radius, signed_circle_px, tool_bar};
+use super::tool_bar::{signed_circle_px, tool_bar};
 use super::unsaved_question::{Answer, Next, UnsavedQuestion};
+use super::view_header::view_header;
 use super::{Action, Tool, ViewSettings, WindowOptions, demo, shortcuts, theme};
 use eframe::{CreationContext, Frame, Storage};
-use egui::{Button, CentralPanel, Context, Panel, Ui, ViewportCommand};
+use egui::{CentralPanel, Context, Panel, Ui, ViewportCommand};
 use egui_tiles::Tree;
-use focus::Brush;
-use lens::{Exposure, FocusOffset};
-use session::{CameraEdit, Command, CommandId, Event, FillRegion, Session, SessionError, SessionOptions};
+use session::{CameraEdit, Command, CommandId, Event, Session, SessionError, SessionOptions};
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -34,16 +35,6 @@ use std::sync::Arc;
 const SETTINGS_KEY: &str = "settings";
 /// Where eframe keeps the layout between runs.
 const LAYOUT_KEY: &str = "layout";
-/// What a key changes of size, focus distance and hardness.
-const SIZE_STEP: f64 = 1.15;
-/// A third of a stop, as a ratio of f-numbers.
-const THIRD_STOP: f64 = 1.122_462_048_309_373;
-/// A twentieth nearer or farther.
-const DISTANCE_STEP: f64 = 1.05;
-/// What a key moves the brush's blur on the map from near to far.
-const BLUR_STEP: f64 = 0.05;
-/// Rays a pixel of the ray-traced comparison.
-const TRUTH_SAMPLES: u32 = 64;
 
 /// The window's application.
 pub struct Shell {
@@ -254,151 +245,6 @@ impl Shell {
         }
     }
 
-    fn carry_out(&mut self, id: CommandId, context: &Context) {
-        match id {
-            CommandId::Open => self.ask_then(Next::AskOpen, context),
-            CommandId::OpenDemo => match demo::find() {
-                Some(path) => self.ask_then(Next::Open(path), context),
-                None => self.open_demo(),
-            },
-            CommandId::Save => self.save(context),
-            CommandId::SaveAs => self.ask_for(Purpose::SaveAs, context),
-            CommandId::ExportPicture => self.ask_for(Purpose::ExportPicture, context),
-            CommandId::ExportFocusMap => self.ask_for(Purpose::ExportFocusMap, context),
-            CommandId::ExportScene => self.ask_for(Purpose::ExportScene, context),
-            CommandId::ImportFocusMap => self.ask_for(Purpose::ImportFocusMap, context),
-            CommandId::Quit => self.ask_then(Next::Quit, context),
-            CommandId::Undo => self.apply(Command::Undo),
-            CommandId::Redo => self.apply(Command::Redo),
-            CommandId::FrameAll => self.with_document(|paint, document| paint.frame_all(document)),
-            CommandId::FrameCursor => self.with_document(|paint, document| paint.frame_cursor(document)),
-            CommandId::ViewFromCamera => {
-                self.with_document(|paint, document| paint.look_through(&document.camera))
-            }
-            CommandId::PictureFit => self.picture.fit(),
-            CommandId::PictureActualSize => self.picture.actual_size(context.pixels_per_point()),
-            CommandId::ShowFocus => self.settings.focus_share = ViewSettings::default().focus_share,
-            CommandId::ShowSurface => self.settings.focus_share = 0.0,
-            CommandId::ResetLayout => {
-                self.layout = layout::initial();
-                self.settings.inspector = true;
-            }
-            CommandId::Brush => self.choose(Tool::Brush),
-            CommandId::Smooth => self.choose(Tool::Smooth),
-            CommandId::Erase => self.choose(Tool::Reset),
-            CommandId::FillPart => self.choose(Tool::FillObject),
-            CommandId::FillMaterial => self.choose(Tool::FillMaterial),
-            CommandId::FillChart => self.choose(Tool::FillChart),
-            CommandId::FocusHere => self.choose(Tool::FocusHere),
-            CommandId::Pick => self.choose(Tool::Pick),
-            CommandId::FillAll => {
-                if let Some(target) = self.session.document().map(|document| document.brush.target) {
-                    self.apply(Command::Fill(FillRegion::All, target));
-                }
-            }
-            CommandId::ResetMap => self.apply(Command::ResetMap),
-            CommandId::BrushLarger => {
-                self.edit_brush(|brush, most| brush.radius = (brush.radius * SIZE_STEP).min(most))
-            }
-            CommandId::BrushSmaller => {
-                self.edit_brush(|brush, most| brush.radius = (brush.radius / SIZE_STEP).max(most * 1e-4));
-            }
-            CommandId::BrushHarder => {
-                self.edit_brush(|brush, _| brush.hardness = (brush.hardness + 0.1).min(1.0))
-            }
-            CommandId::BrushSofter => {
-                self.edit_brush(|brush, _| brush.hardness = (brush.hardness - 0.1).max(0.0))
-            }
-            CommandId::BrushNearer => self.move_blur(-BLUR_STEP),
-            CommandId::BrushFarther => self.move_blur(BLUR_STEP),
-            CommandId::BrushSharp => self.edit_brush(|brush, _| brush.target = FocusOffset::SHARP),
-            CommandId::ToggleAnchor => self.edit_brush(|brush, _| {
-                brush.target.anchor = if brush.target.anchor < 0.5 { 1.0 } else { 0.0 };
-            }),
-            CommandId::OpenAperture => {
-                self.edit_camera(|camera| CameraEdit::FNumber(camera.f_number() / THIRD_STOP))
-            }
-            CommandId::CloseAperture => {
-                self.edit_camera(|camera| CameraEdit::FNumber(camera.f_number() * THIRD_STOP))
-            }
-            CommandId::FocusNearer => {
-                self.edit_camera(|camera| CameraEdit::FocusDistance(camera.focus_distance / DISTANCE_STEP));
-            }
-            CommandId::FocusFarther => {
-                self.edit_camera(|camera| CameraEdit::FocusDistance(camera.focus_distance * DISTANCE_STEP));
-            }
-            CommandId::CameraFromView => {
-                let pose = self.paint.camera().pose();
-                self.edit_camera(|_| CameraEdit::Pose(pose));
-            }
-            CommandId::Normalise => {
-                if let Some(document) = self.session.document() {
-                    let other = match document.exposure {
-                        Exposure::Normalise => Exposure::Conserve,
-                        Exposure::Conserve => Exposure::Normalise,
-                    };
-                    self.apply(Command::SetExposure(other));
-                }
-            }
-            CommandId::Bake => self.apply(Command::Bake),
-            CommandId::RenderTruth => self.apply(Command::RenderTruth { samples_per_pixel: TRUTH_SAMPLES }),
-            CommandId::Stop => self.apply(Command::CancelAll),
-            CommandId::Palette => self.palette.toggle(),
-            CommandId::Shortcuts => self.help.shortcuts = !self.help.shortcuts,
-            CommandId::About => self.help.about = !self.help.about,
-        }
-    }
-
-    fn with_document(&mut self, act: impl FnOnce(&mut PaintView, &session::Document)) {
-        if let Some(document) = self.session.document() {
-            act(&mut self.paint, document);
-        }
-    }
-
-    fn choose(&mut self, tool: Tool) {
-        let Some(document) = self.session.document() else { return };
-        // Back from another tool's mode to one that paints the chosen focus.
-        let own = matches!(
-            document.brush.mode,
-            focus::BrushMode::Set | focus::BrushMode::Add | focus::BrushMode::Subtract
-        );
-        let mode = tool.mode(if own { document.brush.mode } else { focus::BrushMode::Set });
-        self.edit_brush(|brush, _| brush.mode = mode);
-        self.tool = tool;
-    }
-
-    fn edit_brush(&mut self, edit: impl FnOnce(&mut Brush, f64)) {
-        let Some(document) = self.session.document() else { return };
-        let mut brush = document.brush.clone();
-        edit(&mut brush, largest_radius(document));
-        self.apply(Command::SetBrush(brush));
-    }
-
-    fn edit_camera(&mut self, edit: impl FnOnce(&lens::Camera) -> CameraEdit) {
-        let Some(document) = self.session.document() else { return };
-        let edit = edit(&document.camera);
-        self.apply(Command::Camera(edit));
-        self.apply(Command::FinishEdit);
-    }
-
-    /// Moves the brush's blur on the map from near to far, stopping at sharp when it comes by.
-    fn move_blur(&mut self, step: f64) {
-        use super::false_colour::{circle_px, position};
-        let Some(document) = self.session.document() else { return };
-        let optics = document.camera.optics();
-        let before = position(signed_circle_px(&optics, document.brush.target.t));
-        let mut after = (before + step).clamp(-1.0, 1.0);
-        if before * after < 0.0 || after.abs() < BLUR_STEP / 4.0 {
-            after = 0.0;
-        }
-        let kappa = optics.kappa_for_circle_px(circle_px(after));
-        let t = kappa.and_then(|kappa| optics.offset_for_kappa(kappa, optics.inverse_focus_distance, 1.0));
-        match t {
-            Some(t) => self.edit_brush(|brush, _| brush.target.t = t),
-            None => self.toasts.notice("A pinhole blurs nothing: open the aperture first."),
-        }
-    }
-
     /// Takes up what happened in the session.
     fn take_events(&mut self, context: &Context) {
         for event in self.session.poll() {
@@ -561,7 +407,8 @@ impl Shell {
         let Self { layout, paint, picture, session, settings, tool, .. } = self;
         let mut panes = Panes {
             pane_ui: |ui: &mut Ui, pane: Pane| {
-                let dragged = header(ui, pane, session, settings, picture, actions);
+                ui.spacing_mut().item_spacing.y = 0.0;
+                let dragged = view_header(ui, pane, session, settings, picture, actions);
                 match pane {
                     Pane::Paint => paint.ui(ui, session, *tool, settings.look(), ring, actions),
                     Pane::Picture => picture.ui(ui, session, *tool, settings.display_stops, ring, actions),
@@ -588,67 +435,6 @@ impl Shell {
                 self.settings.hint_seen = true;
             }
         });
-    }
-}
-
-/// The line above a view. Returns whether the view is being dragged elsewhere by its name.
-fn header(
-    ui: &mut Ui,
-    pane: Pane,
-    session: &Session,
-    settings: &mut ViewSettings,
-    picture: &mut PictureView,
-    actions: &mut Vec<Action>,
-) -> bool {
-    let frame = egui::Frame::new().inner_margin(egui::Margin::symmetric(8, 3)).fill(ui.visuals().panel_fill);
-    let title = match pane {
-        Pane::Paint => "Paint",
-        Pane::Picture => "Picture",
-    };
-    frame
-        .show(ui, |ui| {
-            ui.horizontal(|ui| {
-                let name = egui::Label::new(egui::RichText::new(title).strong()).selectable(false);
-                let name = ui
-                    .add(name.sense(egui::Sense::drag()))
-                    .on_hover_text("Drag to place this view elsewhere.");
-                match pane {
-                    Pane::Paint => paint_header(ui, settings),
-                    Pane::Picture => picture_header(ui, session, picture, actions),
-                }
-                ui.allocate_space(egui::vec2(ui.available_width(), 0.0));
-                name.drag_started()
-            })
-            .inner
-        })
-        .inner
-}
-
-fn paint_header(ui: &mut Ui, settings: &mut ViewSettings) {
-    ui.label("Surface").on_hover_text("The scene's own colours.");
-    let mix = egui::Slider::new(&mut settings.focus_share, 0.0..=1.0).show_value(false);
-    let tip =
-        "From the scene's own colours (V) to the colours of blur (C): near orange, sharp white, far blue.";
-    ui.spacing_mut().slider_width = 70.0;
-    super::controls::named(&ui.add(mix).on_hover_text(tip), "Share of false colour");
-    ui.label("Blur").on_hover_text("The false colour of blur.");
-    ui.checkbox(&mut settings.contours, "Contours")
-        .on_hover_text("Lines where the blur is 1, 4 and 16 px wide.");
-}
-
-fn picture_header(ui: &mut Ui, session: &Session, picture: &mut PictureView, actions: &mut Vec<Action>) {
-    if session.truth().is_some() {
-        ui.selectable_value(&mut picture.shown, Shown::Painted, "Live").on_hover_text("The live picture.");
-        ui.selectable_value(&mut picture.shown, Shown::Truth, "Ray traced")
-            .on_hover_text("The ray-traced picture, to compare with (F12 traces it anew).");
-    }
-    for (id, label) in [(CommandId::PictureFit, "Fit"), (CommandId::PictureActualSize, "100 %")] {
-        if ui.add(Button::new(label)).on_hover_text(id.info().tooltip).clicked() {
-            actions.push(id.into());
-        }
-    }
-    if let Some(percent) = picture.percent(session, ui.ctx().pixels_per_point()).filter(|p| p.is_finite()) {
-        ui.weak(format!("{percent:.0} %")).on_hover_text("Screen pixels of a picture pixel.");
     }
 }
 

@@ -108,7 +108,8 @@ impl Person {
     }
 
     fn button(&mut self, pos: Pos2, pressed: bool) {
-        let event = Event::PointerButton { pos, button: PointerButton::Primary, pressed, modifiers: Modifiers::NONE };
+        let event =
+            Event::PointerButton { pos, button: PointerButton::Primary, pressed, modifiers: Modifiers::NONE };
         self.window.event(event);
         self.window.step();
     }

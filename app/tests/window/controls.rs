@@ -32,7 +32,7 @@ fn the_lens_follows_its_controls_and_a_run_of_edits_is_one_step() {
         person.presses(Modifiers::NONE, Key::Plus);
     }
     let ratio = old.f_number() / person.document().camera.f_number();
-    assert!((ratio - 2.0).abs() < 1e-6, "three thirds are one stop of f-number √2²: {ratio}");
+    assert!((ratio - 2f64.sqrt()).abs() < 1e-6, "three thirds are one stop: {ratio}");
     person.window.get_by_label("Angle of view").focus();
     person.window.run_ok();
     assert!(person.complaints().is_empty(), "{:?}", person.complaints());

@@ -68,7 +68,7 @@ fn a_bad_file_is_a_message_and_the_document_stays() {
     person.window.run_steps(1);
     person.window.get_by_label("broken.glb").click();
     person.window.run_steps(2);
-    person.window.get_by_label("Open").click();
+    person.window.get_by_role_and_label(egui::Role::Button, "Open").click();
     person.waits();
     let complaints = person.complaints();
     assert_eq!(complaints.len(), 1, "{complaints:?}");

@@ -23,7 +23,9 @@ fn chooses_blur(person: &mut Person) {
 
 fn line(rect: egui::Rect, from: [f32; 2], to: [f32; 2]) -> Vec<Pos2> {
     let step = |k: usize| k as f32 / 12.0;
-    (0..=12).map(|k| at(rect, from[0] + (to[0] - from[0]) * step(k), from[1] + (to[1] - from[1]) * step(k))).collect()
+    (0..=12)
+        .map(|k| at(rect, from[0] + (to[0] - from[0]) * step(k), from[1] + (to[1] - from[1]) * step(k)))
+        .collect()
 }
 
 #[test]
@@ -132,7 +134,10 @@ fn navigating_paints_nothing() {
     assert!(person.shell().paint_view().camera().eye().distance(eye) > 0.5, "Alt+drag turned the view");
     assert_eq!(person.document().map, map);
     person.presses(Modifiers::NONE, Key::Num0);
-    assert!(person.shell().paint_view().camera().eye().distance(eye) < 1e-9, "0 looks through the lens again");
+    assert!(
+        person.shell().paint_view().camera().eye().distance(eye) < 1e-9,
+        "0 looks through the lens again"
+    );
 }
 
 #[test]

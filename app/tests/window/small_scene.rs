@@ -52,9 +52,7 @@ impl Mesh {
         push(self.colors.iter().flatten().flat_map(|v| v.to_le_bytes()).collect());
         push(self.indices.iter().flat_map(|v| v.to_le_bytes()).collect());
         let (vertices, card) = (self.positions.len(), self.indices.len() - wall);
-        let primitive = |indices: u32, material: u32| {
-            json!({"primitives": [{"attributes": {"POSITION": 0, "COLOR_0": 1}, "indices": indices, "material": material}]})
-        };
+        let primitive = |indices: u32, material: u32| json!({"primitives": [{"attributes": {"POSITION": 0, "COLOR_0": 1}, "indices": indices, "material": material}]});
         let material = |name: &str| json!({"name": name, "extensions": {"KHR_materials_unlit": {}}});
         let document = json!({
             "asset": {"version": "2.0"},

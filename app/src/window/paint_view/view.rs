@@ -3,7 +3,7 @@
 use super::{FocusTexture, GraphicsError, OrbitCamera, SurfaceLook, SurfaceMesh, SurfaceRenderer};
 use crate::window::brush_ring::{self, BrushRing};
 use crate::window::pointer::StrokeInput;
-use crate::window::{Action, Tool, theme};
+use crate::window::{Action, Tool, false_colour, theme};
 use egui::{Color32, PointerButton, Pos2, Rect, Response, Sense, Stroke, TextureId, Ui, pos2, vec2};
 use glam::{DVec2, DVec3};
 use lens::Camera;
@@ -14,6 +14,9 @@ use trace::Ray;
 
 /// Points of the wheel that make one step.
 const POINTS_PER_STEP: f64 = 40.0;
+
+/// How much more than the picture is seen through the shot camera.
+const FRAME_MARGIN: f64 = 1.06;
 
 /// The 3D view that is painted on.
 pub struct PaintView {
@@ -30,6 +33,8 @@ pub struct PaintView {
     /// What lies under the pointer.
     hover: Option<SurfaceHit>,
     rect: Rect,
+    /// Whether the view is to look through the shot camera once its size is known.
+    looking_through: bool,
 }
 
 impl PaintView {
@@ -59,12 +64,13 @@ impl PaintView {
             stroke: StrokeInput::default(),
             hover: None,
             rect: Rect::NOTHING,
+            looking_through: false,
         }
     }
 
     /// Takes up another document: its surface is copied to the graphics card in the background.
     pub fn opened(&mut self, document: &Document, context: &egui::Context) {
-        self.look_through(&document.camera);
+        self.looking_through = true;
         let Some(renderer) = &self.renderer else { return };
         let (device, queue) = renderer.device();
         self.mesh = None;
@@ -121,10 +127,15 @@ impl PaintView {
         Some(screen_from_view(self.rect, at))
     }
 
-    /// Looks from where the shot camera stands, turning around what it focuses on.
+    /// Looks from where the shot camera stands, turning around what it focuses on, with the whole picture in view.
     pub fn look_through(&mut self, camera: &Camera) {
         let distance = if camera.focus_distance.is_finite() { camera.focus_distance } else { 10.0 };
         self.camera = OrbitCamera::from_shot(camera, distance);
+        // Before the first frame the view has no size: it then sees as high as the picture.
+        if self.rect.is_positive() {
+            let room = FRAME_MARGIN * (camera.aspect() / aspect(self.rect)).max(1.0);
+            self.camera.yfov = 2.0 * ((camera.yfov / 2.0).tan() * room).atan();
+        }
     }
 
     /// Shows the whole scene.
@@ -159,6 +170,9 @@ impl PaintView {
             hint(ui, rect, "Drop a glTF scene or a project here, or press Ctrl+O.");
             return;
         };
+        if std::mem::take(&mut self.looking_through) {
+            self.look_through(&document.camera);
+        }
         self.receive_mesh(actions);
         self.navigate(ui, &response);
         self.draw(ui, document, look, actions);
@@ -174,6 +188,9 @@ impl PaintView {
         self.hover = pointer.and_then(|at| session.pick(&view_ray(&self.camera, rect, at)));
         let painter = ui.painter_at(rect);
         self.paint_shot_camera(&painter, &document.camera, document.scene().bounds());
+        if look.focus_share > 0.0 {
+            legend(&painter, rect);
+        }
         if let (Some(hit), Some(ring)) = (self.hover, ring) {
             brush_ring::paint(&painter, &hit, ring, |point| self.screen_from_world(point));
         }
@@ -276,12 +293,10 @@ impl PaintView {
         }
     }
 
-    /// The shot camera: its frame at the focus distance, and the four edges from the eye to it. Not while one looks through it.
+    /// The shot camera: its frame at the focus distance, and, unless one looks through it, the edges from its eye.
     fn paint_shot_camera(&self, painter: &egui::Painter, camera: &Camera, bounds: (DVec3, DVec3)) {
         let extent = (bounds.1 - bounds.0).length();
-        if self.camera.eye().distance(camera.position()) < 1e-3 * extent {
-            return;
-        }
+        let from_aside = self.camera.eye().distance(camera.position()) > 1e-3 * extent;
         let depth = if camera.focus_distance.is_finite() { camera.focus_distance } else { extent };
         let half = (camera.yfov / 2.0).tan() * depth;
         let corner = |x: f64, y: f64| {
@@ -292,7 +307,9 @@ impl PaintView {
         let edge = Stroke::new(1.0, Color32::from_white_alpha(45));
         for k in 0..4 {
             self.paint_segment(painter, corners[k], corners[(k + 1) % 4], frame);
-            self.paint_segment(painter, camera.position(), corners[k], edge);
+            if from_aside {
+                self.paint_segment(painter, camera.position(), corners[k], edge);
+            }
         }
     }
 
@@ -312,6 +329,33 @@ impl PaintView {
         if let [Some(a), Some(b)] = ends {
             painter.line_segment([a, b], stroke);
         }
+    }
+}
+
+/// What the colours mean, in the lower right corner.
+fn legend(painter: &egui::Painter, rect: Rect) {
+    let bar = Rect::from_min_size(rect.right_bottom() - vec2(214.0, 34.0), vec2(200.0, 8.0));
+    painter.rect_filled(
+        bar.expand2(vec2(8.0, 5.0)).with_max_y(bar.bottom() + 20.0),
+        3.0,
+        Color32::from_black_alpha(140),
+    );
+    false_colour::paint_bar(painter, bar, 1.0);
+    let label = |circle_px: f64, text: &str| {
+        let x = bar.center().x + bar.width() / 2.0 * false_colour::position(circle_px) as f32;
+        let font = egui::FontId::proportional(10.0);
+        painter.text(
+            pos2(x, bar.bottom() + 3.0),
+            egui::Align2::CENTER_TOP,
+            text,
+            font,
+            Color32::from_gray(220),
+        );
+    };
+    label(-64.0, "near 64");
+    label(64.0, "64 far");
+    for (px, text) in [(-8.0, "8"), (0.0, "sharp"), (8.0, "8")] {
+        label(px, text);
     }
 }
 

@@ -1,0 +1,168 @@
+//! What each command of the table does in the window.
+
+use super::Shell;
+use crate::window::file_dialog::Purpose;
+use crate::window::paint_view::PaintView;
+use crate::window::tool_bar::{largest_radius, signed_circle_px};
+use crate::window::unsaved_question::Next;
+use crate::window::{Tool, ViewSettings, demo, layout};
+use egui::Context;
+use focus::{Brush, BrushMode};
+use lens::{Exposure, FocusOffset};
+use session::{CameraEdit, Command, CommandId, FillRegion};
+
+/// What a key changes of the brush's size.
+const SIZE_STEP: f64 = 1.15;
+/// A third of a stop, as a ratio of f-numbers: the sixth root of 2.
+const THIRD_STOP: f64 = 1.122_462_048_309_373;
+/// A twentieth nearer or farther.
+const DISTANCE_STEP: f64 = 1.05;
+/// What a key moves the brush's blur on the map from near to far.
+const BLUR_STEP: f64 = 0.05;
+/// Rays a pixel of the ray-traced comparison.
+const TRUTH_SAMPLES: u32 = 64;
+
+impl Shell {
+    /// Does what a command of the table says; it is possible now.
+    pub(super) fn carry_out(&mut self, id: CommandId, context: &Context) {
+        match id {
+            CommandId::Open => self.ask_then(Next::AskOpen, context),
+            CommandId::OpenDemo => match demo::find() {
+                Some(path) => self.ask_then(Next::Open(path), context),
+                None => self.open_demo(),
+            },
+            CommandId::Save => self.save(context),
+            CommandId::SaveAs => self.ask_for(Purpose::SaveAs, context),
+            CommandId::ExportPicture => self.ask_for(Purpose::ExportPicture, context),
+            CommandId::ExportFocusMap => self.ask_for(Purpose::ExportFocusMap, context),
+            CommandId::ExportScene => self.ask_for(Purpose::ExportScene, context),
+            CommandId::ImportFocusMap => self.ask_for(Purpose::ImportFocusMap, context),
+            CommandId::Quit => self.ask_then(Next::Quit, context),
+            CommandId::Undo => self.apply(Command::Undo),
+            CommandId::Redo => self.apply(Command::Redo),
+            CommandId::FrameAll => self.with_document(|paint, document| paint.frame_all(document)),
+            CommandId::FrameCursor => self.with_document(|paint, document| paint.frame_cursor(document)),
+            CommandId::ViewFromCamera => {
+                self.with_document(|paint, document| paint.look_through(&document.camera))
+            }
+            CommandId::PictureFit => self.picture.fit(),
+            CommandId::PictureActualSize => self.picture.actual_size(context.pixels_per_point()),
+            CommandId::ShowFocus => self.settings.focus_share = ViewSettings::default().focus_share,
+            CommandId::ShowSurface => self.settings.focus_share = 0.0,
+            CommandId::ResetLayout => {
+                self.layout = layout::initial();
+                self.settings.inspector = true;
+            }
+            CommandId::Brush => self.choose(Tool::Brush),
+            CommandId::Smooth => self.choose(Tool::Smooth),
+            CommandId::Erase => self.choose(Tool::Reset),
+            CommandId::FillPart => self.choose(Tool::FillObject),
+            CommandId::FillMaterial => self.choose(Tool::FillMaterial),
+            CommandId::FillChart => self.choose(Tool::FillChart),
+            CommandId::FocusHere => self.choose(Tool::FocusHere),
+            CommandId::Pick => self.choose(Tool::Pick),
+            CommandId::FillAll => {
+                if let Some(target) = self.session.document().map(|document| document.brush.target) {
+                    self.apply(Command::Fill(FillRegion::All, target));
+                }
+            }
+            CommandId::ResetMap => self.apply(Command::ResetMap),
+            CommandId::BrushLarger => {
+                self.edit_brush(|brush, most| brush.radius = (brush.radius * SIZE_STEP).min(most))
+            }
+            CommandId::BrushSmaller => {
+                self.edit_brush(|brush, most| brush.radius = (brush.radius / SIZE_STEP).max(most * 1e-4));
+            }
+            CommandId::BrushHarder => {
+                self.edit_brush(|brush, _| brush.hardness = (brush.hardness + 0.1).min(1.0))
+            }
+            CommandId::BrushSofter => {
+                self.edit_brush(|brush, _| brush.hardness = (brush.hardness - 0.1).max(0.0))
+            }
+            CommandId::BrushNearer => self.move_blur(-BLUR_STEP),
+            CommandId::BrushFarther => self.move_blur(BLUR_STEP),
+            CommandId::BrushSharp => self.edit_brush(|brush, _| brush.target = FocusOffset::SHARP),
+            CommandId::ToggleAnchor => self.edit_brush(|brush, _| {
+                brush.target.anchor = if brush.target.anchor < 0.5 { 1.0 } else { 0.0 };
+            }),
+            CommandId::OpenAperture => {
+                self.edit_camera(|camera| CameraEdit::FNumber(camera.f_number() / THIRD_STOP))
+            }
+            CommandId::CloseAperture => {
+                self.edit_camera(|camera| CameraEdit::FNumber(camera.f_number() * THIRD_STOP))
+            }
+            CommandId::FocusNearer => {
+                self.edit_camera(|camera| CameraEdit::FocusDistance(camera.focus_distance / DISTANCE_STEP));
+            }
+            CommandId::FocusFarther => {
+                self.edit_camera(|camera| CameraEdit::FocusDistance(camera.focus_distance * DISTANCE_STEP));
+            }
+            CommandId::CameraFromView => {
+                let pose = self.paint.camera().pose();
+                self.edit_camera(|_| CameraEdit::Pose(pose));
+            }
+            CommandId::Normalise => {
+                if let Some(document) = self.session.document() {
+                    let other = match document.exposure {
+                        Exposure::Normalise => Exposure::Conserve,
+                        Exposure::Conserve => Exposure::Normalise,
+                    };
+                    self.apply(Command::SetExposure(other));
+                }
+            }
+            CommandId::Bake => self.apply(Command::Bake),
+            CommandId::RenderTruth => self.apply(Command::RenderTruth { samples_per_pixel: TRUTH_SAMPLES }),
+            CommandId::Stop => self.apply(Command::CancelAll),
+            CommandId::Palette => self.palette.toggle(),
+            CommandId::Shortcuts => self.help.shortcuts = !self.help.shortcuts,
+            CommandId::About => self.help.about = !self.help.about,
+        }
+    }
+
+    fn with_document(&mut self, act: impl FnOnce(&mut PaintView, &session::Document)) {
+        if let Some(document) = self.session.document() {
+            act(&mut self.paint, document);
+        }
+    }
+
+    fn choose(&mut self, tool: Tool) {
+        let Some(document) = self.session.document() else { return };
+        // Back from another tool's mode to one that paints the chosen focus.
+        let own = matches!(document.brush.mode, BrushMode::Set | BrushMode::Add | BrushMode::Subtract);
+        let mode = tool.mode(if own { document.brush.mode } else { BrushMode::Set });
+        self.edit_brush(|brush, _| brush.mode = mode);
+        self.tool = tool;
+    }
+
+    fn edit_brush(&mut self, edit: impl FnOnce(&mut Brush, f64)) {
+        let Some(document) = self.session.document() else { return };
+        let mut brush = document.brush.clone();
+        edit(&mut brush, largest_radius(document));
+        self.apply(Command::SetBrush(brush));
+    }
+
+    fn edit_camera(&mut self, edit: impl FnOnce(&lens::Camera) -> CameraEdit) {
+        let Some(document) = self.session.document() else { return };
+        let edit = edit(&document.camera);
+        self.apply(Command::Camera(edit));
+        self.apply(Command::FinishEdit);
+    }
+
+    /// Moves the brush's blur on the map from near to far, stopping at sharp when it comes by.
+    fn move_blur(&mut self, step: f64) {
+        use crate::window::false_colour::{circle_px, position};
+        let Some(document) = self.session.document() else { return };
+        let optics = document.camera.optics();
+        let before = position(signed_circle_px(&optics, document.brush.target.t));
+        let mut after = (before + step).clamp(-1.0, 1.0);
+        if before * after < 0.0 || after.abs() < BLUR_STEP / 4.0 {
+            after = 0.0;
+        }
+        let kappa = optics.kappa_for_circle_px(circle_px(after));
+        let t = kappa.and_then(|kappa| optics.offset_for_kappa(kappa, optics.inverse_focus_distance, 1.0));
+        match t {
+            Some(t) => self.edit_brush(|brush, _| brush.target.t = t),
+            None => self.toasts.notice("A pinhole blurs nothing: open the aperture first."),
+        }
+    }
+}

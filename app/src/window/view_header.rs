@@ -1,0 +1,68 @@
+//! The line above each view: its name, and how it shows things.
+
+use super::layout::Pane;
+use super::picture_view::{PictureView, Shown};
+use super::{Action, ViewSettings, controls};
+use egui::{Button, Ui};
+use session::{CommandId, Session};
+
+/// The line above a view. Returns whether the view is being dragged elsewhere by its name.
+pub fn view_header(
+    ui: &mut Ui,
+    pane: Pane,
+    session: &Session,
+    settings: &mut ViewSettings,
+    picture: &mut PictureView,
+    actions: &mut Vec<Action>,
+) -> bool {
+    let frame = egui::Frame::new().inner_margin(egui::Margin::symmetric(8, 3)).fill(ui.visuals().panel_fill);
+    let title = match pane {
+        Pane::Paint => "Paint",
+        Pane::Picture => "Picture",
+    };
+    frame
+        .show(ui, |ui| {
+            ui.horizontal(|ui| {
+                let name = egui::Label::new(egui::RichText::new(title).strong()).selectable(false);
+                let name = ui
+                    .add(name.sense(egui::Sense::drag()))
+                    .on_hover_text("Drag to place this view elsewhere.");
+                match pane {
+                    Pane::Paint => paint_header(ui, settings),
+                    Pane::Picture => picture_header(ui, session, picture, actions),
+                }
+                ui.allocate_space(egui::vec2(ui.available_width(), 0.0));
+                name.drag_started()
+            })
+            .inner
+        })
+        .inner
+}
+
+fn paint_header(ui: &mut Ui, settings: &mut ViewSettings) {
+    ui.label("Surface").on_hover_text("The scene's own colours.");
+    let mix = egui::Slider::new(&mut settings.focus_share, 0.0..=1.0).show_value(false);
+    let tip =
+        "From the scene's own colours (V) to the colours of blur (C): near orange, sharp white, far blue.";
+    ui.spacing_mut().slider_width = 70.0;
+    controls::named(&ui.add(mix).on_hover_text(tip), "Share of false colour");
+    ui.label("Blur").on_hover_text("The false colour of blur.");
+    ui.checkbox(&mut settings.contours, "Contours")
+        .on_hover_text("Lines where the blur is 1, 4 and 16 px wide.");
+}
+
+fn picture_header(ui: &mut Ui, session: &Session, picture: &mut PictureView, actions: &mut Vec<Action>) {
+    if session.truth().is_some() {
+        ui.selectable_value(&mut picture.shown, Shown::Painted, "Live").on_hover_text("The live picture.");
+        ui.selectable_value(&mut picture.shown, Shown::Truth, "Ray traced")
+            .on_hover_text("The ray-traced picture, to compare with (F12 traces it anew).");
+    }
+    for (id, label) in [(CommandId::PictureFit, "Fit"), (CommandId::PictureActualSize, "100 %")] {
+        if ui.add(Button::new(label)).on_hover_text(id.info().tooltip).clicked() {
+            actions.push(id.into());
+        }
+    }
+    if let Some(percent) = picture.percent(session, ui.ctx().pixels_per_point()).filter(|p| p.is_finite()) {
+        ui.weak(format!("{percent:.0} %")).on_hover_text("Screen pixels of a picture pixel.");
+    }
+}
