@@ -18,6 +18,9 @@ const POINTS_PER_STEP: f64 = 40.0;
 /// How much more than the picture is seen through the shot camera.
 const FRAME_MARGIN: f64 = 1.06;
 
+/// How far the pivot is from a shot camera that focuses at infinity.
+const PIVOT_AT_INFINITY: f64 = 10.0;
+
 /// The 3D view that is painted on.
 pub struct PaintView {
     state: Option<egui_wgpu::RenderState>,
@@ -33,8 +36,10 @@ pub struct PaintView {
     /// What lies under the pointer.
     hover: Option<SurfaceHit>,
     rect: Rect,
-    /// Whether the view is to look through the shot camera once its size is known.
-    looking_through: bool,
+    /// Whether the view is to look through the shot camera from the next frame on.
+    look_through: bool,
+    /// The view through the shot camera, while it is followed.
+    following: Option<OrbitCamera>,
 }
 
 impl PaintView {
@@ -64,13 +69,14 @@ impl PaintView {
             stroke: StrokeInput::default(),
             hover: None,
             rect: Rect::NOTHING,
-            looking_through: false,
+            look_through: false,
+            following: None,
         }
     }
 
     /// Takes up another document: its surface is copied to the graphics card in the background.
     pub fn opened(&mut self, document: &Document, context: &egui::Context) {
-        self.looking_through = true;
+        self.look_through();
         let Some(renderer) = &self.renderer else { return };
         let (device, queue) = renderer.device();
         self.mesh = None;
@@ -127,15 +133,25 @@ impl PaintView {
         Some(screen_from_view(self.rect, at))
     }
 
-    /// Looks from where the shot camera stands, turning around what it focuses on, with the whole picture in view.
-    pub fn look_through(&mut self, camera: &Camera) {
-        let distance = if camera.focus_distance.is_finite() { camera.focus_distance } else { 10.0 };
-        self.camera = OrbitCamera::from_shot(camera, distance);
-        // Before the first frame the view has no size: it then sees as high as the picture.
-        if self.rect.is_positive() {
-            let room = FRAME_MARGIN * (camera.aspect() / aspect(self.rect)).max(1.0);
-            self.camera.yfov = 2.0 * ((camera.yfov / 2.0).tan() * room).atan();
+    /// Looks from where the shot camera stands, with the whole picture in view, and follows it until the view is turned.
+    pub fn look_through(&mut self) {
+        self.following = None;
+        self.look_through = true;
+    }
+
+    /// Keeps looking through the shot camera, as the view's size or the camera changes, as long as the user does not navigate.
+    fn follow(&mut self, camera: &Camera) {
+        if !self.look_through && self.following != Some(self.camera) {
+            return;
         }
+        self.look_through = false;
+        // The pivot is what the lens focuses on; at infinity, something that one can turn around.
+        let distance =
+            if camera.focus_distance.is_finite() { camera.focus_distance } else { PIVOT_AT_INFINITY };
+        self.camera = OrbitCamera::from_shot(camera, distance);
+        let room = FRAME_MARGIN * (camera.aspect() / aspect(self.rect)).max(1.0);
+        self.camera.yfov = 2.0 * ((camera.yfov / 2.0).tan() * room).atan();
+        self.following = Some(self.camera);
     }
 
     /// Shows the whole scene.
@@ -170,9 +186,7 @@ impl PaintView {
             hint(ui, rect, "Drop a glTF scene or a project here, or press Ctrl+O.");
             return;
         };
-        if std::mem::take(&mut self.looking_through) {
-            self.look_through(&document.camera);
-        }
+        self.follow(&document.camera);
         self.receive_mesh(actions);
         self.navigate(ui, &response);
         self.draw(ui, document, look, actions);

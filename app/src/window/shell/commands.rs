@@ -42,9 +42,7 @@ impl Shell {
             CommandId::Redo => self.apply(Command::Redo),
             CommandId::FrameAll => self.with_document(|paint, document| paint.frame_all(document)),
             CommandId::FrameCursor => self.with_document(|paint, document| paint.frame_cursor(document)),
-            CommandId::ViewFromCamera => {
-                self.with_document(|paint, document| paint.look_through(&document.camera))
-            }
+            CommandId::ViewFromCamera => self.paint.look_through(),
             CommandId::PictureFit => self.picture.fit(),
             CommandId::PictureActualSize => self.picture.actual_size(context.pixels_per_point()),
             CommandId::ShowFocus => self.settings.focus_share = ViewSettings::default().focus_share,
