@@ -55,13 +55,22 @@ pub struct WindowOptions {
     pub remember: bool,
     /// The longest side that the preview is drawn at, px; none for the user's setting.
     pub preview_size: Option<u32>,
+    /// How scenes are unwrapped.
+    pub unwrap: atlas::UnwrapOptions,
     /// Whether the system is asked for its file dialogs; else paths are typed.
     pub system_dialogs: bool,
 }
 
 impl Default for WindowOptions {
     fn default() -> Self {
-        Self { file: None, demo: true, remember: true, preview_size: None, system_dialogs: system_dialogs() }
+        Self {
+            file: None,
+            demo: true,
+            remember: true,
+            preview_size: None,
+            unwrap: atlas::UnwrapOptions::default(),
+            system_dialogs: system_dialogs(),
+        }
     }
 }
 

@@ -72,9 +72,9 @@ impl Shell {
         let layout = tree.filter(layout::is_whole).unwrap_or_else(layout::initial);
         let context = creation.egui_ctx.clone();
         let session = Session::new(SessionOptions {
+            unwrap: options.unwrap,
             preview_size: options.preview_size.unwrap_or(settings.preview_size),
             waker: Arc::new(move || context.request_repaint()),
-            ..SessionOptions::default()
         })?;
         let state = creation.wgpu_render_state.as_ref();
         let mut shell = Self {
@@ -276,9 +276,9 @@ impl Shell {
             if let Some(path) = opening.filter(|_| !self.showing_demo) {
                 self.settings.remember(&path);
             }
-            let warnings = document.scene().warnings.len();
+            let warnings = document.warnings.len();
             if warnings > 0 {
-                let first = &document.scene().warnings[0];
+                let first = &document.warnings[0];
                 let more = if warnings > 1 {
                     format!(" (and {} more, see Scene)", warnings - 1)
                 } else {

@@ -37,6 +37,7 @@ impl Person {
             remember: false,
             preview_size: Some(180),
             system_dialogs: false,
+            ..WindowOptions::default()
         };
         let builder = Harness::builder().with_size([1280.0, 720.0]).with_max_steps(64).wgpu();
         let window = builder.build_eframe(move |creation| Shell::new(creation, options).unwrap());

@@ -26,7 +26,7 @@ impl ScenePanel {
             document.map.width(),
             document.map.height()
         ));
-        for warning in &scene.warnings {
+        for warning in &document.warnings {
             ui.colored_label(ui.visuals().warn_fg_color, warning);
         }
         ui.horizontal(|ui| {
