@@ -8,6 +8,9 @@
 use crate::engine::{Flattened, Patch, UNPLACED};
 use xatlas_rs_v2::{ChartOptions, IndexData, MeshData, MeshDecl, PackOptions, Xatlas};
 
+/// Texels a unit of length for xatlas's packing; a mean triangle has an area of 1.
+const TEXELS_PER_UNIT: f32 = 8.0;
+
 /// Flattens a patch; `None` where xatlas refuses it.
 pub(crate) fn flatten(patch: &Patch) -> Option<Flattened> {
     let indices = patch.corners.as_flattened();
@@ -20,8 +23,15 @@ pub(crate) fn flatten(patch: &Patch) -> Option<Flattened> {
     let mut atlas = Xatlas::new();
     atlas.add_mesh(&declaration).ok()?;
     atlas.compute_charts(&ChartOptions::default());
-    // Packing is what makes xatlas give out coordinates; our own packer places the charts.
-    atlas.pack_charts(&PackOptions { bilinear: false, rotate_charts: false, ..PackOptions::default() });
+    // Packing is what makes xatlas give out coordinates; our own packer places the charts. Its cost grows with the
+    // texels, and it stretches charts to whole ones, which the chart's metric undoes.
+    let packing = PackOptions {
+        texels_per_unit: TEXELS_PER_UNIT,
+        bilinear: false,
+        rotate_charts: false,
+        ..PackOptions::default()
+    };
+    atlas.pack_charts(&packing);
     if atlas.mesh_count() != 1 || atlas.chart_count() == 0 {
         return None;
     }

@@ -23,7 +23,7 @@ pub fn unwrap(scene: &Scene, options: &UnwrapOptions) -> Atlas {
 }
 
 /// The triangles that hold a texel's centre, texel by texel: pairs of different triangles, borders aside.
-fn centres_in_two_triangles(atlas: &Atlas) -> usize {
+pub fn centres_in_two_triangles(atlas: &Atlas) -> usize {
     let mut owner = vec![u32::MAX; (atlas.width * atlas.height) as usize];
     let mut doubled = 0;
     for (triangle, corners) in atlas.corners.iter().enumerate() {

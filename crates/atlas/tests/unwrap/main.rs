@@ -1,6 +1,7 @@
 //! Unwrapping as a whole. The test program is its own unwrapping child, and so has a main of its own.
 
 mod children;
+mod data;
 mod export;
 mod layout;
 mod meshes;
@@ -18,8 +19,15 @@ fn main() -> ExitCode {
     children::misbehave_if_asked();
     atlas::child::run_if_asked();
     let filters: Vec<String> = std::env::args().skip(1).filter(|a| !a.starts_with('-')).collect();
-    let groups: [&[Test]; 6] =
-        [layout::TESTS, surface::TESTS, nasty::TESTS, children::TESTS, storage::TESTS, export::TESTS];
+    let groups: [&[Test]; 7] = [
+        layout::TESTS,
+        surface::TESTS,
+        nasty::TESTS,
+        children::TESTS,
+        storage::TESTS,
+        export::TESTS,
+        data::TESTS,
+    ];
     let wanted = |name: &str| filters.is_empty() || filters.iter().any(|f| name.contains(f.as_str()));
     let tests: Vec<&Test> = groups.into_iter().flatten().filter(|test| wanted(test.0)).collect();
     println!("\nrunning {} tests", tests.len());
