@@ -16,6 +16,7 @@
 mod atlas;
 mod bytes;
 mod chart;
+mod chart_box;
 pub mod child;
 mod clip;
 mod coverage;
@@ -32,6 +33,7 @@ mod part_mesh;
 mod patches;
 mod planar;
 mod shape;
+mod skyline;
 mod texel_map;
 mod unwrap;
 mod xatlas;

@@ -6,9 +6,11 @@
 //! for by packing a few times.
 
 use crate::AtlasError;
-use crate::chart::{LooseChart, area};
+use crate::chart::LooseChart;
+use crate::chart_box::Boxed;
 use crate::options::{Density, MAX_SIDE, MIN_GUTTER};
 use crate::shape::Shape;
+use crate::skyline::Skyline;
 use glam::{DVec2, Vec2};
 use progress::Progress;
 use rayon::prelude::*;
@@ -33,12 +35,6 @@ pub(crate) struct Packed {
     /// For each chart its triangles' corners in texels.
     pub corners: Vec<Vec<[Vec2; 3]>>,
     pub notes: Vec<String>,
-}
-
-/// A chart turned into its smallest box, which starts at 0 and is at least as wide as high.
-struct Boxed {
-    corners: Vec<[DVec2; 3]>,
-    size: DVec2,
 }
 
 /// Where a chart lies: the atlas column and row of its grown outline, and its quarter turns.
@@ -235,145 +231,4 @@ impl Packer<'_> {
         }
         Ok(Some(Layout { width: skyline.width_used, height: skyline.height, density, places }))
     }
-}
-
-/// How far down every column is filled.
-struct Skyline {
-    rows: Vec<u32>,
-    width_used: u32,
-    height: u32,
-}
-
-impl Skyline {
-    fn new(width: u32) -> Self {
-        Self { rows: vec![0; width as usize], width_used: 1, height: 1 }
-    }
-
-    /// The column, row and index of the outline that ends highest up, the one leaving the least gap among equals.
-    fn best(&self, outlines: &[Shape]) -> Option<(u32, u32, usize)> {
-        let mut best = None;
-        let mut best_score = (u32::MAX, u64::MAX);
-        for (turn, outline) in outlines.iter().enumerate() {
-            let Some(last) = self.rows.len().checked_sub(outline.columns.len()) else { continue };
-            // A wide chart gains nothing from being tried at every column.
-            let step = (outline.columns.len() / 16).max(1);
-            for x in (0..=last).step_by(step) {
-                let limit = best_score.0.saturating_sub(outline.height);
-                let Some((y, gap)) = self.rest(outline, x, limit) else { continue };
-                let score = (y + outline.height, gap);
-                if score < best_score {
-                    best_score = score;
-                    best = Some((x as u32, y, turn));
-                }
-            }
-        }
-        best
-    }
-
-    /// The row at which an outline comes to rest and the gap under it, if the row is at most `limit`.
-    fn rest(&self, outline: &Shape, x: usize, limit: u32) -> Option<(u32, u64)> {
-        let mut y = 0;
-        let rows = &self.rows[x..x + outline.columns.len()];
-        for (&filled, &(low, high)) in rows.iter().zip(&outline.columns) {
-            if low < high {
-                y = y.max(filled.saturating_sub(low));
-                if y > limit {
-                    return None;
-                }
-            }
-        }
-        let gap = |(&filled, &(low, high)): (&u32, &(u32, u32))| {
-            if low < high { u64::from(y + low - filled) } else { 0 }
-        };
-        Some((y, rows.iter().zip(&outline.columns).map(gap).sum()))
-    }
-
-    fn put(&mut self, outline: &Shape, x: u32, y: u32) {
-        for (filled, &(low, high)) in self.rows[x as usize..].iter_mut().zip(&outline.columns) {
-            if low < high {
-                *filled = (*filled).max(y + high);
-            }
-        }
-        self.width_used = self.width_used.max(x + outline.width());
-        self.height = self.height.max(y + outline.height);
-    }
-}
-
-impl Boxed {
-    fn new(chart: &LooseChart) -> Self {
-        let axis = if chart.turnable { smallest_box_axis(&chart.corners) } else { DVec2::X };
-        let turn = |c: DVec2| DVec2::new(c.dot(axis), axis.perp_dot(c));
-        let mut corners: Vec<[DVec2; 3]> = chart.corners.iter().map(|t| t.map(turn)).collect();
-        let low = corners.iter().flatten().fold(DVec2::INFINITY, |low, &c| low.min(c));
-        corners.iter_mut().flatten().for_each(|c| *c -= low);
-        let mut size = corners.iter().flatten().fold(DVec2::ZERO, |high, &c| high.max(c));
-        if size.y > size.x {
-            corners.iter_mut().flatten().for_each(|c| *c = DVec2::new(size.y - c.y, c.x));
-            size = DVec2::new(size.y, size.x);
-        }
-        debug_assert!(
-            corners.iter().all(|&c| area(c) >= 0.0 || area(c).abs() < 1e-9 * size.length_squared())
-        );
-        Self { corners, size }
-    }
-
-    /// Texels a world length: the density, but more for a chart that would be shorter than a texel, as it takes
-    /// a whole one anyway.
-    fn scale(&self, density: f64) -> f64 {
-        if self.size.x > 0.0 { density.max(1.0 / self.size.x) } else { density }
-    }
-
-    /// Its triangles in texels after quarter turns, starting at 0.
-    fn turned(&self, density: f64, turns: u32) -> impl Iterator<Item = [DVec2; 3]> + Clone {
-        let scale = self.scale(density);
-        let size = self.size * scale;
-        let turn = move |c: DVec2| match turns {
-            0 => c,
-            1 => DVec2::new(size.y - c.y, c.x),
-            2 => size - c,
-            _ => DVec2::new(c.y, size.x - c.x),
-        };
-        self.corners.iter().map(move |t| t.map(|c| turn(c * scale).max(DVec2::ZERO)))
-    }
-}
-
-/// The direction of the smallest box around some triangles: along an edge of their convex hull.
-fn smallest_box_axis(triangles: &[[DVec2; 3]]) -> DVec2 {
-    let hull = convex_hull(triangles.iter().flatten().copied().collect());
-    let mut best = (f64::INFINITY, DVec2::X);
-    for (i, &from) in hull.iter().enumerate() {
-        let Some(axis) = (hull[(i + 1) % hull.len()] - from).try_normalize() else { continue };
-        let (low, high) = hull.iter().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), c| {
-            let c = DVec2::new(c.dot(axis), axis.perp_dot(*c));
-            (low.min(c), high.max(c))
-        });
-        let area = (high - low).element_product();
-        if area < best.0 {
-            best = (area, axis);
-        }
-    }
-    best.1
-}
-
-/// The convex hull (Andrew's monotone chain).
-fn convex_hull(mut points: Vec<DVec2>) -> Vec<DVec2> {
-    points.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
-    points.dedup();
-    let mut hull: Vec<DVec2> = Vec::new();
-    for pass in 0..2 {
-        let start = hull.len();
-        for &p in &points {
-            while hull.len() >= start + 2
-                && (hull[hull.len() - 1] - hull[hull.len() - 2]).perp_dot(p - hull[hull.len() - 2]) <= 0.0
-            {
-                hull.pop();
-            }
-            hull.push(p);
-        }
-        hull.pop();
-        if pass == 0 {
-            points.reverse();
-        }
-    }
-    if hull.is_empty() { points } else { hull }
 }

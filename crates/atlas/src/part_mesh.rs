@@ -6,7 +6,7 @@
 
 use glam::DVec3;
 use scene::Scene;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 /// No neighbour across an edge.
 pub(crate) const BORDER: u32 = u32::MAX;
@@ -123,14 +123,14 @@ impl PartMesh {
         self.corner_positions(triangle).iter().sum::<DVec3>() / 3.0
     }
 
-    /// The connected pieces of a set of triangles, each in the order it was walked; connected across edges that
-    /// `joined` allows. Pieces come in the order of their first triangle.
-    pub fn pieces(&self, triangles: &[u32], joined: impl Fn(u32, u32) -> bool) -> Vec<Vec<u32>> {
-        let mut waiting = vec![false; self.triangles.len()];
-        triangles.iter().for_each(|&t| waiting[t as usize] = true);
+    /// The connected pieces of a set of triangles, each in the order it was walked, the pieces in the order of their
+    /// first triangle. A piece grows only to triangles that `joins(first, triangle)` allows it.
+    pub fn pieces(&self, triangles: &[u32], joins: impl Fn(u32, u32) -> bool) -> Vec<Vec<u32>> {
+        // A set, not flags over the mesh: this is called for many small pieces of a large mesh.
+        let mut waiting: HashSet<u32> = triangles.iter().copied().collect();
         let mut pieces = Vec::new();
         for &first in triangles {
-            if !std::mem::take(&mut waiting[first as usize]) {
+            if !waiting.remove(&first) {
                 continue;
             }
             let mut piece = vec![first];
@@ -138,8 +138,8 @@ impl PartMesh {
             while let Some(&triangle) = piece.get(next) {
                 next += 1;
                 for neighbour in self.neighbours[triangle as usize] {
-                    if neighbour != BORDER && waiting[neighbour as usize] && joined(triangle, neighbour) {
-                        waiting[neighbour as usize] = false;
+                    if waiting.contains(&neighbour) && joins(first, neighbour) {
+                        waiting.remove(&neighbour);
                         piece.push(neighbour);
                     }
                 }

@@ -9,8 +9,9 @@ use glam::DVec3;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
-/// Triangles of a patch. xatlas takes about 0.2 s for so many and grows faster than linear beyond.
-pub(crate) const PATCH_TRIANGLES: usize = 2500;
+/// Triangles of a patch. Larger ones have fewer seams; for a sphere of 81k triangles xatlas takes 4 s of processor
+/// time in patches of 2500 and 2.5 s in patches of 1200.
+pub(crate) const PATCH_TRIANGLES: usize = 1500;
 
 /// Growths: one from the first seeds, the others after moving them.
 const ROUNDS: usize = 3;

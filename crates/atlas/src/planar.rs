@@ -17,7 +17,8 @@ const FLAT: f64 = 4e-5;
 /// Charts of these triangles of a mesh.
 pub(crate) fn charts(mesh: &PartMesh, triangles: &[u32]) -> Vec<LooseChart> {
     let mut charts = Vec::new();
-    for piece in cones(mesh, triangles) {
+    let normal = |t: u32| mesh.area_normal(t).normalize_or_zero();
+    for piece in mesh.pieces(triangles, |first, t| normal(first).dot(normal(t)) > GROW_COSINE) {
         split_until_sound(mesh, piece, &mut charts);
     }
     charts
@@ -31,34 +32,6 @@ pub(crate) fn flat_chart(mesh: &PartMesh, triangles: &[u32]) -> Option<LooseChar
         return None;
     }
     project(mesh, triangles)
-}
-
-/// Connected pieces whose normals lie within a cone, grown from the triangles in order.
-fn cones(mesh: &PartMesh, triangles: &[u32]) -> Vec<Vec<u32>> {
-    let normals: Vec<DVec3> =
-        (0..mesh.triangles.len() as u32).map(|t| mesh.area_normal(t).normalize_or_zero()).collect();
-    let mut waiting = vec![false; mesh.triangles.len()];
-    triangles.iter().for_each(|&t| waiting[t as usize] = true);
-    let mut pieces = Vec::new();
-    for &first in triangles {
-        if !std::mem::take(&mut waiting[first as usize]) {
-            continue;
-        }
-        let mut piece = vec![first];
-        let mut next = 0;
-        while let Some(&triangle) = piece.get(next) {
-            next += 1;
-            for neighbour in mesh.neighbours[triangle as usize] {
-                let within = |n: u32| normals[n as usize].dot(normals[first as usize]) > GROW_COSINE;
-                if waiting.get(neighbour as usize) == Some(&true) && within(neighbour) {
-                    waiting[neighbour as usize] = false;
-                    piece.push(neighbour);
-                }
-            }
-        }
-        pieces.push(piece);
-    }
-    pieces
 }
 
 fn split_until_sound(mesh: &PartMesh, piece: Vec<u32>, charts: &mut Vec<LooseChart>) {
