@@ -12,8 +12,8 @@ pub struct LoadOptions {
 }
 
 impl Default for LoadOptions {
-    /// 768 MiB (so that the whole program stays below 1 GiB), 5 million triangles, images up to 8192².
+    /// 640 MiB (so that the whole program stays below 1 GiB), 5 million triangles, images up to 8192².
     fn default() -> Self {
-        Self { max_memory: 768 << 20, max_triangles: 5_000_000, max_texels: 8192 * 8192 }
+        Self { max_memory: 640 << 20, max_triangles: 5_000_000, max_texels: 8192 * 8192 }
     }
 }

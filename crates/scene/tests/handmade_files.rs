@@ -532,8 +532,10 @@ fn damaged_bytes_never_panic() {
         state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (state >> 33) as usize % n
     };
+    let folder = TempDir::new().unwrap();
+    let file = folder.path().join("damaged.glb");
     let mut opened = 0;
-    for _ in 0..3000 {
+    for _ in 0..600 {
         let mut bytes = whole.clone();
         for _ in 0..1 + random(4) {
             let at = random(bytes.len());
@@ -543,10 +545,11 @@ fn damaged_bytes_never_panic() {
                 _ => drop(bytes.drain(at..(at + 1 + random(8)).min(bytes.len()))),
             }
         }
-        match load_bytes(&bytes, &LoadOptions::default()) {
+        std::fs::write(&file, &bytes).unwrap();
+        match load(&file, &LoadOptions::default(), &Unwatched) {
             Ok(_) => opened += 1,
             Err(error) => assert!(!error.to_string().contains("the decoder failed"), "{error}"),
         }
     }
-    assert!(opened > 100, "{opened}");
+    assert!(opened > 20, "{opened}");
 }

@@ -57,13 +57,11 @@ fn buffers(document: &Document<'_>) {
 fn buffer_view(document: &Document<'_>, view: &Object<'_>) {
     const ELEMENT_ARRAY: u64 = 34963;
     let (offset, length) = (integer(view, "byteOffset", 0), integer(view, "byteLength", 0));
-    if let Ok(Some(buffer)) = view.index("buffer") {
-        if let Ok(buffer) = document.item("buffers", buffer, "") {
-            if offset.saturating_add(length) > integer(&buffer, "byteLength", u64::MAX) {
-                document
-                    .warn(format!("{}: bytes {offset} + {length} do not fit {}", view.place, buffer.place));
-            }
-        }
+    if let Ok(Some(buffer)) = view.index("buffer")
+        && let Ok(buffer) = document.item("buffers", buffer, "")
+        && offset.saturating_add(length) > integer(&buffer, "byteLength", u64::MAX)
+    {
+        document.warn(format!("{}: bytes {offset} + {length} do not fit {}", view.place, buffer.place));
     }
     if let Ok(Some(stride)) = view.integer("byteStride") {
         if stride > length {
@@ -87,10 +85,10 @@ fn layout(document: &Document<'_>, accessor: &Object<'_>) {
         warn("only 8 and 16 bit integers can be normalised".into());
     }
     for key in ["min", "max"] {
-        if let Ok(Some(bounds)) = accessor.number_list(key) {
-            if bounds.len() != shape.components() {
-                warn(format!("{key} has {} numbers instead of {}", bounds.len(), shape.components()));
-            }
+        if let Ok(Some(bounds)) = accessor.number_list(key)
+            && bounds.len() != shape.components()
+        {
+            warn(format!("{key} has {} numbers instead of {}", bounds.len(), shape.components()));
         }
     }
     placed(document, accessor, component, count, shape.size(component), shape.is_matrix());

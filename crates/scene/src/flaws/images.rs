@@ -21,16 +21,16 @@ pub(super) fn check(document: &Document<'_>) {
     for index in 0..document.len("textures") {
         let Ok(texture) = document.item("textures", index, "") else { continue };
         let format = |source: usize| formats.get(source).copied().flatten();
-        if let Ok(Some(source)) = texture.index("source") {
-            if format(source).is_some_and(|format| format == "image/webp") {
-                document.warn(format!("{}/source: is image/webp, not PNG or JPEG", texture.place));
-            }
+        if let Ok(Some(source)) = texture.index("source")
+            && format(source).is_some_and(|format| format == "image/webp")
+        {
+            document.warn(format!("{}/source: is image/webp, not PNG or JPEG", texture.place));
         }
         let Ok(Some(webp)) = texture.extension(WEBP) else { continue };
-        if let Ok(Some(source)) = webp.index("source") {
-            if let Some(format) = format(source).filter(|&format| format != "image/webp") {
-                document.warn(format!("{}/source: is {format}, not WebP", webp.place));
-            }
+        if let Ok(Some(source)) = webp.index("source")
+            && let Some(format) = format(source).filter(|&format| format != "image/webp")
+        {
+            document.warn(format!("{}/source: is {format}, not WebP", webp.place));
         }
     }
 }

@@ -73,10 +73,10 @@ impl<'a> MeshCheck<'a> {
             }
             self.primitive(primitive);
         }
-        if let Ok(Some(weights)) = mesh.number_list("weights") {
-            if weights.len() != expected {
-                self.warn(&mesh.place, format!("has {} weights for {expected} morph targets", weights.len()));
-            }
+        if let Ok(Some(weights)) = mesh.number_list("weights")
+            && weights.len() != expected
+        {
+            self.warn(&mesh.place, format!("has {} weights for {expected} morph targets", weights.len()));
         }
     }
 
@@ -192,7 +192,7 @@ impl<'a> MeshCheck<'a> {
         let (Some(component), Some(shape)) = (component, shape) else { return };
         let step = stride.unwrap_or(shape.size(component) as u64);
         let offset = accessor.integer("byteOffset").ok().flatten().unwrap_or(0);
-        if step % 4 != 0 || offset % 4 != 0 {
+        if step % 4 != 0 || !offset.is_multiple_of(4) {
             self.warn(place, "vertices must start at multiples of 4 bytes");
         }
     }
@@ -232,10 +232,10 @@ impl<'a> MeshCheck<'a> {
 
     fn indices(&mut self, primitive: &Object<'a>, count: Option<u64>) {
         let Some((place, index, accessor)) = self.object(primitive, "indices") else { return };
-        if let Some((_, view)) = self.view(&place, &accessor, Use::Indices) {
-            if view.get("byteStride").is_some() {
-                self.warn(&place, "a view of indices cannot have a byteStride");
-            }
+        if let Some((_, view)) = self.view(&place, &accessor, Use::Indices)
+            && view.get("byteStride").is_some()
+        {
+            self.warn(&place, "a view of indices cannot have a byteStride");
         }
         let code = accessor.integer("componentType").ok().flatten();
         let scalar = accessor.text("type").ok().flatten() == Some("SCALAR");

@@ -37,10 +37,10 @@ fn versions_and_extensions(document: &Document<'_>) {
         }
         parsed
     };
-    if let (Some(version), Some(least)) = (version("version"), version("minVersion")) {
-        if least > version {
-            document.warn("/asset/minVersion: is greater than the version");
-        }
+    if let (Some(version), Some(least)) = (version("version"), version("minVersion"))
+        && least > version
+    {
+        document.warn("/asset/minVersion: is greater than the version");
     }
     let used = extension::names(document, "extensionsUsed");
     let required = extension::names(document, "extensionsRequired");

@@ -112,11 +112,11 @@ fn mesh_and_skin(document: &Document<'_>, node: &Object<'_>) {
         document.warn(format!("{}/skin: its mesh has no JOINTS_0", node.place));
     }
     let targets = |primitive: &Object<'_>| primitive.list("targets").map_or(0, <[_]>::len);
-    if let (Ok(Some(weights)), Some(primitive)) = (node.number_list("weights"), primitives.first()) {
-        if weights.len() != targets(primitive) {
-            let (n, m) = (weights.len(), targets(primitive));
-            document.warn(format!("{}/weights: has {n} weights for {m} morph targets", node.place));
-        }
+    if let (Ok(Some(weights)), Some(primitive)) = (node.number_list("weights"), primitives.first())
+        && weights.len() != targets(primitive)
+    {
+        let (n, m) = (weights.len(), targets(primitive));
+        document.warn(format!("{}/weights: has {n} weights for {m} morph targets", node.place));
     }
 }
 
@@ -147,10 +147,10 @@ fn skin(document: &Document<'_>, index: usize, parents: &[Option<usize>]) {
     };
     if common.is_empty() {
         document.warn(format!("{}/joints: have no common root", skin.place));
-    } else if let Ok(Some(skeleton)) = skin.index("skeleton") {
-        if !common.contains(&skeleton) {
-            document.warn(format!("{}/skeleton: is not above all joints", skin.place));
-        }
+    } else if let Ok(Some(skeleton)) = skin.index("skeleton")
+        && !common.contains(&skeleton)
+    {
+        document.warn(format!("{}/skeleton: is not above all joints", skin.place));
     }
     let Ok(Some(bind)) = skin.index("inverseBindMatrices") else { return };
     let place = format!("{}/inverseBindMatrices", skin.place);
@@ -170,18 +170,19 @@ fn skin(document: &Document<'_>, index: usize, parents: &[Option<usize>]) {
 
 fn camera(document: &Document<'_>, index: usize) {
     let Ok(camera) = document.item("cameras", index, "") else { return };
-    if let Ok(Some(kind)) = camera.text("type") {
-        if ["orthographic", "perspective"].contains(&kind) && camera.get(kind).is_none() {
-            document.warn(format!("{}: its {kind} is missing", camera.place));
-        }
+    if let Ok(Some(kind)) = camera.text("type")
+        && ["orthographic", "perspective"].contains(&kind)
+        && camera.get(kind).is_none()
+    {
+        document.warn(format!("{}: its {kind} is missing", camera.place));
     }
     for kind in ["orthographic", "perspective"] {
         let Ok(Some(lens)) = camera.object(kind) else { continue };
         let number = |key| lens.number(key).ok().flatten();
-        if let (Some(near), Some(far)) = (number("znear"), number("zfar")) {
-            if far <= near {
-                document.warn(format!("{}: zfar must be greater than znear", lens.place));
-            }
+        if let (Some(near), Some(far)) = (number("znear"), number("zfar"))
+            && far <= near
+        {
+            document.warn(format!("{}: zfar must be greater than znear", lens.place));
         }
     }
 }
@@ -210,10 +211,9 @@ fn light_reference(document: &Document<'_>, node: &Object<'_>) {
     let Ok(Some(reference)) = node.extension(EXTENSION) else { return };
     let lights = document.root().extension(EXTENSION).ok().flatten();
     let count = lights.and_then(|lights| lights.list("lights").ok()).map_or(0, <[_]>::len);
-    if let Ok(Some(light)) = reference.index("light") {
-        if light >= count {
-            document
-                .warn(format!("{}/light: refers to light {light}, which does not exist", reference.place));
-        }
+    if let Ok(Some(light)) = reference.index("light")
+        && light >= count
+    {
+        document.warn(format!("{}/light: refers to light {light}, which does not exist", reference.place));
     }
 }
