@@ -31,8 +31,9 @@ pub(crate) fn append(
     material: u32,
 ) -> Result<(), Fault> {
     let vertices = primitive.positions.len();
-    let size = vertices as u64 * (VERTEX_BYTES + 128) + primitive.triangles.len() as u64 * 32;
-    document.budget.memory(size, &primitive.place)?;
+    let passing = vertices as u64 * if matches!(placement, Placement::Skinned(_)) { 128 + 32 } else { 32 };
+    let lasting = vertices as u64 * VERTEX_BYTES + primitive.triangles.len() as u64 * 32;
+    document.budget.memory(passing + lasting, &primitive.place)?;
     document.budget.work(16 * vertices as u64, &primitive.place)?;
     let matrices: Vec<DMat4> = match placement {
         Placement::Rigid(matrix) => vec![*matrix],
@@ -60,7 +61,7 @@ pub(crate) fn append(
         false => compact(&kept),
     };
     if triangles.is_empty() {
-        document.budget.release(size);
+        document.budget.release(passing + lasting);
         return Ok(());
     }
 
@@ -90,7 +91,7 @@ pub(crate) fn append(
         has_uv: [0, 1].map(|set| !primitive.uv[set].is_empty()),
         mirrored,
     });
-    document.budget.release(vertices as u64 * 128);
+    document.budget.release(passing);
     Ok(())
 }
 

@@ -127,11 +127,15 @@ pub(crate) struct Budget {
     memory: Cell<u64>,
     triangles: Cell<u64>,
     work: Cell<u64>,
+    checks: Cell<u64>,
     pub options: LoadOptions,
 }
 
 /// Values that may be read or computed in all: some seconds' worth.
 const MAX_WORK: u64 = 1 << 30;
+
+/// Values that may be looked at only to tell of flaws: some tenths of a second's worth.
+const MAX_CHECKS: u64 = 1 << 27;
 
 impl Budget {
     fn new(options: &LoadOptions) -> Self {
@@ -139,6 +143,7 @@ impl Budget {
             memory: Cell::new(options.max_memory),
             triangles: Cell::new(options.max_triangles),
             work: Cell::new(MAX_WORK),
+            checks: Cell::new(MAX_CHECKS),
             options: *options,
         }
     }
@@ -169,6 +174,13 @@ impl Budget {
     /// Takes the time for `count` values, for `place`.
     pub fn work(&self, count: u64, place: &str) -> Result<(), Fault> {
         take(&self.work, count, || format!("{place}: reading the scene takes too many steps"))
+    }
+
+    /// Takes the time to look at `count` values for flaws; false if it is used up and they are to be passed over.
+    pub fn check(&self, count: usize) -> bool {
+        let left = self.checks.get().checked_sub(count as u64);
+        self.checks.set(left.unwrap_or(self.checks.get()));
+        left.is_some()
     }
 }
 

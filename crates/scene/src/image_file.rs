@@ -62,6 +62,7 @@ impl Document<'_> {
                 what: format!("{}: {width}×{height} texels, the limit is {limit}", object.place),
             });
         }
+        self.budget.work(texels + bytes.len() as u64 / 8, &object.place)?;
         if texels == 0 {
             return Err(Fault::Malformed { place: object.place, what: "has no texels".into() });
         }

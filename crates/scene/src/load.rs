@@ -33,6 +33,9 @@ pub fn load(path: &Path, options: &LoadOptions, progress: &dyn Progress) -> Resu
             (_, true) => "its meshes are empty".into(),
             (_, false) => format!("the file has {}, none of which shows a triangle", others.join(", ")),
         };
+        // What was left out on the way tells more than the count.
+        let left_out = scene.warnings.iter().find(|warning| warning.contains("left out"));
+        let why = left_out.map_or_else(|| why.clone(), |warning| format!("{why}; {warning}"));
         return Err(SceneError::NoTriangles { file: path.into(), why });
     }
     progress.report(1.0);

@@ -26,6 +26,9 @@ pub(crate) struct Primitive {
     memory: u64,
 }
 
+/// Bytes that a vertex with all attributes takes here, influences apart.
+const VERTEX_BYTES: u64 = 4 + 24 + 24 + 2 * 8 + 16;
+
 impl Primitive {
     /// Reads a primitive under the weights of its morph targets; `None` if it has no triangles.
     pub fn read(
@@ -33,6 +36,9 @@ impl Primitive {
         object: &Object<'_>,
         weights: &[f64],
     ) -> Result<Option<Self>, Fault> {
+        /// Reading the properties takes as long as reading so many values.
+        const PROPERTIES: u64 = 256;
+        document.budget.work(PROPERTIES + weights.len() as u64, &object.place)?;
         let mode = object.index("mode")?.unwrap_or(TRIANGLES);
         if triangle_count(mode, 0).is_none() {
             if mode >= crate::triangulation::MODE_NAMES.len() {
@@ -59,7 +65,7 @@ impl Primitive {
         if triangles.is_empty() {
             return Ok(None);
         }
-        let memory = triangles.len() as u64 * 12 + vertices.len() as u64 * 128;
+        let memory = triangles.len() as u64 * 12 + vertices.len() as u64 * VERTEX_BYTES;
         document.budget.memory(memory, &object.place)?;
         let mut primitive = Self {
             place: object.place.clone(),

@@ -21,6 +21,7 @@ pub(crate) fn joint_matrices(
 ) -> Result<Vec<DMat4>, Fault> {
     let skin = document.item("skins", index, place)?;
     let joints = skin.indices("joints")?;
+    document.budget.work(64 * joints.len() as u64, &skin.place)?;
     if joints.is_empty() {
         return Err(skin.malformed("joints", "is empty"));
     }

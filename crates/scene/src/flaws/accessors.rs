@@ -152,7 +152,7 @@ fn placed(
 /// What the elements say: the declared bounds must be theirs, and floats must be finite.
 fn data(document: &Document<'_>, object: &Object<'_>, accessor: &Accessor<'_>) {
     let components = accessor.shape.components();
-    if document.budget.work((accessor.count * components) as u64, &accessor.place).is_err() {
+    if !document.budget.check(accessor.count * components) {
         return;
     }
     let (mut low, mut high, mut finite) =

@@ -47,7 +47,7 @@ fn check_input(document: &Document<'_>, sampler: &Object<'_>) {
     if object.get("min").is_none() || object.get("max").is_none() {
         warn("its accessor must have min and max");
     }
-    if document.budget.work(input.count as u64, &place).is_err() {
+    if !document.budget.check(input.count) {
         return;
     }
     let time = |i: usize| input.doubles::<1>(i)[0];

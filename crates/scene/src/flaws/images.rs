@@ -47,6 +47,9 @@ fn format(document: &Document<'_>, image: &Object<'_>, webp_is_declared: bool) -
     if image.get("uri").is_none() && image.get("bufferView").is_none() {
         return None;
     }
+    if !document.budget.check(64) {
+        return None;
+    }
     let bytes = match document.image_bytes(image) {
         Ok(bytes) => bytes,
         Err(fault) => {
@@ -54,9 +57,11 @@ fn format(document: &Document<'_>, image: &Object<'_>, webp_is_declared: bool) -
             return None;
         }
     };
-    let format = mime_type(&bytes);
+    let in_time = document.budget.check(64 + bytes.len() / 16);
+    let format = mime_type(&bytes).filter(|_| in_time);
     match format {
-        None => document.warn(format!("{}: its format is not recognised", image.place)),
+        None if in_time => document.warn(format!("{}: its format is not recognised", image.place)),
+        None => {}
         Some(format) => {
             let declared = image.text("mimeType").ok().flatten().or_else(|| declared_by_data(image));
             if let Some(declared) = declared.filter(|&declared| declared != format) {

@@ -246,7 +246,7 @@ impl<'a> MeshCheck<'a> {
             self.warn(&place, "indices must be SCALAR unsigned integers");
         }
         let Ok(accessor) = Accessor::open(self.document, index, &place) else { return };
-        if accessor.shape.components() == 1 {
+        if accessor.shape.components() == 1 && accessor.has_data() {
             vertex_data::check_indices(self.document, &place, &accessor, count.unwrap_or(u64::MAX));
         }
     }

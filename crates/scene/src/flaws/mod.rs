@@ -14,6 +14,7 @@ mod vertex_data;
 
 use crate::document::Document;
 use crate::extension;
+use std::collections::BTreeSet;
 
 /// Warns of everything that is out of order.
 pub(crate) fn check(document: &Document<'_>) {
@@ -42,15 +43,13 @@ fn versions_and_extensions(document: &Document<'_>) {
     {
         document.warn("/asset/minVersion: is greater than the version");
     }
-    let used = extension::names(document, "extensionsUsed");
-    let required = extension::names(document, "extensionsRequired");
-    for name in &required {
-        if !used.contains(name) {
-            document.warn(format!("/extensionsRequired: {name} is not in extensionsUsed"));
-        }
+    let names = |key| extension::names(document, key).into_iter().collect::<BTreeSet<String>>();
+    let (used, required) = (names("extensionsUsed"), names("extensionsRequired"));
+    for name in required.difference(&used) {
+        document.warn(format!("/extensionsRequired: {name} is not in extensionsUsed"));
     }
     const QUANTIZATION: &str = "KHR_mesh_quantization";
-    if used.iter().any(|name| name == QUANTIZATION) && !required.iter().any(|name| name == QUANTIZATION) {
+    if used.contains(QUANTIZATION) && !required.contains(QUANTIZATION) {
         document.warn(format!("/extensionsUsed: {QUANTIZATION} must be required too"));
     }
 }

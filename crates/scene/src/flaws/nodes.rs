@@ -4,6 +4,7 @@ use crate::accessor::{Accessor, Component};
 use crate::document::Document;
 use crate::json_object::Object;
 use glam::DMat4;
+use std::collections::HashMap;
 
 pub(super) fn check(document: &Document<'_>) {
     let nodes: Vec<Option<Object<'_>>> =
@@ -123,28 +124,7 @@ fn mesh_and_skin(document: &Document<'_>, node: &Object<'_>) {
 fn skin(document: &Document<'_>, index: usize, parents: &[Option<usize>]) {
     let Ok(skin) = document.item("skins", index, "") else { return };
     let joints = skin.indices("joints").unwrap_or_default();
-    let ancestors = |mut node: usize| {
-        let mut path = vec![node];
-        // A loop would go on for ever.
-        while let Some(parent) = parents.get(node).copied().flatten().filter(|_| path.len() <= parents.len())
-        {
-            path.push(parent);
-            node = parent;
-        }
-        path
-    };
-    let common = match joints.split_first() {
-        Some((&first, others)) => {
-            let mut common = ancestors(first);
-            // Enough to tell; long skins in deep hierarchies would take quadratic time.
-            for &joint in others.iter().take(256) {
-                let path = ancestors(joint);
-                common.retain(|node| path.contains(node));
-            }
-            common
-        }
-        None => return,
-    };
+    let Some(common) = common_ancestors(document, &joints, parents) else { return };
     if common.is_empty() {
         document.warn(format!("{}/joints: have no common root", skin.place));
     } else if let Ok(Some(skeleton)) = skin.index("skeleton")
@@ -166,6 +146,28 @@ fn skin(document: &Document<'_>, index: usize, parents: &[Option<usize>]) {
     if let Some(i) = wrong {
         document.warn(format!("{place}: the last row of matrix {i} is not 0, 0, 0, 1"));
     }
+}
+
+/// The nodes above all joints, or joints themselves; nothing if it takes too long to tell.
+fn common_ancestors(
+    document: &Document<'_>,
+    joints: &[usize],
+    parents: &[Option<usize>],
+) -> Option<Vec<usize>> {
+    let mut below: HashMap<usize, usize> = HashMap::new();
+    for &joint in joints {
+        let (mut node, mut steps) = (Some(joint), 0);
+        // A loop would go on for ever.
+        while let Some(here) = node.filter(|_| steps <= parents.len()) {
+            if !document.budget.check(16) {
+                return None;
+            }
+            *below.entry(here).or_default() += 1;
+            steps += 1;
+            node = parents.get(here).copied().flatten();
+        }
+    }
+    Some(below.into_iter().filter(|&(_, count)| count >= joints.len()).map(|(node, _)| node).collect())
 }
 
 fn camera(document: &Document<'_>, index: usize) {

@@ -5,16 +5,18 @@ use crate::document::Document;
 use crate::extension;
 use crate::json_object::integer;
 use serde_json::{Map, Value};
+use std::collections::HashSet;
 
 /// Warns of every property that is missing, of the wrong type, out of its range or refers to nothing.
 pub(super) fn check(document: &Document<'_>) {
-    let walk = Walk { document, declared: extension::names(document, "extensionsUsed") };
+    let walk =
+        Walk { document, declared: extension::names(document, "extensionsUsed").into_iter().collect() };
     walk.object(document.value(), &ROOT, String::new());
 }
 
 struct Walk<'a> {
     document: &'a Document<'a>,
-    declared: Vec<String>,
+    declared: HashSet<String>,
 }
 
 impl Walk<'_> {

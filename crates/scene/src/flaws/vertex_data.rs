@@ -14,7 +14,7 @@ fn length_tolerance(component: Component) -> f64 {
 
 /// Unit vectors must be of length 1, signs ±1, colours in [0, 1].
 pub(super) fn check(document: &Document<'_>, place: &str, name: &str, accessor: &Accessor<'_>) {
-    if document.budget.work(4 * accessor.count as u64, place).is_err() {
+    if !document.budget.check(4 * accessor.count) {
         return;
     }
     let components = accessor.shape.components();
@@ -49,7 +49,7 @@ pub(super) fn check(document: &Document<'_>, place: &str, name: &str, accessor: 
 
 /// Indices must exist, and the highest number of their type must not occur: it restarts a primitive.
 pub(super) fn check_indices(document: &Document<'_>, place: &str, indices: &Accessor<'_>, count: u64) {
-    if document.budget.work(indices.count as u64, place).is_err() {
+    if !document.budget.check(indices.count) {
         return;
     }
     let restart = match indices.component {
@@ -70,12 +70,12 @@ pub(super) fn check_weights(document: &Document<'_>, attributes: &Object<'_>) {
     let open = |name: String| {
         let place = format!("{}/{name}", attributes.place);
         let accessor = Accessor::open(document, attributes.index(&name).ok()??, &place).ok()?;
-        accessor.expect_components(&[4], &name).ok()
+        accessor.expect_components(&[4], &name).ok().filter(Accessor::has_data)
     };
     let sets = |base: &str| (0..4).map_while(|set| open(format!("{base}_{set}"))).collect::<Vec<_>>();
     let (joints, weights) = (sets("JOINTS"), sets("WEIGHTS"));
     let Some(count) = weights.iter().chain(&joints).map(|accessor| accessor.count).min() else { return };
-    if document.budget.work(8 * (count * weights.len()) as u64, &attributes.place).is_err() {
+    if !document.budget.check(count.saturating_mul(32 * weights.len())) {
         return;
     }
     // As the Khronos validator: 1/255 a weight of quantised ones is too strict for floats.
