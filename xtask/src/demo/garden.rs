@@ -162,10 +162,10 @@ pub fn hills() -> Object {
         Skin { glow: haze, ..Skin::matt(place, Vec3::ZERO) }
     });
     let surface = Surface::grid(40, 3, [80, 4], look, |u, v| {
-        let x = -5.6 + 11.2 * u;
+        let x = -4.3 + 8.6 * u;
         let crest =
             0.40 + 0.40 * noise(Vec3::new(u * 4.0, 3.3, 0.0)) + 0.12 * noise(Vec3::new(u * 17.0, 1.0, 0.0));
-        Vec3::new(x, -0.1 + (crest + 0.1) * v, -7.75)
+        Vec3::new(x, 0.2 + (crest - 0.2) * v, -7.75)
     });
     Object::baked("hills", vec![surface])
 }
@@ -181,9 +181,9 @@ pub fn backdrop(view: &View) -> Object {
             * (1.0 - direction.y * 1.8).clamp(0.0, 1.0);
         Skin { glow: sky(direction) + cloud, ..Skin::matt(place, Vec3::ZERO) }
     });
-    let surface = Surface::grid(25, 9, [150, 90], look, |u, v| {
-        let angle = (u - 0.5) * 1.5;
-        Vec3::new(8.0 * angle.sin(), -0.4 + 4.2 * v, -8.0 * angle.cos())
+    let surface = Surface::grid(25, 9, [150, 64], look, |u, v| {
+        let angle = (u - 0.5) * 1.12;
+        Vec3::new(8.0 * angle.sin(), 0.25 + 1.95 * v, -8.0 * angle.cos())
     });
     Object::baked("sky", vec![surface])
 }

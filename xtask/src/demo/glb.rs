@@ -25,7 +25,7 @@ pub fn glb(objects: &[Object], sheet: &Sheet, texture: &[u8], view: &View) -> Re
                 let slot = &mut renamed[corner as usize];
                 if *slot == u32::MAX {
                     *slot = positions.len() as u32;
-                    positions.push(surface.points[corner as usize]);
+                    positions.push(view.staged(surface.points[corner as usize]));
                     uvs.push(sheet.texture_uv(block, surface.uv_of(corner as usize)));
                 }
                 indices.push(*slot);

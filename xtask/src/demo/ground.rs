@@ -6,7 +6,7 @@ use glam::{Vec2, Vec3};
 use std::sync::Arc;
 
 /// Nearest and farthest depth.
-const DEPTHS: [f32; 2] = [0.2, 8.0];
+const DEPTHS: [f32; 2] = [0.2, 7.4];
 /// Length and width of a sett.
 const SETT: [f32; 2] = [0.105, 0.080];
 /// How far the path reaches to either side of its middle.
@@ -34,7 +34,7 @@ pub fn ground() -> Object {
     });
     let surface = Surface::grid(104, 136, [720, 512], look, |u, v| {
         let depth = DEPTHS[0] * (DEPTHS[1] / DEPTHS[0]).powf(v);
-        let half_width = 0.12 + 0.62 * depth;
+        let half_width = 0.08 + 0.53 * depth;
         let x = (2.0 * u - 1.0) * half_width;
         Vec3::new(x, height(x, -depth), -depth)
     });

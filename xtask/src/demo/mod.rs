@@ -5,6 +5,8 @@
 //! painted focus keeps two more things sharp that no lens could: a butterfly on the fence, close to the lens, and the
 //! tower at the end of the garden.
 //!
+//! It is built like a stage set: see [`view::View::staged`]. The light falls in the garden as it is meant to be.
+//!
 //! Everything is unlit: the light is baked into one texture (the *light sheet*), in which every surface has a block
 //! of its own; its texture coordinates therefore serve as an atlas as they are.
 
@@ -161,5 +163,18 @@ mod tests {
         let seen = camera_from_world.transform_point3(view.at(0.5, -0.25, 3.0));
         let tan = (view.yfov / 2.0).tan();
         assert!(seen.distance(Vec3::new(0.5 * tan * 3.0, -0.25 * tan * 3.0, -3.0)) < 1e-5, "{seen}");
+    }
+
+    #[test]
+    fn staging_changes_nothing_for_the_eye() {
+        let view = View::default();
+        for depth in [0.4, 1.0, 1.5, 7.0] {
+            let point = view.at(0.7, 0.3, depth);
+            let (before, after) =
+                ((point - view.eye).normalize(), (view.staged(point) - view.eye).normalize());
+            assert!(before.distance(after) < 1e-5);
+            assert!((depth > 1.0) == (view.staged(point) != point));
+        }
+        assert!(view.eye.distance(view.staged(view.at(0.0, 0.0, 1e6))) < 1.0 / 0.3 + 1e-3);
     }
 }

@@ -18,14 +18,14 @@ pub struct View {
 }
 
 impl Default for View {
-    /// A 47 mm lens at about f/1.3, close up and low.
+    /// A 47 mm lens at about f/1.1, close up and low.
     fn default() -> Self {
         Self {
             eye: Vec3::new(0.0, 0.205, 0.0),
             pitch: -0.045,
             yfov: 0.5,
             focus_distance: 0.72,
-            aperture_radius: 0.0175,
+            aperture_radius: 0.0205,
         }
     }
 }
@@ -49,6 +49,20 @@ impl View {
     /// The point of the ground (y = 0) below [`Self::at`].
     pub fn ground(&self, x: f32, depth: f32) -> Vec3 {
         self.at(x, 0.0, depth).with_y(0.0)
+    }
+
+    /// Forced perspective, as on a stage: moves a point along its line of sight so that what lies beyond a metre is
+    /// squeezed into 3.3 m. From the eye nothing changes; but the far things shrink, and no longer take the
+    /// atlas's texels from the near ones.
+    ///
+    /// 1/depth becomes F + (1 − F)/depth with F = 0.3, a projective map: straight lines stay straight.
+    pub fn staged(&self, point: Vec3) -> Vec3 {
+        const FLATTENING: f32 = 0.3;
+        let depth = (self.rotation() * Vec3::NEG_Z).dot(point - self.eye);
+        if depth <= 1.0 {
+            return point;
+        }
+        self.eye + (point - self.eye) / (FLATTENING * depth + 1.0 - FLATTENING)
     }
 
     /// The camera file.
