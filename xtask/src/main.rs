@@ -29,7 +29,7 @@ usage: cargo xtask CHORE
 
 /// Rays a texel for `demo`: the one argument it takes, for drafts.
 fn sky_rays(arguments: &[std::ffi::OsString]) -> usize {
-    arguments.first().and_then(|a| a.to_str()?.parse().ok()).unwrap_or(96)
+    arguments.first().and_then(|a| a.to_str()?.parse().ok()).unwrap_or(80)
 }
 
 fn main() -> std::process::ExitCode {
