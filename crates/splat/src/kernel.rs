@@ -19,10 +19,21 @@ pub struct Kernel {
 }
 
 /// The aperture in rows, in units of the lens's own radius.
+///
+/// Rows are boxes, and few of them spread more, or less, than the shape they stand for; stretched about their mean they
+/// have its variance. So where neighbouring samples take different levels, no light is moved to or from between them.
 struct Level {
     rows: Vec<ApertureRow>,
     open_area: f64,
+    mean: DVec2,
+    stretch: DVec2,
 }
+
+/// A smaller change of weight over the aperture, as a share of it, is not followed.
+const SMALLEST_CHANGE: f64 = 0.005;
+
+/// Splats of a smaller diameter, px, are a box.
+const SMALLEST_CUT_PX: f64 = 0.75;
 
 /// A piece of the aperture: a rectangle in [−1, 1]² and its share of the open area.
 #[derive(Clone, Copy, Debug)]
@@ -35,6 +46,32 @@ pub struct Piece {
     pub share: f64,
 }
 
+/// The weight of a sample over the aperture: max(0, `at_center` + `gradient`·u).
+#[derive(Clone, Copy, Debug)]
+pub struct LinearWeight {
+    /// w toward the aperture's centre.
+    pub at_center: f64,
+    /// ∂w/∂u.
+    pub gradient: DVec2,
+}
+
+impl LinearWeight {
+    fn at(self, u: DVec2) -> f64 {
+        (self.at_center + self.gradient.dot(u)).max(0.0)
+    }
+
+    /// A piece with the weight in its share, and its centre moved to where the weighted light of the piece is.
+    fn applied_to(self, piece: Piece) -> Piece {
+        let weight = self.at(piece.center);
+        if weight <= 0.0 {
+            return Piece { share: 0.0, ..piece };
+        }
+        let shift = piece.half_size.powf(2.0) / 3.0 * self.gradient / weight;
+        let center = piece.center + shift.clamp(-piece.half_size, piece.half_size);
+        Piece { center, share: piece.share * weight, ..piece }
+    }
+}
+
 impl Kernel {
     /// Cells a side of the finest visibility.
     const CELLS: usize = 16;
@@ -43,29 +80,30 @@ impl Kernel {
 
     /// Cuts `aperture`, whose radius is `stop` ≤ 1 of the baked one.
     pub fn new(aperture: &Aperture, stop: f64) -> Self {
-        let level = |level: usize| {
-            let rows = aperture.rows(1 << level);
-            Level { open_area: rows.open_area(), rows: rows.rows }
-        };
-        let levels: Vec<_> = (0..=Self::FINEST).map(level).collect();
-        let (mean, deviation) = levels[Self::FINEST].moments(stop);
+        let mut levels: Vec<_> = (0..=Self::FINEST).map(|level| Level::new(aperture, 1 << level)).collect();
+        let (mean, deviation) = levels[Self::FINEST].moments();
+        levels.iter_mut().for_each(|level| level.match_moments(deviation));
         let cells = levels[Self::FINEST].cell_shares(stop, Self::CELLS);
-        Self { stop, levels, mean, deviation, cells }
+        Self { stop, levels, mean: mean * stop, deviation: deviation * stop, cells }
     }
 
-    /// The pieces of the whole aperture for a splat of signed radius `radius_px` (of the baked aperture).
-    ///
-    /// Along a row a piece is at most `longest` wide in units of the lens's radius, so that a weight that changes over
-    /// the aperture can be followed.
-    pub fn pieces(&self, radius_px: f64, longest: f64, mut emit: impl FnMut(Piece)) {
+    /// The pieces of the whole aperture, times the linear `weight` of the aperture point, for a splat of signed radius
+    /// `radius_px` (of the baked aperture).
+    pub fn pieces(&self, radius_px: f64, weight: LinearWeight, mut emit: impl FnMut(Piece)) {
         let diameter = 2.0 * radius_px.abs() * self.stop;
-        if diameter < 1.0 {
+        let change = weight.gradient.abs().element_sum() * self.stop / weight.at_center;
+        let is_slanted = !(change < SMALLEST_CHANGE);
+        if diameter < SMALLEST_CUT_PX && !is_slanted {
             // A box of the same mean and variance.
-            emit(Piece { center: self.mean, half_size: self.deviation * 3f64.sqrt(), share: 1.0 });
-        } else {
-            let level = (diameter.log2() as usize).min(Self::FINEST);
-            self.levels[level].pieces(self.stop, longest, emit);
+            let piece = Piece { center: self.mean, half_size: self.deviation * 3f64.sqrt(), share: 1.0 };
+            emit(weight.applied_to(piece));
+            return;
         }
+        // Rows of half a pixel to a pixel; on a slanted surface at least four, in pieces no wider than they are high.
+        let fewest = if is_slanted { 2 } else { 1 };
+        let level = (diameter.log2().floor() as i32 + 1).clamp(fewest, Self::FINEST as i32) as usize;
+        let longest = if is_slanted { 0.5 } else { f64::INFINITY };
+        self.levels[level].pieces(self.stop, longest, |piece| emit(weight.applied_to(piece)));
     }
 
     /// The pieces that the cells of `words` let through, times `weight` of the aperture point, for a splat of signed
@@ -74,7 +112,7 @@ impl Kernel {
         &self,
         words: &[u64],
         radius_px: f64,
-        weight: impl Fn(DVec2) -> f64,
+        weight: LinearWeight,
         mut emit: impl FnMut(Piece),
     ) {
         let side = Visibility::side_of(words);
@@ -83,7 +121,7 @@ impl Kernel {
         let mut shares = [0.0; Self::CELLS];
         for row in 0..blocks {
             let shares = &mut shares[..blocks];
-            self.block_row(words, side, row, shares, &weight);
+            self.block_row(words, side, row, shares, weight);
             let mut column = 0;
             while column < blocks {
                 let share = shares[column];
@@ -99,14 +137,7 @@ impl Kernel {
     }
 
     /// The shares of one row of blocks: of `shares.len()` blocks a side, each the sum of its open cells.
-    fn block_row(
-        &self,
-        words: &[u64],
-        side: usize,
-        row: usize,
-        shares: &mut [f64],
-        weight: &impl Fn(DVec2) -> f64,
-    ) {
+    fn block_row(&self, words: &[u64], side: usize, row: usize, shares: &mut [f64], weight: LinearWeight) {
         let blocks = shares.len();
         let (cells_a_block, fine) = (side / blocks, Self::CELLS / side);
         shares.fill(0.0);
@@ -118,13 +149,20 @@ impl Kernel {
                     .map(|(v, u)| self.cells[v * Self::CELLS + u])
                     .sum();
                 let center = DVec2::new(cell_column as f64 + 0.5, cell_row as f64 + 0.5);
-                shares[cell_column / cells_a_block] += share * weight(center * (2.0 / side as f64) - 1.0);
+                shares[cell_column / cells_a_block] += share * weight.at(center * (2.0 / side as f64) - 1.0);
             }
         }
     }
 }
 
 impl Level {
+    fn new(aperture: &Aperture, rows: usize) -> Self {
+        let rows = aperture.rows(rows);
+        let open_area = rows.open_area();
+        Self { rows: rows.rows, open_area, mean: DVec2::ZERO, stretch: DVec2::ONE }
+    }
+
+    /// Pieces at most `longest` wide along their row.
     fn pieces(&self, stop: f64, longest: f64, mut emit: impl FnMut(Piece)) {
         let height = 2.0 / self.rows.len() as f64;
         for (i, row) in self.rows.iter().enumerate() {
@@ -134,9 +172,10 @@ impl Level {
                 let width = (run.end - run.start) / parts;
                 for part in 0..parts as usize {
                     let u = run.start + width * (part as f64 + 0.5);
+                    let center = self.mean + (DVec2::new(u, v) - self.mean) * self.stretch;
                     emit(Piece {
-                        center: DVec2::new(u, v) * stop,
-                        half_size: DVec2::new(width, height) / 2.0 * stop,
+                        center: center * stop,
+                        half_size: DVec2::new(width, height) / 2.0 * self.stretch * stop,
                         share: width * height * run.transmission / self.open_area,
                     });
                 }
@@ -144,10 +183,17 @@ impl Level {
         }
     }
 
+    /// Stretches the level to a given standard deviation.
+    fn match_moments(&mut self, wanted: DVec2) {
+        let (mean, deviation) = self.moments();
+        self.mean = mean;
+        self.stretch = wanted / deviation;
+    }
+
     /// Mean and standard deviation of the open area.
-    fn moments(&self, stop: f64) -> (DVec2, DVec2) {
+    fn moments(&self) -> (DVec2, DVec2) {
         let (mut mean, mut square) = (DVec2::ZERO, DVec2::ZERO);
-        self.pieces(stop, f64::INFINITY, |piece| {
+        self.pieces(1.0, f64::INFINITY, |piece| {
             mean += piece.center * piece.share;
             square += (piece.center.powf(2.0) + piece.half_size.powf(2.0) / 3.0) * piece.share;
         });
@@ -183,6 +229,8 @@ mod tests {
     use super::*;
     use lens::ApertureShape;
 
+    const ONE: LinearWeight = LinearWeight { at_center: 1.0, gradient: DVec2::ZERO };
+
     #[test]
     fn shares_sum_to_one_at_every_size() {
         let shapes = [
@@ -196,15 +244,33 @@ mod tests {
                 assert!((kernel.cells.iter().sum::<f64>() - 1.0).abs() < 1e-9);
                 for radius in [0.0, -0.3, 0.7, -5.0, 40.0, 900.0] {
                     let mut sum = 0.0;
-                    kernel.pieces(radius, 0.25, |piece| sum += piece.share);
+                    kernel.pieces(radius, ONE, |piece| sum += piece.share);
                     assert!((sum - 1.0).abs() < 1e-9);
                     for words in [&[u64::MAX; 1][..], &[u64::MAX; 4]] {
                         let mut sum = 0.0;
-                        kernel.visible_pieces(words, radius, |_| 1.0, |piece| sum += piece.share);
+                        kernel.visible_pieces(words, radius, ONE, |piece| sum += piece.share);
                         assert!((sum - 1.0).abs() < 1e-9, "{shape:?} {stop} {radius}");
                     }
                 }
             }
+        }
+    }
+
+    /// A tilted weight moves the splat's centre by ∂w/∂u·σ² and keeps its mass, at every size.
+    #[test]
+    fn moments_are_those_of_the_shape_at_every_size() {
+        let kernel = Kernel::new(&ApertureShape::Disc.into(), 1.0);
+        let weight = LinearWeight { at_center: 2.0, gradient: DVec2::new(0.4, -0.2) };
+        for radius in [0.3, 0.6, 1.3, 3.0, 20.0, 100.0] {
+            let (mut sum, mut mean, mut square) = (0.0, DVec2::ZERO, DVec2::ZERO);
+            kernel.pieces(radius, weight, |piece| {
+                sum += piece.share;
+                mean += piece.share * piece.center;
+                square += piece.share * (piece.center.powf(2.0) + piece.half_size.powf(2.0) / 3.0);
+            });
+            assert!((sum - 2.0).abs() < 1e-6, "{radius}: {sum}");
+            assert!(mean.distance(DVec2::new(0.1, -0.05)) < 2e-3, "{radius}: {mean}");
+            assert!((square / 2.0).distance(DVec2::splat(0.25)) < 6e-3, "{radius}: {square}");
         }
     }
 
@@ -214,15 +280,10 @@ mod tests {
         let right = [0xFF00_FF00_FF00_FF00u64; 4];
         for radius in [0.1, 3.0, 30.0] {
             let (mut sum, mut mean) = (0.0, DVec2::ZERO);
-            kernel.visible_pieces(
-                &right,
-                radius,
-                |_| 1.0,
-                |piece| {
-                    sum += piece.share;
-                    mean += piece.share * piece.center;
-                },
-            );
+            kernel.visible_pieces(&right, radius, ONE, |piece| {
+                sum += piece.share;
+                mean += piece.share * piece.center;
+            });
             assert!((sum - 0.5).abs() < 1e-3 && (radius < 1.0 || mean.x > 0.2), "{radius}: {sum} {mean}");
         }
     }

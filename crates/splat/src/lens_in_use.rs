@@ -17,6 +17,8 @@ pub struct SplatLens {
 pub struct Placed {
     /// Its defocus.
     pub kappa: f64,
+    /// How fast its defocus changes with its depth, as a share of the unpainted: ∂κ/∂(1/s − 1/z) = t·(1 − a).
+    pub depth_share: f64,
     /// Whether it is unpainted.
     pub is_standard: bool,
 }
@@ -35,17 +37,20 @@ impl SplatLens {
         if offset.is_standard() {
             self.standard(sample)
         } else {
-            Placed { kappa: self.optics.kappa(sample.inverse_depth as f64, offset), is_standard: false }
+            let kappa = self.optics.kappa(sample.inverse_depth as f64, offset);
+            Placed { kappa, depth_share: offset.t * (1.0 - offset.anchor), is_standard: false }
         }
     }
 
     /// Where the unpainted lens sends a sample.
     pub fn standard(&self, sample: &Sample) -> Placed {
-        Placed { kappa: self.optics.standard_kappa(sample.inverse_depth as f64), is_standard: true }
+        let kappa = self.optics.standard_kappa(sample.inverse_depth as f64);
+        Placed { kappa, depth_share: 1.0, is_standard: true }
     }
 
     /// The aperture image of a sample.
     pub fn image<'a>(&'a self, sample: &'a Sample, placed: Placed) -> ApertureImage<'a> {
-        ApertureImage { sample, kernel: &self.kernel, radius_px: self.optics.splat_radius_px(placed.kappa) }
+        let radius_px = self.optics.splat_radius_px(placed.kappa);
+        ApertureImage { sample, kernel: &self.kernel, radius_px, depth_share: placed.depth_share }
     }
 }
