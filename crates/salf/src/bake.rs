@@ -3,15 +3,16 @@
 //! 1. The pinhole picture is sampled, cell by cell ([`crate::layers`]): the nearest surfaces.
 //! 2. Their depths tell which of them may be partly occluded, and where hidden ones may show ([`crate::occluders`]).
 //! 3. Those, and only those, are asked what of the aperture they see ([`crate::visibility`]).
-//! 4. Surfaces edge-on to the aperture are sampled on the surface ([`crate::edge_on`]).
+//! 4. Surfaces edge-on to the aperture, and small bright ones, are sampled on the surface ([`crate::surface_patches`]).
 
 use crate::domain::{Cell, Domain};
-use crate::layers::{Group, trace_cell};
+use crate::layers::{Group, Layers, trace_cell};
 use crate::margin::{painted_margin_px, standard_margin_px};
 use crate::occluders::{Footprint, Occluders};
+use crate::placement::Placement;
 use crate::sample::{Salf, Sample, Visibility};
 use crate::view::View;
-use crate::{edge_on, visibility};
+use crate::{surface_patches, visibility};
 use glam::DVec2;
 use lens::{Camera, FocusOffset};
 use progress::{Cancelled, Progress, Stage};
@@ -47,7 +48,7 @@ struct Candidate {
 struct FirstLook {
     cell: Cell,
     depth_range: [f32; 2],
-    is_edge_on: bool,
+    has_gap: bool,
     candidates: Vec<Candidate>,
 }
 
@@ -62,9 +63,11 @@ pub fn bake(
     let view = View::new(camera);
     let margin = standard_margin_px(tracer.scene(), &view).max(options.margin_px);
     let domain = Domain::new(camera.width, camera.height, margin);
+    let placement = Placement::new(tracer.scene(), &view);
+    let baker = Baker { tracer, radiance, view: &view, placement: &placement };
 
     let first_looks = each_row(&domain.block_rows(), &Stage::new(progress, 0.0, 0.4), |cells| {
-        cells.iter().map(|&cell| first_look(tracer, radiance, &view, cell)).collect::<Vec<_>>()
+        cells.iter().map(|&cell| baker.first_look(cell)).collect::<Vec<_>>()
     })?;
     let depths = first_looks.iter().flatten().map(|look| (look.cell, look.depth_range));
     let occluders = Occluders::new(domain, view.radius_per_kappa_px, depths);
@@ -73,17 +76,15 @@ pub fn bake(
     let mut rows = each_row(&first_looks, &second, |looks| {
         let mut samples = Vec::new();
         for look in looks {
-            second_look(tracer, radiance, &view, &occluders, look, &mut samples);
+            baker.second_look(&occluders, look, &mut samples);
         }
         samples
     })?;
 
-    let triangles: Vec<u32> = (0..tracer.scene().triangles.len() as u32)
-        .filter(|&triangle| !view.faces_aperture(tracer.scene(), triangle))
-        .collect();
+    let triangles: Vec<u32> = placement.on_surface().collect();
     let chunks: Vec<_> = triangles.chunks(256).collect();
     rows.extend(each_row(&chunks, &Stage::new(progress, 0.95, 1.0), |chunk| {
-        let of = |&triangle: &u32| edge_on::samples(tracer, radiance, &view, &domain, triangle);
+        let of = |&triangle: &u32| surface_patches::samples(tracer, radiance, &view, &domain, triangle);
         chunk.iter().flat_map(of).collect()
     })?);
 
@@ -109,74 +110,72 @@ fn each_row<T: Sync, R: Send>(
         .collect()
 }
 
-fn first_look(tracer: &Tracer, radiance: &dyn Radiance, view: &View, cell: Cell) -> FirstLook {
-    let layers = trace_cell(tracer, view, cell, false);
-    let candidates = layers
-        .groups
-        .iter()
-        .map(|group| Candidate {
-            sample: group.sample(radiance, view, cell, Visibility::Open),
+/// What every cell is sampled with.
+struct Baker<'a> {
+    tracer: &'a Tracer,
+    radiance: &'a dyn Radiance,
+    view: &'a View<'a>,
+    placement: &'a Placement,
+}
+
+impl Baker<'_> {
+    fn layers(&self, cell: Cell, hidden: bool) -> Layers {
+        trace_cell(self.tracer, self.view, self.placement, cell, hidden)
+    }
+
+    fn first_look(&self, cell: Cell) -> FirstLook {
+        let layers = self.layers(cell, false);
+        let candidate = |group: &Group| Candidate {
+            sample: group.sample(self.radiance, self.view, cell, Visibility::Open),
             slope: group.slope,
-            has_nearer: layers.has_nearer(group, view.radius_per_kappa_px),
-        })
-        .collect();
-    FirstLook { cell, depth_range: layers.depth_range, is_edge_on: layers.is_edge_on, candidates }
-}
-
-fn second_look(
-    tracer: &Tracer,
-    radiance: &dyn Radiance,
-    view: &View,
-    occluders: &Occluders,
-    look: &FirstLook,
-    samples: &mut Vec<Sample>,
-) {
-    let cell = look.cell;
-    let may_occlude = |center: DVec2, inverse_depth: f64, slope: DVec2| {
-        occluders.may_occlude(&Footprint { center, cell, inverse_depth, slope })
-    };
-    let is_pinhole = view.optics.aperture_radius == 0.0;
-    let hidden = look.is_edge_on || occluders.may_reveal(cell, look.depth_range[0]);
-    if is_pinhole || !hidden {
-        let is_open = |candidate: &Candidate| {
-            let sample = &candidate.sample;
-            is_pinhole
-                || !candidate.has_nearer
-                    && !may_occlude(sample.center.as_dvec2(), sample.inverse_depth as f64, candidate.slope)
+            has_nearer: layers.has_nearer(group, self.view.radius_per_kappa_px),
         };
-        if look.candidates.iter().all(is_open) {
-            samples.extend(look.candidates.iter().map(|candidate| candidate.sample.clone()));
-            return;
+        let candidates = layers.groups.iter().map(candidate).collect();
+        FirstLook { cell, depth_range: layers.depth_range, has_gap: layers.has_gap, candidates }
+    }
+
+    fn second_look(&self, occluders: &Occluders, look: &FirstLook, samples: &mut Vec<Sample>) {
+        let cell = look.cell;
+        let may_occlude = |center: DVec2, inverse_depth: f64, slope: DVec2| {
+            occluders.may_occlude(&Footprint { center, cell, inverse_depth, slope })
+        };
+        let is_pinhole = self.view.optics.aperture_radius == 0.0;
+        let hidden = look.has_gap || occluders.may_reveal(cell, look.depth_range[0]);
+        if is_pinhole || !hidden {
+            let is_open = |candidate: &Candidate| {
+                let sample = &candidate.sample;
+                let (center, depth) = (sample.center.as_dvec2(), sample.inverse_depth as f64);
+                !candidate.has_nearer && !may_occlude(center, depth, candidate.slope)
+            };
+            if is_pinhole || look.candidates.iter().all(is_open) {
+                samples.extend(look.candidates.iter().map(|candidate| candidate.sample.clone()));
+                return;
+            }
+        }
+        let layers = self.layers(cell, hidden);
+        for (index, group) in layers.groups.iter().enumerate() {
+            let is_open = group.is_nearest
+                && !layers.has_nearer(group, self.view.radius_per_kappa_px)
+                && !may_occlude(group.center(cell), group.mean_inverse_depth(), group.slope);
+            let visibility = if is_open {
+                Some(Visibility::Open)
+            } else {
+                self.partial_visibility(cell, group, index as u32)
+            };
+            if let Some(visibility) = visibility {
+                samples.push(group.sample(self.radiance, self.view, cell, visibility));
+            }
         }
     }
-    let layers = trace_cell(tracer, view, cell, hidden);
-    for (index, group) in layers.groups.iter().enumerate() {
-        let is_open = group.is_nearest
-            && !layers.has_nearer(group, view.radius_per_kappa_px)
-            && !may_occlude(group.center(cell), group.mean_inverse_depth(), group.slope);
-        let visibility = if is_open {
-            Some(Visibility::Open)
-        } else {
-            partial_visibility(tracer, view, cell, group, index as u32)
-        };
-        if let Some(visibility) = visibility {
-            samples.push(group.sample(radiance, view, cell, visibility));
-        }
-    }
-}
 
-fn partial_visibility(
-    tracer: &Tracer,
-    view: &View,
-    cell: Cell,
-    group: &Group,
-    index: u32,
-) -> Option<Visibility> {
-    let corner = cell.corner.as_uvec2();
-    let seed = [corner.x, corner.y.wrapping_add(index << 16)];
-    if !group.is_nearest && visibility::is_hidden(tracer, view, &group.members, seed) {
-        return None;
+    fn partial_visibility(&self, cell: Cell, group: &Group, index: u32) -> Option<Visibility> {
+        let (tracer, view) = (self.tracer, self.view);
+        let corner = cell.corner.as_uvec2();
+        let seed = [corner.x, corner.y.wrapping_add(index << 16)];
+        if !group.is_nearest && visibility::is_hidden(tracer, view, &group.members, seed) {
+            return None;
+        }
+        let side = visibility::cells_a_side(view, group.mean_inverse_depth());
+        visibility::visibility(tracer, view, &group.members, side, seed, |_| true)
     }
-    let side = visibility::cells_a_side(view, group.mean_inverse_depth());
-    visibility::visibility(tracer, view, &group.members, side, seed, |_| true)
 }

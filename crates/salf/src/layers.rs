@@ -3,6 +3,7 @@
 use crate::domain::Cell;
 use crate::jitter::jitter;
 use crate::occluders::Occluders;
+use crate::placement::Placement;
 use crate::sample::{Sample, Visibility};
 use crate::view::View;
 use glam::{DVec2, Vec3};
@@ -45,13 +46,13 @@ pub struct Layers {
     pub groups: Vec<Group>,
     /// The largest and the smallest inverse depth among its nearest surfaces.
     pub depth_range: [f32; 2],
-    /// Whether a nearest surface is edge-on to the aperture and so not among the groups.
-    pub is_edge_on: bool,
+    /// Whether a nearest surface is sampled elsewhere and so not among the groups.
+    pub has_gap: bool,
 }
 
 /// Traces the chief rays of a cell: to the nearest surface, or, if `hidden`, through all of them.
-pub fn trace_cell(tracer: &Tracer, view: &View, cell: Cell, hidden: bool) -> Layers {
-    let mut layers = Layers { groups: Vec::new(), depth_range: [0.0, f32::INFINITY], is_edge_on: false };
+pub fn trace_cell(tracer: &Tracer, view: &View, placement: &Placement, cell: Cell, hidden: bool) -> Layers {
+    let mut layers = Layers { groups: Vec::new(), depth_range: [0.0, f32::INFINITY], has_gap: false };
     for sub_cell in 0..Cell::RAYS {
         let seed = cell.corner.as_uvec2();
         let [jx, jy, _] = jitter(seed.x, seed.y, sub_cell as u32);
@@ -67,12 +68,11 @@ pub fn trace_cell(tracer: &Tracer, view: &View, cell: Cell, hidden: bool) -> Lay
                 *far = far.min(inverse_depth as f32);
             }
             let member = Member { sub_cell, pixel, point, inverse_depth };
-            let is_sampled_here =
-                point.is_none_or(|point| view.faces_aperture(tracer.scene(), point.triangle));
+            let is_sampled_here = point.is_none_or(|point| !placement.is_on_surface(point.triangle));
             if is_sampled_here {
                 layers.add(tracer, view, member, layer == 0);
             } else if layer == 0 {
-                layers.is_edge_on = true;
+                layers.has_gap = true;
             }
             match hit {
                 Some(hit) if hidden => ray = Ray { t_min: hit.t, skip: Some(hit.point.triangle), ..ray },
@@ -158,7 +158,7 @@ impl Group {
         }
     }
 
-    /// Half the sides of a box with the spread of the group's sub-cells.
+    /// Half the sides of a box with the spread of the group's sub-cells, within the cell.
     fn half_size(&self, cell: Cell, center: DVec2) -> DVec2 {
         let side = cell.sub_side();
         let variance: DVec2 = self
@@ -168,7 +168,9 @@ impl Group {
             .sum::<DVec2>()
             / self.members.len() as f64;
         // A box of half side h has the variance h²/3.
-        (3.0 * variance + side * side / 4.0).map(f64::sqrt)
+        let low = cell.sub_corner(0);
+        let room = (center - low).min(low + cell.side as f64 - center);
+        (3.0 * variance + side * side / 4.0).map(f64::sqrt).min(room)
     }
 }
 

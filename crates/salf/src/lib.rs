@@ -3,18 +3,19 @@
 //!
 //! [`bake()`] samples every surface that some point of the aperture sees. Samples come from the pinhole picture
 //! where surfaces face the aperture (their footprints are the squares of the pixel grid, so that they tile the
-//! picture exactly), and from the surface itself where it is edge-on. A [`Sample`] knows its surface address, its
+//! picture exactly), and from the surface itself where it is edge-on, or small and bright. A [`Sample`] knows its surface address, its
 //! weight toward every aperture point, its radiance, and what of the aperture it sees ([`Visibility`]).
 
 mod bake;
 mod domain;
-mod edge_on;
 mod file;
 mod jitter;
 mod layers;
 mod margin;
 mod occluders;
+mod placement;
 mod sample;
+mod surface_patches;
 mod view;
 mod visibility;
 

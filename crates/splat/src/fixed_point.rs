@@ -1,17 +1,17 @@
 //! The integers that pictures are summed in.
 //!
 //! A sum of integers has no order: any number of threads, and adding and later subtracting, give the same bits. A
-//! radiance of 1 over a whole pixel is 2³⁰ quanta; i64 then holds pixels up to 2³³ ≈ 8.6e9, and a wall of 1e-3 spread
-//! over a circle of confusion of 150 px still deposits 60 quanta a pixel.
+//! radiance of 1 over a whole pixel is 2²⁸ quanta; i64 then holds pixels up to 2³⁵ ≈ 3.4e10, and a wall of 1e-3 spread
+//! over a circle of confusion of 150 px still deposits 15 quanta a pixel.
 
 /// Quanta of a pixel of value 1.
-pub const QUANTA: f64 = (1u64 << 30) as f64;
+pub const QUANTA: f64 = (1u64 << 28) as f64;
 
 /// The brightest sample, as radiance times footprint density: more would leave the range of [`quantise`].
-pub const BRIGHTEST: f64 = (1u64 << 20) as f64;
+pub const BRIGHTEST: f64 = (1u64 << 22) as f64;
 
 /// The largest pixel that is sure not to have wrapped, in units of 1.
-pub const LARGEST_PIXEL: f64 = (1u64 << 32) as f64;
+pub const LARGEST_PIXEL: f64 = (1u64 << 34) as f64;
 
 /// The nearest integer, ties to even, for |x| < 2⁵¹: adding 1.5·2⁵² leaves no room for a fraction.
 #[inline(always)]

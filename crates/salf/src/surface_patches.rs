@@ -1,8 +1,9 @@
-//! Surfaces that are nearly edge-on to the aperture, sampled on the surface itself.
+//! Samples placed on the surface itself.
 //!
 //! A triangle whose plane passes through or close by the aperture covers next to nothing of the pinhole picture, yet the
-//! rim of the aperture sees it: the weight |n·(P − U)|/|n·P| of pinhole samples has no bound there. Such triangles are
-//! cut into patches of about a pixel as the rim sees them, and each side of a patch is a sample.
+//! rim of the aperture sees it: the weight |n·(P − U)|/|n·P| of pinhole samples has no bound there. And a small lamp may
+//! lie between the pinhole's rays. Such triangles ([`crate::placement`]) are cut into patches of about a pixel, and each
+//! side of a patch is a sample.
 
 use crate::domain::Domain;
 use crate::jitter::jitter;
@@ -24,7 +25,27 @@ struct Piece {
     corners: [DVec3; 3],
 }
 
-/// The samples of one edge-on triangle.
+impl Piece {
+    /// The centroids of its four quarters, as barycentrics of the triangle.
+    fn quarters(&self) -> [DVec2; 4] {
+        let [a, b, c] = self.barycentric;
+        [a * 4.0 + b + c, a + b * 4.0 + c, a + b + c * 4.0, (a + b + c) * 2.0].map(|sum| sum / 6.0)
+    }
+
+    /// Half the sides of its box in the pinhole picture, px; as large as its largest weight, px², where it is edge-on.
+    fn half_size_px(&self, view: &View, largest_weight: f64) -> DVec2 {
+        const SMALLEST_PX: f64 = 0.03;
+        const LARGEST_PX: f64 = 8.0;
+        let pixels = self.corners.map(|p| view.camera.pixel_from_q(view.optics.chief(p)));
+        let low = pixels[0].min(pixels[1]).min(pixels[2]);
+        let high = pixels[0].max(pixels[1]).max(pixels[2]);
+        let half = ((high - low) / 2.0).max(DVec2::splat(SMALLEST_PX));
+        let enlarged = half * (largest_weight / (4.0 * half.x * half.y)).max(1.0).sqrt();
+        enlarged.min(DVec2::splat(LARGEST_PX))
+    }
+}
+
+/// The samples of one triangle.
 pub fn samples(
     tracer: &Tracer,
     radiance: &dyn Radiance,
@@ -75,15 +96,18 @@ fn patch(
     }
     let pixel = view.camera.pixel_from_q(optics.chief(position));
     let inverse_depth = 1.0 / position.z;
-    let member = Member { sub_cell: 0, pixel, point: Some(point), inverse_depth };
+    let members = piece.quarters().map(|barycentric| {
+        let point = SurfacePoint { barycentric, ..point };
+        Member { sub_cell: 0, pixel, point: Some(point), inverse_depth }
+    });
     let cells = visibility::cells_a_side(view, inverse_depth);
     let seed = [point.triangle, (jitter(point.barycentric.x.to_bits() as u32, 0, 0)[0] * 1e9) as u32];
     let is_on_side = |u: DVec2| weight + tilt.dot(u) > 0.0;
-    let visibility = visibility::visibility(tracer, view, &[member], cells, seed, is_on_side)?;
+    let visibility = visibility::visibility(tracer, view, &members, cells, seed, is_on_side)?;
     let rim = view.aperture_point(tilt.signum());
     Some(Sample {
         center: pixel.as_vec2(),
-        half_size: glam::Vec2::splat((largest.sqrt() / 2.0).max(0.125) as f32),
+        half_size: piece.half_size_px(view, largest).as_vec2(),
         inverse_depth: inverse_depth as f32,
         weight: weight as f32,
         tilt: tilt.as_vec2(),
