@@ -11,8 +11,9 @@ use trace::{Radiance, Tracer};
 /// How direct light is gathered.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct DirectLightOptions {
-    /// Shadow rays a shaded point toward emissive surfaces. Their noise is that of the picture where each surface point is
-    /// shaded once; where many points fall into a pixel, as in the ground truth, fewer will do.
+    /// Shadow rays a shaded point toward emissive surfaces. Their noise is that of the picture where each
+    /// surface point is shaded once; where many points fall into a pixel, as in the ground truth, fewer will
+    /// do.
     pub emitter_samples: u32,
 }
 
@@ -30,10 +31,11 @@ impl Default for DirectLightOptions {
 /// | emissive | the emitted radiance, on the front; on both sides if double sided |
 /// | any but unlit | + albedo/π · Σ irradiance · cosθ, on both sides |
 ///
-/// The sum runs over the punctual lights and the emissive surfaces, each with a shadow ray; ambient light adds albedo × its radiance.
-/// Light reflected more than once is not in it, nor is gloss: a metal's base colour, which glTF makes the colour of its
-/// reflection, stands in as its albedo, so that metals are not black. cosθ is that of the shading normal, on the side of
-/// the surface that faces the eye; light from the other side of the surface itself does not count.
+/// The sum runs over the punctual lights and the emissive surfaces, each with a shadow ray; ambient light
+/// adds albedo × its radiance. Light reflected more than once is not in it, nor is gloss: a metal's base
+/// colour, which glTF makes the colour of its reflection, stands in as its albedo, so that metals are not
+/// black. cosθ is that of the shading normal, on the side of the surface that faces the eye; light from the
+/// other side of the surface itself does not count.
 pub struct DirectLight {
     tracer: Arc<Tracer>,
     background: Vec3,

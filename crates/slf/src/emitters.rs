@@ -30,11 +30,13 @@ pub(crate) struct EmitterSample {
     pub position: DVec3,
     /// Unit direction toward it.
     pub from: DVec3,
-    /// Irradiance on a surface that faces it, were nothing in between; the mean over samples is that of all emitters.
+    /// Irradiance on a surface that faces it, were nothing in between; the mean over samples is that of all
+    /// emitters.
     pub irradiance: Vec3,
 }
 
-/// 1/g and 1/g² of the golden ratio's generalisation g³ = g + 1: steps of a low-discrepancy sequence (Roberts 2018).
+/// 1/g and 1/g² of the golden ratio's generalisation g³ = g + 1: steps of a low-discrepancy sequence (Roberts
+/// 2018).
 const STEPS: [f64; 2] = [0.754_877_666_246_692_8, 0.569_840_290_998_053_3];
 
 impl Emitters {
@@ -71,8 +73,9 @@ impl Emitters {
         self.triangles.is_empty()
     }
 
-    /// `count` places on the emitters for a surface point, stratified over all emitters' power and well spread on each.
-    /// Deterministic: the same for the same point. Places that send nothing to the point are left out, so divide by `count`.
+    /// `count` places on the emitters for a surface point, stratified over all emitters' power and well
+    /// spread on each. Deterministic: the same for the same point. Places that send nothing to the point are
+    /// left out, so divide by `count`.
     pub fn samples<'a>(
         &'a self,
         scene: &'a Scene,
@@ -103,8 +106,8 @@ impl Emitters {
     }
 }
 
-/// The mean luminance that a triangle emits. A hundredth of its peak is added, so that no lit texel has probability 0
-/// just because the few texels looked at here are dark.
+/// The mean luminance that a triangle emits. A hundredth of its peak is added, so that no lit texel has
+/// probability 0 just because the few texels looked at here are dark.
 fn mean_emission(scene: &Scene, triangle: u32) -> f64 {
     const SIDE: u32 = 8;
     let luminance = |rgb: Vec3| f64::from(rgb.dot(Vec3::new(0.2126, 0.7152, 0.0722)));

@@ -14,8 +14,8 @@ pub(crate) struct Arrival {
     pub irradiance: Vec3,
 }
 
-/// What arrives of `light` at `position`; `None` if nothing does, or if it is ambient. `beyond` is a distance that leads
-/// out of the scene from anywhere in it: where directional light comes from.
+/// What arrives of `light` at `position`; `None` if nothing does, or if it is ambient. `beyond` is a distance
+/// that leads out of the scene from anywhere in it: where directional light comes from.
 ///
 /// | kind | irradiance |
 /// | --- | --- |

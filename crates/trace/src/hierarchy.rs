@@ -1,6 +1,7 @@
 //! A hierarchy of boxes, four to a node, and the walk of a ray through it.
 //!
-//! The binary tree comes from `obvhs` (PLOC with reinsertion); its nodes are joined by fours, so that one step tests four boxes side by side.
+//! The binary tree comes from `obvhs` (PLOC with reinsertion); its nodes are joined by fours, so that one
+//! step tests four boxes side by side.
 
 use crate::local_space::{FAR_STRETCH, LocalRay};
 use glam::Vec4;
@@ -10,7 +11,8 @@ use obvhs::bvh2::Bvh2;
 use obvhs::bvh2::builder::build_bvh2;
 use std::ops::Range;
 
-/// Where the stack of a walk lives without allocating; deeper trees than any but the most contrived need more.
+/// Where the stack of a walk lives without allocating; deeper trees than any but the most contrived need
+/// more.
 const SHALLOW_STACK: usize = 96;
 
 /// Boxes over items that are numbered in the order of the leaves.
@@ -24,7 +26,8 @@ pub(crate) struct Hierarchy {
 /// Four boxes and what they hold.
 #[derive(Clone, Copy, Debug)]
 struct Node {
-    /// By axis, the low and high sides of the four boxes. An absent child has a box turned inside out, which nothing meets.
+    /// By axis, the low and high sides of the four boxes. An absent child has a box turned inside out, which
+    /// nothing meets.
     sides: [[Vec4; 2]; 3],
     /// A node, or the first item of a leaf.
     first: [u32; 4],
@@ -140,7 +143,8 @@ struct Joining<'a> {
 }
 
 impl Joining<'_> {
-    /// Fills `nodes` and `order`; returns the depth. Works off a list, not the call stack: trees can be as deep as they have items.
+    /// Fills `nodes` and `order`; returns the depth. Works off a list, not the call stack: trees can be as
+    /// deep as they have items.
     fn join(&mut self) -> usize {
         let mut deepest = 0;
         self.nodes.push(Node::EMPTY);
@@ -168,7 +172,8 @@ impl Joining<'_> {
         deepest
     }
 
-    /// Up to four descendants of a binary node: its children, the largest of them opened until there are four.
+    /// Up to four descendants of a binary node: its children, the largest of them opened until there are
+    /// four.
     fn four_under(&self, node: usize) -> Vec<usize> {
         let pair = |node: usize| {
             let first = self.binary.nodes[node].first_index as usize;

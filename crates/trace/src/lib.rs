@@ -1,8 +1,8 @@
 //! Rays: first hit, occlusion, and the ray-traced ground truth.
 //!
-//! [`Tracer`] answers what a ray meets. Its way: a ray enters the f32 space of the boxes (`local_space`), walks the tree
-//! (`hierarchy`), meets triangles in f64 (`watertight`) whose points may be cut away (`presence`). [`truth`] sums such
-//! rays to the picture that everything else is measured against.
+//! [`Tracer`] answers what a ray meets. Its way: a ray enters the f32 space of the boxes (`local_space`),
+//! walks the tree (`hierarchy`), meets triangles in f64 (`watertight`) whose points may be cut away
+//! (`presence`). [`truth`] sums such rays to the picture that everything else is measured against.
 
 mod hierarchy;
 mod local_space;

@@ -1,14 +1,16 @@
 //! The space of the box hierarchy, in f32, where no rounding makes a ray miss a box that it meets.
 //!
-//! Local coordinates are (world − centre of the scene)·2ᵏ so that the scene lies in [−1, 1]³: a scene far from the world's
-//! origin loses nothing. Three errors stand between the f64 ray and an f32 slab test, each met at its source:
+//! Local coordinates are (world − centre of the scene)·2ᵏ so that the scene lies in [−1, 1]³: a scene far
+//! from the world's origin loses nothing. Three errors stand between the f64 ray and an f32 slab test, each
+//! met at its source:
 //!
-//! * Boxes are rounded outward by one ulp, and by [`BOX_PAD`] for the rounding of the f64 triangle test itself
-//!   (a few 2⁻⁵³ of the distance to the ray's origin: enough for origins up to 10⁶ scene sizes away).
-//! * The ray's origin is kept twice an axis, rounded down and up; each plane is measured from the one that makes the slab longer.
-//!   An origin outside of the scene is first moved along the ray (in f64) to where the scene begins.
-//! * The reciprocal direction and the product with it are off by at most 4u relative, u = 2⁻²⁴: far ends are stretched
-//!   by [`FAR_STRETCH`] ≥ 1 + 8u.
+//! * Boxes are rounded outward by one ulp, and by [`BOX_PAD`] for the rounding of the f64 triangle test
+//!   itself (a few 2⁻⁵³ of the distance to the ray's origin: enough for origins up to 10⁶ scene sizes away).
+//! * The ray's origin is kept twice an axis, rounded down and up; each plane is measured from the one that
+//!   makes the slab longer. An origin outside of the scene is first moved along the ray (in f64) to where the
+//!   scene begins.
+//! * The reciprocal direction and the product with it are off by at most 4u relative, u = 2⁻²⁴: far ends are
+//!   stretched by [`FAR_STRETCH`] ≥ 1 + 8u.
 
 use crate::Ray;
 use glam::{DVec3, Vec3, Vec3A};
@@ -20,8 +22,8 @@ const BOX_PAD: f64 = 1.0 / (1u64 << 32) as f64;
 pub(crate) const FAR_STRETCH: f32 = 1.0 + 1.0 / (1u32 << 20) as f32;
 /// A ray that starts farther than this from the centre is moved to it: more than the √3 of the cube's corner.
 const SCENE_RADIUS: f64 = 2.0;
-/// Directions that hardly change along an axis (or not at all) count as changing by this share: 1e-18 of the scene's size, far below
-/// [`BOX_PAD`], and its reciprocal is finite.
+/// Directions that hardly change along an axis (or not at all) count as changing by this share: 1e-18 of the
+/// scene's size, far below [`BOX_PAD`], and its reciprocal is finite.
 const SMALLEST_SLOPE: f64 = 1e-18;
 
 /// World to local.

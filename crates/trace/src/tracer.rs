@@ -12,13 +12,15 @@ use std::sync::Arc;
 /// Answers what a ray meets.
 ///
 /// * Watertight: no ray passes between triangles that share an edge or a corner (the same f64 positions).
-/// * Deterministic: a hit depends on the ray and the scene alone. Of two triangles at equal t, the one with the lower
-///   index is hit.
-/// * Triangles without area, or with corners that are not finite, are never hit; rays whose direction is zero or not finite hit nothing.
-/// * Both sides of every triangle are met. Points that a material's opacity takes away are not (see [`scene::AlphaMode`]):
-///   under a mask a point is there where the opacity reaches the cutoff; under blending it is there *for a given ray* with the
-///   probability of its opacity, decided by a hash of the ray and the triangle, so that sums over many rays see the right
-///   transmittance and each ray still gives the same answer every time.
+/// * Deterministic: a hit depends on the ray and the scene alone. Of two triangles at equal t, the one with
+///   the lower index is hit.
+/// * Triangles without area, or with corners that are not finite, are never hit; rays whose direction is zero
+///   or not finite hit nothing.
+/// * Both sides of every triangle are met. Points that a material's opacity takes away are not (see
+///   [`scene::AlphaMode`]): under a mask a point is there where the opacity reaches the cutoff; under
+///   blending it is there *for a given ray* with the probability of its opacity, decided by a hash of the ray
+///   and the triangle, so that sums over many rays see the right transmittance and each ray still gives the
+///   same answer every time.
 pub struct Tracer {
     scene: Arc<Scene>,
     space: LocalSpace,
@@ -93,11 +95,11 @@ impl Tracer {
 
     /// Whether anything lies strictly between a surface point and the world position `eye`.
     ///
-    /// Free of self-intersection without an offset: the point's own triangle never occludes it, and neither does any triangle
-    /// in whose plane the point or `eye` lies to the precision of f64 (some 3e-15 of the coordinates), because a line that
-    /// starts in a plane does not meet it again. So neighbours that meet at the point's edge do not occlude it however
-    /// they are bent, and shells closer together than any fixed offset still occlude each other. `eye` may itself
-    /// be on a surface.
+    /// Free of self-intersection without an offset: the point's own triangle never occludes it, and neither
+    /// does any triangle in whose plane the point or `eye` lies to the precision of f64 (some 3e-15 of the
+    /// coordinates), because a line that starts in a plane does not meet it again. So neighbours that meet at
+    /// the point's edge do not occlude it however they are bent, and shells closer together than any fixed
+    /// offset still occlude each other. `eye` may itself be on a surface.
     pub fn occluded(&self, from: SurfacePoint, eye: DVec3) -> bool {
         let origin = from.position(&self.scene);
         let ray = Ray { origin, direction: eye - origin, t_min: 0.0, t_max: 1.0, skip: Some(from.triangle) };

@@ -1,27 +1,30 @@
 //! The ground truth: distributed ray tracing of the focus model.
 //!
-//! Every pixel of the frame and of a guard band around it sends rays through the aperture toward the focus plane, as any
-//! thin-lens camera does (Cook, Porter and Carpenter 1984). What a ray hits is then sent on to the sensor with the hit's own
-//! defocus κ: it lands not where it came from but
+//! Every pixel of the frame and of a guard band around it sends rays through the aperture toward the focus
+//! plane, as any thin-lens camera does (Cook, Porter and Carpenter 1984). What a ray hits is then sent on to
+//! the sensor with the hit's own defocus κ: it lands not where it came from but
 //!
 //! ```text
 //! p + (κ − κ_standard)·U/tanθ
 //! ```
 //!
-//! away, p the position it left the picture at (half-heights), U its aperture point, and adds its radiance to the pixel
-//! it lands in, 1/spp of it. The change of variables has no Jacobian of its own (p at fixed U moves with the surface), so
-//! energy is conserved, and a standard hit keeps its pixel exactly.
+//! away, p the position it left the picture at (half-heights), U its aperture point, and adds its radiance to
+//! the pixel it lands in, 1/spp of it. The change of variables has no Jacobian of its own (p at fixed U moves
+//! with the surface), so energy is conserved, and a standard hit keeps its pixel exactly.
 //!
-//! It shares the optics with the splat and nothing else. Sums are integers, so that any order and any number of
-//! threads gives the same bits (`sensor`); samples are the same low-discrepancy points in every pixel (`pixel_samples`); the guard
-//! band is as wide as probing rays say (`guard_band`).
+//! It shares the optics with the splat and nothing else. Sums are integers, so that any order and any number
+//! of threads gives the same bits (`sensor`); samples are the same low-discrepancy points in every pixel
+//! (`pixel_samples`); the guard band is as wide as probing rays say (`guard_band`). Small bright surfaces
+//! also send rays of their own (`bright_surfaces`).
 
+mod bright_surfaces;
 mod guard_band;
 mod pixel_samples;
 mod sample_ray;
 mod sensor;
 
 use crate::{Radiance, Tracer};
+use bright_surfaces::BrightSurfaces;
 use glam::{DVec2, Vec3};
 use lens::{Camera, FocusOffset, Picture};
 use pixel_samples::PixelSample;
@@ -52,8 +55,8 @@ const TILE_PX: i64 = 16;
 
 /// Renders `camera`'s picture of the scene in `tracer`, focused by `focus`.
 ///
-/// The camera must be valid. The picture is conserved radiance with its coverage; both are exact sums of the samples, the
-/// same for any number of threads.
+/// The camera must be valid. The picture is conserved radiance with its coverage; both are exact sums of the
+/// samples, the same for any number of threads.
 pub fn render(
     tracer: &Tracer,
     radiance: &dyn Radiance,
@@ -65,14 +68,18 @@ pub fn render(
     let rays = SampleRays::new(tracer, focus, camera);
     let guard_px = guard_band::width_px(&rays, progress)?;
     let samples = options.samples_per_pixel.max(1);
+    let bright = BrightSurfaces::find(&rays, radiance, samples, guard_px);
     let mut quantiser = Quantiser::for_samples(samples);
     loop {
         let sensor = Sensor::new(camera, quantiser);
         let batches = pixel_samples::batches(camera, samples, options.seed);
-        let count = batches.len() as f32;
+        let stages = (batches.len() + 1) as f32;
+        let stage = |k: usize| Stage::new(progress, k as f32 / stages, (k + 1) as f32 / stages);
+        bright.shine(&rays, radiance, &sensor, options.seed, &stage(0))?;
         for (k, batch) in batches.enumerate() {
-            let exposure = Exposure { rays: &rays, radiance, sensor: &sensor, samples: &batch };
-            exposure.expose(guard_px, &Stage::new(progress, k as f32 / count, (k + 1) as f32 / count))?;
+            let exposure =
+                Exposure { rays: &rays, radiance, bright: &bright, sensor: &sensor, samples: &batch };
+            exposure.expose(guard_px, &stage(k + 1))?;
         }
         match sensor.develop(samples) {
             Some(picture) => return Ok(picture),
@@ -86,6 +93,7 @@ pub fn render(
 struct Exposure<'a> {
     rays: &'a SampleRays<'a>,
     radiance: &'a dyn Radiance,
+    bright: &'a BrightSurfaces,
     sensor: &'a Sensor,
     samples: &'a [PixelSample],
 }
@@ -119,9 +127,9 @@ impl Exposure<'_> {
         let mut stays = sensor::Sum::default();
         for sample in self.samples {
             let from = corner + sample.within_px;
-            let sample = self.rays.trace(from, sample.u);
-            let Some(pixel) = self.sensor.pixel(from + sample.displacement_px) else { continue };
-            let light = self.sensor.quantise(self.light(&sample));
+            let found = self.rays.trace(from, sample.u);
+            let Some(pixel) = self.sensor.pixel(from + found.displacement_px) else { continue };
+            let light = self.sensor.quantise(self.light(&found, sample.u));
             if Some(pixel) == own {
                 stays.add(light);
             } else {
@@ -133,10 +141,13 @@ impl Exposure<'_> {
         }
     }
 
-    /// The radiance that a sample carries.
-    fn light(&self, sample: &sample_ray::Sample) -> Vec3 {
+    /// The radiance that a sample through the aperture point `u` carries.
+    fn light(&self, sample: &sample_ray::Sample, u: DVec2) -> Vec3 {
         match sample.point {
-            Some(point) => self.radiance.toward(point, sample.eye),
+            Some(point) => {
+                let share = self.bright.camera_share(self.rays, point, u);
+                self.radiance.toward(point, sample.eye) * share as f32
+            }
             None => self.radiance.from_infinity(sample.direction),
         }
     }

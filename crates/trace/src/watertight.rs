@@ -2,11 +2,11 @@
 //!
 //! Woop, Benthin and Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013. Corners are moved to the
 //! ray's origin and sheared so that the ray becomes the z axis; then the signs of three edge functions say
-//! whether the origin of that plane lies in the triangle. A corner's sheared position depends on the ray and the
-//! corner alone, an edge function fl(x₁y₂) − fl(y₁x₂) changes exactly its sign when its corners are swapped, and
-//! rounding is monotonic, so it never has the wrong sign (at worst it is 0, which counts as inside). Two triangles
-//! that share an edge therefore never both miss a ray that crosses it. This needs every product rounded by itself: no
-//! fused multiply-add.
+//! whether the origin of that plane lies in the triangle. A corner's sheared position depends on the ray and
+//! the corner alone, an edge function fl(x₁y₂) − fl(y₁x₂) changes exactly its sign when its corners are
+//! swapped, and rounding is monotonic, so it never has the wrong sign (at worst it is 0, which counts as
+//! inside). Two triangles that share an edge therefore never both miss a ray that crosses it. This needs
+//! every product rounded by itself: no fused multiply-add.
 
 use glam::{DVec2, DVec3};
 
@@ -43,7 +43,8 @@ impl ShearedRay {
         Self { origin, axes: [x, y, z], shear: [d[x] / d[z], d[y] / d[z], 1.0 / d[z]] }
     }
 
-    /// Where the ray's line, to both sides without end, crosses the triangle from either side; `None` beside it or edge-on.
+    /// Where the ray's line, to both sides without end, crosses the triangle from either side; `None` beside
+    /// it or edge-on.
     #[inline(always)]
     pub fn cross(&self, corners: &[DVec3; 3]) -> Option<Crossing> {
         let [x, y, z] = self.axes;
@@ -68,7 +69,8 @@ impl ShearedRay {
     }
 }
 
-/// Whether a triangle has an area: more than rounding makes of three corners on a line. Non-finite corners have none.
+/// Whether a triangle has an area: more than rounding makes of three corners on a line. Non-finite corners
+/// have none.
 pub(crate) fn has_area([a, b, c]: &[DVec3; 3]) -> bool {
     let (ab, ac, bc) = (b - a, c - a, c - b);
     let doubled_area = ab.cross(ac).length();
@@ -78,11 +80,11 @@ pub(crate) fn has_area([a, b, c]: &[DVec3; 3]) -> bool {
 
 /// Whether `point` lies in the triangle's plane as far as f64 can tell.
 ///
-/// With C the corner opposite the longest side, e and g the sides that meet there, n = e × g and r = P − C, the distance n·r/|n| is
-/// 0 within the rounding of P (a sum of three products, so off by up to 3u in each coordinate for coordinates
-/// up to m), of n (up to 8u·|e||g|) and of the sum itself. The bound 16u·(|n|₁·m + |e||g||r|), u = 2⁻⁵³, covers all of them: the
-/// plane of a well-shaped triangle is some 3e-15 of the coordinates thick. Taking the two shorter sides keeps it thin for
-/// long and narrow triangles too.
+/// With C the corner opposite the longest side, e and g the sides that meet there, n = e × g and r = P − C,
+/// the distance n·r/|n| is 0 within the rounding of P (a sum of three products, so off by up to 3u in each
+/// coordinate for coordinates up to m), of n (up to 8u·|e||g|) and of the sum itself. The bound 16u·(|n|₁·m +
+/// |e||g||r|), u = 2⁻⁵³, covers all of them: the plane of a well-shaped triangle is some 3e-15 of the
+/// coordinates thick. Taking the two shorter sides keeps it thin for long and narrow triangles too.
 pub(crate) fn in_plane(corners: &[DVec3; 3], point: DVec3) -> bool {
     let opposite = |k: usize| corners[(k + 1) % 3].distance_squared(corners[(k + 2) % 3]);
     let k =

@@ -170,7 +170,8 @@ fn emission_leaves_by_the_front() {
     }
 }
 
-/// The form factor of a parallel rectangle [0, a] × [0, b] at height c over a point (Siegel and Howell, configuration 5).
+/// The form factor of a parallel rectangle [0, a] × [0, b] at height c over a point (Siegel and Howell,
+/// configuration 5).
 fn corner_form_factor(a: f64, b: f64, c: f64) -> f64 {
     let (a, b) = (a / c, b / c);
     let (p, q) = ((1.0 + a * a).sqrt(), (1.0 + b * b).sqrt());

@@ -97,7 +97,8 @@ fn a_convex_mesh_does_not_occlude_itself() {
                 let point = SurfacePoint { triangle, barycentric: random.barycentric() };
                 let eye = offset + 4.0 * random.in_cube();
                 let origin = point.position(&scene);
-                // Down to rays that graze the triangle by 1e-9 rad, which those of the far-away scene cannot resolve.
+                // Down to rays that graze the triangle by 1e-9 rad, which those of the far-away scene cannot
+                // resolve.
                 let normal = scene.area_normal(triangle).normalize();
                 let smallest = if offset == DVec3::ZERO { 1e-9 } else { 1e-4 };
                 let graze = random.unit().powi(8).max(smallest);

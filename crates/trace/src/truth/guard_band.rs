@@ -14,12 +14,13 @@ const FIRST_BAND: f64 = 0.5;
 const WIDEST_BAND: f64 = 16.0;
 /// The band is this many times the farthest displacement that was seen.
 const SLACK: f64 = 1.05;
-/// 1/g, 1/g², 1/g³, 1/g⁴ of the four-dimensional golden ratio g⁵ = g + 1: steps of a low-discrepancy sequence (Roberts 2018).
+/// 1/g, 1/g², 1/g³, 1/g⁴ of the four-dimensional golden ratio g⁵ = g + 1: steps of a low-discrepancy sequence
+/// (Roberts 2018).
 const STEPS: [f64; 4] =
     [0.856_674_883_854_502_8, 0.733_891_856_627_126, 0.628_706_721_037_807_8, 0.538_597_257_223_61];
 
-/// The width of the guard band, px: found by sending rays from a band around the frame and doubling it until no ray that lands
-/// inside has come from near its rim. 0 if none is displaced.
+/// The width of the guard band, px: found by sending rays from a band around the frame and doubling it until
+/// no ray that lands inside has come from near its rim. 0 if none is displaced.
 pub(super) fn width_px(rays: &SampleRays, progress: &dyn Progress) -> Result<i64, Cancelled> {
     let half_height = rays.camera.height as f64 / 2.0;
     let mut band = FIRST_BAND;
@@ -36,7 +37,8 @@ pub(super) fn width_px(rays: &SampleRays, progress: &dyn Progress) -> Result<i64
     }
 }
 
-/// The largest displacement, along either axis, among rays that start at most `band_px` outside of the frame and land inside.
+/// The largest displacement, along either axis, among rays that start at most `band_px` outside of the frame
+/// and land inside.
 fn farthest_displacement(rays: &SampleRays, band_px: f64) -> f64 {
     let size = DVec2::new(rays.camera.width as f64, rays.camera.height as f64);
     let aperture = ApertureSampler::new(&rays.camera.aperture);

@@ -1,10 +1,11 @@
 //! The samples of a pixel: position within it and on the aperture.
 //!
-//! Every pixel uses the same ones. That matters where paint moves samples to other pixels: equal aperture points move all
-//! pixels' samples alike, so that where κ varies slowly each pixel gives and takes the same number, and the coverage is even by
-//! construction. Drawn apart, the samples that land in a pixel are a random draw from its neighbourhood, with the noise
-//! of one (measured: more than twice the samples for the same error). The price is that errors of neighbouring pixels are alike: at
-//! few samples they show as steps and repeated dots in place of grain.
+//! Every pixel uses the same ones. That matters where paint moves samples to other pixels: equal aperture
+//! points move all pixels' samples alike, so that where κ varies slowly each pixel gives and takes the same
+//! number, and the coverage is even by construction. Drawn apart, the samples that land in a pixel are a
+//! random draw from its neighbourhood, with the noise of one (measured: more than twice the samples for the
+//! same error). The price is that errors of neighbouring pixels are alike: at few samples they show as steps
+//! and repeated dots in place of grain.
 
 use glam::DVec2;
 use lens::{ApertureSampler, Camera};
@@ -19,10 +20,9 @@ pub(super) struct PixelSample {
 }
 
 /// Points of one Sobol' sequence: more are not defined.
-const LONGEST_SEQUENCE: u32 = 1 << 16;
+pub(super) const LONGEST_SEQUENCE: u32 = 1 << 16;
 
-/// The samples of each pixel, in batches that fit into memory: points of Owen-scrambled Sobol' sequences (Burley 2020) in four
-/// dimensions, a scramble for each batch.
+/// The samples of each pixel, in batches that fit into memory.
 pub(super) fn batches(
     camera: &Camera,
     samples: u32,
@@ -32,17 +32,24 @@ pub(super) fn batches(
     let radius = camera.aperture_radius;
     let count = samples.div_ceil(LONGEST_SEQUENCE);
     (0..count as usize).map(move |batch| {
-        let done = batch as u32 * LONGEST_SEQUENCE;
-        let scramble = mix(mix(seed) ^ batch as u32);
-        let point = |index| {
-            let [x, y, a, b] = sobol_burley::sample_4d(index, 0, scramble).map(f64::from);
-            PixelSample { within_px: DVec2::new(x, y), u: aperture.sample(a, b) * radius }
+        let rest = samples - batch as u32 * LONGEST_SEQUENCE;
+        let sample = |[x, y, a, b]: [f64; 4]| PixelSample {
+            within_px: DVec2::new(x, y),
+            u: aperture.sample(a, b) * radius,
         };
-        (0..LONGEST_SEQUENCE.min(samples - done)).map(point).collect()
+        points(rest.min(LONGEST_SEQUENCE), [seed, batch as u32, 0]).map(sample).collect()
     })
 }
 
-/// A bijective mix of 32 bits ("lowbias32", Wellons 2018), preceded by an addition so that 0 is mixed as well.
+/// The first `count` ≤ 2¹⁶ points of a Sobol' sequence over [0, 1)⁴, Owen-scrambled (Burley 2020) by a seed
+/// of three words.
+pub(super) fn points(count: u32, seed: [u32; 3]) -> impl Iterator<Item = [f64; 4]> {
+    let scramble = seed.into_iter().fold(0, |hash, word| mix(hash ^ word));
+    (0..count).map(move |index| sobol_burley::sample_4d(index, 0, scramble).map(f64::from))
+}
+
+/// A bijective mix of 32 bits ("lowbias32", Wellons 2018), preceded by an addition so that 0 is mixed as
+/// well.
 fn mix(x: u32) -> u32 {
     let x = x.wrapping_add(0x9e37_79b9);
     let x = (x ^ (x >> 16)).wrapping_mul(0x7feb_352d);

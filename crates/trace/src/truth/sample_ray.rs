@@ -7,10 +7,10 @@ use scene::{SurfaceField, SurfacePoint};
 
 /// Makes and traces the rays of a camera.
 pub(super) struct SampleRays<'a> {
-    tracer: &'a Tracer,
-    focus: &'a dyn SurfaceField<FocusOffset>,
+    pub tracer: &'a Tracer,
+    pub focus: &'a dyn SurfaceField<FocusOffset>,
     pub camera: &'a Camera,
-    optics: Optics,
+    pub optics: Optics,
 }
 
 /// What a ray found.

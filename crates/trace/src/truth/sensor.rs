@@ -18,8 +18,8 @@ const RADIANCE_BITS: i32 = 24;
 const COARSER_BITS: i32 = 24;
 
 impl Quantiser {
-    /// For `samples` samples a pixel of mean radiance up to 2²⁴: the step is 2⁻²⁸ at 1024 samples, and every further bit of radiance
-    /// that turns up costs a bit (see [`Self::coarser`]).
+    /// For `samples` samples a pixel of mean radiance up to 2²⁴: the step is 2⁻²⁸ at 1024 samples, and every
+    /// further bit of radiance that turns up costs a bit (see [`Self::coarser`]).
     pub fn for_samples(samples: u32) -> Self {
         let sample_bits = (u32::BITS - samples.leading_zeros()) as i32;
         Self { exponent: SUM_BITS - RADIANCE_BITS - sample_bits }
@@ -46,6 +46,11 @@ impl Sum {
     /// One sample.
     pub fn of(light: [i64; 3]) -> Self {
         Self { light, count: 1 }
+    }
+
+    /// Light that comes without a sample of the camera.
+    pub fn of_light(light: [i64; 3]) -> Self {
+        Self { light, count: 0 }
     }
 
     /// Adds one sample. Saturates, which [`Sensor::add`] then sees as overflow.
@@ -92,13 +97,20 @@ impl Sensor {
         inside.then(|| position.y as usize * self.width as usize + position.x as usize)
     }
 
+    /// Whether a position is in the frame or at most `band` px outside of it.
+    pub fn is_within(&self, position: DVec2, band: f64) -> bool {
+        let size = DVec2::new(f64::from(self.width), f64::from(self.height));
+        position.cmpge(DVec2::splat(-band)).all() && position.cmplt(size + band).all()
+    }
+
     /// The integers of a radiance. Negative or undefined channels are 0, infinite ones the largest f32.
     pub fn quantise(&self, radiance: Vec3) -> [i64; 3] {
         let scale = self.quantiser.scale();
         radiance.to_array().map(|c| (f64::from(c.clamp(0.0, f32::MAX)) * scale).round() as i64)
     }
 
-    /// Adds a sum to a pixel. All terms are 0 or more, so whether the total overflows does not depend on their order.
+    /// Adds a sum to a pixel. All terms are 0 or more, so whether the total overflows does not depend on
+    /// their order.
     pub fn add(&self, pixel: usize, sum: Sum) {
         let terms = [sum.light[0], sum.light[1], sum.light[2], sum.count];
         for (total, term) in self.pixels[pixel].iter().zip(terms) {

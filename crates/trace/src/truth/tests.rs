@@ -57,7 +57,8 @@ fn picture(scene: Arc<scene::Scene>, camera: &Camera, focus: FocusOffset, spp: u
     render(&tracer, &BaseColor(scene), &Uniform(focus), camera, &options, &Unwatched).unwrap()
 }
 
-/// Energy (px), centroid (px from the middle, y up) and radius (px) of the disc that has the picture's second moment.
+/// Energy (px), centroid (px from the middle, y up) and radius (px) of the disc that has the picture's second
+/// moment.
 fn moments(picture: &Picture) -> (f64, DVec2, f64) {
     let mut energy = 0.0;
     let (mut first, mut second) = (DVec2::ZERO, 0.0);
@@ -110,7 +111,8 @@ fn circles_of_confusion_have_their_radius_and_keep_their_energy() {
             // The second moments of the spot, a square, and of a pixel add to the disc's.
             let expected = (disc.powi(2) + (SPOT_PX.powi(2) + 1.0) / 3.0).sqrt();
             assert!((radius - expected).abs() < 0.3, "{focus:?} at {z}: {radius} px, expected {expected}");
-            // At random, 64 · 64 samples would hit the spot with a deviation of 1/64. The rays do not depend on the paint.
+            // At random, 64 · 64 samples would hit the spot with a deviation of 1/64. The rays do not depend
+            // on the paint.
             let relative = energy / SPOT_PX.powi(2);
             assert!((relative - 1.0).abs() < 3.0 / 64.0, "{focus:?} at {z}: {relative} of the energy");
             assert!((energy / *unpainted.get_or_insert(energy) - 1.0).abs() < 1e-6, "{focus:?} at {z}");
@@ -140,6 +142,57 @@ fn near_defocus_turns_the_aperture() {
 }
 
 #[test]
+fn a_tiny_bright_lamp_is_a_smooth_disc() {
+    let camera = camera();
+    let optics = camera.optics();
+    let z = 3.0;
+    let half = 0.25 * z * optics.tan_half_yfov / optics.half_height_px;
+    for (t, anchor) in [(0.8, 1.0), (1.2, 1.0)] {
+        let lamp = rectangle(DVec3::new(-half, -half, -z), DVec3::X * 2.0 * half, DVec3::Y * 2.0 * half);
+        let glow = scene::Material { base_color: glam::vec4(3e3, 3e3, 3e3, 1.0), ..WHITE };
+        let focus = FocusOffset::new(t, anchor);
+        let picture = picture(scene_of(&[(lamp, glow)]), &camera, focus, 64);
+        let radius = optics.splat_radius_px(optics.kappa(1.0 / z, focus)).abs();
+        let (energy, _, _) = moments(&picture);
+        let expected = 3e3 * 0.25;
+        assert!((energy / expected - 1.0).abs() < 0.01, "energy {energy}, expected {expected}");
+        // A quarter pixel's worth of surface, spread over the disc: 64 rays a pixel meet it 16 times in all.
+        let level = expected / (std::f64::consts::PI * radius.powi(2));
+        for (k, rgb) in picture.radiance.iter().enumerate() {
+            let (x, y) = ((k % 128) as f64 - 63.5, (k / 128) as f64 - 63.5);
+            if x.hypot(y) < radius - 2.0 {
+                let relative = f64::from(rgb[0]) / level;
+                assert!((relative - 1.0).abs() < 0.5, "{relative} of {level} at {x}, {y}");
+            }
+        }
+    }
+}
+
+#[test]
+fn bright_surfaces_brighten_nothing() {
+    // A half hidden bright wall, larger than its circle of confusion, partly outside of the frame: where it
+    // is found by both kinds of rays the sum is right, pixel by pixel.
+    let camera = Camera { width: 48, height: 32, ..camera() };
+    let wall = rectangle(DVec3::new(-0.1, -3.0, -4.0), DVec3::X * 5.0, DVec3::Y * 6.0);
+    let fence = rectangle(DVec3::new(0.1, -3.0, -2.0), DVec3::X * 0.1, DVec3::Y * 6.0);
+    let scene_with = |level: f32| {
+        let glow = scene::Material { base_color: glam::vec4(level, level, level, 1.0), ..WHITE };
+        scene_of(&[(wall.clone(), glow.clone()), (fence.clone(), glow)])
+    };
+    for focus in [FocusOffset::STANDARD, FocusOffset::new(0.95, 1.0), FocusOffset::new(1.03, 0.0)] {
+        let bright = picture(scene_with(5.0), &camera, focus, 256);
+        let white = picture(scene_with(1.0), &camera, focus, 256);
+        assert_eq!(bright.coverage, white.coverage);
+        let difference = |k: usize| f64::from(bright.radiance[k][0] / 5.0 - white.radiance[k][0]);
+        let pixels = 48 * 32;
+        let mean = (0..pixels).map(difference).sum::<f64>() / pixels as f64;
+        assert!(mean.abs() < 3e-3, "{mean} with {focus:?}");
+        let deviation = (0..pixels).map(|k| difference(k).powi(2)).sum::<f64>() / pixels as f64;
+        assert!(deviation.sqrt() < 0.03, "{} with {focus:?}", deviation.sqrt());
+    }
+}
+
+#[test]
 fn light_outside_of_the_frame_comes_in_by_its_circle_of_confusion() {
     let camera = camera();
     let z = 3.0;
@@ -162,7 +215,8 @@ fn the_guard_band_is_the_largest_displacement() {
     };
     assert_eq!(width(FocusOffset::STANDARD, &camera), 0);
     assert_eq!(width(FocusOffset::new(0.5, 1.0), &Camera { aperture_radius: 0.0, ..camera.clone() }), 0);
-    // t = 1 − x, a = 1: κ − κ_standard = −x/d − (1/s − 1/z), 1/z up to 1/5 over the shortest axial depth in view.
+    // t = 1 − x, a = 1: κ − κ_standard = −x/d − (1/s − 1/z), 1/z up to 1/5 over the shortest axial depth in
+    // view.
     let optics = camera.optics();
     for x in [0.02, 0.5] {
         let found = width(FocusOffset::new(1.0 - x, 1.0), &camera) as f64;
