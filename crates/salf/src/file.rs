@@ -45,7 +45,7 @@ pub struct SalfFile {
     /// How many triangles that scene has.
     pub triangles: u32,
     /// The light field.
-    pub salf: Salf,
+    pub salf: Arc<Salf>,
 }
 
 /// Why a `.salf` file cannot be used.
@@ -116,7 +116,7 @@ impl SalfFile {
         if found[..] != expected[..] {
             return Err(SalfFileError::Damaged("the checksum does not match".into()));
         }
-        Ok(Self { source, triangles, salf: Salf { camera, margin_px, samples } })
+        Ok(Self { source, triangles, salf: Arc::new(Salf { camera, margin_px, samples }) })
     }
 }
 
@@ -347,7 +347,7 @@ mod tests {
         let background =
             Sample { surface: None, visibility: Visibility::Open, inverse_depth: 0.0, ..on_surface.clone() };
         let salf = Salf { camera, margin_px: 32, samples: vec![on_surface, background] };
-        SalfFile { source: "garden.glb".into(), triangles: 7, salf }
+        SalfFile { source: "garden.glb".into(), triangles: 7, salf: Arc::new(salf) }
     }
 
     fn written(file: &SalfFile) -> Vec<u8> {

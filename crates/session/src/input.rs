@@ -142,7 +142,7 @@ impl Input {
                 format!("the scene it was baked from, {}, has changed since (bake again)", beside.display());
             return Err(SessionError::bad(path, what));
         }
-        Ok(Self { path: path.into(), camera: salf.camera.clone(), salf: Some(Arc::new(salf)), ..baked_from })
+        Ok(Self { path: path.into(), camera: salf.camera.clone(), salf: Some(salf), ..baked_from })
     }
 
     /// The camera to show it with. Where none is asked for: the project's, else the scene's first.

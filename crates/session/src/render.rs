@@ -2,7 +2,8 @@
 
 use crate::depth_blur::depth_blur;
 use crate::first_hits::FirstHits;
-use crate::{Aov, SessionError, Steps};
+use crate::preview::serves;
+use crate::{Aov, Input, SessionError, Steps};
 use focus::Focus;
 use glam::DVec3;
 use lens::{Camera, Picture};
@@ -56,6 +57,8 @@ pub struct Rendered {
     pub layers: Vec<Layer>,
     /// What it cost.
     pub cost: RenderCost,
+    /// What the picture lacks, a sentence each.
+    pub warnings: Vec<String>,
 }
 
 /// What a picture cost.
@@ -112,13 +115,15 @@ pub fn render(
     options: &RenderOptions,
     steps: &dyn Steps,
 ) -> Result<Rendered, SessionError> {
-    let mut cost = RenderCost::default();
     let start = Instant::now();
+    let mut cost = RenderCost::default();
     let picture = match options.renderer {
         Renderer::Splat => {
             let salf = bake(tracer, camera, focus, steps)?;
-            cost.bake_seconds = start.elapsed().as_secs_f64();
-            return render_salf(Arc::new(salf), Some(tracer), camera, focus, options, cost, steps);
+            let bake_seconds = start.elapsed().as_secs_f64();
+            let mut rendered = splat(Arc::new(salf), tracer, camera, focus, options, steps)?;
+            rendered.cost.bake_seconds = bake_seconds;
+            return Ok(rendered);
         }
         Renderer::Truth => {
             let samples_per_pixel = options.samples_per_pixel;
@@ -128,26 +133,72 @@ pub fn render(
         }
         Renderer::Blur => {
             let hits = first_hits(tracer, camera, focus, steps)?;
-            let picture = depth_blur(&hits, camera, &*steps.begin("blurring"))?;
-            cost.picture_seconds = start.elapsed().as_secs_f64();
-            let layers = layers(&options.aovs, &picture, Some(&hits), camera);
-            return Ok(Rendered { picture, layers, cost });
+            depth_blur(&hits, camera, &*steps.begin("blurring"))?
         }
     };
     cost.picture_seconds = start.elapsed().as_secs_f64();
-    finish(picture, Some(tracer), camera, focus, options, cost, steps)
+    finish(picture, tracer, camera, focus, options, cost, steps)
 }
 
-/// Renders a light field. Without a tracer, only the AOV of coverage can come along.
-pub fn render_salf(
-    salf: Arc<Salf>,
-    tracer: Option<&Arc<Tracer>>,
+/// Renders what was opened: a scene, a project, or (with the splat) a light field.
+pub fn render_input(
+    input: &Input,
     camera: &Camera,
     focus: &Focus,
     options: &RenderOptions,
-    mut cost: RenderCost,
     steps: &dyn Steps,
 ) -> Result<Rendered, SessionError> {
+    camera.validate().map_err(|error| SessionError::bad(&input.path, error))?;
+    let start = Instant::now();
+    let tracer = Arc::new(Tracer::new(input.scene.clone()));
+    let prepare_seconds = start.elapsed().as_secs_f64();
+    let mut rendered = match input.salf.as_ref().filter(|_| options.renderer == Renderer::Splat) {
+        None => render(&tracer, camera, focus, options, steps)?,
+        Some(salf) => {
+            if let Some(difference) = unlike(&salf.camera, camera) {
+                let what = format!("it was baked {difference} (bake it again for this camera)");
+                return Err(SessionError::bad(&input.path, what));
+            }
+            let mut rendered = splat(salf.clone(), &tracer, camera, focus, options, steps)?;
+            let needed = BakeOptions::for_focus(&tracer, camera, focus).margin_px;
+            if needed > salf.margin_px as f64 {
+                rendered.warnings.push(format!(
+                    "{}: paint spreads light from {needed:.0} px outside the frame, {} px were baked (bake it with --focus)",
+                    input.path.display(),
+                    salf.margin_px
+                ));
+            }
+            rendered
+        }
+    };
+    rendered.cost.prepare_seconds = prepare_seconds;
+    Ok(rendered)
+}
+
+/// What keeps a light field of `baked` from serving `camera`.
+fn unlike(baked: &Camera, camera: &Camera) -> Option<String> {
+    if serves(baked, camera) {
+        return None;
+    }
+    Some(if (baked.width, baked.height) != (camera.width, camera.height) {
+        format!("for {} × {} px, not {} × {}", baked.width, baked.height, camera.width, camera.height)
+    } else if camera.aperture_radius > baked.aperture_radius {
+        format!("for an aperture radius of {}, not {}", baked.aperture_radius, camera.aperture_radius)
+    } else {
+        "for another pose, angle of view, sensor or background".into()
+    })
+}
+
+/// Renders a light field.
+fn splat(
+    salf: Arc<Salf>,
+    tracer: &Arc<Tracer>,
+    camera: &Camera,
+    focus: &Focus,
+    options: &RenderOptions,
+    steps: &dyn Steps,
+) -> Result<Rendered, SessionError> {
+    let mut cost = RenderCost::default();
     cost.count(&salf);
     let start = Instant::now();
     let mut splatter = Splatter::new(salf);
@@ -159,21 +210,17 @@ pub fn render_salf(
 
 fn finish(
     picture: Picture,
-    tracer: Option<&Arc<Tracer>>,
+    tracer: &Arc<Tracer>,
     camera: &Camera,
     focus: &Focus,
     options: &RenderOptions,
     cost: RenderCost,
     steps: &dyn Steps,
 ) -> Result<Rendered, SessionError> {
-    let hits = match tracer {
-        Some(tracer) if options.aovs.iter().any(|aov| aov.needs_first_hits()) => {
-            Some(first_hits(tracer, camera, focus, steps)?)
-        }
-        _ => None,
-    };
+    let asks = options.aovs.iter().any(|aov| aov.needs_first_hits());
+    let hits = asks.then(|| first_hits(tracer, camera, focus, steps)).transpose()?;
     let layers = layers(&options.aovs, &picture, hits.as_ref(), camera);
-    Ok(Rendered { picture, layers, cost })
+    Ok(Rendered { picture, layers, cost, warnings: Vec::new() })
 }
 
 fn layers(aovs: &[Aov], picture: &Picture, hits: Option<&FirstHits>, camera: &Camera) -> Vec<Layer> {

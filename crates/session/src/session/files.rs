@@ -5,10 +5,9 @@ use crate::document::Document;
 use crate::error::file_name;
 use crate::render::{RenderOptions, Renderer, render};
 use crate::steps::JobSteps;
-use crate::{Aov, SessionError};
+use crate::{Aov, SessionError, write_unwrapped};
 use focus::{Focus, FocusMap};
 use project::{FocusFile, FocusMapFile, PictureOptions, write_focus_map, write_picture};
-use scene::SurfaceField;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -105,8 +104,10 @@ impl Session {
 
     pub(super) fn export_scene(&mut self, path: PathBuf) -> Result<(), SessionError> {
         let stage = self.opened()?.stage.clone();
-        let what = "unwrapped scenes cannot be written by this version";
-        Err(SessionError::bad(&path, format!("{what} ({} triangles)", stage.scene.triangles.len())))
+        self.start(format!("writing {}", file_name(&path)), move |_| {
+            write_unwrapped(&path, &stage.scene, &stage.atlas)?;
+            Ok(Outcome::Written(path, Vec::new()))
+        })
     }
 
     /// Replaces the painted focus by a map or a recipe. Quick enough to wait for: a file is read, texels are set.
@@ -160,11 +161,5 @@ fn imported(path: &Path, document: &Document) -> Result<FocusMap, SessionError> 
         FocusFile::Recipe(recipe) => recipe,
     };
     let focus = recipe.evaluate(&stage.scene).map_err(|error| SessionError::bad(path, error))?;
-    let mut map = FocusMap::new(stage.atlas.width, stage.atlas.height, focus.at_infinity());
-    for texel in &stage.texels.texels {
-        let value = focus.at(texel.centroid);
-        map.set(texel.x, texel.y, [value.t as f32, value.anchor as f32]);
-    }
-    stage.canvas.dilate(&mut map);
-    Ok(map)
+    Ok(focus.bake(&stage.texels))
 }

@@ -1,0 +1,269 @@
+//! What can be typed.
+
+use clap::{Args, Parser, ValueEnum};
+use session::{Aov, CameraChoice};
+use std::path::PathBuf;
+
+/// Paint onto a 3D scene how it is focused.
+#[derive(Debug, Parser)]
+#[command(
+    name = "focus-brush",
+    version,
+    args_conflicts_with_subcommands = true,
+    after_help = "Exit codes: 0 done, 2 wrong usage, 3 bad input, 4 partly done, 5 asked-for GPU absent, 75 try again."
+)]
+pub struct Arguments {
+    /// Opens the window with this scene (.glb, .gltf) or project (.fbrush); without one, with the demo.
+    pub file: Option<PathBuf>,
+    /// What to do without a window.
+    #[command(subcommand)]
+    pub command: Option<Subcommand>,
+}
+
+/// What to do without a window.
+#[derive(Debug, clap::Subcommand)]
+pub enum Subcommand {
+    /// What is in a file, the health of its mesh, what would be baked
+    Info(InfoArguments),
+    /// Write a scene with the atlas as its second UV set (TEXCOORD_1)
+    Unwrap(UnwrapArguments),
+    /// Bake the light field of a scene or project into a file
+    Bake(BakeArguments),
+    /// Render a picture of a scene, project or light field
+    Render(RenderArguments),
+    /// How far picture A is from the reference B: RMSE, relMSE, PSNR, FLIP, signed mean error
+    Compare(CompareArguments),
+    /// Write parts of a project: its focus map, its unwrapped scene, its picture in layers
+    Export(ExportArguments),
+    /// Adapters, libraries, what is missing and how to get it
+    Doctor(DoctorArguments),
+}
+
+/// `info`.
+#[derive(Debug, Args)]
+pub struct InfoArguments {
+    /// A scene (.glb, .gltf), project (.fbrush) or light field (.salf)
+    pub file: PathBuf,
+    /// Write JSON to stdout
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// `unwrap`.
+#[derive(Debug, Args)]
+pub struct UnwrapArguments {
+    /// The scene (.glb, .gltf)
+    pub scene: PathBuf,
+    /// Where to write it
+    #[arg(short, long, value_name = "OUT.glb")]
+    pub output: PathBuf,
+    #[command(flatten)]
+    pub atlas: AtlasArguments,
+    /// Write counts and timings as JSON to stdout
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// How a scene is unwrapped.
+#[derive(Debug, Args)]
+pub struct AtlasArguments {
+    /// Texels per unit of length (default: an atlas of 1024² to 2048² texels)
+    #[arg(long, value_name = "TEXELS", value_parser = positive)]
+    pub density: Option<f64>,
+    /// The densest atlas that fits a square of this side in texels
+    #[arg(long, value_name = "TEXELS", conflicts_with = "density", value_parser = clap::value_parser!(u32).range(16..=8192))]
+    pub side: Option<u32>,
+    /// Unwrap every part, also those with sound texture coordinates of their own
+    #[arg(long)]
+    pub ignore_uv: bool,
+}
+
+/// `bake`.
+#[derive(Debug, Args)]
+pub struct BakeArguments {
+    /// A scene (.glb, .gltf) or project (.fbrush)
+    pub file: PathBuf,
+    /// Where to write the light field
+    #[arg(short, long, value_name = "X.salf")]
+    pub output: PathBuf,
+    #[command(flatten)]
+    pub shot: ShotArguments,
+    /// Write counts and timings as JSON to stdout
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// From where, and how focused.
+#[derive(Debug, Args)]
+pub struct ShotArguments {
+    /// A camera file, or the name of a camera in the scene (default: the project's, or the scene's first)
+    #[arg(long, value_name = "CAM.json|NAME", value_parser = camera_choice)]
+    pub camera: Option<CameraChoice>,
+    /// How it is focused: a recipe (.json) or a focus map (.exr, .png) (default: as the project is painted, or the
+    /// ordinary lens)
+    #[arg(long, value_name = "RECIPE.json|MAP.exr|png")]
+    pub focus: Option<PathBuf>,
+    /// Picture size in pixels instead of the camera's
+    #[arg(long, value_name = "WxH", value_parser = size)]
+    pub size: Option<[u32; 2]>,
+}
+
+/// `render`.
+#[derive(Debug, Args)]
+pub struct RenderArguments {
+    /// A scene (.glb, .gltf), project (.fbrush) or light field (.salf)
+    pub file: PathBuf,
+    /// Where to write the picture; EXR is linear, PNG is sRGB
+    #[arg(short, long, value_name = "OUT.exr|png")]
+    pub output: PathBuf,
+    #[command(flatten)]
+    pub shot: ShotArguments,
+    /// What draws it: the splatted light field, the ray-traced ground truth, or a blur of the pinhole picture by
+    /// depth (a baseline that cannot see behind occluders)
+    #[arg(long, value_enum, default_value_t = RendererName::Splat)]
+    pub renderer: RendererName,
+    /// Where the splat runs; there is no GPU backend yet, so auto is cpu
+    #[arg(long, value_enum, default_value_t = BackendName::Auto)]
+    pub backend: BackendName,
+    /// The error in pixels that the splat may make for speed; it is exact so far, whatever this allows
+    #[arg(long, value_name = "PX", default_value_t = 0.5, value_parser = not_negative)]
+    pub tolerance: f64,
+    /// Rays a pixel of the ground truth
+    #[arg(long, value_name = "N", default_value_t = 64, value_parser = clap::value_parser!(u32).range(1..=1 << 20))]
+    pub spp: u32,
+    /// Pictures that come along: coverage (the sum for a scene of radiance 1), coc (signed diameter of the circle of
+    /// confusion in px, negative when nearer than the focus), depth (axial; inf for the background), t (and anchor)
+    #[arg(long, value_name = "NAMES", value_delimiter = ',', value_parser = aov)]
+    pub aov: Vec<Aov>,
+    /// normalise keeps a white scene white; conserve is the model's energy as it is (default: the project's, or
+    /// normalise)
+    #[arg(long, value_enum)]
+    pub exposure: Option<ExposureName>,
+    /// Seed of the ground truth's rays
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub seed: u32,
+    /// Write timings and counts as JSON to stdout
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// `compare`.
+#[derive(Debug, Args)]
+pub struct CompareArguments {
+    /// A picture (.exr, .png, .hdr)
+    pub a: PathBuf,
+    /// The reference, of the same size
+    pub b: PathBuf,
+    /// Write JSON to stdout
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// `export`.
+#[derive(Debug, Args)]
+#[group(id = "outputs", required = true, multiple = true, args = ["focus_map", "glb", "layers"])]
+pub struct ExportArguments {
+    /// The project (.fbrush)
+    pub project: PathBuf,
+    /// Write the focus map: EXR, or 16-bit PNG with a .json beside it
+    #[arg(long, value_name = "MAP.exr|png")]
+    pub focus_map: Option<PathBuf>,
+    /// Write the scene with the atlas as its second UV set
+    #[arg(long, value_name = "OUT.glb")]
+    pub glb: Option<PathBuf>,
+    /// Write the picture with coverage, coc, depth, t and anchor as layers
+    #[arg(long, value_name = "OUT.exr")]
+    pub layers: Option<PathBuf>,
+}
+
+/// `doctor`.
+#[derive(Debug, Args)]
+pub struct DoctorArguments {
+    /// Write JSON to stdout
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// What draws a picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum RendererName {
+    /// The splatted light field.
+    Splat,
+    /// The ray-traced ground truth.
+    Truth,
+    /// A blur by depth.
+    Blur,
+}
+
+/// Where the splat runs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum BackendName {
+    /// The best there is.
+    Auto,
+    /// The graphics processor.
+    Gpu,
+    /// The processor.
+    Cpu,
+}
+
+/// How the sum becomes the picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum ExposureName {
+    /// The model as it is.
+    Conserve,
+    /// Divided by coverage.
+    Normalise,
+}
+
+fn camera_choice(text: &str) -> Result<CameraChoice, String> {
+    let is_file = text.to_lowercase().ends_with(".json");
+    Ok(if is_file { CameraChoice::File(text.into()) } else { CameraChoice::Named(text.into()) })
+}
+
+fn size(text: &str) -> Result<[u32; 2], String> {
+    let sides = text.split_once(['x', 'X', '×']);
+    let side = |text: &str| {
+        text.trim().parse().ok().filter(|side| (1..=lens::Camera::LARGEST_SIDE_PX).contains(side))
+    };
+    sides
+        .and_then(|(width, height)| Some([side(width)?, side(height)?]))
+        .ok_or_else(|| format!("WIDTHxHEIGHT in pixels, each 1 to {}", lens::Camera::LARGEST_SIDE_PX))
+}
+
+fn aov(name: &str) -> Result<Aov, String> {
+    Aov::named(name).ok_or_else(|| {
+        let known: Vec<_> = Aov::ALL.iter().map(|(name, _)| *name).collect();
+        format!("one of {}", known.join(", "))
+    })
+}
+
+fn positive(text: &str) -> Result<f64, String> {
+    let number = text.parse().ok().filter(|x: &f64| *x > 0.0 && x.is_finite());
+    number.ok_or_else(|| "a number above 0".into())
+}
+
+fn not_negative(text: &str) -> Result<f64, String> {
+    let number = text.parse().ok().filter(|x: &f64| *x >= 0.0 && x.is_finite());
+    number.ok_or_else(|| "a number of 0 or more".into())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_command_line_is_consistent() {
+        Arguments::command().debug_assert();
+    }
+
+    #[test]
+    fn values_are_checked() {
+        assert_eq!(size("960x540"), Ok([960, 540]));
+        assert!(size("960").is_err() && size("0x5").is_err() && size("99999x1").is_err());
+        assert_eq!(camera_choice("a.JSON"), Ok(CameraChoice::File("a.JSON".into())));
+        assert_eq!(camera_choice("front"), Ok(CameraChoice::Named("front".into())));
+        assert!(aov("depth").is_ok() && aov("z").is_err());
+        assert!(positive("0").is_err() && positive("nan").is_err() && not_negative("0").is_ok());
+    }
+}

@@ -1,0 +1,29 @@
+//! `focus-brush compare`.
+
+use super::arguments::CompareArguments;
+use super::console::{say, say_json};
+use super::failure::Failure;
+use project::{compare, read_picture};
+use serde_json::json;
+
+/// Tells how far a picture is from a reference.
+pub fn run(arguments: &CompareArguments) -> Result<(), Failure> {
+    let (a, b) = (read_picture(&arguments.a)?, read_picture(&arguments.b)?);
+    if (a.width, a.height) != (b.width, b.height) {
+        let sizes = format!("{} × {}, the reference {} × {}", a.width, a.height, b.width, b.height);
+        let files = format!("{} against {}", arguments.a.display(), arguments.b.display());
+        return Err(Failure::bad(format!("{files}: the picture is {sizes} (compare pictures of one size)")));
+    }
+    let found = compare(&a, &b)?;
+    if arguments.json {
+        say_json(&json!(found));
+        return Ok(());
+    }
+    say(format!("RMSE               {:.6}   (linear, clipped to [0, 1])", found.rmse));
+    say(format!("relMSE             {:.6}", found.rel_mse));
+    say(format!("PSNR               {:.2} dB", found.psnr));
+    say(format!("FLIP               {:.4}", found.flip));
+    say(format!("signed mean error  {:+.4} %", found.signed_mean_error * 100.0));
+    say(format!("largest difference {:.4}", found.largest_difference));
+    Ok(())
+}

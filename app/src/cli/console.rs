@@ -1,0 +1,100 @@
+//! Progress on stderr, results on stdout.
+
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use progress::Progress;
+use serde_json::Value;
+use session::Steps;
+use std::io::{IsTerminal, Write};
+use std::sync::Mutex;
+use std::time::{Duration, Instant};
+
+/// Without a terminal, long steps say how far they are this often.
+const REPORT_EVERY: Duration = Duration::from_secs(5);
+
+/// Where commands tell what they do.
+pub struct Console {
+    is_terminal: bool,
+}
+
+impl Console {
+    /// The console of this process.
+    pub fn new() -> Self {
+        Self { is_terminal: std::io::stderr().is_terminal() }
+    }
+
+    /// Tells what is odd but does no harm.
+    pub fn warn<'a>(&self, warnings: impl IntoIterator<Item = &'a String>) {
+        warnings.into_iter().for_each(|warning| eprintln!("warning: {}", warning.replace('\n', " ")));
+    }
+
+    /// Tells on stderr what was done.
+    pub fn note(&self, line: &str) {
+        eprintln!("{line}");
+    }
+}
+
+/// A line of the result on stdout. A reader that has gone is no error.
+pub fn say(line: impl AsRef<str>) {
+    let _ = writeln!(std::io::stdout(), "{}", line.as_ref());
+}
+
+/// The result for a script.
+pub fn say_json(value: &Value) {
+    say(format!("{value:#}"));
+}
+
+impl Steps for Console {
+    fn begin(&self, label: &str) -> Box<dyn Progress + '_> {
+        if self.is_terminal {
+            let style = ProgressStyle::with_template("{msg:12} {bar:32} {percent:>3} % {elapsed}");
+            let bar = ProgressBar::with_draw_target(Some(1000), ProgressDrawTarget::stderr_with_hz(10));
+            bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+            bar.set_message(label.to_owned());
+            Box::new(Bar(bar))
+        } else {
+            eprintln!("{label}…");
+            Box::new(Lines { label: label.to_owned(), last: Mutex::new((Instant::now(), 0.0)) })
+        }
+    }
+}
+
+/// A bar on a terminal; it goes when the step is over.
+struct Bar(ProgressBar);
+
+impl Progress for Bar {
+    fn report(&self, fraction: f32) {
+        let position = (fraction.clamp(0.0, 1.0) * 1000.0) as u64;
+        if position > self.0.position() {
+            self.0.set_position(position);
+        }
+    }
+    fn cancelled(&self) -> bool {
+        false
+    }
+}
+
+impl Drop for Bar {
+    fn drop(&mut self) {
+        self.0.finish_and_clear();
+    }
+}
+
+/// Plain lines where there is no terminal.
+struct Lines {
+    label: String,
+    /// When the last line was written, and the furthest that was reported.
+    last: Mutex<(Instant, f32)>,
+}
+
+impl Progress for Lines {
+    fn report(&self, fraction: f32) {
+        let Ok(mut last) = self.last.try_lock() else { return };
+        if fraction > last.1 && last.0.elapsed() >= REPORT_EVERY {
+            *last = (Instant::now(), fraction);
+            eprintln!("{} {:.0} %", self.label, fraction * 100.0);
+        }
+    }
+    fn cancelled(&self) -> bool {
+        false
+    }
+}

@@ -1,0 +1,141 @@
+//! `focus-brush doctor`.
+
+use super::arguments::DoctorArguments;
+use super::console::{say, say_json};
+use super::failure::Failure;
+use serde_json::json;
+use std::future::Future;
+use std::path::{Path, PathBuf};
+use std::pin::pin;
+use std::task::{Context, Poll, Waker};
+
+/// A shared library that the window loads, and the Debian package it comes with.
+struct Library {
+    file: &'static str,
+    package: &'static str,
+    why: &'static str,
+}
+
+/// What the window needs on Linux; without them it does not open.
+const LIBRARIES: [Library; 8] = [
+    Library { file: "libX11.so.6", package: "libx11-6", why: "the window on X11" },
+    Library { file: "libX11-xcb.so.1", package: "libx11-xcb1", why: "the window on X11" },
+    Library { file: "libXcursor.so.1", package: "libxcursor1", why: "the window on X11" },
+    Library { file: "libXi.so.6", package: "libxi6", why: "mouse and pen on X11" },
+    Library { file: "libXrandr.so.2", package: "libxrandr2", why: "screens on X11" },
+    Library { file: "libxkbcommon.so.0", package: "libxkbcommon0", why: "the keyboard" },
+    Library { file: "libxkbcommon-x11.so.0", package: "libxkbcommon-x11-0", why: "the keyboard on X11" },
+    Library { file: "libvulkan.so.1", package: "libvulkan1", why: "drawing the window" },
+];
+
+/// The package with drivers for machines whose graphics has none of its own.
+const DRIVERS: &str = "mesa-vulkan-drivers";
+
+/// Tells what of the machine the program can use, what is missing and how to get it.
+pub fn run(arguments: &DoctorArguments) -> Result<(), Failure> {
+    let adapters = adapters();
+    let missing: Vec<&Library> = if cfg!(target_os = "linux") {
+        LIBRARIES.iter().filter(|library| !is_installed(library.file)).collect()
+    } else {
+        Vec::new()
+    };
+    let display = ["WAYLAND_DISPLAY", "DISPLAY"].into_iter().find(|name| std::env::var_os(name).is_some());
+    let has_display = display.is_some() || !cfg!(target_os = "linux");
+    let mut packages: Vec<&str> = missing.iter().map(|library| library.package).collect();
+    if adapters.is_empty() {
+        packages.push(DRIVERS);
+    }
+    let cure = (!packages.is_empty()).then(|| format!("apt-get install {}", packages.join(" ")));
+    let threads = rayon::current_num_threads();
+    let opens = missing.is_empty() && has_display && !adapters.is_empty();
+    if arguments.json {
+        say_json(&json!({
+            "version": env!("CARGO_PKG_VERSION"),
+            "threads": threads,
+            "adapters": adapters.iter().map(|(name, kind, backend)| json!({
+                "name": name, "kind": kind, "backend": backend,
+            })).collect::<Vec<_>>(),
+            "missing_libraries": missing.iter().map(|library| library.file).collect::<Vec<_>>(),
+            "display": display.map(|name| json!({ name: std::env::var(name).unwrap_or_default() })),
+            "install": cure,
+            "window_can_open": opens,
+            "command_line_works": true,
+        }));
+        return Ok(());
+    }
+    say(format!("Focus Brush {}", env!("CARGO_PKG_VERSION")));
+    say(format!("  processor    {threads} threads: every picture is computed here"));
+    if adapters.is_empty() {
+        say(format!("  graphics     no adapter (the window needs one: {DRIVERS} has one in software)"));
+    }
+    for (name, kind, backend) in &adapters {
+        say(format!("  graphics     {name} ({kind}, {backend})"));
+    }
+    match missing.as_slice() {
+        [] => say("  libraries    all there"),
+        missing => missing.iter().for_each(|library| {
+            say(format!(
+                "  libraries    {} is missing: {} (package {})",
+                library.file, library.why, library.package
+            ));
+        }),
+    }
+    match display {
+        Some(name) => say(format!("  display      {name}={}", std::env::var(name).unwrap_or_default())),
+        None if has_display => say("  display      the system's own"),
+        None => say(
+            "  display      none: DISPLAY and WAYLAND_DISPLAY are not set (start it on a desktop, or under xvfb-run)",
+        ),
+    }
+    say(if opens {
+        "  the window can open, and the command line works"
+    } else {
+        "  the window cannot open; the command line works"
+    });
+    if let Some(cure) = cure {
+        say(format!("to get what is missing: {cure}"));
+    }
+    Ok(())
+}
+
+/// Name, kind and backend of every graphics adapter.
+fn adapters() -> Vec<(String, String, String)> {
+    let instance = wgpu::Instance::default();
+    let found = ready(instance.enumerate_adapters(wgpu::Backends::all())).unwrap_or_default();
+    let described = found.iter().map(|adapter| {
+        let info = adapter.get_info();
+        (info.name, format!("{:?}", info.device_type).to_lowercase(), info.backend.to_string())
+    });
+    described.collect()
+}
+
+/// The value of a future that is ready at once, as those of native adapters are.
+fn ready<T>(future: impl Future<Output = T>) -> Option<T> {
+    match pin!(future).poll(&mut Context::from_waker(Waker::noop())) {
+        Poll::Ready(value) => Some(value),
+        Poll::Pending => None,
+    }
+}
+
+/// Whether the dynamic linker would find `file` in one of its usual folders.
+fn is_installed(file: &str) -> bool {
+    let own = std::env::var_os("LD_LIBRARY_PATH").unwrap_or_default();
+    let own = std::env::split_paths(&own).collect::<Vec<_>>();
+    let usual = ["/lib", "/usr/lib", "/lib64", "/usr/lib64", "/usr/local/lib"].map(PathBuf::from);
+    let triplet = format!("{}-linux-gnu", std::env::consts::ARCH);
+    let folders = own.into_iter().chain(usual.into_iter().flat_map(|folder| [folder.join(&triplet), folder]));
+    folders.into_iter().any(|folder| Path::new(&folder).join(file).exists())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn libraries_are_found_where_they_are() {
+        assert!(!is_installed("libnothing-of-the-kind.so.9"));
+        assert!(
+            !cfg!(target_os = "linux") || is_installed("libc.so.6") || is_installed("libc.musl-x86_64.so.1")
+        );
+    }
+}

@@ -1,0 +1,84 @@
+//! `focus-brush export`.
+
+use super::arguments::ExportArguments;
+use super::console::Console;
+use super::failure::Failure;
+use super::shot::{check_folder, unwrap_options};
+use focus::FocusMap;
+use lens::FocusOffset;
+use project::{FocusMapFile, PictureOptions, write_focus_map, write_picture};
+use session::{Aov, Input, InputKind, RenderOptions, Rendered, render_input, write_unwrapped};
+use std::path::Path;
+
+/// Writes what was asked for; what fails does not keep the rest from being written.
+pub fn run(arguments: &ExportArguments, console: &Console) -> Result<(), Failure> {
+    let project = &arguments.project;
+    if InputKind::of(project)? != InputKind::Project {
+        return Err(Failure::bad(format!("{}: is no project (give a .fbrush file)", project.display())));
+    }
+    let input = Input::open(project, console)?;
+    console.warn(&input.warnings);
+    let mut written = 0;
+    let mut failures = Vec::new();
+    let mut done = |path: &Path, result: Result<(), Failure>| match result {
+        Ok(()) => {
+            console.note(&format!("wrote {}", path.display()));
+            written += 1;
+        }
+        Err(failure) => failures.push(failure),
+    };
+    if let Some(path) = &arguments.focus_map {
+        done(path, focus_map(&input, path, console));
+    }
+    if let Some(path) = &arguments.glb {
+        done(path, glb(&input, path, console));
+    }
+    if let Some(path) = &arguments.layers {
+        done(path, layers(&input, path, console));
+    }
+    match (written, failures.len()) {
+        (_, 0) => Ok(()),
+        (0, 1) => Err(failures.remove(0)),
+        (_, _) => {
+            let all: Vec<_> = failures.iter().map(|failure| failure.message.as_str()).collect();
+            let all = all.join("; ");
+            if written == 0 { Err(Failure::bad(all)) } else { Err(Failure::partly(all)) }
+        }
+    }
+}
+
+fn focus_map(input: &Input, path: &Path, console: &Console) -> Result<(), Failure> {
+    check_folder(path)?;
+    let atlas = input.atlas(&unwrap_options(None), console)?;
+    let project = input.project.as_ref();
+    let blank = || {
+        let mut map = FocusMap::new(atlas.width, atlas.height, FocusOffset::STANDARD);
+        map.background = project.map_or(FocusOffset::STANDARD, |project| project.background_focus);
+        map
+    };
+    let map = project.and_then(|project| project.focus_map.clone()).unwrap_or_else(blank);
+    let lost = write_focus_map(path, &FocusMapFile::of_atlas(&map, &atlas))?;
+    console.warn(&lost.iter().map(|what| format!("{}: {what}", path.display())).collect::<Vec<_>>());
+    Ok(())
+}
+
+fn glb(input: &Input, path: &Path, console: &Console) -> Result<(), Failure> {
+    check_folder(path)?;
+    let atlas = input.atlas(&unwrap_options(None), console)?;
+    Ok(write_unwrapped(path, &input.scene, &atlas)?)
+}
+
+fn layers(input: &Input, path: &Path, console: &Console) -> Result<(), Failure> {
+    if !path.extension().is_some_and(|e| e.eq_ignore_ascii_case("exr")) {
+        return Err(Failure::usage(format!("{}: layers are written as .exr (name one)", path.display())));
+    }
+    check_folder(path)?;
+    let focus = input.focus(None, &unwrap_options(None), console)?;
+    let aovs = Aov::ALL.iter().map(|(_, aov)| *aov).collect();
+    let options = RenderOptions { aovs, ..RenderOptions::default() };
+    let Rendered { picture, layers, warnings, .. } =
+        render_input(input, &input.camera, &focus, &options, console)?;
+    console.warn(&warnings);
+    write_picture(path, &picture, &layers, PictureOptions { exposure: input.exposure(), half: false })?;
+    Ok(())
+}

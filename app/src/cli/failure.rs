@@ -1,0 +1,78 @@
+//! Errors and exit codes.
+
+use project::ProjectError;
+use session::SessionError;
+
+/// Wrong usage.
+pub const WRONG_USAGE: u8 = 2;
+/// A file or value that cannot be used, or a fault of the program.
+pub const BAD_INPUT: u8 = 3;
+/// Some of what was asked for was done.
+pub const PARTLY_DONE: u8 = 4;
+/// A GPU was asked for and there is none that can do the work.
+pub const NO_GPU: u8 = 5;
+/// The machine stands in the way for now.
+pub const TRY_AGAIN: u8 = 75;
+
+/// Why a command failed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Failure {
+    /// The exit code.
+    pub code: u8,
+    /// One line: `FILE: what is wrong (what to do)`.
+    pub message: String,
+    /// Whether it is a fault of the program itself.
+    pub is_fault: bool,
+}
+
+impl Failure {
+    fn new(code: u8, message: impl Into<String>) -> Self {
+        let message: String = message.into();
+        Self { code, message: message.replace('\n', " "), is_fault: false }
+    }
+
+    /// Bad input.
+    pub fn bad(message: impl Into<String>) -> Self {
+        Self::new(BAD_INPUT, message)
+    }
+
+    /// Wrong usage.
+    pub fn usage(message: impl Into<String>) -> Self {
+        Self::new(WRONG_USAGE, message)
+    }
+
+    /// Partly done.
+    pub fn partly(message: impl Into<String>) -> Self {
+        Self::new(PARTLY_DONE, message)
+    }
+
+    /// Worth another try.
+    pub fn try_again(message: impl Into<String>) -> Self {
+        Self::new(TRY_AGAIN, message)
+    }
+
+    /// A fault of the program.
+    pub fn fault(message: impl Into<String>) -> Self {
+        Self { is_fault: true, ..Self::new(BAD_INPUT, message) }
+    }
+}
+
+impl From<SessionError> for Failure {
+    fn from(error: SessionError) -> Self {
+        let message = error.to_string();
+        match error {
+            SessionError::TryAgain(_) => Self::try_again(message),
+            SessionError::GpuAbsent(_) => Self::new(NO_GPU, message),
+            SessionError::Internal(_) => Self::fault(message),
+            SessionError::NothingOpen | SessionError::BadInput(_) | SessionError::Cancelled => {
+                Self::bad(message)
+            }
+        }
+    }
+}
+
+impl From<ProjectError> for Failure {
+    fn from(error: ProjectError) -> Self {
+        SessionError::from(error).into()
+    }
+}

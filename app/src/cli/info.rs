@@ -1,0 +1,204 @@
+//! `focus-brush info`.
+
+use super::arguments::InfoArguments;
+use super::console::{Console, say, say_json};
+use super::failure::Failure;
+use lens::Camera;
+use progress::Unwatched;
+use project::{ProjectFile, camera_to_json};
+use scene::{Inspection, MeshHealth, Scene};
+use serde_json::{Value, json};
+use session::{Input, InputKind};
+
+/// Tells what is in a file.
+pub fn run(arguments: &InfoArguments, console: &Console) -> Result<(), Failure> {
+    let file = arguments.file.as_path();
+    let kind = InputKind::of(file)?;
+    let inspection = match kind {
+        InputKind::Scene => Some(scene::inspect(file).map_err(session::SessionError::from)?),
+        _ => None,
+    };
+    if let Some(inspection) = inspection.as_ref().filter(|inspection| inspection.triangles == 0) {
+        let note = format!("{}: no triangle, so there is nothing to render", file.display());
+        return without_triangles(arguments, inspection, &note, console);
+    }
+    let input = Input::open(file, &Unwatched)?;
+    console.warn(&input.warnings);
+    let health = MeshHealth::of(&input.scene);
+    if arguments.json {
+        say_json(&json!({
+            "file": file,
+            "kind": match kind {
+                InputKind::Scene => "scene",
+                InputKind::Project => "project",
+                InputKind::LightField => "light field",
+            },
+            "contents": inspection,
+            "scene": scene_json(&input.scene),
+            "mesh": health,
+            "project": input.project.as_ref().map(project_json),
+            "camera": camera_to_json(&input.camera),
+            "salf": input.salf.as_ref().map(|salf| json!({
+                "samples": salf.samples.len(),
+                "bytes": salf.statistics().bytes,
+                "margin_px": salf.margin_px,
+            })),
+            "would_bake": { "width": input.camera.width, "height": input.camera.height },
+            "warnings": input.warnings,
+        }));
+        return Ok(());
+    }
+    say(format!("{}", file.display()));
+    if let Some(inspection) = &inspection {
+        contents(inspection);
+    }
+    if let Some(project) = &input.project {
+        project_lines(project);
+    }
+    scene_lines(&input.scene, &health);
+    if let Some(salf) = &input.salf {
+        let statistics = salf.statistics();
+        let mib = statistics.bytes as f64 / (1 << 20) as f64;
+        say(format!(
+            "  light field  {} samples open, {} partly occluded, {mib:.1} MiB",
+            statistics.open, statistics.partial
+        ));
+    }
+    bake_lines(&input.camera, &input.scene);
+    Ok(())
+}
+
+/// A file that shows nothing is still a file.
+fn without_triangles(
+    arguments: &InfoArguments,
+    inspection: &Inspection,
+    note: &String,
+    console: &Console,
+) -> Result<(), Failure> {
+    console.warn(&inspection.warnings);
+    if arguments.json {
+        say_json(&json!({ "file": arguments.file, "kind": "scene", "contents": inspection, "note": note }));
+    } else {
+        say(format!("{}", arguments.file.display()));
+        contents(inspection);
+        say(format!("note: {note}"));
+    }
+    Ok(())
+}
+
+fn contents(inspection: &Inspection) {
+    const MODES: [&str; 7] =
+        ["points", "lines", "line loops", "line strips", "triangles", "triangle strips", "triangle fans"];
+    let Inspection { nodes, meshes, materials, images, cameras, lights, skins, animations, .. } = inspection;
+    if let Some(generator) = &inspection.generator {
+        say(format!("  written by   {generator}"));
+    }
+    say(format!("  file         {nodes} nodes, {meshes} meshes, {materials} materials, {images} images"));
+    say(format!("               {cameras} cameras, {lights} lights, {skins} skins, {animations} animations"));
+    let modes = inspection.primitives.iter().zip(MODES).filter(|(count, _)| **count > 0);
+    let modes: Vec<_> = modes.map(|(count, mode)| format!("{count} × {mode}")).collect();
+    say(format!("  primitives   {}", if modes.is_empty() { "none".into() } else { modes.join(", ") }));
+    if !inspection.extensions_used.is_empty() {
+        say(format!("  extensions   {}", inspection.extensions_used.join(", ")));
+    }
+}
+
+fn project_lines(project: &ProjectFile) {
+    say(format!("  scene        {}", project.scene.display()));
+    let names: Vec<_> = project.cameras.iter().map(|camera| format!("\"{}\"", camera.name)).collect();
+    say(format!("  cameras      {}", names.join(", ")));
+    match &project.focus_map {
+        Some(map) => say(format!("  focus map    {} × {} texels", map.width(), map.height())),
+        None => say("  focus map    nothing painted"),
+    }
+}
+
+fn project_json(project: &ProjectFile) -> Value {
+    json!({
+        "scene": project.scene,
+        "scene_state": format!("{:?}", project.scene_state()).to_lowercase(),
+        "cameras": project.cameras.iter().map(|camera| &camera.name).collect::<Vec<_>>(),
+        "active_camera": project.active_camera,
+        "exposure": format!("{:?}", project.exposure).to_lowercase(),
+        "focus_map": project.focus_map.as_ref().map(|map| map.size()),
+    })
+}
+
+fn scene_lines(scene: &Scene, health: &MeshHealth) {
+    let made_up = |is: bool| if is { " (made up: the file has none)" } else { "" };
+    say(format!(
+        "  scene        {} triangles in {} parts of {} objects, area {:.4}",
+        health.triangles,
+        scene.parts.len(),
+        scene.nodes.len(),
+        health.area
+    ));
+    let size = std::array::from_fn::<f64, 3, _>(|k| health.high[k] - health.low[k]);
+    say(format!("  size         {:.4} × {:.4} × {:.4}", size[0], size[1], size[2]));
+    let names: Vec<_> = scene.cameras.iter().map(|camera| format!("\"{}\"", camera.name)).collect();
+    say(format!("  cameras      {}{}", names.join(", "), made_up(scene.camera_is_invented)));
+    say(format!("  lights       {}{}", scene.lights.len(), made_up(scene.lights_are_invented)));
+    say(format!("  mesh         {}", mesh_sentence(health)));
+}
+
+fn mesh_sentence(health: &MeshHealth) -> String {
+    let counts = [
+        (health.degenerate, "degenerate triangles"),
+        (health.duplicates, "duplicate triangles"),
+        (health.non_manifold_edges, "edges of more than two triangles"),
+        (health.boundary_edges, "open edges"),
+        (health.without_uv, "triangles without texture coordinates"),
+    ];
+    let odd: Vec<_> =
+        counts.iter().filter(|(count, _)| *count > 0).map(|(n, what)| format!("{n} {what}")).collect();
+    if odd.is_empty() { "closed, nothing odd".into() } else { odd.join(", ") }
+}
+
+fn scene_json(scene: &Scene) -> Value {
+    json!({
+        "path": scene.path,
+        "triangles": scene.triangles.len(),
+        "parts": scene.parts.len(),
+        "nodes": scene.nodes.iter().map(|node| &node.name).collect::<Vec<_>>(),
+        "materials": scene.materials.iter().map(|material| &material.name).collect::<Vec<_>>(),
+        "cameras": scene.cameras.iter().map(|camera| &camera.name).collect::<Vec<_>>(),
+        "camera_is_invented": scene.camera_is_invented,
+        "lights": scene.lights.len(),
+        "lights_are_invented": scene.lights_are_invented,
+    })
+}
+
+fn bake_lines(camera: &Camera, scene: &Scene) {
+    let optics = camera.optics();
+    let pixels = camera.width as f64 * camera.height as f64;
+    say(format!(
+        "  would bake   {} × {} px, f/{:.2}, focused at {:.3}, {:.1}° high: about {:.1} million samples",
+        camera.width,
+        camera.height,
+        camera.f_number(),
+        camera.focus_distance,
+        camera.yfov.to_degrees(),
+        pixels / 1e6
+    ));
+    let depths = corners_ahead(camera, scene);
+    if let Some((near, far)) = depths {
+        let blur = |depth: f64| optics.circle_of_confusion_px(optics.standard_kappa(1.0 / depth));
+        say(format!(
+            "               depths {near:.3} to {far:.3}: circles of confusion up to {:.1} px near, {:.1} px far",
+            if near < camera.focus_distance { blur(near) } else { 0.0 },
+            if far > camera.focus_distance { blur(far) } else { 0.0 },
+        ));
+    }
+}
+
+/// The least and greatest depth of vertices inside the picture.
+fn corners_ahead(camera: &Camera, scene: &Scene) -> Option<(f64, f64)> {
+    let optics = camera.optics();
+    let in_picture = scene.positions.iter().map(|&p| camera.camera_from_world(p)).filter(|p| {
+        let q = optics.chief(*p);
+        p.z > 0.0 && q.x.abs() <= camera.aspect() && q.y.abs() <= 1.0
+    });
+    in_picture.map(|p| p.z).fold(None, |range, z| {
+        Some(range.map_or((z, z), |(near, far): (f64, f64)| (near.min(z), far.max(z))))
+    })
+}

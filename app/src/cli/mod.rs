@@ -1,0 +1,125 @@
+//! The command line: a thin layer over the `session` crate.
+//!
+//! * [`arguments`]: what can be typed. One file a subcommand does it: [`info`], [`unwrap`], [`bake`], [`render`],
+//!   [`compare`], [`export`], [`doctor`].
+//! * [`console`]: progress on stderr, results on stdout. [`failure`]: errors and exit codes.
+
+mod arguments;
+mod bake;
+mod compare;
+mod console;
+mod doctor;
+mod export;
+mod failure;
+mod info;
+mod render;
+mod shot;
+mod unwrap;
+
+use crate::window;
+use arguments::{Arguments, Subcommand};
+use clap::Parser;
+use clap::error::ErrorKind;
+use console::Console;
+use failure::Failure;
+use session::InputKind;
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::sync::Mutex;
+
+/// Stack of the thread that works: deep scenes must not end the program.
+const STACK_BYTES: usize = 64 << 20;
+
+/// Where the last panic was, for the error's line.
+static PANICKED_AT: Mutex<Option<String>> = Mutex::new(None);
+
+/// Runs the command line of this process and says how it went.
+pub fn run() -> ExitCode {
+    let arguments = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(error) => return usage(&error),
+    };
+    hush_panics();
+    let outcome = match arguments.command {
+        // The window's event loop must have the main thread.
+        None => session::guarded("the window", || Ok(open_window(arguments.file)))
+            .unwrap_or_else(|e| Err(e.into())),
+        Some(command) => on_a_large_stack(move || dispatch(command)),
+    };
+    match outcome {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            let place = PANICKED_AT.lock().ok().and_then(|mut place| place.take());
+            let place = place.filter(|_| failure.is_fault).map(|p| format!(" at {p}")).unwrap_or_default();
+            eprintln!("error: {}{place}", failure.message);
+            ExitCode::from(failure.code)
+        }
+    }
+}
+
+fn dispatch(command: Subcommand) -> Result<(), Failure> {
+    let console = Console::new();
+    match command {
+        Subcommand::Info(arguments) => info::run(&arguments, &console),
+        Subcommand::Unwrap(arguments) => unwrap::run(&arguments, &console),
+        Subcommand::Bake(arguments) => bake::run(&arguments, &console),
+        Subcommand::Render(arguments) => render::run(&arguments, &console),
+        Subcommand::Compare(arguments) => compare::run(&arguments),
+        Subcommand::Export(arguments) => export::run(&arguments, &console),
+        Subcommand::Doctor(arguments) => doctor::run(&arguments),
+    }
+}
+
+fn open_window(file: Option<PathBuf>) -> Result<(), Failure> {
+    if let Some(file) = &file {
+        InputKind::of(file)?;
+        if !file.exists() {
+            return Err(Failure::bad(format!("{}: no such file (check the path)", file.display())));
+        }
+    }
+    window::run(window::WindowOptions { file, ..Default::default() }).map_err(|error| {
+        let why = format!("{error:#}").replace('\n', " ");
+        Failure::bad(format!("no window: {why} (`focus-brush doctor` says what is missing)"))
+    })
+}
+
+fn on_a_large_stack(work: impl FnOnce() -> Result<(), Failure> + Send + 'static) -> Result<(), Failure> {
+    let guarded = move || session::guarded("focus-brush", || Ok(work())).unwrap_or_else(|e| Err(e.into()));
+    let thread = std::thread::Builder::new().name("work".into()).stack_size(STACK_BYTES).spawn(guarded);
+    match thread {
+        Ok(thread) => {
+            thread.join().unwrap_or_else(|_| Err(Failure::fault("the work ended without a result")))
+        }
+        Err(error) => Err(Failure::try_again(format!("no thread could be started: {error} (try again)"))),
+    }
+}
+
+/// A panic is told as an error of one line; RUST_BACKTRACE brings the usual report back.
+fn hush_panics() {
+    if std::env::var_os("RUST_BACKTRACE").is_some() {
+        return;
+    }
+    std::panic::set_hook(Box::new(|info| {
+        let place = info.location().map(|at| format!("{}:{}", at.file(), at.line()));
+        if let Ok(mut last) = PANICKED_AT.lock() {
+            *last = place;
+        }
+    }));
+}
+
+/// Help and version go to stdout; a mistake is one line on stderr.
+fn usage(error: &clap::Error) -> ExitCode {
+    if matches!(error.kind(), ErrorKind::DisplayHelp | ErrorKind::DisplayVersion) {
+        // Nothing can be done about a closed pipe.
+        let _ = error.print();
+        return ExitCode::SUCCESS;
+    }
+    let text = error.to_string();
+    let lines = text
+        .lines()
+        .map(str::trim)
+        .take_while(|line| !line.starts_with("Usage:") && !line.starts_with("For more"));
+    let said = lines.filter(|line| !line.is_empty()).collect::<Vec<_>>().join(" ");
+    eprintln!("{said} (see focus-brush --help)");
+    ExitCode::from(failure::WRONG_USAGE)
+}

@@ -1,0 +1,100 @@
+//! `focus-brush render`.
+
+use super::arguments::{BackendName, ExposureName, RenderArguments, RendererName};
+use super::console::{Console, say_json};
+use super::failure::Failure;
+use super::shot::shot;
+use lens::Exposure;
+use project::{PictureOptions, write_picture};
+use serde_json::json;
+use session::{Input, RenderOptions, Rendered, Renderer, SessionError, render_input};
+use std::time::Instant;
+
+/// Renders a picture and writes it.
+pub fn run(arguments: &RenderArguments, console: &Console) -> Result<(), Failure> {
+    let renderer = match arguments.renderer {
+        RendererName::Splat => Renderer::Splat,
+        RendererName::Truth => Renderer::Truth,
+        RendererName::Blur => Renderer::Blur,
+    };
+    if arguments.backend == BackendName::Gpu {
+        let what = match renderer {
+            Renderer::Splat => "the splat",
+            Renderer::Truth => "the ray tracer",
+            Renderer::Blur => "the blur",
+        };
+        let message = format!("{what} has no GPU backend yet (use --backend cpu or auto)");
+        return Err(SessionError::GpuAbsent(message).into());
+    }
+    check_output(arguments)?;
+
+    let start = Instant::now();
+    let input = Input::open(&arguments.file, console)?;
+    console.warn(&input.warnings);
+    let (camera, focus) = shot(&input, &arguments.shot, console)?;
+    let open_seconds = start.elapsed().as_secs_f64();
+
+    let options = RenderOptions {
+        renderer,
+        samples_per_pixel: arguments.spp,
+        seed: arguments.seed,
+        aovs: arguments.aov.clone(),
+    };
+    let Rendered { picture, layers, cost, warnings } =
+        render_input(&input, &camera, &focus, &options, console)?;
+    console.warn(&warnings);
+
+    let exposure = match arguments.exposure {
+        None => input.exposure(),
+        Some(ExposureName::Conserve) => Exposure::Conserve,
+        Some(ExposureName::Normalise) => Exposure::Normalise,
+    };
+    let writing = Instant::now();
+    let written = PictureOptions { exposure, half: false };
+    let files = write_picture(&arguments.output, &picture, &layers, written)?;
+    let write_seconds = writing.elapsed().as_secs_f64();
+    if arguments.json {
+        say_json(&json!({
+            "input": arguments.file,
+            "files": files,
+            "renderer": format!("{:?}", arguments.renderer).to_lowercase(),
+            "backend": "cpu",
+            "width": camera.width,
+            "height": camera.height,
+            "exposure": format!("{exposure:?}").to_lowercase(),
+            "threads": rayon::current_num_threads(),
+            "triangles": input.scene.triangles.len(),
+            "samples_per_pixel": (renderer == Renderer::Truth).then_some(arguments.spp),
+            "seconds": {
+                "open": open_seconds,
+                "prepare": cost.prepare_seconds,
+                "bake": cost.bake_seconds,
+                "picture": cost.picture_seconds,
+                "write": write_seconds,
+                "total": start.elapsed().as_secs_f64(),
+            },
+            "salf": (cost.salf_bytes > 0).then(|| json!({
+                "open_samples": cost.open_samples,
+                "partial_samples": cost.partial_samples,
+                "background_samples": cost.background_samples,
+                "bytes": cost.salf_bytes,
+                "margin_px": cost.margin_px,
+            })),
+            "warnings": input.warnings.iter().chain(&warnings).collect::<Vec<_>>(),
+        }));
+    } else {
+        files.iter().for_each(|file| console.note(&format!("wrote {}", file.display())));
+    }
+    Ok(())
+}
+
+/// What would only be noticed after the work.
+fn check_output(arguments: &RenderArguments) -> Result<(), Failure> {
+    let output = &arguments.output;
+    let extension = output.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
+    if !["exr", "png"].contains(&extension.as_str()) {
+        let what = "pictures are written as .exr or .png (name one of them)";
+        return Err(Failure::usage(format!("{}: {what}", output.display())));
+    }
+    super::shot::check_folder(output)
+}

@@ -1,0 +1,46 @@
+//! From where a picture is taken, and how it is focused.
+
+use super::arguments::{AtlasArguments, ShotArguments};
+use super::console::Console;
+use super::failure::Failure;
+use atlas::{Density, UnwrapOptions, UvPolicy};
+use focus::Focus;
+use lens::Camera;
+use session::Input;
+use std::path::Path;
+
+/// How scenes are unwrapped: by the engines of this program in child processes.
+pub fn unwrap_options(arguments: Option<&AtlasArguments>) -> UnwrapOptions {
+    let density = match arguments {
+        Some(AtlasArguments { density: Some(density), .. }) => Density::TexelsPerUnit(*density),
+        Some(AtlasArguments { side: Some(side), .. }) => Density::Side(*side),
+        _ => Density::Auto,
+    };
+    let ignore_uv = arguments.is_some_and(|arguments| arguments.ignore_uv);
+    UnwrapOptions {
+        density,
+        uv: if ignore_uv { UvPolicy::Ignore } else { UvPolicy::Auto },
+        child: std::env::current_exe().ok(),
+        ..UnwrapOptions::default()
+    }
+}
+
+/// The camera and the focus that were asked for.
+pub fn shot(input: &Input, arguments: &ShotArguments, console: &Console) -> Result<(Camera, Focus), Failure> {
+    let mut camera = input.camera(arguments.camera.as_ref())?;
+    if let Some([width, height]) = arguments.size {
+        (camera.width, camera.height) = (width, height);
+    }
+    let focus = input.focus(arguments.focus.as_deref(), &unwrap_options(None), console)?;
+    Ok((camera, focus))
+}
+
+/// An error if the folder of an output is not there: better before the work than after it.
+pub fn check_folder(output: &Path) -> Result<(), Failure> {
+    match output.parent().filter(|folder| !folder.as_os_str().is_empty()) {
+        Some(folder) if !folder.is_dir() => {
+            Err(Failure::bad(format!("{}: its folder does not exist (make it first)", output.display())))
+        }
+        _ => Ok(()),
+    }
+}

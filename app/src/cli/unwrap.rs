@@ -1,0 +1,47 @@
+//! `focus-brush unwrap`.
+
+use super::arguments::UnwrapArguments;
+use super::console::{Console, say_json};
+use super::failure::Failure;
+use super::shot::{check_folder, unwrap_options};
+use serde_json::json;
+use session::{Input, InputKind, write_unwrapped};
+use std::time::Instant;
+
+/// Unwraps a scene and writes it with the atlas.
+pub fn run(arguments: &UnwrapArguments, console: &Console) -> Result<(), Failure> {
+    if InputKind::of(&arguments.scene)? != InputKind::Scene {
+        let what = "is no scene (give a .glb or .gltf; `export --glb` writes that of a project)";
+        return Err(Failure::bad(format!("{}: {what}", arguments.scene.display())));
+    }
+    check_folder(&arguments.output)?;
+    let start = Instant::now();
+    let input = Input::open(&arguments.scene, console)?;
+    console.warn(&input.warnings);
+    let open_seconds = start.elapsed().as_secs_f64();
+    let unwrapping = Instant::now();
+    let atlas = input.atlas(&unwrap_options(Some(&arguments.atlas)), console)?;
+    let unwrap_seconds = unwrapping.elapsed().as_secs_f64();
+    write_unwrapped(&arguments.output, &input.scene, &atlas)?;
+    if arguments.json {
+        say_json(&json!({
+            "input": arguments.scene,
+            "files": [arguments.output],
+            "triangles": input.scene.triangles.len(),
+            "width": atlas.width,
+            "height": atlas.height,
+            "charts": atlas.charts.len(),
+            "texels_per_unit": atlas.density,
+            "hash": atlas.hash,
+            "notes": atlas.notes,
+            "seconds": { "open": open_seconds, "unwrap": unwrap_seconds, "total": start.elapsed().as_secs_f64() },
+            "warnings": input.warnings,
+        }));
+    } else {
+        atlas.notes.iter().for_each(|note| console.note(note));
+        let (width, height, charts) = (atlas.width, atlas.height, atlas.charts.len());
+        let file = arguments.output.display();
+        console.note(&format!("wrote {file}: {charts} charts in {width} × {height} texels"));
+    }
+    Ok(())
+}
