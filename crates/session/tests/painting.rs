@@ -1,0 +1,232 @@
+//! A document from opening to reopening: painted, looked at, undone, saved, recovered.
+
+mod tiny_glb;
+
+use focus::BrushMode;
+use glam::DVec2;
+use lens::{FocusOffset, Picture};
+use session::{
+    CameraEdit, Command, Event, FillRegion, PreviewKind, Session, SessionError, SessionOptions, StrokePoint,
+};
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+/// Polls until all work is done; what happened.
+fn settle(session: &mut Session) -> Vec<Event> {
+    let start = Instant::now();
+    let mut events = session.poll();
+    while !session.is_settled() {
+        assert!(start.elapsed() < Duration::from_secs(120), "the session never settles: {:?}", session.jobs());
+        std::thread::sleep(Duration::from_millis(5));
+        events.extend(session.poll());
+    }
+    events.extend(session.poll());
+    let failed = events.iter().find(|event| matches!(event, Event::Failed(_)));
+    assert!(failed.is_none(), "{failed:?}");
+    events
+}
+
+fn opened(path: &Path) -> Session {
+    let options = SessionOptions { preview_size: 120, ..SessionOptions::default() };
+    let mut session = Session::new(options).unwrap();
+    session.apply(Command::Open(path.into())).unwrap();
+    let events = settle(&mut session);
+    assert!(events.contains(&Event::Opened));
+    session
+}
+
+fn picture(session: &Session) -> Picture {
+    let preview = session.preview().expect("a preview");
+    assert_ne!(preview.kind, PreviewKind::Pinhole);
+    (*preview.picture).clone()
+}
+
+/// A point of the picture on the wall, away from card and dot.
+const ON_WALL: DVec2 = DVec2::new(0.75, 0.75);
+
+fn stroke(session: &mut Session) {
+    let brush = focus::Brush {
+        radius: 0.3,
+        target: FocusOffset::new(1.3, 1.0),
+        ..session.document().unwrap().brush.clone()
+    };
+    session.apply(Command::SetBrush(brush)).unwrap();
+    let ray = |session: &Session, x: f64| session.picture_ray(DVec2::new(x, ON_WALL.y)).unwrap();
+    let begin = StrokePoint::ray(ray(session, 0.6));
+    session.apply(Command::BeginStroke(begin)).unwrap();
+    for k in 1..=4 {
+        let point = StrokePoint::ray(ray(session, 0.6 + 0.05 * k as f64));
+        session.apply(Command::ExtendStroke(point)).unwrap();
+    }
+}
+
+#[test]
+fn paint_shows_while_the_stroke_goes_on_and_undo_brings_the_same_bits_back() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("quads.glb");
+    tiny_glb::write(&path);
+    let mut session = opened(&path);
+    let blank = picture(&session);
+    let document = session.document().unwrap();
+    assert!(!document.is_unsaved());
+    assert_eq!(document.undo_name(), None);
+
+    stroke(&mut session);
+    let events = settle(&mut session);
+    assert!(session.is_painting());
+    assert!(events.iter().any(|event| matches!(event, Event::MapChanged(..))));
+    let painted = picture(&session);
+    assert_ne!(painted, blank, "the preview follows while the pen is down");
+    session.apply(Command::CommitStroke).unwrap();
+    settle(&mut session);
+    let document = session.document().unwrap();
+    assert!(document.is_unsaved());
+    assert_eq!(document.undo_name(), Some("Brush stroke"));
+    let hit = session.pick(&session.picture_ray(ON_WALL).unwrap()).unwrap();
+    assert!((hit.distance * session.picture_ray(ON_WALL).unwrap().direction.length().recip() - 4.0).abs() < 4.0);
+    let focus = session.focus_at(&hit).unwrap();
+    assert!((focus.t - 1.3).abs() < 1e-6 && focus.anchor == 1.0, "{focus:?}");
+
+    session.apply(Command::Undo).unwrap();
+    settle(&mut session);
+    assert_eq!(picture(&session), blank);
+    session.apply(Command::Redo).unwrap();
+    settle(&mut session);
+    assert_eq!(picture(&session), painted);
+
+    // A stroke that is given up leaves no trace.
+    stroke(&mut session);
+    session.apply(Command::AbortStroke).unwrap();
+    settle(&mut session);
+    assert_eq!(picture(&session), painted);
+    assert_eq!(session.document().unwrap().redo_name(), None);
+    assert_eq!(session.document().unwrap().undo_names().count(), 1);
+}
+
+#[test]
+fn the_lens_is_undone_with_the_paint_and_bad_values_change_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("quads.glb");
+    tiny_glb::write(&path);
+    let mut session = opened(&path);
+    let blank = picture(&session);
+    let card = session.pick(&session.picture_ray(DVec2::new(0.5 - 0.1, 0.5)).unwrap()).unwrap();
+    session.apply(Command::FocusHere(card)).unwrap();
+    settle(&mut session);
+    let distance = session.document().unwrap().camera.focus_distance;
+    assert!((distance - 2.0).abs() < 1e-5, "the axial depth of the card: {distance}");
+    assert_ne!(picture(&session), blank);
+
+    let wrong = session.apply(Command::Camera(CameraEdit::FocusDistance(-1.0)));
+    assert!(matches!(wrong, Err(SessionError::BadInput(_))));
+    session.apply(Command::Camera(CameraEdit::FNumber(1.0))).unwrap();
+    settle(&mut session);
+    session.apply(Command::Undo).unwrap();
+    session.apply(Command::Undo).unwrap();
+    settle(&mut session);
+    assert_eq!(picture(&session), blank, "a wider aperture came and went");
+
+    session.apply(Command::Fill(FillRegion::Node(card), FocusOffset::SHARP)).unwrap();
+    settle(&mut session);
+    assert_eq!(session.focus_at(&card), Some(FocusOffset::SHARP));
+    session.apply(Command::Pick(card)).unwrap();
+    assert_eq!(session.document().unwrap().brush.target, FocusOffset::SHARP);
+    session.apply(Command::ResetMap).unwrap();
+    settle(&mut session);
+    assert_eq!(picture(&session), blank);
+}
+
+#[test]
+fn what_is_saved_is_opened_again() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = folder.path().join("quads.glb");
+    let project = folder.path().join("quads.fbrush");
+    tiny_glb::write(&scene);
+    let mut session = opened(&scene);
+    assert!(session.apply(Command::Save).is_err(), "there is no file yet");
+    stroke(&mut session);
+    session.apply(Command::CommitStroke).unwrap();
+    session.apply(Command::Camera(CameraEdit::FocusDistance(2.5))).unwrap();
+    session.apply(Command::SetView(serde_json::json!({"yaw": 0.25}))).unwrap();
+    session.apply(Command::SaveAs(project.clone())).unwrap();
+    let events = settle(&mut session);
+    assert!(events.contains(&Event::Written(project.clone())));
+    let document = session.document().unwrap();
+    assert!(!document.is_unsaved());
+    assert_eq!(document.name(), "quads.fbrush");
+    let (map, painted) = (document.map.clone(), picture(&session));
+
+    let mut again = opened(&project);
+    let document = again.document().unwrap();
+    assert_eq!(document.map, map);
+    assert_eq!(document.camera.focus_distance, 2.5);
+    assert_eq!(document.brush.mode, BrushMode::Set);
+    assert_eq!(document.view["yaw"], 0.25);
+    assert!(!document.is_unsaved());
+    assert_eq!(picture(&again), painted);
+
+    // Its focus map, written and read back, is the same document.
+    let exported = folder.path().join("focus.exr");
+    again.apply(Command::ExportFocusMap(exported.clone())).unwrap();
+    settle(&mut again);
+    again.apply(Command::ResetMap).unwrap();
+    again.apply(Command::ImportFocusMap(exported)).unwrap();
+    settle(&mut again);
+    assert_eq!(again.document().unwrap().map, map);
+    let shot = folder.path().join("shot.png");
+    again.apply(Command::ExportPicture(shot.clone())).unwrap();
+    settle(&mut again);
+    assert!(shot.is_file());
+}
+
+#[test]
+fn unsaved_work_is_restored() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = folder.path().join("quads.glb");
+    let project = folder.path().join("quads.fbrush");
+    tiny_glb::write(&scene);
+    let mut session = opened(&scene);
+    session.apply(Command::SaveAs(project.clone())).unwrap();
+    settle(&mut session);
+    stroke(&mut session);
+    session.apply(Command::CommitStroke).unwrap();
+    settle(&mut session);
+    // What the session writes now and then, as a crash leaves it.
+    let document = session.document().unwrap();
+    let map = document.map.clone();
+    let recovery = project::recovery_path_for(&project);
+    document.to_project().save(&recovery).unwrap();
+
+    let mut again = opened(&project);
+    let document = again.document().unwrap();
+    assert_eq!(document.map, map);
+    assert!(document.is_unsaved());
+    assert!(document.warnings.iter().any(|warning| warning.contains("restored")));
+    again.apply(Command::Save).unwrap();
+    settle(&mut again);
+    assert!(!recovery.exists(), "saving makes it superfluous");
+    assert!(!opened(&project).document().unwrap().is_unsaved());
+}
+
+#[test]
+fn a_failed_open_leaves_the_document_and_says_why() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = folder.path().join("quads.glb");
+    tiny_glb::write(&scene);
+    let mut session = opened(&scene);
+    let broken = folder.path().join("broken.glb");
+    std::fs::write(&broken, b"glTF\x02\0\0\0").unwrap();
+    session.apply(Command::Open(broken)).unwrap();
+    let mut events = Vec::new();
+    while !session.is_settled() {
+        events.extend(session.poll());
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    events.extend(session.poll());
+    let failed = events.iter().find_map(|event| match event {
+        Event::Failed(why) => Some(why),
+        _ => None,
+    });
+    assert!(failed.is_some_and(|why| why.contains("broken.glb")), "{events:?}");
+    assert_eq!(session.document().unwrap().name(), "quads.glb");
+}

@@ -1,0 +1,118 @@
+//! A small scene written by hand: unlit quads that face a camera named "front" at the origin, looking down −Z.
+
+use serde_json::{Value, json};
+use std::path::Path;
+
+/// A quad at depth z, facing the camera.
+#[derive(Clone, Copy)]
+pub struct Quad {
+    /// Name of its node; its material is this with " paint" after it.
+    pub name: &'static str,
+    /// Centre in x and y.
+    pub center: [f32; 2],
+    /// Half its sides.
+    pub half: [f32; 2],
+    /// Distance from the camera.
+    pub depth: f32,
+    /// Linear radiance.
+    pub color: [f32; 3],
+}
+
+/// A grey wall at 4 with a red card before its left half at 2 and a bright dot at its right.
+pub const QUADS: [Quad; 3] = [
+    Quad { name: "wall", center: [0.0, 0.0], half: [4.0, 3.0], depth: 4.0, color: [0.3, 0.35, 0.4] },
+    Quad { name: "card", center: [-0.4, 0.0], half: [0.3, 0.4], depth: 2.0, color: [0.8, 0.1, 0.1] },
+    Quad { name: "dot", center: [0.8, 0.2], half: [0.05, 0.05], depth: 3.9, color: [1.0, 1.0, 0.6] },
+];
+
+/// The bytes of a GLB with these quads.
+pub fn glb(quads: &[Quad]) -> Vec<u8> {
+    let mut bin: Vec<u8> = Vec::new();
+    let mut doc = json!({
+        "asset": { "version": "2.0" },
+        "extensionsUsed": ["KHR_materials_unlit"],
+        "scene": 0,
+        "scenes": [{ "nodes": [] }],
+        "nodes": [], "meshes": [], "materials": [], "accessors": [], "bufferViews": [],
+        "cameras": [{ "type": "perspective", "perspective": { "yfov": 0.6, "znear": 0.1, "aspectRatio": 1.5 } }],
+    });
+    let push = |doc: &mut Value, list: &str, value: Value| -> usize {
+        let list = doc[list].as_array_mut().expect("a list");
+        list.push(value);
+        list.len() - 1
+    };
+    for quad in quads {
+        let ([x, y], [w, h], z) = (quad.center, quad.half, -quad.depth);
+        let positions = [[x - w, y - h, z], [x + w, y - h, z], [x + w, y + h, z], [x - w, y + h, z]];
+        let uv = [[0.0f32, 1.0], [1.0, 1.0], [1.0, 0.0], [0.0, 0.0]];
+        let start = bin.len();
+        bin.extend(positions.iter().flatten().flat_map(|c| c.to_le_bytes()));
+        bin.extend(uv.iter().flatten().flat_map(|c| c.to_le_bytes()));
+        bin.extend([0u16, 1, 2, 0, 2, 3].iter().flat_map(|i| i.to_le_bytes()));
+        let mut attribute = |offset: usize, bytes: usize, mut accessor: Value| {
+            let view = json!({ "buffer": 0, "byteOffset": start + offset, "byteLength": bytes });
+            accessor["bufferView"] = push(&mut doc, "bufferViews", view).into();
+            push(&mut doc, "accessors", accessor)
+        };
+        let low = [x - w, y - h, z];
+        let high = [x + w, y + h, z];
+        let position = attribute(
+            0,
+            48,
+            json!({ "componentType": 5126, "count": 4, "type": "VEC3", "min": low, "max": high }),
+        );
+        let texcoord = attribute(48, 32, json!({ "componentType": 5126, "count": 4, "type": "VEC2" }));
+        let indices = attribute(80, 12, json!({ "componentType": 5123, "count": 6, "type": "SCALAR" }));
+        let [r, g, b] = quad.color;
+        let material = json!({
+            "name": format!("{} paint", quad.name),
+            "pbrMetallicRoughness": { "baseColorFactor": [r, g, b, 1.0] },
+            "extensions": { "KHR_materials_unlit": {} },
+        });
+        let material = push(&mut doc, "materials", material);
+        let primitive = json!({
+            "attributes": { "POSITION": position, "TEXCOORD_0": texcoord }, "indices": indices, "material": material,
+        });
+        let mesh = push(&mut doc, "meshes", json!({ "primitives": [primitive] }));
+        let node = push(&mut doc, "nodes", json!({ "name": quad.name, "mesh": mesh }));
+        doc["scenes"][0]["nodes"].as_array_mut().expect("a list").push(node.into());
+    }
+    let camera = push(&mut doc, "nodes", json!({ "name": "front", "camera": 0 }));
+    doc["scenes"][0]["nodes"].as_array_mut().expect("a list").push(camera.into());
+    if !bin.is_empty() {
+        doc["buffers"] = json!([{ "byteLength": bin.len() }]);
+    }
+    for list in ["meshes", "materials", "accessors", "bufferViews"] {
+        if doc[list].as_array().is_some_and(Vec::is_empty) {
+            doc.as_object_mut().expect("an object").remove(list);
+        }
+    }
+    container(&doc, &bin)
+}
+
+/// A GLB of a document and its buffer.
+pub fn container(doc: &Value, bin: &[u8]) -> Vec<u8> {
+    let mut text = serde_json::to_vec(doc).expect("JSON");
+    text.resize(text.len().next_multiple_of(4), b' ');
+    let mut bin = bin.to_vec();
+    bin.resize(bin.len().next_multiple_of(4), 0);
+    let mut out = Vec::new();
+    let total = 12 + 8 + text.len() + if bin.is_empty() { 0 } else { 8 + bin.len() };
+    out.extend(b"glTF");
+    out.extend(2u32.to_le_bytes());
+    out.extend((total as u32).to_le_bytes());
+    out.extend((text.len() as u32).to_le_bytes());
+    out.extend(b"JSON");
+    out.extend(text);
+    if !bin.is_empty() {
+        out.extend((bin.len() as u32).to_le_bytes());
+        out.extend(b"BIN\0");
+        out.extend(bin);
+    }
+    out
+}
+
+/// Writes the usual scene to `path`.
+pub fn write(path: &Path) {
+    std::fs::write(path, glb(&QUADS)).expect("the test's folder can be written");
+}
