@@ -20,7 +20,7 @@ use focus::FocusMap;
 use lens::{Camera, Picture};
 use progress::{Cancelled, Progress};
 use salf::SalfStatistics;
-use std::sync::atomic::{AtomicU8, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU8, Ordering};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard};
 
 /// A picture of the preview.
@@ -119,6 +119,8 @@ pub(crate) struct Shared {
     wishes: Mutex<Wishes>,
     wake: Condvar,
     pub progress: JobProgress,
+    /// Whether what the thread does is to be given up for any newer wish.
+    pub yields: AtomicBool,
     activity: AtomicU8,
     published: Mutex<Published>,
     waker: Waker,
@@ -188,6 +190,7 @@ impl PreviewThread {
             wishes: Mutex::default(),
             wake: Condvar::new(),
             progress: JobProgress::default(),
+            yields: AtomicBool::new(false),
             activity: AtomicU8::new(0),
             published: Mutex::default(),
             waker,
@@ -204,7 +207,7 @@ impl PreviewThread {
     fn post(&self, stops_bake: bool, change: impl FnOnce(&mut Wishes)) {
         let mut wishes = lock(&self.shared.wishes);
         change(&mut wishes);
-        if stops_bake {
+        if stops_bake || self.shared.yields.load(Ordering::Relaxed) {
             self.shared.progress.cancel();
         }
         self.shared.wake.notify_one();

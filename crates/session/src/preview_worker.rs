@@ -11,11 +11,16 @@ use lens::{Camera, Picture};
 use salf::{BakeOptions, SalfStatistics};
 use splat::{SplatError, Splatter};
 use std::sync::Arc;
+use std::sync::atomic::Ordering;
 use std::time::Instant;
 
 /// The margin is baked this much wider than the paint needs, in picture heights, so that the next strokes find
 /// room: a tenth of the height is a circle of confusion as wide as paint usually gives.
 const MARGIN_HEADROOM: f64 = 0.1;
+
+/// Below this share of the baked aperture's radius the light field is baked again: half as many of its cells a
+/// side are open then.
+const SMALLER_APERTURE: f64 = 0.7;
 
 /// The thread's own state.
 pub(crate) struct Worker {
@@ -95,46 +100,52 @@ impl Worker {
         let (stage, camera) = (stage.clone(), camera.clone());
         let focus = Focus::painted(stage.scene.clone(), stage.atlas.clone(), map.clone());
         if !self.baked.as_ref().is_some_and(|baked| serves(&baked.splatter.salf().camera, &camera)) {
-            self.bake(&stage, &camera, &focus)?;
+            self.baked = None;
+            self.baked = Some(self.bake(&stage, &camera, &focus)?);
         }
         self.splat(&camera, &focus, &wishes.changed)?;
-        if wishes.settle && self.shared.is_quiet() {
-            self.widen(&stage, &camera, &focus)?;
-        }
-        Ok(())
-    }
-
-    /// Bakes again with a wider margin where paint or lens has come to spread light from further outside.
-    fn widen(&mut self, stage: &Stage, camera: &Camera, focus: &Focus) -> Result<(), SessionError> {
-        let Some(baked) = &self.baked else { return Ok(()) };
-        let needed = BakeOptions::for_focus(&stage.tracer, camera, focus).margin_px;
-        if needed <= baked.splatter.salf().margin_px as f64 {
+        if !wishes.settle {
             return Ok(());
         }
-        self.bake(stage, camera, focus)?;
+        self.shared.yields.store(true, Ordering::Relaxed);
+        let refined = if self.shared.is_quiet() { self.refine(&stage, &camera, &focus) } else { Ok(()) };
+        self.shared.yields.store(false, Ordering::Relaxed);
+        refined
+    }
+
+    /// Bakes again where the light field serves but another one would serve better: when paint or lens has come
+    /// to spread light from further outside the frame, or the aperture has become much smaller than the one
+    /// whose cells were looked through. Given up for any newer wish; the old light field goes on serving.
+    fn refine(&mut self, stage: &Stage, camera: &Camera, focus: &Focus) -> Result<(), SessionError> {
+        let Some(baked) = &self.baked else { return Ok(()) };
+        let salf = baked.splatter.salf();
+        let is_coarse = camera.aperture_radius < SMALLER_APERTURE * salf.camera.aperture_radius;
+        let needed = BakeOptions::for_focus(&stage.tracer, camera, focus).margin_px;
+        if needed <= salf.margin_px as f64 && !is_coarse {
+            return Ok(());
+        }
+        self.baked = Some(self.bake(stage, camera, focus)?);
         self.splat(camera, focus, &Changes::Everything)
     }
 
-    /// Shows the pinhole picture, then makes the light field.
-    fn bake(&mut self, stage: &Stage, camera: &Camera, focus: &Focus) -> Result<(), SessionError> {
+    /// Shows the pinhole picture if the view is new, and makes the light field.
+    fn bake(&mut self, stage: &Stage, camera: &Camera, focus: &Focus) -> Result<Baked, SessionError> {
         let start = Instant::now();
         self.shared.begin(PreviewActivity::Baking)?;
-        let progress = &self.shared.progress;
         let radiance = light(&stage.tracer, camera);
         if !self.shown.as_ref().is_some_and(|shown| same_view(shown, camera)) {
-            let hits = FirstHits::trace(&stage.tracer, &radiance, focus, camera, progress)?;
+            let hits = FirstHits::trace(&stage.tracer, &radiance, focus, camera, &self.shared.progress)?;
             self.publish(hits.picture(), PreviewKind::Pinhole, camera, start, SalfStatistics::default());
         }
         let needed = BakeOptions::for_focus(&stage.tracer, camera, focus).margin_px;
         let options = BakeOptions { margin_px: needed + MARGIN_HEADROOM * camera.height as f64 };
         let salf = Arc::new(salf::bake(&stage.tracer, &radiance, camera, &options, &self.shared.progress)?);
-        self.baked = Some(Baked {
+        Ok(Baked {
             index: SampleIndex::new(&salf, &stage.atlas),
             statistics: salf.statistics(),
             splatter: Splatter::new(salf),
             summed: None,
-        });
-        Ok(())
+        })
     }
 
     /// Brings the sum to the camera's lens and the focus, and shows it.

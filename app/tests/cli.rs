@@ -1,0 +1,247 @@
+//! The command line from end to end, on a small scene made here.
+
+#[path = "../../crates/session/tests/tiny_glb/mod.rs"]
+mod tiny_glb;
+
+use focus::Focus;
+use project::{NamedCamera, ProjectFile, read_picture};
+use serde_json::Value;
+use std::path::PathBuf;
+use std::process::{Command, Output};
+use std::sync::Arc;
+
+/// A folder with the scene, its camera and a recipe.
+struct Workplace {
+    folder: tempfile::TempDir,
+}
+
+impl Workplace {
+    fn new() -> Self {
+        let place = Self { folder: tempfile::tempdir().unwrap() };
+        tiny_glb::write(&place.path("quads.glb"));
+        let camera = r#"{"width": 96, "height": 64, "focus_distance": 2.0, "aperture_radius": 0.1, "sensor_height": 0.1}"#;
+        std::fs::write(place.path("camera.json"), camera).unwrap();
+        let recipe = r#"{"default": {"t": 1, "anchor": 0}, "nodes": {"card": {"t": 1.2, "anchor": 1}},
+            "materials": {"wall paint": {"t": 1, "anchor": 1}}}"#;
+        std::fs::write(place.path("recipe.json"), recipe).unwrap();
+        place
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    /// Runs the program in the folder.
+    fn run(&self, arguments: &str) -> Output {
+        Command::new(env!("CARGO_BIN_EXE_focus-brush"))
+            .args(arguments.split_whitespace())
+            .current_dir(&self.folder)
+            .output()
+            .unwrap()
+    }
+
+    /// Runs the program, which must succeed; what it wrote to stdout.
+    fn done(&self, arguments: &str) -> String {
+        let output = self.run(arguments);
+        let errors = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success(), "{arguments}: {}: {errors}", output.status);
+        String::from_utf8(output.stdout).unwrap()
+    }
+
+    fn json(&self, arguments: &str) -> Value {
+        serde_json::from_str(&self.done(arguments)).unwrap()
+    }
+
+    /// Runs the program, which must fail with `code` and one line that has all of `words`.
+    fn fails(&self, arguments: &str, code: i32, words: &[&str]) {
+        let output = self.run(arguments);
+        let errors = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(code), "{arguments}: {errors}");
+        let lines: Vec<_> = errors.lines().filter(|line| line.starts_with("error: ")).collect();
+        assert_eq!(lines.len(), 1, "{arguments}: {errors}");
+        for word in words {
+            assert!(lines[0].contains(word), "{arguments}: no {word:?} in {}", lines[0]);
+        }
+        assert!(lines[0].ends_with(')'), "{arguments}: says what to do: {}", lines[0]);
+    }
+
+    fn psnr(&self, a: &str, b: &str) -> f64 {
+        self.json(&format!("compare {a} {b} --json"))["psnr"].as_f64().unwrap()
+    }
+
+    /// A project with a painted card, as the window saves it.
+    fn paint(&self, name: &str) -> PathBuf {
+        let scene = self.path("quads.glb");
+        let loaded = scene::load(&scene, &Default::default(), &progress::Unwatched).unwrap();
+        let loaded = Arc::new(loaded);
+        let atlas = atlas::Atlas::unwrap(&loaded, &Default::default(), &progress::Unwatched).unwrap();
+        let recipe = project::read_recipe(&self.path("recipe.json")).unwrap();
+        let focus: Focus = recipe.evaluate(&loaded).unwrap();
+        let map = focus.bake(&atlas.texel_map(&loaded));
+        let defaults = session::camera_of(&loaded.cameras[0], &Default::default());
+        let camera = project::read_camera(&self.path("camera.json"), &defaults).unwrap();
+        let cameras = vec![NamedCamera { name: "shot".into(), camera }];
+        let file = self.path(name);
+        let new = ProjectFile::new(&scene, cameras).unwrap();
+        let painted = ProjectFile { atlas: Some(atlas.to_bytes()), focus_map: Some(map), ..new };
+        painted.save(&file).unwrap();
+        file
+    }
+}
+
+const SHOT: &str = "--camera camera.json --focus recipe.json";
+
+#[test]
+fn splat_and_truth_agree_and_the_blur_by_depth_does_not() {
+    let place = Workplace::new();
+    let report = place.json(&format!("render quads.glb {SHOT} -o splat.exr --json"));
+    assert_eq!((report["width"].as_u64(), report["height"].as_u64()), (Some(96), Some(64)));
+    assert!(report["salf"]["open_samples"].as_u64().unwrap() > 1000, "{report}");
+    assert!(report["seconds"]["bake"].as_f64().unwrap() > 0.0, "{report}");
+    place.done(&format!("render quads.glb {SHOT} --renderer truth --spp 256 -o truth.exr"));
+    place.done(&format!("render quads.glb {SHOT} --renderer blur -o blur.exr"));
+    let splat = place.psnr("splat.exr", "truth.exr");
+    assert!(splat > 36.0, "splat against truth: {splat} dB");
+    let blur = place.psnr("blur.exr", "truth.exr");
+    assert!(blur < splat - 6.0, "the baseline cannot see behind the card: {blur} dB");
+    // Negative control: another focus is another picture.
+    place.done("render quads.glb --camera camera.json -o unpainted.exr");
+    let unpainted = place.psnr("unpainted.exr", "truth.exr");
+    assert!(unpainted < splat - 6.0, "{unpainted} dB");
+    assert_eq!(place.psnr("splat.exr", "splat.exr"), 200.0);
+}
+
+#[test]
+fn pictures_come_along() {
+    let place = Workplace::new();
+    place.done(&format!("render quads.glb {SHOT} --aov coverage,coc,depth,t --exposure conserve -o all.exr"));
+    let picture = read_picture(&place.path("all.exr")).unwrap();
+    let layer = |name: &str, x: usize, y: usize| picture.layers[name][y * 96 + x];
+    // The card is 0.4 left of the middle at depth 2: 96 px are 2·tan(0.3)·2·1.5 wide there.
+    let card = (48.0 - 0.4 / (2.0 * 0.3f64.tan() * 2.0 * 1.5) * 96.0) as usize;
+    assert!((layer("depth", card, 32) - 2.0).abs() < 1e-5);
+    assert!((layer("depth", 90, 60) - 4.0).abs() < 1e-5);
+    assert_eq!((layer("t", card, 32), layer("anchor", card, 32)), (1.2, 1.0));
+    assert_eq!(layer("coc", 90, 60), 0.0, "the wall is painted sharp");
+    // A·(t − 1)/d/tanθ half-heights, d = h/(2·tanθ): far defocus is positive.
+    let expected = 0.2 * 0.2 / (0.1 / (2.0 * 0.3f64.tan())) / 0.3f64.tan() * 32.0;
+    assert!((layer("coc", card, 32) as f64 - expected).abs() < 1e-3, "{}", layer("coc", card, 32));
+    assert!(picture.layers["coverage"].iter().all(|c| c.is_finite() && *c >= 0.0));
+
+    place.done(&format!("render quads.glb {SHOT} --aov depth --size 48x32 -o small.png"));
+    assert_eq!(read_picture(&place.path("small.png")).unwrap().width, 48);
+    assert!(place.path("small.depth.exr").is_file());
+}
+
+#[test]
+fn a_light_field_renders_as_its_scene_does() {
+    let place = Workplace::new();
+    let report = place.json(&format!("bake quads.glb {SHOT} -o quads.salf --json"));
+    assert!(report["file_bytes"].as_u64().unwrap() > 10_000, "{report}");
+    place.done(&format!("render quads.glb {SHOT} -o direct.exr"));
+    place.done("render quads.salf --focus recipe.json -o baked.exr");
+    assert_eq!(place.psnr("direct.exr", "baked.exr"), 200.0);
+    let info = place.json("info quads.salf --json");
+    assert_eq!(info["kind"], "light field");
+    place.fails("render quads.salf --size 10x10 -o x.exr", 3, &["quads.salf", "96 × 64"]);
+    let mut bytes = std::fs::read(place.path("quads.salf")).unwrap();
+    let middle = bytes.len() / 2;
+    bytes[middle] ^= 1;
+    std::fs::write(place.path("quads.salf"), bytes).unwrap();
+    place.fails("render quads.salf -o x.exr", 3, &["quads.salf", "damaged"]);
+}
+
+#[test]
+fn a_project_renders_and_exports_what_was_painted() {
+    let place = Workplace::new();
+    place.paint("quads.fbrush");
+    place.done("render quads.fbrush -o project.exr");
+    place.done(&format!("render quads.glb {SHOT} -o recipe.exr"));
+    let same = place.psnr("project.exr", "recipe.exr");
+    assert!(same > 50.0, "the painted map is the recipe: {same} dB");
+    place.done("export quads.fbrush --focus-map map.exr --glb out.glb --layers layers.exr");
+    // Written with the atlas, read with the project's own atlas again.
+    place.done("render quads.fbrush --focus map.exr -o map_back.exr");
+    assert_eq!(place.psnr("project.exr", "map_back.exr"), 200.0);
+    assert!(read_picture(&place.path("layers.exr")).unwrap().layers.contains_key("coc"));
+    let unwrapped = scene::load(&place.path("out.glb"), &Default::default(), &progress::Unwatched).unwrap();
+    assert!(unwrapped.parts.iter().all(|part| part.has_uv[1]));
+    let info = place.json("info quads.fbrush --json");
+    assert_eq!(info["project"]["scene_state"], "same");
+    // One output fails, the other is written.
+    place.fails("export quads.fbrush --focus-map again.png --glb none/out.glb", 4, &["none/out.glb"]);
+    assert!(place.path("again.png").is_file());
+    std::fs::remove_file(place.path("quads.glb")).unwrap();
+    place.fails("render quads.fbrush -o x.exr", 3, &["quads.fbrush", "quads.glb", "missing"]);
+}
+
+#[test]
+fn scenes_are_unwrapped_and_told_about() {
+    let place = Workplace::new();
+    let report = place.json("unwrap quads.glb -o out.glb --side 256 --ignore-uv --json");
+    assert!(report["charts"].as_u64().unwrap() >= 3, "{report}");
+    assert!(report["width"].as_u64().unwrap() <= 256);
+    let info = place.json("info out.glb --json");
+    assert_eq!(info["mesh"]["triangles"], 6);
+    let text = place.done("info quads.glb");
+    assert!(text.contains("6 triangles") && text.contains("\"front\""), "{text}");
+
+    // A file with nothing to render is still a file.
+    std::fs::write(place.path("empty.glb"), tiny_glb::glb(&[])).unwrap();
+    assert!(place.done("info empty.glb").contains("no triangle"));
+    place.fails("render empty.glb -o x.exr", 3, &["empty.glb", "no triangle"]);
+}
+
+#[test]
+fn mistakes_are_one_line_and_the_right_code() {
+    let place = Workplace::new();
+    place.fails("render", 2, &["--help"]);
+    place.fails("render quads.glb -o x.exr --renderer magic", 2, &["magic"]);
+    place.fails("render quads.glb -o x.exr --aov z", 2, &["coverage"]);
+    place.fails("render quads.glb -o x.bmp", 2, &["x.bmp"]);
+    place.fails("export quads.glb", 2, &[]);
+    place.fails("render quads.glb -o x.exr --backend gpu", 5, &["GPU"]);
+    place.fails("render none.glb -o x.exr", 3, &["none.glb"]);
+    place.fails("info none.txt", 3, &["none.txt"]);
+    place.fails("none.glb", 3, &["none.glb"]);
+    place.fails("render quads.glb -o none/x.exr", 3, &["none/x.exr", "folder"]);
+    place.fails("render quads.glb --camera side -o x.exr", 3, &["side", "front"]);
+    place.fails("render quads.glb --focus none.json -o x.exr", 3, &["none.json"]);
+    std::fs::write(place.path("typo.json"), r#"{"nodes": {"crad": {"t": 1.1, "anchor": 0}}}"#).unwrap();
+    place.fails("render quads.glb --focus typo.json -o x.exr", 3, &["typo.json", "crad", "card"]);
+    std::fs::write(place.path("bad.json"), r#"{"width": 0}"#).unwrap();
+    place.fails("render quads.glb --camera bad.json -o x.exr", 3, &["bad.json", "width"]);
+    std::fs::write(place.path("broken.glb"), b"glTF\x02\0\0\0\xff\xff\xff\xff").unwrap();
+    place.fails("render broken.glb -o x.exr", 3, &["broken.glb"]);
+    place.fails("info broken.glb", 3, &["broken.glb"]);
+    place.done("render quads.glb --size 16x16 -o a.png");
+    place.done("render quads.glb --size 16x12 -o b.png");
+    place.fails("compare a.png b.png", 3, &["16 × 12"]);
+    assert!(!place.path("x.exr").exists(), "what fails leaves no file");
+}
+
+#[test]
+fn the_doctor_and_the_help_answer() {
+    let place = Workplace::new();
+    let report = place.json("doctor --json");
+    assert!(report["threads"].as_u64().unwrap() >= 1);
+    assert!(report["adapters"].is_array() && report["missing_libraries"].is_array());
+    assert!(place.done("doctor").contains("command line works"));
+    assert!(place.done("--help").contains("Exit codes"));
+    assert!(place.done("render --help").contains("--renderer"));
+    assert!(place.done("--version").starts_with("focus-brush "));
+}
+
+#[test]
+fn the_same_seed_gives_the_same_bits_and_standard_coverage_is_one() {
+    let place = Workplace::new();
+    for name in ["one.exr", "two.exr"] {
+        let seed = "--renderer truth --spp 16 --seed 7";
+        place.done(&format!("render quads.glb --camera camera.json {seed} --aov coverage -o {name}"));
+    }
+    assert_eq!(std::fs::read(place.path("one.exr")).unwrap(), std::fs::read(place.path("two.exr")).unwrap());
+    place.done("render quads.glb --camera camera.json --aov coverage -o standard.exr");
+    let coverage = &read_picture(&place.path("standard.exr")).unwrap().layers["coverage"];
+    let off = coverage.iter().filter(|c| (*c - 1.0).abs() > 0.005).count();
+    assert!(off * 100 <= coverage.len(), "coverage is off in {off} of {} pixels", coverage.len());
+}
