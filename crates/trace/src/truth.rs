@@ -73,13 +73,14 @@ pub fn render(
     loop {
         let sensor = Sensor::new(camera, quantiser);
         let batches = pixel_samples::batches(camera, samples, options.seed);
-        let stages = (batches.len() + 1) as f32;
-        let stage = |k: usize| Stage::new(progress, k as f32 / stages, (k + 1) as f32 / stages);
-        bright.shine(&rays, radiance, &sensor, options.seed, &stage(0))?;
+        let own_rays = if bright.is_empty() { 0.0 } else { 0.1 };
+        bright.shine(&rays, radiance, &sensor, options.seed, &Stage::new(progress, 0.0, own_rays))?;
+        let share = (1.0 - own_rays) / batches.len() as f32;
         for (k, batch) in batches.enumerate() {
+            let start = own_rays + share * k as f32;
             let exposure =
                 Exposure { rays: &rays, radiance, bright: &bright, sensor: &sensor, samples: &batch };
-            exposure.expose(guard_px, &stage(k + 1))?;
+            exposure.expose(guard_px, &Stage::new(progress, start, start + share))?;
         }
         match sensor.develop(samples) {
             Some(picture) => return Ok(picture),

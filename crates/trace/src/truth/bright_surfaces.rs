@@ -59,6 +59,11 @@ impl BrightSurfaces {
         Self { rays_of: wanted.into_iter().map(|n| (n * share).ceil() as u32).collect(), ..found }
     }
 
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.rays_of.is_empty()
+    }
+
     /// How many rays a triangle should send: so many that each brings little, but not more than spp a pixel
     /// of the circle of confusion.
     fn rays_wanted(&self, rays: &SampleRays, radiance: &dyn Radiance, triangle: u32) -> f64 {
