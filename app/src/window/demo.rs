@@ -1,12 +1,10 @@
 //! Where the demo lies: beside the program, in its share folder, or in the source tree it was built from.
 
+use session::Command;
 use std::path::{Path, PathBuf};
 
-/// The demo's files, the best first: the painted project, else the bare scene.
-const NAMES: [&str; 2] = ["demo.fbrush", "demo.glb"];
-
-/// The demo, if it was installed or is in the source tree.
-pub fn find() -> Option<PathBuf> {
+/// The command that opens the demo: its scene as its makers shot and focused it. None where it is not installed.
+pub fn open() -> Option<Command> {
     let program = std::env::current_exe().ok();
     let beside = program.as_deref().and_then(Path::parent);
     let folders = [
@@ -15,7 +13,12 @@ pub fn find() -> Option<PathBuf> {
         Some(Path::new(env!("CARGO_MANIFEST_DIR")).join("../assets/demo")),
         Some(PathBuf::from("assets/demo")),
     ];
-    let files = folders.into_iter().flatten().flat_map(|folder| NAMES.map(|name| folder.join(name)));
-    let found = files.into_iter().find(|file| file.is_file())?;
-    Some(found.canonicalize().unwrap_or(found))
+    let folder = folders.into_iter().flatten().find(|folder| folder.join("demo.glb").is_file())?;
+    let folder = folder.canonicalize().unwrap_or(folder);
+    let file = |name| folder.join(name);
+    Some(Command::OpenShot {
+        scene: file("demo.glb"),
+        camera: file("demo.camera.json"),
+        focus: file("demo.focus.json"),
+    })
 }

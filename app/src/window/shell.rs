@@ -163,10 +163,11 @@ impl Shell {
     }
 
     fn open_demo(&mut self) {
-        match demo::find() {
-            Some(path) => {
-                self.open(path);
+        match demo::open() {
+            Some(command) => {
+                self.opening = None;
                 self.showing_demo = true;
+                self.apply(command);
             }
             None => self.toasts.error("assets/demo: the demo is not installed (open a scene with Ctrl+O)"),
         }
@@ -188,6 +189,7 @@ impl Shell {
                 context.send_viewport_cmd(ViewportCommand::Close);
             }
             Next::Open(path) => self.open(path),
+            Next::OpenDemo => self.open_demo(),
             Next::AskOpen => {
                 let folder = self.settings.recent.first().and_then(|path| Some(path.parent()?.to_path_buf()));
                 let folder = folder.or_else(|| std::env::current_dir().ok()).unwrap_or_default();
@@ -199,10 +201,16 @@ impl Shell {
     fn save(&mut self, context: &Context) {
         let Some(document) = self.session.document() else { return };
         if document.path.is_some() {
+            self.keep_viewpoint();
             self.apply(Command::Save);
         } else {
             self.ask_for(Purpose::SaveAs, context);
         }
+    }
+
+    /// The viewpoint is saved with the document, but is no change of it.
+    fn keep_viewpoint(&mut self) {
+        self.apply(Command::SetView(self.paint.viewpoint()));
     }
 
     /// Asks for a file to write, beside the document and named after it.
@@ -223,7 +231,10 @@ impl Shell {
     fn answered(&mut self, purpose: Purpose, path: PathBuf) {
         match purpose {
             Purpose::Open => self.open(path),
-            Purpose::SaveAs => self.apply(Command::SaveAs(path)),
+            Purpose::SaveAs => {
+                self.keep_viewpoint();
+                self.apply(Command::SaveAs(path));
+            }
             Purpose::ExportPicture => self.apply(Command::ExportPicture(path)),
             Purpose::ExportFocusMap => self.apply(Command::ExportFocusMap(path)),
             Purpose::ExportScene => self.apply(Command::ExportScene(path)),

@@ -10,6 +10,8 @@ pub enum Next {
     Quit,
     /// Another document is opened.
     Open(PathBuf),
+    /// The demo is opened.
+    OpenDemo,
     /// A file to open is asked for.
     AskOpen,
 }

@@ -12,6 +12,15 @@ use trace::Ray;
 pub enum Command {
     /// Opens a scene or a project in the background; the document that is open stays until the new one is ready.
     Open(PathBuf),
+    /// Opens a scene with a camera file and a recipe (or a focus map) as what it begins with.
+    OpenShot {
+        /// The scene.
+        scene: PathBuf,
+        /// Its camera file.
+        camera: PathBuf,
+        /// Its recipe or focus map.
+        focus: PathBuf,
+    },
     /// Saves to the project's own file. An error where it has none yet.
     Save,
     /// Saves to this file and keeps it as the project's own.

@@ -78,7 +78,7 @@ impl Document {
             None => {
                 let shot = NamedCamera { name: SHOT.into(), camera: input.camera.clone() };
                 let (low, high) = input.scene.bounds();
-                let radius = brush_radius((high - low).length());
+                let radius = brush_radius(&input.camera, (high - low).length());
                 let brush = Brush { radius, ..Brush::default() };
                 ProjectFile { brush, ..ProjectFile::new(&input.scene.path, vec![shot])? }
             }
@@ -164,9 +164,12 @@ fn recovery_path(file: &Path, is_project: bool) -> PathBuf {
     if is_project { project::recovery_path_for(file) } else { project::unsaved_recovery_path(file) }
 }
 
-/// A twentieth of the scene, or the brush's default for a scene that is a point.
-fn brush_radius(diagonal: f64) -> f64 {
-    if diagonal > 0.0 && diagonal.is_finite() { diagonal / 20.0 } else { Brush::default().radius }
+/// An eighth of half the picture's height where the lens focuses, but at most a twentieth of the scene; the brush's
+/// default for a scene that is a point.
+fn brush_radius(camera: &Camera, diagonal: f64) -> f64 {
+    let seen = camera.focus_distance * (camera.yfov / 2.0).tan() / 8.0;
+    let radius = seen.min(diagonal / 20.0);
+    if radius > 0.0 && radius.is_finite() { radius } else { Brush::default().radius }
 }
 
 /// A camera of the scene with the size, lens and background of `lens`.

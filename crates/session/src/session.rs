@@ -260,6 +260,7 @@ impl Session {
     pub fn apply(&mut self, command: Command) -> Result<(), SessionError> {
         match command {
             Command::Open(path) => self.open(path),
+            Command::OpenShot { scene, camera, focus } => self.open_shot(scene, camera, focus),
             Command::Undo => self.step_back(),
             Command::Redo => self.step_forward(),
             Command::Camera(edit) => self.edit_camera(edit),

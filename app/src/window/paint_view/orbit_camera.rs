@@ -2,6 +2,7 @@
 
 use glam::{DMat4, DQuat, DVec2, DVec3, DVec4};
 use lens::Camera;
+use serde::{Deserialize, Serialize};
 
 /// Radians for each point that the pointer moves.
 const ORBIT_RAD_PER_POINT: f64 = 0.008;
@@ -11,7 +12,7 @@ const ZOOM_PER_STEP: f64 = 0.88;
 const POLE_MARGIN_RAD: f64 = 0.02;
 
 /// A turntable camera that looks at a pivot. World space, looks down its own −Z, +Y up.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct OrbitCamera {
     /// What it turns around.
     pub pivot: DVec3,
@@ -40,6 +41,12 @@ impl OrbitCamera {
             orientation,
             yfov: camera.yfov,
         }
+    }
+
+    /// Whether it can be looked through: a stored one may come from anywhere.
+    pub fn is_usable(&self) -> bool {
+        let lengths = self.distance > 0.0 && self.distance.is_finite() && self.pivot.is_finite();
+        lengths && self.orientation.is_normalized() && self.yfov > 0.0 && self.yfov < std::f64::consts::PI
     }
 
     /// Where it looks from.

@@ -18,6 +18,8 @@ const POINTS_PER_STEP: f64 = 40.0;
 /// How much more than the picture is seen through the shot camera.
 const FRAME_MARGIN: f64 = 1.06;
 
+/// The viewpoint's name in what is saved.
+const VIEWPOINT_KEY: &str = "paint_view";
 /// How far the pivot is from a shot camera that focuses at infinity.
 const PIVOT_AT_INFINITY: f64 = 10.0;
 
@@ -77,6 +79,10 @@ impl PaintView {
     /// Takes up another document: its surface is copied to the graphics card in the background.
     pub fn opened(&mut self, document: &Document, context: &egui::Context) {
         self.look_through();
+        if let Some(camera) = stored_viewpoint(&document.view) {
+            self.camera = camera;
+            self.look_through = false;
+        }
         let Some(renderer) = &self.renderer else { return };
         let (device, queue) = renderer.device();
         self.mesh = None;
@@ -137,6 +143,14 @@ impl PaintView {
     pub fn look_through(&mut self) {
         self.following = None;
         self.look_through = true;
+    }
+
+    /// The viewpoint as it is saved with the document: null while the view looks through the shot camera.
+    pub fn viewpoint(&self) -> serde_json::Value {
+        if self.look_through || self.following == Some(self.camera) {
+            return serde_json::Value::Null;
+        }
+        serde_json::json!({ VIEWPOINT_KEY: self.camera })
     }
 
     /// Keeps looking through the shot camera, as the view's size or the camera changes, as long as the user does not navigate.
@@ -385,6 +399,12 @@ pub fn hint(ui: &Ui, rect: Rect, text: &str) {
 
 fn aspect(rect: Rect) -> f64 {
     (rect.width().max(1.0) / rect.height().max(1.0)) as f64
+}
+
+/// The viewpoint that was saved with a document, if it can be looked through.
+fn stored_viewpoint(view: &serde_json::Value) -> Option<OrbitCamera> {
+    let camera: OrbitCamera = serde_json::from_value(view.get(VIEWPOINT_KEY)?.clone()).ok()?;
+    camera.is_usable().then_some(camera)
 }
 
 /// The ray of a screen position.

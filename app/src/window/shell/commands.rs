@@ -5,7 +5,7 @@ use crate::window::file_dialog::Purpose;
 use crate::window::paint_view::PaintView;
 use crate::window::tool_bar::{largest_radius, signed_circle_px};
 use crate::window::unsaved_question::Next;
-use crate::window::{Tool, ViewSettings, demo, layout};
+use crate::window::{Tool, ViewSettings, layout};
 use egui::Context;
 use focus::{Brush, BrushMode};
 use lens::{Exposure, FocusOffset};
@@ -27,10 +27,7 @@ impl Shell {
     pub(super) fn carry_out(&mut self, id: CommandId, context: &Context) {
         match id {
             CommandId::Open => self.ask_then(Next::AskOpen, context),
-            CommandId::OpenDemo => match demo::find() {
-                Some(path) => self.ask_then(Next::Open(path), context),
-                None => self.open_demo(),
-            },
+            CommandId::OpenDemo => self.ask_then(Next::OpenDemo, context),
             CommandId::Save => self.save(context),
             CommandId::SaveAs => self.ask_for(Purpose::SaveAs, context),
             CommandId::ExportPicture => self.ask_for(Purpose::ExportPicture, context),

@@ -29,6 +29,22 @@ impl Session {
         })
     }
 
+    pub(super) fn open_shot(
+        &mut self,
+        scene: PathBuf,
+        camera: PathBuf,
+        focus: PathBuf,
+    ) -> Result<(), SessionError> {
+        let unwrap = self.options.unwrap.clone();
+        let label = format!("opening {}", file_name(&scene));
+        self.start(label, move |progress| {
+            let mut document = Document::open(&scene, &unwrap, &JobSteps { progress })?;
+            document.camera = project::read_camera(&camera, &document.camera)?;
+            document.map = imported(&focus, &document)?;
+            Ok(Outcome::Opened(Box::new(document)))
+        })
+    }
+
     pub(super) fn save(&mut self, to: Option<PathBuf>) -> Result<(), SessionError> {
         self.commit_stroke()?;
         let generation = self.generation;
