@@ -40,6 +40,12 @@ pub fn named(response: &Response, name: &str) {
     response.ctx.accesskit_node_builder(response.id, |node| node.set_label(name));
 }
 
+/// A row of a list, as wide as the list, its text on the left.
+pub fn list_row(ui: &mut Ui, chosen: bool, text: &str) -> Response {
+    let layout = egui::Layout::top_down_justified(egui::Align::LEFT);
+    ui.with_layout(layout, |ui| ui.add(egui::Button::selectable(chosen, text))).inner
+}
+
 /// A length with three significant digits, for labels.
 pub fn length(metres: f64) -> String {
     if metres.is_infinite() { "∞".into() } else { format!("{} m", significant(metres)) }
@@ -95,6 +101,15 @@ pub fn circle(px: f64) -> String {
         _ if px.abs() < 0.05 => "sharp".into(),
         _ if px < 0.0 => format!("near {} px", significant(-px)),
         _ => format!("far {} px", significant(px)),
+    }
+}
+
+/// The same as an amount: `12 px of near blur`, `no blur`.
+pub fn circle_amount(px: f64) -> String {
+    match px {
+        _ if px.abs() < 0.05 => "no blur".into(),
+        _ if px < 0.0 => format!("{} px of near blur", significant(-px)),
+        _ => format!("{} px of far blur", significant(px)),
     }
 }
 

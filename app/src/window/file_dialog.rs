@@ -209,7 +209,8 @@ fn typed(purpose: Purpose, suggestion: &Path) -> State {
 /// The path field, what lies in its folder, and the two buttons.
 fn typed_dialog(context: &Context, purpose: Purpose, text: &mut String, focused: &mut bool) -> Step {
     let mut step = Step::Wait;
-    let modal = egui::Modal::new(Id::unique("file dialog")).show(context, |ui| {
+    let frame = egui::Frame::popup(&context.global_style()).inner_margin(14.0);
+    let modal = egui::Modal::new(Id::unique("file dialog")).frame(frame).show(context, |ui| {
         ui.set_width(560.0);
         ui.heading(purpose.title());
         ui.add_space(4.0);
@@ -234,8 +235,7 @@ fn typed_dialog(context: &Context, purpose: Purpose, text: &mut String, focused:
                     entry.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
                 let folder = entry.is_dir();
                 let label = if folder { format!("{name}{}", std::path::MAIN_SEPARATOR) } else { name };
-                let button =
-                    ui.add_sized([ui.available_width(), 20.0], egui::Button::selectable(false, label));
+                let button = super::controls::list_row(ui, false, &label);
                 if button.clicked() {
                     *text = entry.display().to_string();
                     if folder {

@@ -84,8 +84,9 @@ impl Palette {
 fn row(ui: &mut egui::Ui, info: &CommandInfo, chosen: bool) -> egui::Response {
     let shortcut = info.shortcut.map(|key| key.to_string()).unwrap_or_default();
     let label = format!("{}: {}", info.menu.title(), info.name);
+    let layout = egui::Layout::top_down_justified(egui::Align::LEFT);
     let button = egui::Button::selectable(chosen, label).right_text(RichText::new(shortcut).weak());
-    ui.add_sized([ui.available_width(), 22.0], button).on_hover_text(info.tooltip)
+    ui.with_layout(layout, |ui| ui.add(button)).inner.on_hover_text(info.tooltip)
 }
 
 /// The commands whose name or tooltip holds every word of the query; those whose name starts with it first.

@@ -24,6 +24,7 @@ pub fn tool_bar(ui: &mut Ui, document: Option<&Document>, tool: Tool, actions: &
         let Some(document) = document else { return };
         ui.separator();
         let mut brush = document.brush.clone();
+        ui.spacing_mut().slider_width = 104.0;
         ui.label("Size").on_hover_text(SIZE_TIP);
         let largest = largest_radius(document);
         let size = egui::Slider::new(&mut brush.radius, largest * 1e-3..=largest)
@@ -33,6 +34,9 @@ pub fn tool_bar(ui: &mut Ui, document: Option<&Document>, tool: Tool, actions: &
         ui.label("Strength").on_hover_text(STRENGTH_TIP);
         let strength = egui::Slider::new(&mut brush.strength, 0.0..=1.0).show_value(false);
         super::controls::named(&ui.add(strength).on_hover_text(STRENGTH_TIP), "Brush strength");
+        ui.label("Hardness").on_hover_text(HARDNESS_TIP);
+        let hardness = egui::Slider::new(&mut brush.hardness, 0.0..=1.0).show_value(false);
+        super::controls::named(&ui.add(hardness).on_hover_text(HARDNESS_TIP), "Brush hardness");
         ui.separator();
         let optics = document.camera.optics();
         if let Some(target) = target_slider(ui, &optics, brush.target, 170.0) {
@@ -56,6 +60,10 @@ pub fn push_brush(document: &Document, brush: Brush, actions: &mut Vec<Action>) 
 pub const SIZE_TIP: &str = "Radius of the brush on the surface. Keys: [ and ].";
 /// What the strength slider says.
 pub const STRENGTH_TIP: &str = "How far one stroke moves the focus toward the brush's.";
+
+/// What the hardness slider says.
+pub const HARDNESS_TIP: &str =
+    "The share of the radius with full strength; beyond it the brush fades. Keys: Shift+[ and Shift+].";
 
 /// The largest brush: a quarter of the scene.
 pub fn largest_radius(document: &Document) -> f64 {

@@ -48,7 +48,8 @@ impl UnsavedQuestion {
     pub fn show(&mut self, context: &Context, name: &str) -> Option<Answer> {
         let next = self.next.clone()?;
         let mut answer = None;
-        let modal = egui::Modal::new(Id::unique("unsaved changes")).show(context, |ui| {
+        let frame = egui::Frame::popup(&context.global_style()).inner_margin(14.0);
+        let modal = egui::Modal::new(Id::unique("unsaved changes")).frame(frame).show(context, |ui| {
             ui.set_width(380.0);
             ui.heading("Save the changes?");
             ui.add_space(4.0);

@@ -2,7 +2,7 @@
 
 use crate::window::Action;
 use crate::window::controls::{self, format_number, proportional, row, rows};
-use crate::window::tool_bar::{SIZE_TIP, STRENGTH_TIP, largest_radius, push_brush};
+use crate::window::tool_bar::{HARDNESS_TIP, SIZE_TIP, STRENGTH_TIP, largest_radius, push_brush};
 use egui::{ComboBox, DragValue, Slider, Ui};
 use focus::{BrushMode, Channels};
 use session::{Document, SurfaceHit};
@@ -25,8 +25,9 @@ pub fn brush_panel(ui: &mut Ui, document: &Document, hover: Option<SurfaceHit>, 
         row(ui, "Strength", STRENGTH_TIP, |ui| {
             ui.add(Slider::new(&mut brush.strength, 0.0..=1.0).max_decimals(2))
         });
-        let tip = "The share of the radius with full strength; beyond it the brush fades. Keys: Shift+[ and Shift+].";
-        row(ui, "Hardness", tip, |ui| ui.add(Slider::new(&mut brush.hardness, 0.0..=1.0).max_decimals(2)));
+        row(ui, "Hardness", HARDNESS_TIP, |ui| {
+            ui.add(Slider::new(&mut brush.hardness, 0.0..=1.0).max_decimals(2))
+        });
         let tip = "Distance between dabs as a share of the radius.";
         row(ui, "Spacing", tip, |ui| {
             ui.add(DragValue::new(&mut brush.spacing).range(0.01..=10.0).speed(0.005).max_decimals(2))

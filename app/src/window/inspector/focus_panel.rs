@@ -76,12 +76,12 @@ fn fill_button(ui: &mut Ui, id: CommandId, label: &str, actions: &mut Vec<Action
 
 /// What the focus does, in one sentence.
 fn in_words(target: FocusOffset, px: f64) -> String {
-    let blur = controls::circle(px);
+    let blur = controls::circle_amount(px);
     match target.anchor {
         _ if target == FocusOffset::STANDARD => "Paints the ordinary lens.".into(),
-        1.0 if blur == "sharp" => "Paints perfectly sharp, wherever the lens focuses.".into(),
-        1.0 => format!("Paints {blur} of blur, wherever the lens focuses."),
-        0.0 => format!("Paints the lens's own blur, shifted by {blur}."),
-        anchor => format!("Paints {blur}; {:.0} % of the lens's own blur stays.", (1.0 - anchor) * 100.0),
+        1.0 if target.t == 1.0 => "Paints perfectly sharp, wherever the lens focuses.".into(),
+        1.0 => format!("Paints {blur}, wherever the lens focuses."),
+        0.0 => format!("Paints {blur} on top of the lens's own."),
+        anchor => format!("Paints {blur} and {:.0} % of the lens's own.", (1.0 - anchor) * 100.0),
     }
 }

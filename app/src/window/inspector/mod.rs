@@ -7,9 +7,9 @@ mod modelled_panel;
 mod scene_panel;
 mod shape_panel;
 
-use super::{Action, ViewSettings};
+use super::{Action, ViewSettings, controls};
 use egui::{CollapsingHeader, ScrollArea, Ui};
-use session::{Document, Session, SurfaceHit};
+use session::{CommandId, Document, Session, SurfaceHit};
 
 /// What the inspector keeps between frames.
 #[derive(Default)]
@@ -39,7 +39,7 @@ impl Inspector {
             section(ui, "Picture", true, |ui| lens_panel::picture_panel(ui, document, settings, actions));
             section(ui, "Scene", false, |ui| self.scene.ui(ui, document, actions));
             section(ui, "Modelled", true, |ui| modelled_panel::modelled_panel(ui, session, document));
-            section(ui, "History", false, |ui| history(ui, document));
+            section(ui, "History", false, |ui| history(ui, document, actions));
         });
     }
 }
@@ -51,9 +51,29 @@ fn section(ui: &mut Ui, title: &str, open: bool, add: impl FnOnce(&mut Ui)) {
     });
 }
 
-/// What undo would take back, and what redo would do again.
-fn history(ui: &mut Ui, document: &Document) {
-    let line = |name: Option<&str>| name.unwrap_or("nothing").to_string();
-    ui.label(format!("Undo takes back: {}", line(document.undo_name())));
-    ui.label(format!("Redo does again: {}", line(document.redo_name())));
+/// The steps that can be taken back, the latest on top; a click takes back all down to it.
+fn history(ui: &mut Ui, document: &Document, actions: &mut Vec<Action>) {
+    let names: Vec<&str> = document.undo_names().collect();
+    if names.is_empty() {
+        ui.weak("Nothing to take back.");
+    }
+    ScrollArea::vertical().id_salt("history").max_height(160.0).show(ui, |ui| {
+        for (back, name) in names.iter().rev().enumerate() {
+            let text = format!("{}  {name}", names.len() - back);
+            let tip = if back == 0 {
+                "Take this back.".into()
+            } else {
+                format!("Take this and the {back} after it back.")
+            };
+            if controls::list_row(ui, false, &text).on_hover_text(tip).clicked() {
+                actions.extend((0..=back).map(|_| Action::from(CommandId::Undo)));
+            }
+        }
+    });
+    if let Some(name) = document.redo_name() {
+        let redo = ui.button(format!("Redo: {name}")).on_hover_text(CommandId::Redo.info().tooltip);
+        if redo.clicked() {
+            actions.push(CommandId::Redo.into());
+        }
+    }
 }

@@ -362,9 +362,9 @@ impl PaintView {
 
 /// What the colours mean, in the lower right corner.
 fn legend(painter: &egui::Painter, rect: Rect) {
-    let bar = Rect::from_min_size(rect.right_bottom() - vec2(214.0, 34.0), vec2(200.0, 8.0));
+    let bar = Rect::from_min_size(rect.right_bottom() - vec2(226.0, 34.0), vec2(200.0, 8.0));
     painter.rect_filled(
-        bar.expand2(vec2(8.0, 5.0)).with_max_y(bar.bottom() + 20.0),
+        bar.expand2(vec2(18.0, 5.0)).with_max_y(bar.bottom() + 20.0),
         3.0,
         Color32::from_black_alpha(140),
     );
