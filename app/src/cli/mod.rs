@@ -77,7 +77,8 @@ fn open_window(file: Option<PathBuf>) -> Result<(), Failure> {
             return Err(Failure::bad(format!("{}: no such file (check the path)", file.display())));
         }
     }
-    window::run(window::WindowOptions { file, ..Default::default() }).map_err(|error| {
+    let unwrap = shot::unwrap_options(None);
+    window::run(window::WindowOptions { file, unwrap, ..Default::default() }).map_err(|error| {
         let why = format!("{error:#}").replace('\n', " ");
         Failure::bad(format!("no window: {why} (`focus-brush doctor` says what is missing)"))
     })

@@ -99,9 +99,7 @@ pub fn run(options: WindowOptions) -> anyhow::Result<()> {
         native,
         Box::new(|creation| Ok(Box::new(Shell::new(creation, options).map_err(Box::new)?))),
     )
-    .map_err(|error| {
-        anyhow::anyhow!("the window could not be opened: {error} (`focus-brush doctor` says what is missing)")
-    })
+    .map_err(|error| anyhow::anyhow!("{error}"))
 }
 
 /// A device with the adapter's own limits of texture and buffer size: atlases and scenes are larger than the defaults.
