@@ -76,7 +76,18 @@ enum State {
     /// The system's dialog is open.
     System { answer: mpsc::Receiver<Option<PathBuf>>, since: Instant },
     /// The path is being typed.
-    Typed { text: String, focused: bool },
+    Typed { text: String, wish: Wish },
+}
+
+/// What the path field is to do with the keyboard.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Wish {
+    /// Take it; what is typed replaces the suggestion (of a file to write, its name without the extension).
+    Replace,
+    /// Take it; what is typed goes to the end.
+    Append,
+    /// Leave it where it is.
+    Nothing,
 }
 
 /// The question for a file. One at a time; a new one replaces the old.
@@ -118,7 +129,7 @@ impl FileDialog {
                 Err(mpsc::TryRecvError::Disconnected) => Step::Type,
                 Err(mpsc::TryRecvError::Empty) => waiting(context, purpose),
             },
-            State::Typed { text, focused } => typed_dialog(context, purpose, text, focused),
+            State::Typed { text, wish } => typed_dialog(context, purpose, text, wish),
         };
         match step {
             Step::Wait => None,
@@ -203,11 +214,11 @@ fn typed(purpose: Purpose, suggestion: &Path) -> State {
             text.push(std::path::MAIN_SEPARATOR);
         }
     }
-    State::Typed { text, focused: false }
+    State::Typed { text, wish: Wish::Replace }
 }
 
 /// The path field, what lies in its folder, and the two buttons.
-fn typed_dialog(context: &Context, purpose: Purpose, text: &mut String, focused: &mut bool) -> Step {
+fn typed_dialog(context: &Context, purpose: Purpose, text: &mut String, wish: &mut Wish) -> Step {
     let mut step = Step::Wait;
     let frame = egui::Frame::popup(&context.global_style()).inner_margin(14.0);
     let modal = egui::Modal::new(Id::unique("file dialog")).frame(frame).show(context, |ui| {
@@ -220,13 +231,16 @@ fn typed_dialog(context: &Context, purpose: Purpose, text: &mut String, focused:
         let output = edit.show(ui);
         let response = output.response.response;
         super::controls::named(&response, "Path");
-        if !*focused {
+        let selection = match std::mem::replace(wish, Wish::Nothing) {
+            Wish::Replace => Some(replaceable(purpose, text)),
+            Wish::Append => Some([text.chars().count(); 2]),
+            Wish::Nothing => None,
+        };
+        if let Some([start, end]) = selection.map(|range| range.map(egui::text::CCursor::new)) {
             response.request_focus();
             let mut state = output.state;
-            let end = egui::text::CCursor::new(text.chars().count());
-            state.cursor.set_char_range(Some(egui::text::CCursorRange::one(end)));
+            state.cursor.set_char_range(Some(egui::text::CCursorRange::two(start, end)));
             state.store(ui.ctx(), response.id);
-            *focused = true;
         }
         ui.add_space(4.0);
         egui::ScrollArea::vertical().auto_shrink([false; 2]).max_height(240.0).show(ui, |ui| {
@@ -240,7 +254,7 @@ fn typed_dialog(context: &Context, purpose: Purpose, text: &mut String, focused:
                     *text = entry.display().to_string();
                     if folder {
                         text.push(std::path::MAIN_SEPARATOR);
-                        *focused = false;
+                        *wish = Wish::Append;
                     }
                 }
                 if button.double_clicked() && !folder {
@@ -254,8 +268,11 @@ fn typed_dialog(context: &Context, purpose: Purpose, text: &mut String, focused:
         let problem = problem(purpose, &path);
         ui.horizontal(|ui| {
             let accept = ui.add_enabled(problem.is_none(), egui::Button::new(purpose.verb()));
-            let entered = ui.input(|input| input.key_pressed(Key::Enter)) && problem.is_none();
-            if accept.clicked() || entered {
+            let entered = ui.input(|input| input.key_pressed(Key::Enter));
+            if entered && problem.is_some() {
+                *wish = Wish::Append;
+            }
+            if accept.clicked() || (entered && problem.is_none()) {
                 chosen = Some(path.clone());
             }
             if ui.button("Cancel").clicked() {
@@ -279,6 +296,19 @@ fn typed_dialog(context: &Context, purpose: Purpose, text: &mut String, focused:
         step = Step::Cancel;
     }
     step
+}
+
+/// The characters of a suggestion that typing replaces.
+fn replaceable(purpose: Purpose, text: &str) -> [usize; 2] {
+    let count = text.chars().count();
+    if !purpose.writes() {
+        return [0, count];
+    }
+    let path = Path::new(text);
+    let length =
+        |part: Option<&std::ffi::OsStr>| part.map_or(0, |part| part.to_string_lossy().chars().count());
+    let start = count - length(path.file_name()).min(count);
+    [start, start + length(path.file_stem())]
 }
 
 /// Why the path cannot be used yet.
@@ -359,6 +389,12 @@ mod tests {
         assert_eq!(with_extension(Purpose::SaveAs, "x.v2".into()), Path::new("x.v2.fbrush"));
         assert_eq!(with_extension(Purpose::ExportPicture, "x.PNG".into()), Path::new("x.PNG"));
         assert_eq!(with_extension(Purpose::Open, "x".into()), Path::new("x"));
+    }
+
+    #[test]
+    fn typing_replaces_the_name_that_is_suggested() {
+        assert_eq!(replaceable(Purpose::SaveAs, "/a/häuser.fbrush"), [3, 9]);
+        assert_eq!(replaceable(Purpose::Open, "/a/b/"), [0, 5]);
     }
 
     #[test]

@@ -1,9 +1,19 @@
 //! What the pointer does to a view that can be painted on: strokes and clicks of the tool, the same in both views.
 
+use super::brush_ring::BrushRing;
 use super::{Action, Tool};
 use egui::{Event, PointerButton, Pos2, Response, Ui};
 use session::{Command, FillRegion, Session, StrokePoint};
 use trace::Ray;
+
+/// What the user holds.
+#[derive(Clone, Copy, Debug)]
+pub struct Hand {
+    /// The tool.
+    pub tool: Tool,
+    /// The ring that shows where it paints.
+    pub ring: Option<BrushRing>,
+}
 
 /// The stroke of one view.
 #[derive(Default)]
@@ -21,9 +31,9 @@ impl StrokeInput {
         session: &Session,
         tool: Tool,
         ray: impl Fn(Pos2) -> Option<Ray>,
-        actions: &mut Vec<Action>,
-    ) {
-        let Some(document) = session.document() else { return };
+    ) -> Vec<Action> {
+        let mut actions = Vec::new();
+        let Some(document) = session.document() else { return actions };
         // The modifiers of the press itself: a frame may hold more than one event.
         let pressed = ui.input(|input| {
             let press = |event: &Event| match event {
@@ -43,7 +53,7 @@ impl StrokeInput {
         let start = response.is_pointer_button_down_on() && plain;
         if start && let Some(position) = response.interact_pointer_pos() {
             response.request_focus();
-            let Some(ray) = ray(position) else { return };
+            let Some(ray) = ray(position) else { return actions };
             if tool.paints() {
                 let mode = tool.mode(document.brush.mode);
                 if mode != document.brush.mode {
@@ -53,12 +63,12 @@ impl StrokeInput {
                 self.painting = true;
                 self.last = Some(position);
             } else {
-                click(session, tool, &ray, actions);
+                actions.extend(click(session, tool, &ray));
             }
-            return;
+            return actions;
         }
         if !self.painting {
-            return;
+            return actions;
         }
         // Every motion event, not only the frame's last: a fast stroke stays round.
         let moves = ui.input(|input| {
@@ -80,20 +90,21 @@ impl StrokeInput {
             actions.push(Command::CommitStroke.into());
             self.painting = false;
         }
+        actions
     }
 }
 
 /// What a tool that does not paint does where it is clicked.
-fn click(session: &Session, tool: Tool, ray: &Ray, actions: &mut Vec<Action>) {
-    let (Some(document), Some(hit)) = (session.document(), session.pick(ray)) else { return };
-    let target = document.brush.target;
+fn click(session: &Session, tool: Tool, ray: &Ray) -> Option<Action> {
+    let target = session.document()?.brush.target;
+    let hit = session.pick(ray)?;
     let command = match tool {
         Tool::FillObject => Command::Fill(FillRegion::Node(hit), target),
         Tool::FillMaterial => Command::Fill(FillRegion::Material(hit), target),
         Tool::FillChart => Command::Fill(FillRegion::Chart(hit), target),
         Tool::FocusHere => Command::FocusHere(hit),
         Tool::Pick => Command::Pick(hit),
-        Tool::Brush | Tool::Smooth | Tool::Reset => return,
+        Tool::Brush | Tool::Smooth | Tool::Reset => return None,
     };
-    actions.push(command.into());
+    Some(command.into())
 }

@@ -18,16 +18,19 @@ use super::menu_bar::{MenuState, is_possible, menu_bar};
 use super::paint_view::PaintView;
 use super::palette::Palette;
 use super::picture_view::PictureView;
-use super::status_line::{Hover, status_line};
+use super::pointer::Hand;
+use super::status_line::{Hover, StatusNotes, status_line};
 use super::toasts::{Severity, Toasts};
 use super::tool_bar::{signed_circle_px, tool_bar};
 use super::unsaved_question::{Answer, Next, UnsavedQuestion};
-use super::view_header::view_header;
+use super::view_header::{HeaderState, view_header};
 use super::{Action, Tool, ViewSettings, WindowOptions, demo, shortcuts, theme};
 use eframe::{CreationContext, Frame, Storage};
 use egui::{CentralPanel, Context, Panel, Ui, ViewportCommand};
 use egui_tiles::Tree;
-use session::{CameraEdit, Command, CommandId, Event, Session, SessionError, SessionOptions};
+use session::{
+    CameraEdit, Command, CommandId, Event, PreviewActivity, Session, SessionError, SessionOptions,
+};
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -35,6 +38,9 @@ use std::sync::Arc;
 const SETTINGS_KEY: &str = "settings";
 /// Where eframe keeps the layout between runs.
 const LAYOUT_KEY: &str = "layout";
+
+/// Work shorter than this is not spoken of.
+const NOTICEABLE_SECONDS: f64 = 0.5;
 
 /// The window's application.
 pub struct Shell {
@@ -58,6 +64,8 @@ pub struct Shell {
     adapter: String,
     showing_demo: bool,
     opening: Option<PathBuf>,
+    /// When the picture began to be summed, in the window's time.
+    drawing_since: Option<f64>,
 }
 
 impl Shell {
@@ -97,6 +105,7 @@ impl Shell {
                 .map_or_else(|| "no graphics adapter".into(), |state| state.adapter.get_info().name),
             showing_demo: false,
             opening: None,
+            drawing_since: None,
         };
         match options.file {
             Some(file) => shell.open(file),
@@ -388,6 +397,18 @@ impl Shell {
         }
     }
 
+    /// Whether the picture has been summed for longer than one would not notice.
+    fn is_drawing_long(&mut self, context: &Context) -> bool {
+        if self.session.preview_activity() != PreviewActivity::Splatting {
+            self.drawing_since = None;
+            return false;
+        }
+        let now = context.input(|input| input.time);
+        let since = *self.drawing_since.get_or_insert(now);
+        context.request_repaint_after_secs(0.25);
+        now - since > NOTICEABLE_SECONDS
+    }
+
     fn hovered(&self) -> Option<session::SurfaceHit> {
         self.paint.hover().or(self.picture.hover())
     }
@@ -414,15 +435,15 @@ impl Shell {
     }
 
     fn views(&mut self, ui: &mut Ui, actions: &mut Vec<Action>) {
-        let ring = self.ring();
-        let Self { layout, paint, picture, session, settings, tool, .. } = self;
+        let hand = Hand { tool: self.tool, ring: self.ring() };
+        let Self { layout, paint, picture, session, settings, .. } = self;
         let mut panes = Panes {
             pane_ui: |ui: &mut Ui, pane: Pane| {
                 ui.spacing_mut().item_spacing.y = 0.0;
-                let dragged = view_header(ui, pane, session, settings, picture, actions);
+                let dragged = view_header(ui, pane, session, HeaderState { settings, picture }, actions);
                 match pane {
-                    Pane::Paint => paint.ui(ui, session, *tool, settings.look(), ring, actions),
-                    Pane::Picture => picture.ui(ui, session, *tool, settings.display_stops, ring, actions),
+                    Pane::Paint => paint.ui(ui, session, hand, settings.look(), actions),
+                    Pane::Picture => picture.ui(ui, session, hand, settings.display_stops, actions),
                 }
                 dragged
             },
@@ -467,12 +488,14 @@ impl eframe::App for Shell {
             menu_bar(ui, &state, &mut actions);
         });
         Panel::top("tools").show(ui, |ui| tool_bar(ui, self.session.document(), self.tool, &mut actions));
+        let drawing = self.is_drawing_long(&context);
         Panel::bottom("status").show(ui, |ui| {
             let tip = self
                 .session
                 .document()
                 .map_or("Open a scene with Ctrl+O, or drop one here.", |_| self.tool.tip());
-            status_line(ui, &self.session, self.hover_numbers(), tip, &mut actions);
+            let notes = StatusNotes { hover: self.hover_numbers(), drawing, tip };
+            status_line(ui, &self.session, notes, &mut actions);
         });
         if self.settings.inspector {
             Panel::right("inspector").resizable(true).default_size(300.0).size_range(250.0..=460.0).show(

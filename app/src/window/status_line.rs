@@ -17,14 +17,19 @@ pub struct Hover {
     pub anchor: f64,
 }
 
+/// What the line says beside what the session knows.
+#[derive(Clone, Copy, Debug)]
+pub struct StatusNotes<'a> {
+    /// What lies under the pointer.
+    pub hover: Option<Hover>,
+    /// Whether the picture takes longer to sum than one would not notice.
+    pub drawing: bool,
+    /// What to try.
+    pub tip: &'a str,
+}
+
 /// Draws the status line.
-pub fn status_line(
-    ui: &mut Ui,
-    session: &Session,
-    hover: Option<Hover>,
-    tip: &str,
-    actions: &mut Vec<Action>,
-) {
+pub fn status_line(ui: &mut Ui, session: &Session, notes: StatusNotes<'_>, actions: &mut Vec<Action>) {
     ui.horizontal(|ui| {
         if let Some(preview) = session.preview().filter(|_| session.document().is_some()) {
             let what = match preview.kind {
@@ -49,12 +54,16 @@ pub fn status_line(
                 .on_hover_text("Memory that the undo steps hold.");
             ui.separator();
         }
+        if notes.drawing {
+            ui.label("drawing…").on_hover_text("The picture is being summed anew.");
+            ui.separator();
+        }
         for job in session.jobs() {
             job_ui(ui, &job, actions);
             ui.separator();
         }
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            if let Some(hover) = hover {
+            if let Some(hover) = notes.hover {
                 let text = format!(
                     "{} deep · {} · t {:.4} · anchor {:.2}",
                     controls::length(hover.depth),
@@ -67,7 +76,7 @@ pub fn status_line(
                 ui.separator();
             }
             ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
-                ui.add(egui::Label::new(egui::RichText::new(tip).weak()).truncate());
+                ui.add(egui::Label::new(egui::RichText::new(notes.tip).weak()).truncate());
             });
         });
     });

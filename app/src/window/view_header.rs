@@ -6,13 +6,20 @@ use super::{Action, ViewSettings, controls};
 use egui::{Button, Ui};
 use session::{CommandId, Session};
 
+/// What the headers change.
+pub struct HeaderState<'a> {
+    /// How the paint view looks.
+    pub settings: &'a mut ViewSettings,
+    /// Which picture is shown.
+    pub picture: &'a mut PictureView,
+}
+
 /// The line above a view. Returns whether the view is being dragged elsewhere by its name.
 pub fn view_header(
     ui: &mut Ui,
     pane: Pane,
     session: &Session,
-    settings: &mut ViewSettings,
-    picture: &mut PictureView,
+    state: HeaderState<'_>,
     actions: &mut Vec<Action>,
 ) -> bool {
     let frame = egui::Frame::new().inner_margin(egui::Margin::symmetric(8, 3)).fill(ui.visuals().panel_fill);
@@ -28,8 +35,8 @@ pub fn view_header(
                     .add(name.sense(egui::Sense::drag()))
                     .on_hover_text("Drag to place this view elsewhere.");
                 match pane {
-                    Pane::Paint => paint_header(ui, settings),
-                    Pane::Picture => picture_header(ui, session, picture, actions),
+                    Pane::Paint => paint_header(ui, state.settings),
+                    Pane::Picture => picture_header(ui, session, state.picture, actions),
                 }
                 ui.allocate_space(egui::vec2(ui.available_width(), 0.0));
                 name.drag_started()

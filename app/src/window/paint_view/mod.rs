@@ -17,5 +17,5 @@ pub use focus_texture::FocusTexture;
 pub use graphics::GraphicsError;
 pub use orbit_camera::OrbitCamera;
 pub use surface_mesh::SurfaceMesh;
-pub use surface_renderer::{SurfaceLook, SurfaceRenderer};
+pub use surface_renderer::{SurfaceFrame, SurfaceLook, SurfaceRenderer};
 pub use view::{PaintView, hint};

@@ -21,6 +21,21 @@ impl Default for SurfaceLook {
     }
 }
 
+/// What one picture of the surface shows.
+#[derive(Clone, Copy, Debug)]
+pub struct SurfaceFrame<'a> {
+    /// From where it is looked at.
+    pub view: &'a OrbitCamera,
+    /// Whose blur is shown.
+    pub shot: &'a Camera,
+    /// How it looks.
+    pub look: SurfaceLook,
+    /// Columns and rows, px.
+    pub size: [u32; 2],
+    /// Counts changes of mesh and focus texture.
+    pub revision: u64,
+}
+
 /// Twin of `Frame` in surface.wgsl.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
@@ -87,23 +102,19 @@ impl SurfaceRenderer {
         self.target.as_ref().map(|target| &target.color)
     }
 
-    /// Draws `mesh` at `size` px as `view` sees it, unless the last picture still holds. `revision` counts changes of mesh and
-    /// focus texture. Returns whether [`Self::view`] is a new texture.
+    /// Draws `mesh` in the colours of `focus`, unless the last picture still holds. Returns whether [`Self::view`] is a new
+    /// texture.
     pub fn draw(
         &mut self,
         mesh: &SurfaceMesh,
         focus: &FocusTexture,
-        view: &OrbitCamera,
-        shot: &Camera,
-        look: SurfaceLook,
-        size: [u32; 2],
-        revision: u64,
+        shown: SurfaceFrame<'_>,
     ) -> Result<bool, GraphicsError> {
         let limit = self.device.limits().max_texture_dimension_2d;
-        let size = size.map(|side| side.clamp(1, limit));
-        let frame = frame_uniform(mesh, focus, view, shot, look, size);
+        let size = shown.size.map(|side| side.clamp(1, limit));
+        let frame = frame_uniform(mesh, focus, SurfaceFrame { size, ..shown });
         let resized = self.target.as_ref().is_none_or(|target| target.size != size);
-        if !resized && self.drawn == Some((frame, revision)) {
+        if !resized && self.drawn == Some((frame, shown.revision)) {
             return Ok(false);
         }
         if resized {
@@ -153,19 +164,13 @@ impl SurfaceRenderer {
             mesh.draw(&mut pass);
         }
         self.queue.submit([encoder.finish()]);
-        self.drawn = Some((frame, revision));
+        self.drawn = Some((frame, shown.revision));
         Ok(resized)
     }
 }
 
-fn frame_uniform(
-    mesh: &SurfaceMesh,
-    focus: &FocusTexture,
-    view: &OrbitCamera,
-    shot: &Camera,
-    look: SurfaceLook,
-    size: [u32; 2],
-) -> FrameUniform {
+fn frame_uniform(mesh: &SurfaceMesh, focus: &FocusTexture, shown: SurfaceFrame<'_>) -> FrameUniform {
+    let SurfaceFrame { view, shot, look, size, .. } = shown;
     let aspect = size[0] as f64 / size[1] as f64;
     let clip = view.clip_from_world(mesh.origin, mesh.extent, aspect).as_mat4();
     let axis = shot.world_direction(glam::DVec3::Z);

@@ -1,9 +1,11 @@
 //! The paint view as a panel: the drawn surface, its pointer, the brush ring, the shot camera's frame.
 
-use super::{FocusTexture, GraphicsError, OrbitCamera, SurfaceLook, SurfaceMesh, SurfaceRenderer};
-use crate::window::brush_ring::{self, BrushRing};
-use crate::window::pointer::StrokeInput;
-use crate::window::{Action, Tool, false_colour, theme};
+use super::{
+    FocusTexture, GraphicsError, OrbitCamera, SurfaceFrame, SurfaceLook, SurfaceMesh, SurfaceRenderer,
+};
+use crate::window::brush_ring;
+use crate::window::pointer::{Hand, StrokeInput};
+use crate::window::{Action, false_colour, theme};
 use egui::{Color32, PointerButton, Pos2, Rect, Response, Sense, Stroke, TextureId, Ui, pos2, vec2};
 use glam::{DVec2, DVec3};
 use lens::Camera;
@@ -186,9 +188,8 @@ impl PaintView {
         &mut self,
         ui: &mut Ui,
         session: &Session,
-        tool: Tool,
+        hand: Hand,
         look: SurfaceLook,
-        ring: Option<BrushRing>,
         actions: &mut Vec<Action>,
     ) {
         let (rect, response) =
@@ -204,14 +205,8 @@ impl PaintView {
         self.receive_mesh(actions);
         self.navigate(ui, &response);
         self.draw(ui, document, look, actions);
-        self.stroke.update(
-            ui,
-            &response,
-            session,
-            tool,
-            |at| Some(view_ray(&self.camera, rect, at)),
-            actions,
-        );
+        let ray = |at| Some(view_ray(&self.camera, rect, at));
+        actions.extend(self.stroke.update(ui, &response, session, hand.tool, ray));
         let pointer = response.hover_pos().or_else(|| response.interact_pointer_pos());
         self.hover = pointer.and_then(|at| session.pick(&view_ray(&self.camera, rect, at)));
         let painter = ui.painter_at(rect);
@@ -219,7 +214,7 @@ impl PaintView {
         if look.focus_share > 0.0 {
             legend(&painter, rect);
         }
-        if let (Some(hit), Some(ring)) = (self.hover, ring) {
+        if let (Some(hit), Some(ring)) = (self.hover, hand.ring) {
             brush_ring::paint(&painter, &hit, ring, |point| self.screen_from_world(point));
         }
         if response.hovered() {
@@ -286,7 +281,8 @@ impl PaintView {
         };
         let scale = ui.ctx().pixels_per_point();
         let size = [self.rect.width(), self.rect.height()].map(|side| (side * scale).round().max(1.0) as u32);
-        match renderer.draw(mesh, focus, &self.camera, &document.camera, look, size, self.revision) {
+        let (view, shot, revision) = (&self.camera, &document.camera, self.revision);
+        match renderer.draw(mesh, focus, SurfaceFrame { view, shot, look, size, revision }) {
             Ok(new_texture) => {
                 if let Some(view) = renderer.view().filter(|_| new_texture || self.texture.is_none()) {
                     let mut egui_renderer = state.renderer.write();

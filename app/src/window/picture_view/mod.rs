@@ -2,10 +2,10 @@
 
 mod tone;
 
-use super::brush_ring::{self, BrushRing};
+use super::brush_ring;
 use super::paint_view::hint;
-use super::pointer::StrokeInput;
-use super::{Action, Tool, controls, theme};
+use super::pointer::{Hand, StrokeInput};
+use super::{Action, controls, theme};
 use egui::{
     ColorImage, PointerButton, Pos2, Rect, Response, Sense, TextureHandle, TextureOptions, Ui, Vec2, pos2,
     vec2,
@@ -113,15 +113,7 @@ impl PictureView {
     }
 
     /// Draws the view into the rest of `ui` and turns the pointer into actions.
-    pub fn ui(
-        &mut self,
-        ui: &mut Ui,
-        session: &Session,
-        tool: Tool,
-        stops: f32,
-        ring: Option<BrushRing>,
-        actions: &mut Vec<Action>,
-    ) {
+    pub fn ui(&mut self, ui: &mut Ui, session: &Session, hand: Hand, stops: f32, actions: &mut Vec<Action>) {
         let (rect, response) =
             ui.allocate_exact_size(ui.available_size().max(vec2(8.0, 8.0)), Sense::click_and_drag());
         self.rect = rect;
@@ -145,11 +137,11 @@ impl PictureView {
         }
         let image = self.image;
         let ray = |at: Pos2| session.picture_ray(picture_position(image, at));
-        self.stroke.update(ui, &response, session, tool, ray, actions);
+        actions.extend(self.stroke.update(ui, &response, session, hand.tool, ray));
         let pointer = response.hover_pos().or_else(|| response.interact_pointer_pos());
         let pointer = pointer.filter(|at| image.contains(*at));
         self.hover = pointer.and_then(|at| session.pick(&session.picture_ray(picture_position(image, at))?));
-        if let (Some(hit), Some(ring)) = (self.hover, ring) {
+        if let (Some(hit), Some(ring)) = (self.hover, hand.ring) {
             brush_ring::paint(&painter, &hit, ring, |point| self.screen_from_world(&document.camera, point));
         }
         if response.hovered() {
