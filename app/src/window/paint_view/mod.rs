@@ -9,6 +9,8 @@
 mod focus_texture;
 mod graphics;
 mod orbit_camera;
+#[cfg(test)]
+mod shader_twin;
 mod surface_mesh;
 mod surface_renderer;
 mod view;

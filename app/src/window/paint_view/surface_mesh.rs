@@ -352,7 +352,7 @@ mod tests {
         let mut level = Level { width: 3, height: 2, rgba: (0..24).map(|i| i * 10).collect() };
         let half = level.half();
         assert_eq!((half.width, half.height), (1, 1));
-        assert_eq!(half.rgba[0], (40 + 120 + 160 + 2) / 4);
+        assert_eq!(half.rgba[0], 80, "of 0, 40, 120 and 160");
         for _ in 0..3 {
             level = level.half();
         }
