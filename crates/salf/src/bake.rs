@@ -172,9 +172,6 @@ impl Baker<'_> {
         let (tracer, view) = (self.tracer, self.view);
         let corner = cell.corner.as_uvec2();
         let seed = [corner.x, corner.y.wrapping_add(index << 16)];
-        if !group.is_nearest && visibility::is_hidden(tracer, view, &group.members, seed) {
-            return None;
-        }
         let side = visibility::cells_a_side(view, group.mean_inverse_depth());
         visibility::visibility(tracer, view, &group.members, side, seed, |_| true)
     }

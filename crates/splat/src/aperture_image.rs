@@ -25,7 +25,7 @@ impl ApertureImage<'_> {
     /// The pixel rows it may touch.
     pub fn rows(&self) -> Range<i64> {
         let center = self.sample.center.y as f64;
-        let half = self.radius_px.abs() + self.sample.half_size.y as f64;
+        let half = self.radius_px.abs() + self.largest_footprint();
         (center - half).floor() as i64..(center + half).ceil() as i64 + 1
     }
 
@@ -35,6 +35,8 @@ impl ApertureImage<'_> {
         let center = sample.center.as_dvec2();
         let footprint = sample.half_size.as_dvec2();
         let weight = LinearWeight { at_center: sample.weight as f64, gradient: sample.tilt.as_dvec2() };
+        let (first, end) = (band.rows.start as f64, band.rows.end as f64);
+        let margin = self.largest_footprint();
         let throw = |piece: Piece| {
             let rectangle = Rectangle {
                 // Pixel rows go down, v goes up.
@@ -44,9 +46,14 @@ impl ApertureImage<'_> {
             };
             band.deposit(&rectangle, &light.map(|value| value * piece.share), sign);
         };
+        // Pixel rows that a row of the aperture cannot reach are not its business.
+        let in_band = |span: [f64; 2]| {
+            let [a, b] = span.map(|v| center.y - v * radius_px);
+            a.max(b) + margin >= first && a.min(b) - margin <= end
+        };
         match &sample.visibility {
-            Visibility::Open => kernel.pieces(radius_px, weight, throw),
-            Visibility::Cells(words) => kernel.visible_pieces(words, radius_px, weight, throw),
+            Visibility::Open => kernel.pieces(radius_px, weight, in_band, throw),
+            Visibility::Cells(words) => kernel.visible_pieces(words, radius_px, weight, in_band, throw),
         }
     }
 }
@@ -61,6 +68,12 @@ impl ApertureImage<'_> {
         let relative = self.relative_tilt();
         let factor = (1.0 + relative * self.depth_share * u).abs().max(DVec2::splat(1.0 / 16.0));
         (footprint * factor).min(DVec2::splat(LARGEST_FOOTPRINT_PX))
+    }
+
+    /// Half the height of the footprint at most, px, however it is stretched.
+    fn largest_footprint(&self) -> f64 {
+        let stretch = 1.0 + (self.relative_tilt().y * self.depth_share).abs();
+        (self.sample.half_size.y as f64 * stretch).min(LARGEST_FOOTPRINT_PX)
     }
 
     /// The weight's relative change over the unit aperture; 0 for a patch edge-on to the aperture, which has no

@@ -14,8 +14,8 @@ pub struct Kernel {
     /// Mean of the open area, and its standard deviation: for splats under a pixel.
     mean: DVec2,
     deviation: DVec2,
-    /// Share of the open area in each of CELLS × CELLS cells of the baked square, row 0 at v = −1.
-    cells: Vec<f64>,
+    /// Share of the open area in each cell of the baked square, row 0 at v = −1: for 8 and for 16 cells a side.
+    cells: [Vec<f64>; 2],
 }
 
 /// The aperture in rows, in units of the lens's own radius.
@@ -31,6 +31,9 @@ struct Level {
 
 /// A smaller change of weight over the aperture, as a share of it, is not followed.
 const SMALLEST_CHANGE: f64 = 0.005;
+
+/// A smaller change over the aperture of the weight of a partly occluded sample is not followed.
+const EVEN_ENOUGH: f64 = 0.03;
 
 /// Splats of a smaller diameter, px, are a box.
 const SMALLEST_CUT_PX: f64 = 0.75;
@@ -83,16 +86,24 @@ impl Kernel {
         let mut levels: Vec<_> = (0..=Self::FINEST).map(|level| Level::new(aperture, 1 << level)).collect();
         let (mean, deviation) = levels[Self::FINEST].moments();
         levels.iter_mut().for_each(|level| level.match_moments(deviation));
-        let cells = levels[Self::FINEST].cell_shares(stop, Self::CELLS);
+        let cells = [8, 16].map(|side| levels[Self::FINEST].cell_shares(stop, side));
         Self { stop, levels, mean: mean * stop, deviation: deviation * stop, cells }
     }
 
     /// The pieces of the whole aperture, times the linear `weight` of the aperture point, for a splat of signed radius
     /// `radius_px` (of the baked aperture).
-    pub fn pieces(&self, radius_px: f64, weight: LinearWeight, mut emit: impl FnMut(Piece)) {
+    ///
+    /// Rows of which `in_band` of [v₀, v₁] is false are left out.
+    pub fn pieces(
+        &self,
+        radius_px: f64,
+        weight: LinearWeight,
+        in_band: impl Fn([f64; 2]) -> bool,
+        mut emit: impl FnMut(Piece),
+    ) {
         let diameter = 2.0 * radius_px.abs() * self.stop;
-        let change = weight.gradient.abs().element_sum() * self.stop / weight.at_center;
-        let is_slanted = !(change < SMALLEST_CHANGE);
+        let change = weight.gradient.abs().element_sum() * self.stop;
+        let is_slanted = change >= SMALLEST_CHANGE * weight.at_center;
         if diameter < SMALLEST_CUT_PX && !is_slanted {
             // A box of the same mean and variance.
             let piece = Piece { center: self.mean, half_size: self.deviation * 3f64.sqrt(), share: 1.0 };
@@ -103,7 +114,7 @@ impl Kernel {
         let fewest = if is_slanted { 2 } else { 1 };
         let level = (diameter.log2().floor() as i32 + 1).clamp(fewest, Self::FINEST as i32) as usize;
         let longest = if is_slanted { 0.5 } else { f64::INFINITY };
-        self.levels[level].pieces(self.stop, longest, |piece| emit(weight.applied_to(piece)));
+        self.levels[level].pieces(self.stop, longest, in_band, |piece| emit(weight.applied_to(piece)));
     }
 
     /// The pieces that the cells of `words` let through, times `weight` of the aperture point, for a splat of signed
@@ -113,13 +124,17 @@ impl Kernel {
         words: &[u64],
         radius_px: f64,
         weight: LinearWeight,
+        in_band: impl Fn([f64; 2]) -> bool,
         mut emit: impl FnMut(Piece),
     ) {
+        // A weight that hardly changes is taken as even, so that neighbouring cells can be joined.
+        let is_even = weight.gradient.abs().element_sum() < EVEN_ENOUGH * weight.at_center;
+        let weight = if is_even { LinearWeight { gradient: DVec2::ZERO, ..weight } } else { weight };
         let side = Visibility::side_of(words);
         let wanted = (2.0 * radius_px.abs() / 1.5).max(1.0).log2().ceil() as u32;
         let blocks = (1usize << wanted.min(side.ilog2())).max(1);
         let mut shares = [0.0; Self::CELLS];
-        for row in 0..blocks {
+        for row in (0..blocks).filter(|&row| in_band(row_span(row, blocks))) {
             let shares = &mut shares[..blocks];
             self.block_row(words, side, row, shares, weight);
             let mut column = 0;
@@ -138,18 +153,17 @@ impl Kernel {
 
     /// The shares of one row of blocks: of `shares.len()` blocks a side, each the sum of its open cells.
     fn block_row(&self, words: &[u64], side: usize, row: usize, shares: &mut [f64], weight: LinearWeight) {
-        let blocks = shares.len();
-        let (cells_a_block, fine) = (side / blocks, Self::CELLS / side);
+        let cells_a_block = side / shares.len();
+        let cells = &self.cells[side / 16];
         shares.fill(0.0);
         for cell_row in row * cells_a_block..(row + 1) * cells_a_block {
-            let bits = Visibility::row(words, cell_row);
-            for cell_column in (0..side).filter(|column| bits >> column & 1 == 1) {
-                let share: f64 = (0..fine * fine)
-                    .map(|k| (cell_row * fine + k / fine, cell_column * fine + k % fine))
-                    .map(|(v, u)| self.cells[v * Self::CELLS + u])
-                    .sum();
-                let center = DVec2::new(cell_column as f64 + 0.5, cell_row as f64 + 0.5);
-                shares[cell_column / cells_a_block] += share * weight.at(center * (2.0 / side as f64) - 1.0);
+            let mut bits = Visibility::row(words, cell_row);
+            while bits != 0 {
+                let column = bits.trailing_zeros() as usize;
+                bits &= bits - 1;
+                let center =
+                    DVec2::new(column as f64 + 0.5, cell_row as f64 + 0.5) * (2.0 / side as f64) - 1.0;
+                shares[column / cells_a_block] += cells[cell_row * side + column] * weight.at(center);
             }
         }
     }
@@ -163,10 +177,21 @@ impl Level {
     }
 
     /// Pieces at most `longest` wide along their row.
-    fn pieces(&self, stop: f64, longest: f64, mut emit: impl FnMut(Piece)) {
+    fn pieces(
+        &self,
+        stop: f64,
+        longest: f64,
+        in_band: impl Fn([f64; 2]) -> bool,
+        mut emit: impl FnMut(Piece),
+    ) {
         let height = 2.0 / self.rows.len() as f64;
         for (i, row) in self.rows.iter().enumerate() {
             let v = -1.0 + height * (i as f64 + 0.5);
+            let middle = (self.mean.y + (v - self.mean.y) * self.stretch.y) * stop;
+            let half_height = height / 2.0 * self.stretch.y * stop;
+            if !in_band([middle - half_height, middle + half_height]) {
+                continue;
+            }
             for run in &row.runs {
                 let parts = ((run.end - run.start) / longest).ceil().max(1.0);
                 let width = (run.end - run.start) / parts;
@@ -193,10 +218,15 @@ impl Level {
     /// Mean and standard deviation of the open area.
     fn moments(&self) -> (DVec2, DVec2) {
         let (mut mean, mut square) = (DVec2::ZERO, DVec2::ZERO);
-        self.pieces(1.0, f64::INFINITY, |piece| {
-            mean += piece.center * piece.share;
-            square += (piece.center.powf(2.0) + piece.half_size.powf(2.0) / 3.0) * piece.share;
-        });
+        self.pieces(
+            1.0,
+            f64::INFINITY,
+            |_| true,
+            |piece| {
+                mean += piece.center * piece.share;
+                square += (piece.center.powf(2.0) + piece.half_size.powf(2.0) / 3.0) * piece.share;
+            },
+        );
         (mean, (square - mean.powf(2.0)).max(DVec2::ZERO).map(f64::sqrt))
     }
 
@@ -204,18 +234,28 @@ impl Level {
     fn cell_shares(&self, stop: f64, side: usize) -> Vec<f64> {
         let mut cells = vec![0.0; side * side];
         let span = |center: f64, half: f64| [-half, half].map(|h| (center + h + 1.0) / 2.0 * side as f64);
-        self.pieces(stop, f64::INFINITY, |piece| {
-            let columns = span(piece.center.x, piece.half_size.x);
-            let rows = span(piece.center.y, piece.half_size.y);
-            let area = (columns[1] - columns[0]) * (rows[1] - rows[0]);
-            for (row, height) in overlaps(rows, side) {
-                for (column, width) in overlaps(columns, side) {
-                    cells[row * side + column] += piece.share * height * width / area;
+        self.pieces(
+            stop,
+            f64::INFINITY,
+            |_| true,
+            |piece| {
+                let columns = span(piece.center.x, piece.half_size.x);
+                let rows = span(piece.center.y, piece.half_size.y);
+                let area = (columns[1] - columns[0]) * (rows[1] - rows[0]);
+                for (row, height) in overlaps(rows, side) {
+                    for (column, width) in overlaps(columns, side) {
+                        cells[row * side + column] += piece.share * height * width / area;
+                    }
                 }
-            }
-        });
+            },
+        );
         cells
     }
+}
+
+/// From where to where a row of `rows` lies in [−1, 1].
+fn row_span(row: usize, rows: usize) -> [f64; 2] {
+    [row, row + 1].map(|k| -1.0 + 2.0 * k as f64 / rows as f64)
 }
 
 /// The cells of 0..count that `span` overlaps, with the length of each overlap.
@@ -241,14 +281,14 @@ mod tests {
         for shape in shapes {
             for stop in [1.0, 0.4] {
                 let kernel = Kernel::new(&shape.clone().into(), stop);
-                assert!((kernel.cells.iter().sum::<f64>() - 1.0).abs() < 1e-9);
+                assert!((kernel.cells[1].iter().sum::<f64>() - 1.0).abs() < 1e-9);
                 for radius in [0.0, -0.3, 0.7, -5.0, 40.0, 900.0] {
                     let mut sum = 0.0;
-                    kernel.pieces(radius, ONE, |piece| sum += piece.share);
+                    kernel.pieces(radius, ONE, |_| true, |piece| sum += piece.share);
                     assert!((sum - 1.0).abs() < 1e-9);
                     for words in [&[u64::MAX; 1][..], &[u64::MAX; 4]] {
                         let mut sum = 0.0;
-                        kernel.visible_pieces(words, radius, ONE, |piece| sum += piece.share);
+                        kernel.visible_pieces(words, radius, ONE, |_| true, |piece| sum += piece.share);
                         assert!((sum - 1.0).abs() < 1e-9, "{shape:?} {stop} {radius}");
                     }
                 }
@@ -263,11 +303,16 @@ mod tests {
         let weight = LinearWeight { at_center: 2.0, gradient: DVec2::new(0.4, -0.2) };
         for radius in [0.3, 0.6, 1.3, 3.0, 20.0, 100.0] {
             let (mut sum, mut mean, mut square) = (0.0, DVec2::ZERO, DVec2::ZERO);
-            kernel.pieces(radius, weight, |piece| {
-                sum += piece.share;
-                mean += piece.share * piece.center;
-                square += piece.share * (piece.center.powf(2.0) + piece.half_size.powf(2.0) / 3.0);
-            });
+            kernel.pieces(
+                radius,
+                weight,
+                |_| true,
+                |piece| {
+                    sum += piece.share;
+                    mean += piece.share * piece.center;
+                    square += piece.share * (piece.center.powf(2.0) + piece.half_size.powf(2.0) / 3.0);
+                },
+            );
             assert!((sum - 2.0).abs() < 1e-6, "{radius}: {sum}");
             assert!(mean.distance(DVec2::new(0.1, -0.05)) < 2e-3, "{radius}: {mean}");
             assert!((square / 2.0).distance(DVec2::splat(0.25)) < 6e-3, "{radius}: {square}");
@@ -280,10 +325,16 @@ mod tests {
         let right = [0xFF00_FF00_FF00_FF00u64; 4];
         for radius in [0.1, 3.0, 30.0] {
             let (mut sum, mut mean) = (0.0, DVec2::ZERO);
-            kernel.visible_pieces(&right, radius, ONE, |piece| {
-                sum += piece.share;
-                mean += piece.share * piece.center;
-            });
+            kernel.visible_pieces(
+                &right,
+                radius,
+                ONE,
+                |_| true,
+                |piece| {
+                    sum += piece.share;
+                    mean += piece.share * piece.center;
+                },
+            );
             assert!((sum - 0.5).abs() < 1e-3 && (radius < 1.0 || mean.x > 0.2), "{radius}: {sum} {mean}");
         }
     }

@@ -207,3 +207,6 @@ fn shares_of<const C: usize>(
         })
         .collect()
 }
+
+#[cfg(test)]
+mod tests;

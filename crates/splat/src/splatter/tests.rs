@@ -1,0 +1,113 @@
+//! The promises of the sums: order, threads and paint leave no trace.
+
+use super::*;
+use glam::{DVec2, Vec2, Vec3};
+use progress::Unwatched;
+use salf::Visibility;
+use scene::SurfacePoint;
+
+/// Focus by the index of a sample's triangle.
+struct ByTriangle(Vec<FocusOffset>);
+
+impl SurfaceField<FocusOffset> for ByTriangle {
+    fn at(&self, point: SurfacePoint) -> FocusOffset {
+        self.0[point.triangle as usize]
+    }
+    fn at_infinity(&self) -> FocusOffset {
+        FocusOffset::STANDARD
+    }
+}
+
+fn camera() -> Camera {
+    Camera { width: 96, height: 80, focus_distance: 2.0, aperture_radius: 0.05, ..Camera::default() }
+}
+
+/// A pixel grid of samples at mixed depths, every third partly occluded, one very bright.
+fn light_field() -> Arc<Salf> {
+    let camera = camera();
+    let sample = |index: u32| {
+        let (x, y) = (index % camera.width, index / camera.width);
+        let mixed = index.wrapping_mul(2654435761) >> 8;
+        let visibility = match index % 3 {
+            0 => Visibility::Cells(Box::new([0x0123_4567_89AB_CDEF ^ mixed as u64])),
+            _ => Visibility::Open,
+        };
+        Sample {
+            center: Vec2::new(x as f32 + 0.5, y as f32 + 0.5),
+            half_size: Vec2::splat(0.5),
+            inverse_depth: 0.2 + (mixed % 100) as f32 * 0.01,
+            weight: 1.0,
+            tilt: Vec2::new((mixed % 7) as f32 * 0.03, (mixed % 5) as f32 * -0.04),
+            radiance: if index == 1234 { Vec3::splat(1e6) } else { Vec3::new(1e-3, 0.5, (mixed % 9) as f32) },
+            surface: Some(SurfacePoint { triangle: index, barycentric: DVec2::ZERO }),
+            visibility,
+        }
+    };
+    let samples = (0..camera.width * camera.height).map(sample).collect();
+    Arc::new(Salf { camera, margin_px: 0, samples })
+}
+
+fn standard() -> ByTriangle {
+    ByTriangle(vec![FocusOffset::STANDARD; 96 * 80])
+}
+
+fn rendered(focus: &ByTriangle) -> Splatter {
+    let mut splatter = Splatter::new(light_field());
+    splatter.render(&camera(), focus, &Unwatched).unwrap();
+    splatter
+}
+
+#[test]
+fn an_update_equals_a_render_bit_for_bit() {
+    let mut focus = standard();
+    let mut splatter = rendered(&focus);
+    for round in 0..20u32 {
+        let changed: Vec<u32> = (0..300).map(|k| (round * 977 + k * 13) % (96 * 80)).collect();
+        for &index in &changed {
+            let t = 0.9 + (index % 21) as f64 * 0.01 * round as f64;
+            let anchor = (round % 3) as f64 / 2.0;
+            focus.0[index as usize] =
+                if round % 7 == 6 { FocusOffset::STANDARD } else { FocusOffset::new(t, anchor) };
+        }
+        splatter.update(&focus, &changed).unwrap();
+    }
+    let fresh = rendered(&focus);
+    assert_eq!((&splatter.free, &splatter.sharing), (&fresh.free, &fresh.sharing));
+    assert_eq!(splatter.picture(), fresh.picture());
+    assert_ne!(splatter.picture(), rendered(&standard()).picture(), "the paint shows");
+}
+
+#[test]
+fn threads_leave_no_trace() {
+    let mut focus = standard();
+    focus.0.iter_mut().step_by(5).for_each(|offset| *offset = FocusOffset::new(1.2, 0.7));
+    let with = |threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| rendered(&focus).picture().clone())
+    };
+    assert_eq!(with(1), with(3));
+}
+
+#[test]
+fn an_untouched_row_keeps_its_pixels_beside_a_firefly() {
+    let sharp = ByTriangle(vec![FocusOffset::SHARP; 96 * 80]);
+    let splatter = rendered(&sharp);
+    let picture = splatter.picture();
+    for (index, sample) in splatter.salf().samples.iter().enumerate() {
+        if index != 1234 && sample.visibility == Visibility::Open {
+            assert!(
+                (picture.radiance[index][0] - 1e-3).abs() < 1e-8,
+                "{index}: {:?}",
+                picture.radiance[index]
+            );
+        }
+    }
+}
+
+#[test]
+fn too_bright_is_an_error() {
+    let mut salf = (*light_field()).clone();
+    salf.samples[0].radiance = Vec3::splat(1e8);
+    let result = Splatter::new(Arc::new(salf)).render(&camera(), &standard(), &Unwatched);
+    assert_eq!(result, Err(SplatError::Overflow));
+}
