@@ -161,12 +161,11 @@ pub struct CompareArguments {
 
 /// `export`.
 #[derive(Debug, Args)]
-#[group(id = "outputs", required = true, multiple = true, args = ["focus_map", "glb", "layers"])]
 pub struct ExportArguments {
     /// The project (.fbrush)
     pub project: PathBuf,
     /// Write the focus map: EXR, or 16-bit PNG with a .json beside it
-    #[arg(long, value_name = "MAP.exr|png")]
+    #[arg(long, value_name = "MAP.exr|png", required_unless_present_any = ["glb", "layers"])]
     pub focus_map: Option<PathBuf>,
     /// Write the scene with the atlas as its second UV set
     #[arg(long, value_name = "OUT.glb")]

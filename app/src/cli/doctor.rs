@@ -100,8 +100,11 @@ pub fn run(arguments: &DoctorArguments) -> Result<(), Failure> {
 
 /// Name, kind and backend of every graphics adapter.
 fn adapters() -> Vec<(String, String, String)> {
-    let instance = wgpu::Instance::default();
-    let found = ready(instance.enumerate_adapters(wgpu::Backends::all())).unwrap_or_default();
+    // OpenGL is left out: the window does not draw with it, and asking for it makes drivers chatter on stderr.
+    let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
+    descriptor.backends = wgpu::Backends::PRIMARY;
+    let instance = wgpu::Instance::new(descriptor);
+    let found = ready(instance.enumerate_adapters(wgpu::Backends::PRIMARY)).unwrap_or_default();
     let described = found.iter().map(|adapter| {
         let info = adapter.get_info();
         (info.name, format!("{:?}", info.device_type).to_lowercase(), info.backend.to_string())

@@ -65,7 +65,7 @@ impl Document {
         document.path = is_project.then(|| path.into());
         if is_recovered {
             document.revision += 1;
-            let what = "unsaved work from before the program ended was restored (save it, or undo nothing and close)";
+            let what = "unsaved work from last time was restored (save it to keep it)";
             document.warnings.push(format!("{}: {what}", path.display()));
         }
         Ok(document)
