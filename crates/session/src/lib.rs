@@ -23,6 +23,7 @@ mod error;
 mod first_hits;
 mod input;
 mod job;
+mod light_field;
 mod picking;
 mod preview;
 mod preview_worker;

@@ -1,27 +1,30 @@
 //! The live preview: a thread that owns the light field and keeps its picture up to date.
 //!
 //! The session posts what is wanted (scene, camera, changed texels) into one mailbox; newer wishes replace or
-//! join older ones there, so that the thread, whenever it looks, does the least that leads to the newest state:
+//! join older ones there, so that the thread, whenever it looks, does the least that leads to the newest state.
+//! Two light fields serve it:
 //!
 //! ```text
-//! scene, pose, size, background, wider aperture ──▶ pinhole picture, bake ─┐
-//! focus distance, smaller aperture, shape ──────────────────────────────▶ full splat ─┐
-//! paint ────────────────────────────────────▶ samples of the changed texels: update ──┴─▶ publish
+//!                  coarse (a third of the size)          fine (the preview's size)
+//! scene, pose …    baked at once, after a pinhole        baked on a helper thread
+//! lens             summed at once                        summed on a helper thread, if it takes long
+//! paint            updated until the fine one is there   updated
 //! ```
 //!
-//! It works on a snapshot of the focus map (tiles are shared until one is painted on): neither ever waits for the
-//! other. A bake is stopped when a newer wish makes it useless; a splat is short and always
-//! finished, so that a dragged slider shows pictures on its way. The last good picture is never taken away.
+//! So a dab or a turned ring shows at once and sharpens by itself, however large the scene. The thread works on
+//! snapshots of the focus map (tiles are shared until one is painted on): neither ever waits for the other. What
+//! a newer wish makes useless is stopped. The last good picture is never taken away.
 
 use crate::job::{JobProgress, Waker};
+use crate::light_field::{Changes, LightField};
 use crate::preview_worker::Worker;
 use crate::{SessionError, Stage};
 use focus::FocusMap;
 use lens::{Camera, Picture};
 use progress::{Cancelled, Progress};
 use salf::SalfStatistics;
-use std::sync::atomic::{AtomicBool, AtomicU8, Ordering};
-use std::sync::{Arc, Condvar, Mutex, MutexGuard};
+use std::sync::atomic::{AtomicU8, Ordering};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 
 /// A picture of the preview.
 #[derive(Clone, Debug)]
@@ -32,7 +35,9 @@ pub struct Preview {
     pub picture: Arc<Picture>,
     /// How it was made.
     pub kind: PreviewKind,
-    /// The camera it was made with, at the preview's size.
+    /// Whether it is the quick picture of few pixels that a finer one is about to replace.
+    pub is_coarse: bool,
+    /// The camera it was made with, at its own size.
     pub camera: Camera,
     /// Seconds that making it took.
     pub seconds: f64,
@@ -53,7 +58,7 @@ pub enum PreviewKind {
     Update,
 }
 
-/// What the preview thread is doing.
+/// What the preview is doing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PreviewActivity {
     /// Nothing to do.
@@ -64,66 +69,70 @@ pub enum PreviewActivity {
     Splatting,
 }
 
+impl PreviewActivity {
+    fn load(from: &AtomicU8) -> Self {
+        match from.load(Ordering::Relaxed) {
+            x if x == Self::Baking as u8 => Self::Baking,
+            x if x == Self::Splatting as u8 => Self::Splatting,
+            _ => Self::Idle,
+        }
+    }
+}
+
+/// What the helper hands over.
+pub(crate) struct Delivery {
+    /// The light field, summed; or why there is none.
+    pub made: Result<LightField, SessionError>,
+    /// The epoch in which it was asked for.
+    pub epoch: u64,
+}
+
 /// Everything that changed since the thread last looked.
 #[derive(Default)]
 pub(crate) struct Wishes {
     /// Another scene, and which of the session's documents it is.
     pub stage: Option<(Arc<Stage>, u64)>,
     pub camera: Option<Camera>,
-    /// A snapshot of the map, and the texels that changed since the one before.
+    /// A snapshot of the map; `changed` is what is new in it.
     pub map: Option<FocusMap>,
     pub changed: Changes,
+    /// The light field is to be made anew.
     pub bake: bool,
-    /// Nothing more is to come for now: room for things that take longer.
+    /// An edit is complete: room for what takes longer.
     pub settle: bool,
+    /// The user wants no more work for now.
+    pub hold: bool,
+    /// What the helper brought.
+    pub delivery: Option<Delivery>,
+    /// Work under way was told to stop when these were posted.
+    stops: bool,
+    is_posted: bool,
     quit: bool,
 }
 
-/// What of the map changed.
-#[derive(Clone, Debug)]
-pub(crate) enum Changes {
-    /// These texels.
-    Texels(Vec<[u32; 2]>),
-    /// All of it, or the background.
-    Everything,
-}
-
-impl Default for Changes {
-    fn default() -> Self {
-        Self::Texels(Vec::new())
-    }
-}
-
-impl Changes {
-    fn join(&mut self, newer: Changes) {
-        match (&mut *self, newer) {
-            (Self::Texels(texels), Self::Texels(more)) => texels.extend(more),
-            _ => *self = Self::Everything,
-        }
-    }
-}
-
-impl Wishes {
-    fn any(&self) -> bool {
-        self.stage.is_some()
-            || self.camera.is_some()
-            || self.map.is_some()
-            || self.bake
-            || self.settle
-            || self.quit
-    }
-}
-
-/// What the thread and the session share.
+/// What the threads and the session share.
 pub(crate) struct Shared {
     wishes: Mutex<Wishes>,
     wake: Condvar,
+    /// Of what the thread itself does: short.
+    pub quick: JobProgress,
+    /// Of what its helper does: long.
     pub progress: JobProgress,
-    /// Whether what the thread does is to be given up for any newer wish.
-    pub yields: AtomicBool,
     activity: AtomicU8,
+    helper: AtomicU8,
     published: Mutex<Published>,
     waker: Waker,
+}
+
+#[derive(Default)]
+struct Published {
+    latest: Option<Preview>,
+    failures: Vec<String>,
+}
+
+/// A poisoned lock only means that a panic passed by; what it guards is replaced as a whole.
+fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 impl Shared {
@@ -132,26 +141,57 @@ impl Shared {
         let mut wishes = lock(&self.wishes);
         self.activity.store(PreviewActivity::Idle as u8, Ordering::Relaxed);
         (self.waker)();
-        while !wishes.any() {
-            wishes = self.wake.wait(wishes).unwrap_or_else(std::sync::PoisonError::into_inner);
+        while !wishes.is_posted {
+            wishes = self.wake.wait(wishes).unwrap_or_else(PoisonError::into_inner);
         }
         // What was cancelled is over, and this is new.
-        self.progress.reset();
+        self.quick.reset();
         self.activity.store(PreviewActivity::Splatting as u8, Ordering::Relaxed);
+        if wishes.delivery.is_some() {
+            self.helper.store(PreviewActivity::Idle as u8, Ordering::Relaxed);
+        }
         let wishes = std::mem::take(&mut *wishes);
         (!wishes.quit).then_some(wishes)
     }
 
-    /// Whether nothing is wished for.
-    pub fn is_quiet(&self) -> bool {
-        !lock(&self.wishes).any()
+    fn post(&self, stops: bool, change: impl FnOnce(&mut Wishes)) {
+        let mut wishes = lock(&self.wishes);
+        change(&mut wishes);
+        wishes.is_posted = true;
+        if stops {
+            wishes.stops = true;
+            self.quick.cancel();
+            self.progress.cancel();
+        }
+        self.wake.notify_one();
     }
 
     /// Notes what the thread does now, unless it was asked to stop.
     pub fn begin(&self, activity: PreviewActivity) -> Result<(), Cancelled> {
-        self.progress.check()?;
+        self.quick.check()?;
         self.activity.store(activity as u8, Ordering::Relaxed);
         Ok(())
+    }
+
+    /// Notes that the helper begins; false if what it would do is already known to be useless.
+    pub fn begin_helper(&self) -> bool {
+        let wishes = lock(&self.wishes);
+        if wishes.stops {
+            return false;
+        }
+        self.progress.reset();
+        self.helper.store(PreviewActivity::Baking as u8, Ordering::Relaxed);
+        true
+    }
+
+    /// Notes that the helper has baked and sums now.
+    pub fn helper_sums(&self) {
+        self.helper.store(PreviewActivity::Splatting as u8, Ordering::Relaxed);
+    }
+
+    /// The helper is done.
+    pub fn deliver(&self, delivery: Delivery) {
+        self.post(false, |wishes| wishes.delivery = Some(delivery));
     }
 
     /// Shows a picture.
@@ -167,17 +207,6 @@ impl Shared {
     }
 }
 
-#[derive(Default)]
-pub(crate) struct Published {
-    latest: Option<Preview>,
-    failures: Vec<String>,
-}
-
-/// A poisoned lock only means that a panic passed by; what it guards is replaced as a whole.
-fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
-    mutex.lock().unwrap_or_else(std::sync::PoisonError::into_inner)
-}
-
 /// The session's end of the preview thread.
 pub(crate) struct PreviewThread {
     shared: Arc<Shared>,
@@ -189,9 +218,10 @@ impl PreviewThread {
         let shared = Arc::new(Shared {
             wishes: Mutex::default(),
             wake: Condvar::new(),
+            quick: JobProgress::default(),
             progress: JobProgress::default(),
-            yields: AtomicBool::new(false),
-            activity: AtomicU8::new(0),
+            activity: AtomicU8::new(PreviewActivity::Idle as u8),
+            helper: AtomicU8::new(PreviewActivity::Idle as u8),
             published: Mutex::default(),
             waker,
         });
@@ -204,67 +234,59 @@ impl PreviewThread {
         Ok(Self { shared, thread: Some(thread) })
     }
 
-    fn post(&self, stops_bake: bool, change: impl FnOnce(&mut Wishes)) {
-        let mut wishes = lock(&self.shared.wishes);
-        change(&mut wishes);
-        if stops_bake || self.shared.yields.load(Ordering::Relaxed) {
-            self.shared.progress.cancel();
-        }
-        self.shared.wake.notify_one();
-    }
-
     /// Another scene, with its focus.
     pub fn set_stage(&self, stage: (Arc<Stage>, u64), map: FocusMap, camera: Camera) {
-        self.post(true, |wishes| {
-            let (stage, camera, map) = (Some(stage), Some(camera), Some(map));
-            *wishes = Wishes {
-                stage,
-                camera,
-                map,
-                changed: Changes::Everything,
-                quit: wishes.quit,
-                ..Wishes::default()
-            };
+        self.shared.post(true, |wishes| {
+            wishes.stage = Some(stage);
+            (wishes.camera, wishes.map) = (Some(camera), Some(map));
+            wishes.changed = Changes::Everything;
+            wishes.hold = false;
         });
     }
 
     /// Another camera, at the preview's size. `light_field_stays` where the old light field serves it.
     pub fn set_camera(&self, camera: Camera, light_field_stays: bool) {
-        self.post(!light_field_stays, |wishes| {
+        self.shared.post(!light_field_stays, |wishes| {
             wishes.camera = Some(camera);
             wishes.settle = true;
+            wishes.hold = false;
         });
     }
 
-    /// A stroke or another edit is complete.
-    pub fn settle(&self) {
-        self.post(false, |wishes| wishes.settle = true);
-    }
-
     /// Another state of the map; `changed` is what is new in it.
-    pub fn set_map(&self, map: FocusMap, changed: Changes) {
-        self.post(false, |wishes| {
+    pub fn set_map(&self, map: FocusMap, changed: &Changes) {
+        self.shared.post(false, |wishes| {
             wishes.map = Some(map);
             wishes.changed.join(changed);
         });
     }
 
+    /// A stroke or another edit is complete.
+    pub fn settle(&self) {
+        self.shared.post(false, |wishes| wishes.settle = true);
+    }
+
+    /// Makes the light field anew.
     pub fn bake(&self) {
-        self.post(true, |wishes| wishes.bake = true);
+        self.shared.post(true, |wishes| {
+            wishes.bake = true;
+            wishes.hold = false;
+        });
     }
 
-    /// Stops the bake that is going on; the last picture stays.
+    /// Stops what is going on; the last picture stays.
     pub fn cancel(&self) {
-        self.shared.progress.cancel();
+        self.shared.post(true, |wishes| wishes.hold = true);
     }
 
+    /// What is going on, and how far it is.
     pub fn activity(&self) -> (PreviewActivity, f32) {
-        let activity = match self.shared.activity.load(Ordering::Relaxed) {
-            x if x == PreviewActivity::Baking as u8 => PreviewActivity::Baking,
-            x if x == PreviewActivity::Splatting as u8 => PreviewActivity::Splatting,
-            _ => PreviewActivity::Idle,
-        };
-        (activity, self.shared.progress.fraction())
+        match PreviewActivity::load(&self.shared.helper) {
+            PreviewActivity::Idle => {
+                (PreviewActivity::load(&self.shared.activity), self.shared.quick.fraction())
+            }
+            helper => (helper, self.shared.progress.fraction()),
+        }
     }
 
     /// The newest picture, if there is one newer than `id`, and what failed meanwhile.
@@ -277,30 +299,21 @@ impl PreviewThread {
     /// Whether everything that was posted has been followed, and nothing newer than `id` waits to be taken.
     pub fn is_settled(&self, id: u64) -> bool {
         let wishes = lock(&self.shared.wishes);
-        let idle = self.shared.activity.load(Ordering::Relaxed) == PreviewActivity::Idle as u8;
         let published = lock(&self.shared.published);
         let seen = published.failures.is_empty() && published.latest.as_ref().is_none_or(|p| p.id <= id);
-        !wishes.any() && idle && seen
+        let idle = [&self.shared.activity, &self.shared.helper]
+            .into_iter()
+            .all(|activity| PreviewActivity::load(activity) == PreviewActivity::Idle);
+        !wishes.is_posted && idle && seen
     }
 }
 
 impl Drop for PreviewThread {
     fn drop(&mut self) {
-        self.post(true, |wishes| wishes.quit = true);
+        self.shared.post(true, |wishes| wishes.quit = true);
         if let Some(thread) = self.thread.take() {
             // A thread that panicked has nothing left to hand over.
             let _ = thread.join();
         }
     }
-}
-
-/// The camera of a light field serves `camera` too.
-pub(crate) fn serves(baked: &Camera, camera: &Camera) -> bool {
-    let like = Camera {
-        focus_distance: baked.focus_distance,
-        aperture: baked.aperture.clone(),
-        aperture_radius: baked.aperture_radius,
-        ..camera.clone()
-    };
-    like == *baked && camera.aperture_radius <= baked.aperture_radius
 }

@@ -1,26 +1,33 @@
-//! What the preview thread does with its wishes: bake, splat, update, publish.
+//! What the preview thread does with its wishes.
 
 use crate::first_hits::FirstHits;
 use crate::job::guarded;
-use crate::preview::{Changes, Shared, Wishes, serves};
+use crate::light_field::{Brought, Changes, LightField};
+use crate::preview::{Delivery, Shared, Wishes};
 use crate::render::light;
-use crate::sample_index::SampleIndex;
 use crate::{Preview, PreviewActivity, PreviewKind, SessionError, Stage};
 use focus::{Focus, FocusMap};
 use lens::{Camera, Picture};
-use salf::{BakeOptions, SalfStatistics};
-use splat::{SplatError, Splatter};
+use progress::Stage as Share;
+use salf::SalfStatistics;
 use std::sync::Arc;
-use std::sync::atomic::Ordering;
+use std::thread::JoinHandle;
 use std::time::Instant;
 
-/// The margin is baked this much wider than the paint needs, in picture heights, so that the next strokes find
-/// room: a tenth of the height is a circle of confusion as wide as paint usually gives.
-const MARGIN_HEADROOM: f64 = 0.1;
+/// Sides of the coarse picture are this share of the preview's: a ninth of the work.
+const COARSE: f64 = 1.0 / 3.0;
 
-/// Below this share of the baked aperture's radius the light field is baked again: half as many of its cells a
-/// side are open then.
-const SMALLER_APERTURE: f64 = 0.7;
+/// Below this longest side, px, a picture is quick enough to need no coarse one.
+const SMALLEST_COARSE: u32 = 48;
+
+/// A whole sum that takes less than this many seconds is made at once for every new lens: two frames.
+const QUICK_SECONDS: f64 = 0.033;
+
+impl From<Brought> for PreviewKind {
+    fn from(brought: Brought) -> Self {
+        if brought == Brought::Update { Self::Update } else { Self::Splat }
+    }
+}
 
 /// The thread's own state.
 pub(crate) struct Worker {
@@ -28,29 +35,24 @@ pub(crate) struct Worker {
     stage: Option<Arc<Stage>>,
     camera: Option<Camera>,
     map: Option<Arc<FocusMap>>,
-    baked: Option<Baked>,
+    coarse: Option<LightField>,
+    fine: Option<LightField>,
+    /// Whether the fine light field's picture has not been shown yet.
+    is_new: bool,
+    /// Makes or sums the fine light field.
+    helper: Option<JoinHandle<()>>,
+    /// Counts scenes and bakes that were asked for anew: what is of an older epoch is of no use.
+    epoch: u64,
+    /// What changed since the helper took its snapshot of the map.
+    since: Changes,
+    /// An edit is complete, and whether the fine light field still fits it has not been looked at.
+    is_settled: bool,
+    /// The user wants no more work until the next change that needs it.
+    is_held: bool,
     /// The camera of the newest picture.
     shown: Option<Camera>,
     generation: u64,
     last_id: u64,
-}
-
-/// A light field and its running sum.
-struct Baked {
-    splatter: Splatter,
-    index: SampleIndex,
-    statistics: SalfStatistics,
-    /// The lens of the sum; none while there is no valid sum.
-    summed: Option<Camera>,
-}
-
-impl From<SplatError> for SessionError {
-    fn from(error: SplatError) -> Self {
-        match error {
-            SplatError::Cancelled => Self::Cancelled,
-            other => Self::BadInput(other.to_string()),
-        }
-    }
 }
 
 impl Worker {
@@ -60,7 +62,14 @@ impl Worker {
             stage: None,
             camera: None,
             map: None,
-            baked: None,
+            coarse: None,
+            fine: None,
+            is_new: false,
+            helper: None,
+            epoch: 0,
+            since: Changes::default(),
+            is_settled: false,
+            is_held: false,
             shown: None,
             generation: 0,
             last_id: 0,
@@ -74,106 +83,169 @@ impl Worker {
                 Ok(()) | Err(SessionError::Cancelled) => {}
                 Err(error) => {
                     if matches!(error, SessionError::Internal(_)) {
-                        self.baked = None;
+                        (self.coarse, self.fine) = (None, None);
                     }
+                    self.is_held = true;
                     self.shared.fail(error.to_string());
                 }
             }
         }
+        if let Some(helper) = self.helper.take() {
+            // It was cancelled with everything else.
+            let _ = helper.join();
+        }
     }
 
     fn follow(&mut self, wishes: Wishes) -> Result<(), SessionError> {
-        if let Some((stage, generation)) = wishes.stage {
-            self.stage = Some(stage);
-            self.generation = generation;
-            self.baked = None;
-            self.shown = None;
-        }
-        if wishes.bake {
-            self.baked = None;
-        }
-        self.camera = wishes.camera.or(self.camera.take());
-        self.map = wishes.map.map(Arc::new).or(self.map.take());
+        self.take_in(wishes)?;
         let (Some(stage), Some(camera), Some(map)) = (&self.stage, &self.camera, &self.map) else {
             return Ok(());
         };
         let (stage, camera) = (stage.clone(), camera.clone());
         let focus = Focus::painted(stage.scene.clone(), stage.atlas.clone(), map.clone());
-        if !self.baked.as_ref().is_some_and(|baked| serves(&baked.splatter.salf().camera, &camera)) {
-            self.baked = None;
-            self.baked = Some(self.bake(&stage, &camera, &focus)?);
-        }
-        self.splat(&camera, &focus, &wishes.changed)?;
-        if !wishes.settle {
+        if self.is_held && self.fine.is_none() && self.coarse.is_none() {
             return Ok(());
         }
-        self.shared.yields.store(true, Ordering::Relaxed);
-        let refined = if self.shared.is_quiet() { self.refine(&stage, &camera, &focus) } else { Ok(()) };
-        self.shared.yields.store(false, Ordering::Relaxed);
-        refined
-    }
 
-    /// Bakes again where the light field serves but another one would serve better: when paint or lens has come
-    /// to spread light from further outside the frame, or the aperture has become much smaller than the one
-    /// whose cells were looked through. Given up for any newer wish; the old light field goes on serving.
-    fn refine(&mut self, stage: &Stage, camera: &Camera, focus: &Focus) -> Result<(), SessionError> {
-        let Some(baked) = &self.baked else { return Ok(()) };
-        let salf = baked.splatter.salf();
-        let is_coarse = camera.aperture_radius < SMALLER_APERTURE * salf.camera.aperture_radius;
-        let needed = BakeOptions::for_focus(&stage.tracer, camera, focus).margin_px;
-        if needed <= salf.margin_px as f64 && !is_coarse {
-            return Ok(());
-        }
-        self.baked = Some(self.bake(stage, camera, focus)?);
-        self.splat(camera, focus, &Changes::Everything)
-    }
-
-    /// Shows the pinhole picture if the view is new, and makes the light field.
-    fn bake(&mut self, stage: &Stage, camera: &Camera, focus: &Focus) -> Result<Baked, SessionError> {
-        let start = Instant::now();
-        self.shared.begin(PreviewActivity::Baking)?;
-        let radiance = light(&stage.tracer, camera);
-        if !self.shown.as_ref().is_some_and(|shown| same_view(shown, camera)) {
-            let hits = FirstHits::trace(&stage.tracer, &radiance, focus, camera, &self.shared.progress)?;
-            self.publish(hits.picture(), PreviewKind::Pinhole, camera, start, SalfStatistics::default());
-        }
-        let needed = BakeOptions::for_focus(&stage.tracer, camera, focus).margin_px;
-        let options = BakeOptions { margin_px: needed + MARGIN_HEADROOM * camera.height as f64 };
-        let salf = Arc::new(salf::bake(&stage.tracer, &radiance, camera, &options, &self.shared.progress)?);
-        Ok(Baked {
-            index: SampleIndex::new(&salf, &stage.atlas),
-            statistics: salf.statistics(),
-            splatter: Splatter::new(salf),
-            summed: None,
-        })
-    }
-
-    /// Brings the sum to the camera's lens and the focus, and shows it.
-    fn splat(&mut self, camera: &Camera, focus: &Focus, changed: &Changes) -> Result<(), SessionError> {
-        let Some(baked) = &mut self.baked else { return Ok(()) };
-        let start = Instant::now();
-        self.shared.begin(PreviewActivity::Splatting)?;
-        let kind = match changed {
-            Changes::Texels(texels) if baked.summed.as_ref() == Some(camera) => {
-                let samples = baked.index.samples_reading(texels);
-                if samples.is_empty() {
-                    return Ok(());
-                }
-                // Until the update is through, the sum is of no lens.
-                baked.summed = None;
-                baked.splatter.update(focus, &samples)?;
-                PreviewKind::Update
+        self.fine.take_if(|fine| !fine.serves(&camera));
+        if let Some(fine) = &mut self.fine
+            && (fine.whole_seconds() < QUICK_SECONDS || !fine.needs_whole_sum(&camera))
+        {
+            self.shared.begin(PreviewActivity::Splatting)?;
+            let start = Instant::now();
+            let brought = fine.bring_up(&camera, &focus, &self.shared.quick)?;
+            if brought != Brought::Nothing || self.is_new {
+                let (picture, statistics) = (fine.picture(), fine.statistics());
+                // The helper's sum took its time elsewhere.
+                let elsewhere = if self.is_new { fine.whole_seconds() } else { 0.0 };
+                self.is_new = false;
+                let seconds = start.elapsed().as_secs_f64() + elsewhere;
+                self.publish(picture, brought.into(), &camera, seconds, statistics);
             }
-            _ => {
-                baked.summed = None;
-                baked.splatter.render(camera, focus, &self.shared.progress)?;
-                PreviewKind::Splat
+            let may_refine = self.is_settled && self.helper.is_none() && !self.is_held;
+            let fine = self.fine.as_ref().filter(|_| may_refine);
+            self.is_settled &= !may_refine;
+            if fine.is_some_and(|fine| fine.is_outgrown(&stage, &camera, &focus)) {
+                self.coarse = None;
+                self.start_helper(&stage, &camera, focus, None);
+            }
+            return Ok(());
+        }
+        self.show_coarse(&stage, &camera, &focus)?;
+        if self.helper.is_none() && !self.is_held {
+            let unsummed = self.fine.take();
+            self.start_helper(&stage, &camera, focus, unsummed);
+        }
+        Ok(())
+    }
+
+    /// Takes up what changed, and what the helper brought.
+    fn take_in(&mut self, wishes: Wishes) -> Result<(), SessionError> {
+        let mut failed = Ok(());
+        if let Some(delivery) = wishes.delivery {
+            if let Some(helper) = self.helper.take() {
+                // Its result is here; its panics were caught.
+                let _ = helper.join();
+            }
+            let since = std::mem::take(&mut self.since);
+            match delivery.made {
+                Ok(mut field) => {
+                    field.note(&since);
+                    self.fine = Some(field).filter(|_| delivery.epoch == self.epoch);
+                    self.is_new = true;
+                }
+                Err(SessionError::Cancelled) => {}
+                Err(error) => failed = Err(error),
+            }
+        }
+        if let Some((stage, generation)) = wishes.stage {
+            self.stage = Some(stage);
+            self.generation = generation;
+            (self.coarse, self.fine, self.shown) = (None, None, None);
+            self.epoch += 1;
+        }
+        if wishes.bake {
+            (self.coarse, self.fine) = (None, None);
+            self.epoch += 1;
+        }
+        let wants_work = self.stage.is_some() && (wishes.camera.is_some() || wishes.bake || wishes.settle);
+        self.is_held = wishes.hold || (self.is_held && !wants_work);
+        // A stroke that goes on is no time for more.
+        self.is_settled = wishes.settle || (self.is_settled && wishes.map.is_none());
+        self.camera = wishes.camera.or(self.camera.take());
+        self.map = wishes.map.map(Arc::new).or(self.map.take());
+        for field in [&mut self.coarse, &mut self.fine].into_iter().flatten() {
+            field.note(&wishes.changed);
+        }
+        self.since.join(&wishes.changed);
+        failed
+    }
+
+    /// The pinhole picture if the view is new, then the picture of few pixels.
+    fn show_coarse(&mut self, stage: &Stage, camera: &Camera, focus: &Focus) -> Result<(), SessionError> {
+        let small = coarse_of(camera);
+        let start = Instant::now();
+        if !self.shown.as_ref().is_some_and(|shown| same_view(shown, camera)) {
+            self.shared.begin(PreviewActivity::Baking)?;
+            let radiance = light(&stage.tracer, camera);
+            let hits = FirstHits::trace(&stage.tracer, &radiance, focus, camera, &self.shared.quick)?;
+            let seconds = start.elapsed().as_secs_f64();
+            self.publish(hits.picture(), PreviewKind::Pinhole, camera, seconds, SalfStatistics::default());
+        }
+        let Some(small) = small else { return Ok(()) };
+        self.coarse.take_if(|coarse| !coarse.serves(&small));
+        let coarse = match &mut self.coarse {
+            Some(coarse) => coarse,
+            None => {
+                self.shared.begin(PreviewActivity::Baking)?;
+                self.coarse.insert(LightField::bake(stage, &small, focus, &self.shared.quick)?)
             }
         };
-        baked.summed = Some(camera.clone());
-        let (picture, statistics) = (baked.splatter.picture().clone(), baked.statistics);
-        self.publish(picture, kind, camera, start, statistics);
+        self.shared.begin(PreviewActivity::Splatting)?;
+        let start = Instant::now();
+        let brought = coarse.bring_up(&small, focus, &self.shared.quick)?;
+        if brought != Brought::Nothing || self.shown.as_ref() != Some(&small) {
+            let (picture, statistics) = (coarse.picture(), coarse.statistics());
+            self.publish(picture, brought.into(), &small, start.elapsed().as_secs_f64(), statistics);
+        }
         Ok(())
+    }
+
+    /// Makes the fine light field (or takes an `unsummed` one) and sums it, on a thread of its own.
+    fn start_helper(
+        &mut self,
+        stage: &Arc<Stage>,
+        camera: &Camera,
+        focus: Focus,
+        unsummed: Option<LightField>,
+    ) {
+        if !self.shared.begin_helper() {
+            return;
+        }
+        self.since = Changes::default();
+        let (shared, stage, camera, epoch) = (self.shared.clone(), stage.clone(), camera.clone(), self.epoch);
+        let work = move || {
+            let made = guarded("drawing the preview", || {
+                let mut field = match unsummed {
+                    Some(field) => field,
+                    None => {
+                        LightField::bake(&stage, &camera, &focus, &Share::new(&shared.progress, 0.0, 0.7))?
+                    }
+                };
+                shared.helper_sums();
+                field.bring_up(&camera, &focus, &Share::new(&shared.progress, 0.7, 1.0))?;
+                Ok(field)
+            });
+            shared.deliver(Delivery { made, epoch });
+        };
+        let thread = std::thread::Builder::new().name("light field".into()).stack_size(16 << 20).spawn(work);
+        match thread {
+            Ok(thread) => self.helper = Some(thread),
+            Err(error) => {
+                let made = Err(SessionError::TryAgain(format!("no thread: {error} (try again)")));
+                self.shared.deliver(Delivery { made, epoch });
+            }
+        }
     }
 
     fn publish(
@@ -181,24 +253,34 @@ impl Worker {
         picture: Picture,
         kind: PreviewKind,
         camera: &Camera,
-        start: Instant,
+        seconds: f64,
         statistics: SalfStatistics,
     ) {
         self.last_id += 1;
         self.shown = Some(camera.clone());
+        let full = self.camera.as_ref().map(|camera| (camera.width, camera.height));
         self.shared.publish(Preview {
             id: self.last_id,
+            is_coarse: full != Some((picture.width, picture.height)),
             picture: Arc::new(picture),
             kind,
             camera: camera.clone(),
-            seconds: start.elapsed().as_secs_f64(),
+            seconds,
             statistics,
             generation: self.generation,
         });
     }
 }
 
-/// Whether the two show the same view, whatever their lens.
+/// The camera of the coarse picture; none where the picture is small anyway.
+fn coarse_of(camera: &Camera) -> Option<Camera> {
+    let scaled = |side: u32| ((side as f64 * COARSE).round() as u32).max(1);
+    let (width, height) = (scaled(camera.width), scaled(camera.height));
+    (width.max(height) >= SMALLEST_COARSE).then(|| Camera { width, height, ..camera.clone() })
+}
+
+/// Whether the two show the same view, whatever their lens and size.
 fn same_view(a: &Camera, b: &Camera) -> bool {
-    (a.width, a.height, a.yfov, a.camera_to_world) == (b.width, b.height, b.yfov, b.camera_to_world)
+    (a.yfov, a.camera_to_world) == (b.yfov, b.camera_to_world)
+        && (a.aspect() - b.aspect()).abs() < 0.1 * b.aspect()
 }

@@ -2,7 +2,7 @@
 
 use crate::depth_blur::depth_blur;
 use crate::first_hits::FirstHits;
-use crate::preview::serves;
+use crate::light_field::serves;
 use crate::{Aov, Input, SessionError, Steps};
 use focus::Focus;
 use glam::DVec3;

@@ -5,8 +5,9 @@ mod painting;
 
 use crate::document::Document;
 use crate::job::{Job, JobProgress, Waker};
+use crate::light_field::{Changes, serves};
 use crate::picking::{chief_ray, pick};
-use crate::preview::{Changes, PreviewThread, serves};
+use crate::preview::PreviewThread;
 use crate::undo::Undone;
 use crate::{
     CameraEdit, Command, Event, JobId, JobStatus, Preview, PreviewActivity, SessionError, SurfaceHit,
@@ -91,6 +92,8 @@ pub struct Session {
     stroke: Option<Stroke>,
     preview_thread: PreviewThread,
     preview: Option<Preview>,
+    /// The camera that the preview was asked to show last.
+    preview_camera: Option<Camera>,
     /// The newest preview that was seen, of whatever document.
     seen_preview: u64,
     recovery: Recovery,
@@ -114,6 +117,7 @@ impl Session {
             generation: 0,
             stroke: None,
             preview: None,
+            preview_camera: None,
             seen_preview: 0,
             recovery: Recovery::default(),
             truth: None,
@@ -217,7 +221,8 @@ impl Session {
                 self.forget_recovery();
                 self.generation += 1;
                 (self.stroke, self.truth, self.preview) = (None, None, None);
-                let camera = self.preview_camera(&document.camera);
+                let camera = self.scaled_camera(&document.camera);
+                self.preview_camera = Some(camera.clone());
                 let stage = (document.stage.clone(), self.generation);
                 self.preview_thread.set_stage(stage, document.map.clone(), camera);
                 self.events.push(Event::Opened);
@@ -416,7 +421,7 @@ impl Session {
         let [columns, rows] = changed.bounds();
         let map = self.opened()?.map.clone();
         let changes = if background { Changes::Everything } else { Changes::Texels(changed.texels) };
-        self.preview_thread.set_map(map, changes);
+        self.preview_thread.set_map(map, &changes);
         if self.stroke.is_none() {
             self.preview_thread.settle();
         }
@@ -427,13 +432,14 @@ impl Session {
     /// Shows the camera in the preview.
     fn show_camera(&mut self) {
         let Some(document) = &self.document else { return };
-        let camera = self.preview_camera(&document.camera);
-        let stays = self.preview.as_ref().is_some_and(|preview| serves(&preview.camera, &camera));
+        let camera = self.scaled_camera(&document.camera);
+        let stays = self.preview_camera.as_ref().is_some_and(|before| serves(before, &camera));
+        self.preview_camera = Some(camera.clone());
         self.preview_thread.set_camera(camera, stays);
     }
 
     /// A camera scaled to the preview's size.
-    fn preview_camera(&self, camera: &Camera) -> Camera {
+    fn scaled_camera(&self, camera: &Camera) -> Camera {
         let longest = camera.width.max(camera.height);
         let scale = (self.options.preview_size as f64 / longest as f64).min(1.0);
         let scaled = |side: u32| ((side as f64 * scale).round() as u32).max(1);

@@ -31,7 +31,7 @@ fn settle(session: &mut Session) -> Vec<Event> {
 }
 
 fn opened(path: &Path) -> Session {
-    let options = SessionOptions { preview_size: 120, ..SessionOptions::default() };
+    let options = SessionOptions { preview_size: 240, ..SessionOptions::default() };
     let mut session = Session::new(options).unwrap();
     session.apply(Command::Open(path.into())).unwrap();
     let events = settle(&mut session);

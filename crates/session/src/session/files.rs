@@ -139,7 +139,7 @@ impl Session {
         let stage = document.stage.clone();
         let focus = Focus::painted(stage.scene.clone(), stage.atlas.clone(), Arc::new(document.map.clone()));
         let shot = document.camera.clone();
-        let camera = self.preview_camera(&shot);
+        let camera = self.scaled_camera(&shot);
         self.start("tracing the ground truth".into(), move |progress| {
             let start = Instant::now();
             let options =
