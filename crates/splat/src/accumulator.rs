@@ -23,14 +23,21 @@ pub struct Rectangle {
 /// Differences of C channels a pixel, for the pixel rows `rows` of a picture.
 pub struct Band<'a, const C: usize> {
     /// Picture width, px.
-    pub width: usize,
+    width: usize,
     /// Its rows.
     pub rows: Range<i64>,
     /// Differences, row by row.
-    pub differences: &'a mut [[i64; C]],
+    differences: &'a mut [[i64; C]],
+    /// Room for the edges of one rectangle.
+    edges: [Taps; 2],
 }
 
-impl<const C: usize> Band<'_, C> {
+impl<'a, const C: usize> Band<'a, C> {
+    /// The rows `rows` of a picture `width` wide, whose differences are these.
+    pub fn new(width: usize, rows: Range<i64>, differences: &'a mut [[i64; C]]) -> Self {
+        Self { width, rows, differences, edges: [Taps::new(), Taps::new()] }
+    }
+
     /// Adds (`sign` 1) or takes away (`sign` −1) a rectangle that holds `mass` in all, in px² times value.
     pub fn deposit(&mut self, rectangle: &Rectangle, mass: &[f64; C], sign: i64) {
         let Rectangle { center, half_size, footprint } = rectangle;
@@ -45,9 +52,9 @@ impl<const C: usize> Band<'_, C> {
         if columns.end <= 0 || columns.start >= self.width as i64 {
             return;
         }
-        let (mut rising, mut falling) = (Taps::new(), Taps::new());
-        let rise = horizontal.rising(&mut rising);
-        let fall = horizontal.falling(&mut falling);
+        let [rising, falling] = &mut self.edges;
+        let rise = horizontal.rising(rising);
+        let fall = horizontal.falling(falling);
         let density = mass.map(|m| m * horizontal.height() * QUANTA);
         for row in rows {
             let share = vertical.over_pixel(row);
@@ -94,7 +101,7 @@ mod tests {
     use super::*;
 
     fn splat(differences: &mut [[i64; 2]], center: DVec2, half: f64, sign: i64) {
-        let mut band = Band { width: 32, rows: 0..16, differences };
+        let mut band = Band::new(32, 0..16, differences);
         let rectangle = Rectangle { center, half_size: DVec2::splat(half), footprint: DVec2::new(0.5, 0.25) };
         band.deposit(&rectangle, &[1.0, 1e5], sign);
     }

@@ -35,6 +35,12 @@ const SMALLEST_CHANGE: f64 = 0.005;
 /// A smaller change over the aperture of the weight of a partly occluded sample is not followed.
 const EVEN_ENOUGH: f64 = 0.03;
 
+/// Splats of a larger diameter, px, are cut less finely.
+const LARGE_PX: f64 = 8.0;
+
+/// A larger change of weight over the aperture is followed along the rows of large splats too.
+const LARGEST_UNCUT_CHANGE: f64 = 0.1;
+
 /// Splats of a smaller diameter, px, are a box.
 const SMALLEST_CUT_PX: f64 = 0.75;
 
@@ -110,10 +116,13 @@ impl Kernel {
             emit(weight.applied_to(piece));
             return;
         }
-        // Rows of half a pixel to a pixel; on a slanted surface at least four, in pieces no wider than they are high.
-        let fewest = if is_slanted { 2 } else { 1 };
-        let level = (diameter.log2().floor() as i32 + 1).clamp(fewest, Self::FINEST as i32) as usize;
-        let longest = if is_slanted { 0.5 } else { f64::INFINITY };
+        // Small splats have rows of half a pixel to a pixel, others of one to two: a row's box is then lost in the
+        // footprint. On a slanted surface there are at least four, cut into pieces while the splat is small or its
+        // weight changes much.
+        let (fewest, finer) = (if is_slanted { 2 } else { 1 }, i32::from(diameter < LARGE_PX));
+        let level = (diameter.log2().floor() as i32 + finer).clamp(fewest, Self::FINEST as i32) as usize;
+        let cut = is_slanted && (diameter < LARGE_PX || change > LARGEST_UNCUT_CHANGE * weight.at_center);
+        let longest = if cut { 0.5 } else { f64::INFINITY };
         self.levels[level].pieces(self.stop, longest, in_band, |piece| emit(weight.applied_to(piece)));
     }
 

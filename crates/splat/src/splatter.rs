@@ -128,7 +128,7 @@ impl Splatter {
                 let rows = image.rows();
                 changed = changed.start.min(rows.start)..changed.end.max(rows.end);
                 let sum = if is_sharing(sample, placed) { &mut self.sharing } else { &mut self.free };
-                let mut band = Band { width, rows: 0..height, differences: sum };
+                let mut band = Band::new(width, 0..height, sum);
                 image.deposit(&mut band, &color(sample), sign);
             }
         }

@@ -46,8 +46,8 @@ impl<const C: usize> Sums<'_, C> {
             let rows = first..first + (free.len() / width) as i64;
             free.fill([0; C]);
             sharing.fill([0; C]);
-            let mut free = Band { width, rows: rows.clone(), differences: free };
-            let mut sharing = Band { width, rows, differences: sharing };
+            let mut free = Band::new(width, rows.clone(), free);
+            let mut sharing = Band::new(width, rows, sharing);
             for &index in in_band {
                 let (sample, placed) = (&samples[index as usize], placed[index as usize]);
                 let band = if is_sharing(sample, placed) { &mut sharing } else { &mut free };
