@@ -3,6 +3,7 @@
 //! * `run [FILE…]` installs what is missing, builds `focus-brush` and opens it; without a display it renders the
 //!   demo to a picture.
 //! * `test [ARG…]` installs what is missing and runs the whole test suite.
+//! * `window` acts on the real window by mouse and keys, under Xvfb.
 //! * `ci` is everything that must be green: crate directions, licences, formatting, lints, docs, tests.
 //! * `demo` makes the demo scene in `assets/demo` anew.
 //!
@@ -25,6 +26,7 @@ usage: cargo xtask CHORE
                 (with no display: render the demo to a picture)
   test [ARG…]   install what is missing and run all tests; ARGs go to cargo test
   demo          make the demo scene in assets/demo anew
+  window [ARG…] act on the real window under Xvfb, with a screenshot of every step
   ci            crate directions, licences, formatting, lints, docs, tests";
 
 /// Rays a texel for `demo`: the one argument it takes, for drafts.
@@ -39,6 +41,7 @@ fn main() -> std::process::ExitCode {
     let outcome = match chore.as_str() {
         "run" => run::run(&rest),
         "test" => run::test(&rest),
+        "window" => run::window(&rest),
         "ci" => ci::ci(),
         "demo" => demo::demo(sky_rays(&rest)),
         "" | "help" | "-h" | "--help" => {

@@ -36,6 +36,9 @@ pub const TO_RUN: &[Package] = &[
     package("libxkbcommon-x11-0"),
 ];
 
+/// To act on the real window without a person: a display, mouse and keys, screenshots.
+pub const TO_ACT: &[Package] = &[package("xvfb"), package("xdotool"), package("imagemagick")];
+
 /// Installs those that are missing: asks first where a person is there to answer, else just does it.
 ///
 /// # Errors

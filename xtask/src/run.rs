@@ -1,9 +1,9 @@
-//! `run` opens the program on the demo or on files; `test` runs all tests.
+//! `run` opens the program on the demo or on files; `test` runs all tests; `window` acts on the real window.
 
 use crate::chore::{Failure, cargo, execute, repository};
-use crate::packages::{TO_BUILD, TO_RUN, install_missing};
+use crate::packages::{TO_ACT, TO_BUILD, TO_RUN, install_missing};
 use std::ffi::OsString;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// Builds and opens `focus-brush` with these arguments; where there is no display and nothing but files is asked
@@ -38,6 +38,15 @@ pub fn test(arguments: &[OsString]) -> Result<(), Failure> {
     execute(cargo("test").arg("--workspace").args(arguments))
 }
 
+/// Acts on the real window by mouse and keys, on a display of its own, and leaves a screenshot of every step; the
+/// arguments go to the script.
+pub fn window(arguments: &[OsString]) -> Result<(), Failure> {
+    install_missing(&[TO_BUILD, TO_RUN, TO_ACT])?;
+    let program = build_focus_brush()?;
+    let script = repository().join("tests/window/real_window.sh");
+    execute(Command::new("bash").arg(script).args(arguments).env("FOCUS_BRUSH", program))
+}
+
 fn render(stem: &str, options: &[OsString]) -> Result<(), Failure> {
     let folder = repository().join("target/pictures");
     std::fs::create_dir_all(&folder).map_err(|e| Failure::new(format!("{}: {e}", folder.display())))?;
@@ -52,9 +61,15 @@ fn render(stem: &str, options: &[OsString]) -> Result<(), Failure> {
 }
 
 fn focus_brush(arguments: &[OsString]) -> Result<(), Failure> {
+    execute(Command::new(build_focus_brush()?).args(arguments))
+}
+
+/// Builds the program; where it lies.
+fn build_focus_brush() -> Result<PathBuf, Failure> {
     execute(cargo("build").args(["--package", "focus-brush"]))?;
-    let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| repository().join("target"), Into::into);
-    execute(Command::new(target.join("debug/focus-brush")).args(arguments))
+    let target =
+        std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| repository().join("target"), PathBuf::from);
+    Ok(target.join("debug/focus-brush"))
 }
 
 fn has_display() -> bool {
