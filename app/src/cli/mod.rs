@@ -78,6 +78,11 @@ fn open_window(file: Option<PathBuf>) -> Result<(), Failure> {
         }
     }
     let unwrap = shot::unwrap_options(None);
+    let display = ["DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET"];
+    if cfg!(target_os = "linux") && display.iter().all(|name| std::env::var_os(name).is_none()) {
+        let what = "no window: neither DISPLAY nor WAYLAND_DISPLAY is set";
+        return Err(Failure::bad(format!("{what} (start it on a desktop, or use `focus-brush render`)")));
+    }
     window::run(window::WindowOptions { file, unwrap, ..Default::default() }).map_err(|error| {
         let why = format!("{error:#}").replace('\n', " ");
         Failure::bad(format!("no window: {why} (`focus-brush doctor` says what is missing)"))
@@ -120,7 +125,8 @@ fn usage(error: &clap::Error) -> ExitCode {
         .lines()
         .map(str::trim)
         .take_while(|line| !line.starts_with("Usage:") && !line.starts_with("For more"));
-    let said = lines.filter(|line| !line.is_empty()).collect::<Vec<_>>().join(" ");
+    let said = lines.filter(|line| !line.is_empty() && !line.starts_with("tip:"));
+    let said = said.collect::<Vec<_>>().join(" ");
     eprintln!("{said} (see focus-brush --help)");
     ExitCode::from(failure::WRONG_USAGE)
 }

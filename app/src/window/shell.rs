@@ -83,6 +83,7 @@ impl Shell {
             unwrap: options.unwrap,
             preview_size: options.preview_size.unwrap_or(settings.preview_size),
             waker: Arc::new(move || context.request_repaint()),
+            ..SessionOptions::default()
         })?;
         let state = creation.wgpu_render_state.as_ref();
         let mut shell = Self {

@@ -18,7 +18,7 @@ use glam::DVec2;
 use lens::{Camera, FocusOffset, Picture};
 use std::path::PathBuf;
 use std::sync::{Arc, mpsc};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 use trace::Ray;
 
 /// How a session works.
@@ -28,13 +28,21 @@ pub struct SessionOptions {
     pub unwrap: UnwrapOptions,
     /// The longest side that the preview is drawn at, px.
     pub preview_size: u32,
+    /// How long after a change unsaved work is written to its recovery file. With the time that writing takes, it
+    /// is what a crash may cost.
+    pub keep_after: Duration,
     /// Called from any thread when there is something to poll.
     pub waker: Waker,
 }
 
 impl Default for SessionOptions {
     fn default() -> Self {
-        Self { unwrap: UnwrapOptions::default(), preview_size: 640, waker: Arc::new(|| {}) }
+        Self {
+            unwrap: UnwrapOptions::default(),
+            preview_size: 640,
+            keep_after: Duration::from_secs(15),
+            waker: Arc::new(|| {}),
+        }
     }
 }
 

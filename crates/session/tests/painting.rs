@@ -31,7 +31,11 @@ fn settle(session: &mut Session) -> Vec<Event> {
 }
 
 fn opened(path: &Path) -> Session {
-    let options = SessionOptions { preview_size: 240, ..SessionOptions::default() };
+    opened_with(path, SessionOptions::default())
+}
+
+fn opened_with(path: &Path, options: SessionOptions) -> Session {
+    let options = SessionOptions { preview_size: 240, ..options };
     let mut session = Session::new(options).unwrap();
     session.apply(Command::Open(path.into())).unwrap();
     let events = settle(&mut session);
@@ -189,17 +193,23 @@ fn unsaved_work_is_restored() {
     let scene = folder.path().join("quads.glb");
     let project = folder.path().join("quads.fbrush");
     tiny_glb::write(&scene);
-    let mut session = opened(&scene);
+    let options = SessionOptions { keep_after: Duration::from_millis(100), ..SessionOptions::default() };
+    let mut session = opened_with(&scene, options);
     session.apply(Command::SaveAs(project.clone())).unwrap();
     settle(&mut session);
     stroke(&mut session);
     session.apply(Command::CommitStroke).unwrap();
-    settle(&mut session);
-    // What the session writes now and then, as a crash leaves it.
-    let document = session.document().unwrap();
-    let map = document.map.clone();
     let recovery = project::recovery_path_for(&project);
-    document.to_project().save(&recovery).unwrap();
+    assert!(!recovery.exists());
+    let start = Instant::now();
+    while !recovery.exists() {
+        settle(&mut session);
+        assert!(start.elapsed() < Duration::from_secs(60), "unsaved work is kept");
+    }
+    settle(&mut session);
+    let map = session.document().unwrap().map.clone();
+    // A crash: nothing is put in order.
+    std::mem::forget(session);
 
     let mut again = opened(&project);
     let document = again.document().unwrap();

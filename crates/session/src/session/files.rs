@@ -12,12 +12,14 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// How long after a change unsaved work is written: with the time that writing takes, well below the 30 s that a
-/// crash may cost.
-const KEEP_AFTER: Duration = Duration::from_secs(15);
-
 /// What the job that keeps unsaved work is called; it is not news.
 const KEEPING: &str = "keeping unsaved work";
+
+/// What jobs that save are called, before the file's name.
+const SAVING: &str = "saving";
+
+/// How long closing waits for a file that is being written.
+const LONGEST_WRITE: Duration = Duration::from_secs(30);
 
 impl Session {
     pub(super) fn open(&mut self, path: PathBuf) -> Result<(), SessionError> {
@@ -54,7 +56,7 @@ impl Session {
             return Err(SessionError::bad(&document.stage.scene.path, what));
         };
         let (project, revision) = (document.to_project(), document.revision);
-        self.start(format!("saving {}", file_name(&path)), move |_| {
+        self.start(format!("{SAVING} {}", file_name(&path)), move |_| {
             project.save(&path)?;
             Ok(Outcome::Saved { path, revision, generation })
         })
@@ -68,8 +70,12 @@ impl Session {
             self.recovery.changed = None;
             return;
         }
-        let changed = *self.recovery.changed.get_or_insert_with(Instant::now);
-        if changed.elapsed() < KEEP_AFTER {
+        let Some(changed) = self.recovery.changed else {
+            self.recovery.changed = Some(Instant::now());
+            self.wake_in(self.options.keep_after);
+            return;
+        };
+        if changed.elapsed() < self.options.keep_after {
             return;
         }
         let (project, revision, path) = (document.to_project(), document.revision, document.recovery_path());
@@ -81,6 +87,17 @@ impl Session {
             self.events.push(crate::Event::Failed(error.to_string()));
         }
         self.recovery.changed = None;
+    }
+
+    /// Has the session polled again after `wait`, also when nobody touches the window.
+    fn wake_in(&self, wait: Duration) {
+        let waker = self.options.waker.clone();
+        let sleep = move || {
+            std::thread::sleep(wait);
+            waker();
+        };
+        // Without a thread, the next event of the window polls.
+        let _ = std::thread::Builder::new().name("wake".into()).spawn(sleep);
     }
 
     /// Removes the recovery file: what it holds is saved, or given up.
@@ -157,7 +174,17 @@ impl Session {
 
 impl Drop for Session {
     /// Closing in good order gives up what was not saved (the window has asked); a crash keeps it.
+    ///
+    /// Files that are being written are waited for; all other work is stopped.
     fn drop(&mut self) {
+        self.jobs.iter().for_each(|job| job.progress.cancel());
+        while self.jobs.iter().any(|job| job.label == KEEPING || job.label.starts_with(SAVING)) {
+            let Ok((id, outcome)) = self.outcomes.recv_timeout(LONGEST_WRITE) else { break };
+            self.jobs.retain(|job| job.id != id);
+            if let Ok(Outcome::Kept { path, .. }) = outcome {
+                self.recovery.file = Some(path);
+            }
+        }
         if !std::thread::panicking() {
             self.forget_recovery();
         }
