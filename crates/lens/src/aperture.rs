@@ -427,12 +427,14 @@ mod tests {
         for (aperture, _) in shapes() {
             let sampler = ApertureSampler::new(&aperture);
             let cell_of = |u: DVec2| {
-                let index = ((u + 1.0) / 2.0 * CELLS as f64).clamp(DVec2::ZERO, DVec2::splat(CELLS as f64 - 1e-9));
+                let index =
+                    ((u + 1.0) / 2.0 * CELLS as f64).clamp(DVec2::ZERO, DVec2::splat(CELLS as f64 - 1e-9));
                 index.y as usize * CELLS + index.x as usize
             };
             let mut expected = [0.0; CELLS * CELLS];
             for i in 0..SIDE * SIDE {
-                let u = DVec2::new((i % SIDE) as f64 + 0.5, (i / SIDE) as f64 + 0.5) / SIDE as f64 * 2.0 - 1.0;
+                let u =
+                    DVec2::new((i % SIDE) as f64 + 0.5, (i / SIDE) as f64 + 0.5) / SIDE as f64 * 2.0 - 1.0;
                 expected[cell_of(u)] += aperture.transmission(u);
             }
             let total: f64 = expected.iter().sum();
@@ -449,7 +451,7 @@ mod tests {
                 found[cell_of(u)] += 1.0;
             }
             let mut chi_squared = 0.0;
-            let mut cells = 0.0;
+            let mut cells = 0.0f64;
             for (e, f) in expected.iter().zip(found) {
                 let e = e / total * count as f64;
                 if e > 50.0 {
@@ -458,7 +460,7 @@ mod tests {
                 }
             }
             // Mean n, variance 2n: five standard deviations, and the grid's own error of the outline.
-            assert!(chi_squared < cells + 5.0 * (2.0 * cells as f64).sqrt() + 20.0, "{aperture:?}: {chi_squared}");
+            assert!(chi_squared < cells + 5.0 * (2.0 * cells).sqrt() + 20.0, "{aperture:?}: {chi_squared}");
         }
     }
 
