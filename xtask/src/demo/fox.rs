@@ -129,6 +129,7 @@ fn head(folds: &mut Folds) {
 fn body(folds: &mut Folds) {
     let inside = Vec3::new(0.0, 4.6, -2.0);
     let neck = [1.9, 10.6, 0.8];
+    let throat = [0.0, 10.6, 1.4];
     let chest = [0.0, 7.2, 3.9];
     let chest_low = [0.0, 3.0, 3.3];
     let shoulder = [3.1, 8.0, 0.4];
@@ -143,7 +144,8 @@ fn body(folds: &mut Folds) {
     let heel = [2.9, 0.0, 2.6];
 
     folds.pair(inside, [neck, shoulder, chest], CREAM);
-    folds.pair(inside, [[0.0, 10.6, 1.4], neck, chest], CREAM);
+    folds.pair(inside, [throat, neck, chest], CREAM);
+    folds.pair(inside, [throat, neck, withers], CREAM);
     folds.pair(inside, [chest, shoulder, elbow], ORANGE);
     folds.pair(inside, [chest, elbow, chest_low], CREAM);
     folds.pair(inside, [chest_low, elbow, toe], AMBER);
