@@ -6,63 +6,46 @@
 
 use crate::document::Document;
 use crate::error::Fault;
-use crate::json_object::Object;
+use gltf::accessor::Dimensions;
+use gltf::json::accessor::sparse::Sparse;
+use gltf::json::validation::Checked;
 
 /// glTF's component types.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Component {
-    I8,
-    U8,
-    I16,
-    U16,
-    U32,
-    F32,
+pub(crate) use gltf::accessor::DataType as Component;
+
+/// A component type by glTF's number.
+pub(crate) fn component_of(code: u64) -> Option<Component> {
+    Some(match code {
+        5120 => Component::I8,
+        5121 => Component::U8,
+        5122 => Component::I16,
+        5123 => Component::U16,
+        5125 => Component::U32,
+        5126 => Component::F32,
+        _ => return None,
+    })
 }
 
-impl Component {
-    /// By glTF's number.
-    pub fn of(code: u64) -> Option<Self> {
-        Some(match code {
-            5120 => Self::I8,
-            5121 => Self::U8,
-            5122 => Self::I16,
-            5123 => Self::U16,
-            5125 => Self::U32,
-            5126 => Self::F32,
-            _ => return None,
-        })
+/// The value at the start of `bytes`, as stored. Every one of them is exact in f64.
+fn read(component: Component, bytes: &[u8]) -> f64 {
+    match component {
+        Component::I8 => f64::from(bytes[0] as i8),
+        Component::U8 => f64::from(bytes[0]),
+        Component::I16 => f64::from(i16::from_le_bytes([bytes[0], bytes[1]])),
+        Component::U16 => f64::from(u16::from_le_bytes([bytes[0], bytes[1]])),
+        Component::U32 => f64::from(u32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]])),
+        Component::F32 => f64::from(f32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]])),
     }
+}
 
-    /// Bytes.
-    pub fn size(self) -> usize {
-        match self {
-            Self::I8 | Self::U8 => 1,
-            Self::I16 | Self::U16 => 2,
-            Self::U32 | Self::F32 => 4,
-        }
-    }
-
-    /// The value at the start of `bytes`, as stored. Every one of them is exact in f64.
-    fn read(self, bytes: &[u8]) -> f64 {
-        match self {
-            Self::I8 => f64::from(bytes[0] as i8),
-            Self::U8 => f64::from(bytes[0]),
-            Self::I16 => f64::from(i16::from_le_bytes([bytes[0], bytes[1]])),
-            Self::U16 => f64::from(u16::from_le_bytes([bytes[0], bytes[1]])),
-            Self::U32 => f64::from(u32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]])),
-            Self::F32 => f64::from(f32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]])),
-        }
-    }
-
-    /// A stored value as the number it stands for if normalised (glTF 2.0 §3.11.2).
-    fn normalized(self, value: f64) -> f64 {
-        match self {
-            Self::I8 => (value / 127.0).max(-1.0),
-            Self::U8 => value / 255.0,
-            Self::I16 => (value / 32767.0).max(-1.0),
-            Self::U16 => value / 65535.0,
-            Self::U32 | Self::F32 => value,
-        }
+/// A stored value as the number it stands for if normalised (glTF 2.0 §3.11.2).
+fn normalized(component: Component, value: f64) -> f64 {
+    match component {
+        Component::I8 => (value / 127.0).max(-1.0),
+        Component::U8 => value / 255.0,
+        Component::I16 => (value / 32767.0).max(-1.0),
+        Component::U16 => value / 65535.0,
+        Component::U32 | Component::F32 => value,
     }
 }
 
@@ -76,17 +59,16 @@ pub(crate) struct Shape {
 impl Shape {
     /// By glTF's name.
     pub fn of(name: &str) -> Option<Self> {
-        let (rows, columns) = match name {
-            "SCALAR" => (1, 1),
-            "VEC2" => (2, 1),
-            "VEC3" => (3, 1),
-            "VEC4" => (4, 1),
-            "MAT2" => (2, 2),
-            "MAT3" => (3, 3),
-            "MAT4" => (4, 4),
+        Some(Self::from(match name {
+            "SCALAR" => Dimensions::Scalar,
+            "VEC2" => Dimensions::Vec2,
+            "VEC3" => Dimensions::Vec3,
+            "VEC4" => Dimensions::Vec4,
+            "MAT2" => Dimensions::Mat2,
+            "MAT3" => Dimensions::Mat3,
+            "MAT4" => Dimensions::Mat4,
             _ => return None,
-        };
-        Some(Self { rows, columns })
+        }))
     }
 
     /// Numbers an element.
@@ -116,6 +98,21 @@ impl Shape {
     }
 }
 
+impl From<Dimensions> for Shape {
+    fn from(dimensions: Dimensions) -> Self {
+        let (rows, columns) = match dimensions {
+            Dimensions::Scalar => (1, 1),
+            Dimensions::Vec2 => (2, 1),
+            Dimensions::Vec3 => (3, 1),
+            Dimensions::Vec4 => (4, 1),
+            Dimensions::Mat2 => (2, 2),
+            Dimensions::Mat3 => (3, 3),
+            Dimensions::Mat4 => (4, 4),
+        };
+        Self { rows, columns }
+    }
+}
+
 /// Elements in a buffer view.
 struct Elements<'a> {
     bytes: &'a [u8],
@@ -141,71 +138,72 @@ pub(crate) struct Accessor<'a> {
 impl<'a> Accessor<'a> {
     /// Checks accessor `index`, which `place` refers to.
     pub fn open(document: &'a Document<'_>, index: usize, place: &str) -> Result<Self, Fault> {
-        let object = document.item("accessors", index, place)?;
-        let component = object.required("componentType", object.integer("componentType")?)?;
-        let component = Component::of(component)
-            .ok_or_else(|| object.malformed("componentType", format!("{component} is unknown")))?;
-        let shape = object.required("type", object.text("type")?)?;
-        let shape =
-            Shape::of(shape).ok_or_else(|| object.malformed("type", format!("{shape:?} is unknown")))?;
-        let count = object.required("count", object.integer("count")?)?;
-        let offset = object.integer("byteOffset")?.unwrap_or(0);
-        let base = match object.index("bufferView")? {
-            Some(view) => Some(elements(document, &object, view, offset, count, shape.size(component))?),
+        let place = document.entry("accessors", index, place)?;
+        document.sound_below(&place)?;
+        let file = document.typed().accessors().nth(index);
+        let json = document.typed().as_json().accessors.get(index);
+        let (Some(file), Some(json)) = (file, json) else { return Err(Fault::NoData { place }) };
+        let (component, shape) = (file.data_type(), Shape::from(file.dimensions()));
+        let count = file.count();
+        let base = match json.buffer_view {
+            Some(view) => {
+                Some(elements(document, &place, view.value(), file.offset(), count, shape.size(component))?)
+            }
             None => None,
         };
-        let count = usize::try_from(count)
-            .ok()
-            .filter(|&count| count < u32::MAX as usize)
-            .ok_or_else(|| object.malformed("count", format!("{count} is too large")))?;
         let mut accessor = Self {
-            place: object.place.clone(),
+            place,
             count,
             component,
             shape,
-            normalized: object.flag("normalized")?,
+            normalized: file.normalized(),
             base,
             replaced: Vec::new(),
             replacements_increase: true,
             values: None,
         };
-        if let Some(sparse) = object.object("sparse")? {
-            accessor.open_sparse(document, &sparse)?;
+        if count >= u32::MAX as usize {
+            return Err(Fault::Malformed {
+                place: format!("{}/count", accessor.place),
+                what: format!("{count} is too large"),
+            });
+        }
+        if let Some(sparse) = &json.sparse {
+            accessor.open_sparse(document, sparse)?;
         }
         Ok(accessor)
     }
 
-    fn open_sparse(&mut self, document: &'a Document<'_>, sparse: &Object<'_>) -> Result<(), Fault> {
-        let count = sparse.required("count", sparse.integer("count")?)?;
-        if count > self.count as u64 {
-            return Err(
-                sparse.malformed("count", format!("{count} is more than the accessor's {}", self.count))
-            );
-        }
-        let indices = sparse.required("indices", sparse.object("indices")?)?;
-        let code = indices.required("componentType", indices.integer("componentType")?)?;
-        let component = match Component::of(code) {
-            Some(component @ (Component::U8 | Component::U16 | Component::U32)) => component,
-            _ => {
-                return Err(indices.malformed("componentType", format!("{code} is no unsigned integer type")));
+    fn open_sparse(&mut self, document: &'a Document<'_>, sparse: &Sparse) -> Result<(), Fault> {
+        let place = format!("{}/sparse", self.place);
+        let malformed =
+            |key: &str, what: String| Err(Fault::Malformed { place: format!("{place}/{key}"), what });
+        let (indices, values) = (&sparse.indices, &sparse.values);
+        let component = match &indices.component_type {
+            Checked::Valid(component) => component.0,
+            Checked::Invalid => {
+                return malformed("indices/componentType", "is no unsigned integer type".into());
             }
         };
-        let part = |object: &Object<'_>, size: usize| -> Result<Elements<'a>, Fault> {
-            let view = object.required("bufferView", object.index("bufferView")?)?;
-            let offset = object.integer("byteOffset")?.unwrap_or(0);
-            elements(document, object, view, offset, count, size)
+        let count = usize::try_from(sparse.count.0).unwrap_or(usize::MAX);
+        if count > self.count {
+            return malformed("count", format!("{count} is more than the accessor's {}", self.count));
+        }
+        let part = |key: &str, view: usize, offset: u64, size: usize| {
+            let offset = usize::try_from(offset).unwrap_or(usize::MAX);
+            elements(document, &format!("{place}/{key}"), view, offset, count, size)
         };
-        let found = part(&indices, component.size())?;
-        let values = sparse.required("values", sparse.object("values")?)?;
-        self.values = Some(part(&values, self.shape.size(self.component))?);
-        document.budget.memory(8 * count, &self.place)?;
-        for i in 0..count as usize {
-            let index = component.read(&found.bytes[i * found.stride..]) as u32;
+        let found = part("indices", indices.buffer_view.value(), indices.byte_offset.0, component.size())?;
+        let size = self.shape.size(self.component);
+        self.values = Some(part("values", values.buffer_view.value(), values.byte_offset.0, size)?);
+        document.budget.memory(8 * count as u64, &self.place)?;
+        for i in 0..count {
+            let index = read(component, &found.bytes[i * found.stride..]) as u32;
             if index as usize >= self.count {
-                return Err(indices.malformed(
-                    "bufferView",
+                return malformed(
+                    "indices/bufferView",
                     format!("replaces element {index} of {} elements", self.count),
-                ));
+                );
             }
             self.replaced.push((index, i as u32));
         }
@@ -228,7 +226,7 @@ impl<'a> Accessor<'a> {
     pub fn stored(&self, index: usize, component: usize) -> f64 {
         let at = self.shape.offset(self.component, component);
         match self.element(index) {
-            Some(bytes) => self.component.read(&bytes[at..]),
+            Some(bytes) => read(self.component, &bytes[at..]),
             None => 0.0,
         }
     }
@@ -256,8 +254,8 @@ impl<'a> Accessor<'a> {
     pub fn doubles<const N: usize>(&self, index: usize) -> [f64; N] {
         let Some(bytes) = self.element(index) else { return [0.0; N] };
         std::array::from_fn(|i| {
-            let value = self.component.read(&bytes[self.shape.offset(self.component, i)..]);
-            if self.normalized { self.component.normalized(value) } else { value }
+            let value = read(self.component, &bytes[self.shape.offset(self.component, i)..]);
+            if self.normalized { normalized(self.component, value) } else { value }
         })
     }
 
@@ -276,42 +274,37 @@ impl<'a> Accessor<'a> {
     }
 }
 
-/// `count` elements of `size` bytes, which must lie in the buffer view.
+/// `count` elements of `size` bytes, which must lie in the buffer view to which `owner` refers.
 fn elements<'a>(
     document: &'a Document<'_>,
-    owner: &Object<'_>,
+    owner: &str,
     view: usize,
-    offset: u64,
-    count: u64,
+    offset: usize,
+    count: usize,
     size: usize,
 ) -> Result<Elements<'a>, Fault> {
-    let (bytes, stride) = document.buffer_view(view, &format!("{}/bufferView", owner.place))?;
-    let stride = match stride {
-        None | Some(0) => size,
-        Some(stride) if stride < size => {
-            return Err(owner.malformed(
-                "bufferView",
-                format!("the stride {stride} of its view is less than the {size} bytes of an element"),
-            ));
-        }
-        Some(stride) => stride,
-    };
+    let (bytes, stride) = document.buffer_view(view, &format!("{owner}/bufferView"))?;
+    let stride = stride.unwrap_or(size);
+    if stride < size {
+        return Err(Fault::Malformed {
+            place: format!("{owner}/bufferView"),
+            what: format!("the stride {stride} of its view is less than the {size} bytes of an element"),
+        });
+    }
     let end = match count {
         0 => Some(offset),
-        _ => (count - 1)
-            .checked_mul(stride as u64)
-            .and_then(|n| n.checked_add(size as u64)?.checked_add(offset)),
+        _ => (count - 1).checked_mul(stride).and_then(|n| n.checked_add(size)?.checked_add(offset)),
     };
-    if end.is_none_or(|end| end > bytes.len() as u64) {
+    if end.is_none_or(|end| end > bytes.len()) {
         return Err(Fault::Malformed {
-            place: owner.place.clone(),
+            place: owner.into(),
             what: format!(
                 "{count} elements from byte {offset} do not fit its buffer view of {} bytes",
                 bytes.len()
             ),
         });
     }
-    Ok(Elements { bytes: &bytes[offset as usize..], stride })
+    Ok(Elements { bytes: &bytes[offset..], stride })
 }
 
 #[cfg(test)]

@@ -3,7 +3,8 @@
 use crate::LoadOptions;
 use crate::container::{self, Container};
 use crate::error::Fault;
-use crate::json_object::Object;
+use crate::json_object::{Object, integer};
+use crate::mending::{self, Faults};
 use serde_json::Value;
 use std::cell::{Cell, OnceCell, RefCell};
 use std::path::{Path, PathBuf};
@@ -11,6 +12,8 @@ use std::path::{Path, PathBuf};
 /// A glTF document.
 pub(crate) struct Document<'a> {
     root: Value,
+    typed: gltf::Document,
+    faults: Faults,
     /// The binary chunk of a .glb.
     pub chunk: Option<&'a [u8]>,
     /// The folder that every file it refers to must lie in; canonical.
@@ -38,7 +41,8 @@ impl<'a> Document<'a> {
         let mut warnings = Vec::new();
         let Container { json, chunk, is_glb } =
             container::split(bytes, &mut |warning| warnings.push(warning))?;
-        budget.memory(container::parsed_size(json), "the parsed document")?;
+        let size = container::parsed_size(json);
+        budget.memory(2 * size, "the parsed document")?;
         let root: Value = serde_json::from_slice(json).map_err(|error| {
             let known = is_glb || json.iter().find(|b| !b.is_ascii_whitespace()) == Some(&b'{');
             Fault::NotGltf(if known {
@@ -50,25 +54,52 @@ impl<'a> Document<'a> {
         if !root.is_object() {
             return Err(Fault::NotGltf("its JSON is not an object".into()));
         }
-        let buffers = root.get("buffers").and_then(Value::as_array).map_or(0, Vec::len);
-        let buffers = (0..buffers).map(|_| OnceCell::new()).collect();
-        let document = Self { root, chunk, folder, budget, warnings: RefCell::default(), buffers };
+        check_version(&Object::new(&root, String::new())?)?;
+        let (typed, faults) = mending::typed(&root)?;
+        let buffers = (0..mending::len(&root, "buffers")).map(|_| OnceCell::new()).collect();
+        let document =
+            Self { root, typed, faults, chunk, folder, budget, warnings: RefCell::default(), buffers };
         for warning in warnings {
             document.warn(warning);
         }
-        document.check_version()?;
         Ok(document)
     }
 
-    fn check_version(&self) -> Result<(), Fault> {
-        let asset = self.root().object("asset")?;
-        let Some(version) = asset.as_ref().map(|asset| asset.text("version")).transpose()?.flatten() else {
-            return Err(Fault::NotGltf("asset.version is missing".into()));
-        };
-        if version.split('.').next() != Some("2") {
-            return Err(Fault::NotGltf(format!("it is glTF {version:?}")));
+    /// The document as the `gltf` crate sees it. Every index in it exists, unless there is a fault at its place:
+    /// ask [`Self::sound`] or [`Self::sound_below`] first.
+    pub fn typed(&self) -> &gltf::Document {
+        &self.typed
+    }
+
+    /// An error if the file is wrong exactly at `place`, a JSON pointer.
+    pub fn sound(&self, place: &str) -> Result<(), Fault> {
+        self.faults.at(place)
+    }
+
+    /// An error if the file is wrong at `place` or anywhere inside.
+    pub fn sound_below(&self, place: &str) -> Result<(), Fault> {
+        self.faults.below(place)
+    }
+
+    /// The index at a JSON pointer, for what the typed document does not hold.
+    pub fn index_at(&self, place: &str) -> Option<usize> {
+        usize::try_from(integer(self.root.pointer(place)?)?).ok()
+    }
+
+    /// The place of an entry of a collection, which `place` refers to.
+    pub fn entry(&self, collection: &str, index: usize, place: &str) -> Result<String, Fault> {
+        if index < self.len(collection) {
+            Ok(format!("/{collection}/{index}"))
+        } else {
+            Err(Self::absent(collection, index, place))
         }
-        Ok(())
+    }
+
+    fn absent(collection: &str, index: usize, place: &str) -> Fault {
+        Fault::Malformed {
+            place: place.into(),
+            what: format!("refers to {collection}[{index}], which does not exist"),
+        }
     }
 
     /// The document's outermost object.
@@ -87,17 +118,14 @@ impl<'a> Document<'a> {
 
     /// How many entries a collection such as `meshes` has.
     pub fn len(&self, collection: &str) -> usize {
-        self.root.get(collection).and_then(Value::as_array).map_or(0, Vec::len)
+        mending::len(&self.root, collection)
     }
 
     /// An entry of a collection, which `place` refers to.
     pub fn item(&self, collection: &str, index: usize, place: &str) -> Result<Object<'_>, Fault> {
         match self.root.get(collection).and_then(|list| list.get(index)) {
             Some(value) => Object::new(value, format!("/{collection}/{index}")),
-            None => Err(Fault::Malformed {
-                place: place.into(),
-                what: format!("refers to {collection}[{index}], which does not exist"),
-            }),
+            None => Err(Self::absent(collection, index, place)),
         }
     }
 
@@ -120,6 +148,22 @@ impl<'a> Document<'a> {
         }
         all
     }
+}
+
+/// A name, unless it is empty.
+pub(crate) fn named(name: Option<&str>) -> Option<String> {
+    name.filter(|name| !name.is_empty()).map(String::from)
+}
+
+fn check_version(root: &Object<'_>) -> Result<(), Fault> {
+    let asset = root.object("asset")?;
+    let Some(version) = asset.as_ref().map(|asset| asset.text("version")).transpose()?.flatten() else {
+        return Err(Fault::NotGltf("asset.version is missing".into()));
+    };
+    if version.split('.').next() != Some("2") {
+        return Err(Fault::NotGltf(format!("it is glTF {version:?}")));
+    }
+    Ok(())
 }
 
 /// What loading may still use.

@@ -24,25 +24,25 @@ const HARMLESS: [&str; 5] = [
     "KHR_node_hoverability",
 ];
 
-/// The names in `extensionsUsed` or `extensionsRequired`.
-pub(crate) fn names(document: &Document<'_>, key: &str) -> Vec<String> {
-    let list = document.root().list(key).unwrap_or_default();
-    list.iter().filter_map(|name| name.as_str()).map(String::from).collect()
+/// The names in `extensionsUsed`.
+pub(crate) fn used<'a>(document: &'a Document<'_>) -> impl Iterator<Item = &'a str> {
+    document.typed().extensions_used()
+}
+
+/// The names in `extensionsRequired`.
+pub(crate) fn required<'a>(document: &'a Document<'_>) -> impl Iterator<Item = &'a str> {
+    document.typed().extensions_required()
 }
 
 /// Refuses a document that requires what is not supported; warns of what is ignored and shows.
 pub(crate) fn check(document: &Document<'_>) -> Result<(), Fault> {
-    for extension in names(document, "extensionsRequired") {
-        if !SUPPORTED.contains(&extension.as_str()) && !HARMLESS.contains(&extension.as_str()) {
-            return Err(Fault::Extension { cure: cure(&extension).into(), extension });
-        }
+    let is_strange = |extension: &&str| !SUPPORTED.contains(extension) && !HARMLESS.contains(extension);
+    if let Some(extension) = required(document).find(is_strange) {
+        return Err(Fault::Extension { cure: cure(extension).into(), extension: extension.into() });
     }
-    for extension in names(document, "extensionsUsed") {
-        if !SUPPORTED.contains(&extension.as_str()) && !HARMLESS.contains(&extension.as_str()) {
-            document.warn(format!(
-                "the extension {extension} is ignored; the picture may differ from other viewers"
-            ));
-        }
+    for extension in used(document).filter(is_strange) {
+        document
+            .warn(format!("the extension {extension} is ignored; the picture may differ from other viewers"));
     }
     Ok(())
 }

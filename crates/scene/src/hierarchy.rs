@@ -5,7 +5,6 @@
 
 use crate::document::Document;
 use crate::error::Fault;
-use crate::json_object::Object;
 use glam::{DMat4, DQuat, DVec3};
 
 /// The nodes of a document, placed.
@@ -26,11 +25,7 @@ impl Hierarchy {
         // Joints of a skin may hang beside the scene.
         let mut is_child = vec![false; count];
         for node in 0..count {
-            for child in children(document, node).unwrap_or_default() {
-                if let Some(flag) = is_child.get_mut(child) {
-                    *flag = true;
-                }
-            }
+            children(document, node).for_each(|child| is_child[child] = true);
         }
         let others: Vec<usize> =
             (0..count).filter(|&node| !is_child[node] && world[node].is_none()).collect();
@@ -50,27 +45,18 @@ enum Walk {
 
 /// The roots of the shown scene: of `scene`, else of the first scene, else of all.
 fn scene_roots(document: &Document<'_>) -> Result<Vec<usize>, Fault> {
-    let root = document.root();
-    let scenes = document.len("scenes");
-    let index = match root.index("scene")? {
-        Some(index) if index >= scenes => {
-            document
-                .warn(format!("/scene: refers to scenes[{index}], which does not exist; another is shown"));
-            0
-        }
-        index => index.unwrap_or(0),
-    };
-    if index < scenes {
-        return document.item("scenes", index, "/scene")?.indices("nodes");
+    if let Err(fault) = document.sound("/scene") {
+        document.warn(format!("{fault}; another is shown"));
+    }
+    let typed = document.typed();
+    if let Some(scene) = typed.default_scene().or_else(|| typed.scenes().next()) {
+        document.sound_below(&format!("/scenes/{}", scene.index()))?;
+        return Ok(scene.nodes().map(|node| node.index()).collect());
     }
     let count = document.len("nodes");
     let mut is_child = vec![false; count];
     for node in 0..count {
-        for child in children(document, node)? {
-            if let Some(flag) = is_child.get_mut(child) {
-                *flag = true;
-            }
-        }
+        children(document, node).for_each(|child| is_child[child] = true);
     }
     let roots: Vec<usize> = (0..count).filter(|&node| !is_child[node]).collect();
     if roots.is_empty() && count > 0 {
@@ -79,8 +65,10 @@ fn scene_roots(document: &Document<'_>) -> Result<Vec<usize>, Fault> {
     Ok(roots)
 }
 
-fn children(document: &Document<'_>, node: usize) -> Result<Vec<usize>, Fault> {
-    document.item("nodes", node, "")?.indices("children")
+fn children(document: &Document<'_>, node: usize) -> impl DoubleEndedIterator<Item = usize> {
+    let node = document.typed().as_json().nodes.get(node);
+    let list = node.and_then(|node| node.children.as_deref()).unwrap_or_default();
+    list.iter().map(gltf::json::Index::value)
 }
 
 fn loops(node: usize) -> Fault {
@@ -121,13 +109,12 @@ fn walk(
             }
             continue;
         }
-        let read = || -> Result<(DMat4, Vec<usize>), Fault> {
-            let place = parent.map_or("/scenes".into(), |parent| format!("/nodes/{parent}/children"));
-            let object = document.item("nodes", node, &place)?;
-            Ok((local_transform(document, &object)?, object.indices("children")?))
+        let read = || {
+            document.sound_below(&format!("/nodes/{node}/children"))?;
+            local_transform(document, node)
         };
-        let (local, children) = match (read(), mode) {
-            (Ok(read), _) => read,
+        let local = match (read(), mode) {
+            (Ok(local), _) => local,
             (Err(fault), Walk::Strict) => return Err(fault),
             (Err(_), Walk::Lenient) => continue,
         };
@@ -136,13 +123,16 @@ fn walk(
         on_path[node] = true;
         order.push(node);
         stack.push(Step::Leave(node));
-        stack.extend(children.iter().rev().map(|&child| Step::Enter { node: child, parent: Some(node) }));
+        let children = children(document, node).rev();
+        stack.extend(children.map(|child| Step::Enter { node: child, parent: Some(node) }));
     }
     Ok(order)
 }
 
-/// A node's own transform: its matrix, else translation · rotation · scale.
-fn local_transform(document: &Document<'_>, node: &Object<'_>) -> Result<DMat4, Fault> {
+/// A node's own transform: its matrix, else translation · rotation · scale. The typed document has these numbers
+/// in f32, in which a scene far from the origin falls apart; so they are read from the JSON.
+fn local_transform(document: &Document<'_>, node: usize) -> Result<DMat4, Fault> {
+    let node = document.item("nodes", node, "/scenes")?;
     if let Some(matrix) = node.numbers::<16>("matrix")? {
         return Ok(DMat4::from_cols_array(&matrix));
     }

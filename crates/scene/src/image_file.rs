@@ -1,8 +1,7 @@
 //! Decoding images: PNG, JPEG and WebP, 8 or 16 bits, grey, palette or colour, within limits.
 
-use crate::document::Document;
+use crate::document::{Document, named};
 use crate::error::Fault;
-use crate::json_object::Object;
 use crate::{Image, ImageLevel};
 use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader, Limits};
 use std::borrow::Cow;
@@ -19,34 +18,39 @@ pub(crate) fn mime_type(bytes: &[u8]) -> Option<&'static str> {
 }
 
 impl Document<'_> {
-    /// The encoded bytes of an image.
-    pub fn image_bytes(&self, image: &Object<'_>) -> Result<Cow<'_, [u8]>, Fault> {
-        match (image.text("uri")?, image.index("bufferView")?) {
-            (Some(uri), _) => Ok(self.resource(image, uri)?.into()),
-            (None, Some(view)) => {
-                Ok(self.buffer_view(view, &format!("{}/bufferView", image.place))?.0.into())
+    /// The encoded bytes of image `index`, which `place` refers to.
+    pub fn image_bytes(&self, index: usize, place: &str) -> Result<Cow<'_, [u8]>, Fault> {
+        let place = self.entry("images", index, place)?;
+        self.sound_below(&place)?;
+        // The typed view relies on a media type beside the buffer view; the bytes tell as well.
+        let image = self.typed().as_json().images.get(index);
+        let source = image.map(|image| (image.uri.as_deref(), image.buffer_view));
+        match source {
+            Some((Some(uri), _)) => Ok(self.resource(&place, uri)?.into()),
+            Some((None, Some(view))) => {
+                Ok(self.buffer_view(view.value(), &format!("{place}/bufferView"))?.0.into())
             }
-            (None, None) => Err(image.malformed("uri", "is missing, and there is no bufferView either")),
+            _ => Err(Fault::Malformed {
+                place: format!("{place}/uri"),
+                what: "is missing, and there is no bufferView either".into(),
+            }),
         }
     }
 
     /// Decodes image `index`.
     pub fn image(&self, index: usize, place: &str) -> Result<Image, Fault> {
-        let object = self.item("images", index, place)?;
-        let bytes = self.image_bytes(&object)?;
+        let bytes = self.image_bytes(index, place)?;
+        let place = format!("/images/{index}");
         let format = match mime_type(&bytes) {
             Some("image/png") => ImageFormat::Png,
             Some("image/jpeg") => ImageFormat::Jpeg,
             Some("image/webp") => ImageFormat::WebP,
             _ => {
-                return Err(Fault::Malformed {
-                    place: object.place,
-                    what: "is neither PNG, JPEG nor WebP".into(),
-                });
+                return Err(Fault::Malformed { place, what: "is neither PNG, JPEG nor WebP".into() });
             }
         };
         let broken = |error: image::ImageError| Fault::Malformed {
-            place: object.place.clone(),
+            place: place.clone(),
             what: format!("cannot be decoded: {error}"),
         };
         let mut reader = ImageReader::with_format(Cursor::new(&bytes[..]), format);
@@ -59,19 +63,19 @@ impl Document<'_> {
         if texels > self.budget.options.max_texels {
             let limit = self.budget.options.max_texels;
             return Err(Fault::TooBig {
-                what: format!("{}: {width}×{height} texels, the limit is {limit}", object.place),
+                what: format!("{place}: {width}×{height} texels, the limit is {limit}"),
             });
         }
-        self.budget.work(texels + bytes.len() as u64 / 8, &object.place)?;
+        self.budget.work(texels + bytes.len() as u64 / 8, &place)?;
         if texels == 0 {
-            return Err(Fault::Malformed { place: object.place, what: "has no texels".into() });
+            return Err(Fault::Malformed { place, what: "has no texels".into() });
         }
         let deep = decoder.color_type().bytes_per_pixel() / decoder.color_type().channel_count() > 1;
         let size = texels * if deep { 8 } else { 4 };
         // The decoder's own picture exists beside the converted one.
         let decoding = decoder.total_bytes();
-        self.budget.memory(size, &object.place)?;
-        self.budget.memory(decoding, &object.place)?;
+        self.budget.memory(size, &place)?;
+        self.budget.memory(decoding, &place)?;
         let picture = DynamicImage::from_decoder(decoder).map_err(broken)?;
         let texels = match deep {
             true => ImageLevel::Bits16(picture.into_rgba16().into_raw()),
@@ -81,8 +85,11 @@ impl Document<'_> {
         if let Cow::Owned(bytes) = bytes {
             self.budget.release(bytes.len() as u64);
         }
-        let uri = object.text("uri")?.filter(|uri| crate::resource::data_uri(uri).is_none());
-        let name = object.name().or(uri).map_or_else(|| format!("image {index}"), String::from);
+        let file = self.typed().as_json().images.get(index);
+        let uri = file.and_then(|file| file.uri.clone());
+        let uri = uri.filter(|uri| crate::resource::data_uri(uri).is_none());
+        let name = file.and_then(|file| named(file.name.as_deref())).or(uri);
+        let name = name.unwrap_or_else(|| format!("image {index}"));
         Ok(Image { name, width, height, texels })
     }
 }

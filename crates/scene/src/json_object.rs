@@ -43,11 +43,6 @@ impl<'a> Object<'a> {
         }
     }
 
-    /// A property that must be there.
-    pub fn required<T>(&self, key: &str, value: Option<T>) -> Result<T, Fault> {
-        value.ok_or_else(|| self.malformed(key, "is missing"))
-    }
-
     /// A whole number ≥ 0.
     pub fn integer(&self, key: &str) -> Result<Option<u64>, Fault> {
         self.read(key, "a whole number", integer)
@@ -87,11 +82,6 @@ impl<'a> Object<'a> {
     /// A text.
     pub fn text(&self, key: &str) -> Result<Option<&'a str>, Fault> {
         self.read(key, "a text", Value::as_str)
-    }
-
-    /// A name: a text, or nothing if absent, empty or of another type (a name does not change the picture).
-    pub fn name(&self) -> Option<&'a str> {
-        self.get("name").and_then(Value::as_str).filter(|name| !name.is_empty())
     }
 
     /// True or false; absent is false.
@@ -159,7 +149,7 @@ mod tests {
 
     #[test]
     fn wrong_types_name_the_place() {
-        let value = json!({"count": "many", "name": 3});
+        let value = json!({"count": "many"});
         let object = Object::new(&value, "/accessors/2".into()).unwrap();
         assert!(
             object
@@ -168,7 +158,6 @@ mod tests {
                 .to_string()
                 .contains("/accessors/2/count: is not a whole number")
         );
-        assert_eq!(object.name(), None);
         assert_eq!(object.number("absent").unwrap(), None);
     }
 }

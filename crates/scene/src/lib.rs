@@ -9,16 +9,16 @@
 //!
 //! Files come from anywhere, so the reader trusts none: every index and byte range is checked before it is used,
 //! memory, triangles and time are accounted for before they are taken, and only files inside the scene's
-//! folder are opened. The document is read as JSON values rather than into a fixed set of types, for two
-//! reasons: integers written as floats are legal, and a flaw in something the picture does not need must not keep
-//! the rest from opening.
+//! folder are opened. The document is read through the `gltf` crate, which gets a mended copy of the JSON: integers
+//! written as floats are legal, and a flaw in something the picture does not need must not keep the rest from opening.
 //!
-//! The road of a file: `container` (GLB chunks, JSON text) → `document` → `hierarchy` (which nodes, where) →
+//! The road of a file: `container` (GLB chunks, JSON text) → `mending` (typed by the `gltf` crate) → `document` → `hierarchy` (which nodes, where) →
 //! `primitive` (checked `accessor`s to triangles, morphed) → `assembly` (instances and skins into the world) →
 //! `material_file` (materials, images) → `view`, `punctual_light` (what is missing is made up). `flaws` tells authors what else is out of order.
 
 mod accessor;
 mod assembly;
+mod attribute_name;
 mod container;
 mod document;
 mod error;
@@ -32,11 +32,13 @@ mod json_object;
 mod load;
 mod load_options;
 mod material_file;
+mod mending;
 mod mesh_health;
 mod model;
 mod primitive;
 mod punctual_light;
 mod resource;
+mod schema;
 mod skin;
 mod surface_color;
 mod surface_point;

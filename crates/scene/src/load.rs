@@ -1,10 +1,9 @@
 //! From a file to a scene: the story of reading one, from top to bottom.
 
 use crate::assembly::{Placement, append};
-use crate::document::Document;
+use crate::document::{Document, named};
 use crate::error::{Fault, Stop};
 use crate::hierarchy::Hierarchy;
-use crate::json_object::Object;
 use crate::material_file::{MaterialReader, default_material};
 use crate::primitive::Primitive;
 use crate::triangulation::MODE_NAMES;
@@ -85,11 +84,11 @@ fn read(path: &Path, options: &LoadOptions, progress: &dyn Progress) -> Result<(
     let mut used = UsedMaterials::default();
     for (i, &index) in hierarchy.shown.iter().enumerate() {
         progress.report(i as f32 / hierarchy.shown.len() as f32);
-        let node = document.item("nodes", index, "")?;
+        let Some(node) = document.typed().nodes().nth(index) else { continue };
         let Some(world) = hierarchy.world[index] else { continue };
         scene.lights.extend(punctual_light::node_light(&document, &node, world)?);
         scene.cameras.extend(view::node_camera(&document, &node, world)?);
-        let mesh = MeshNode { document: &document, hierarchy: &hierarchy, node, index, world };
+        let mesh = MeshNode { document: &document, hierarchy: &hierarchy, node, world };
         mesh.read(&mut scene, &mut used, progress)?;
     }
     used.fill(&mut scene, &document, &mut materials)?;
@@ -127,17 +126,15 @@ struct UsedMaterials {
 
 impl UsedMaterials {
     /// The index in the scene of a material of the file.
-    fn index(&mut self, document: &Document<'_>, material: Option<usize>, place: &str) -> Result<u32, Fault> {
+    fn index(&mut self, document: &Document<'_>, material: Option<usize>, place: &str) -> u32 {
         match material {
             Some(index) => {
-                let place = format!("{place}/material");
-                document.item("materials", index, &place)?;
-                self.by.entry(index).or_insert(place);
-                Ok(index as u32)
+                self.by.entry(index).or_insert_with(|| format!("{place}/material"));
+                index as u32
             }
             None => {
                 self.uses_default = true;
-                Ok(document.len("materials") as u32)
+                document.len("materials") as u32
             }
         }
     }
@@ -166,8 +163,7 @@ impl UsedMaterials {
 struct MeshNode<'a> {
     document: &'a Document<'a>,
     hierarchy: &'a Hierarchy,
-    node: Object<'a>,
-    index: usize,
+    node: gltf::Node<'a>,
     world: DMat4,
 }
 
@@ -175,17 +171,20 @@ impl MeshNode<'_> {
     /// Appends every primitive of every instance of the node's mesh.
     fn read(&self, scene: &mut Scene, used: &mut UsedMaterials, progress: &dyn Progress) -> Result<(), Stop> {
         let (document, node) = (self.document, &self.node);
-        let Some(mesh) = node.index("mesh")? else { return Ok(()) };
-        let mesh = document.item("meshes", mesh, &format!("{}/mesh", node.place))?;
-        let weights = node.number_list("weights")?.or(mesh.number_list("weights")?).unwrap_or_default();
+        let place = format!("/nodes/{}", node.index());
+        document.sound(&format!("{place}/mesh"))?;
+        let Some(mesh) = node.mesh() else { return Ok(()) };
+        document.sound(&format!("{place}/weights"))?;
+        document.sound(&format!("/meshes/{}/weights", mesh.index()))?;
+        let weights = node.weights().or(mesh.weights()).unwrap_or_default();
+        let weights: Vec<f64> = weights.iter().copied().map(f64::from).collect();
         let primitives = self.primitives(&mesh, &weights, used, progress)?;
         if primitives.is_empty() {
             return Ok(());
         }
-        let joints = match node.index("skin")? {
-            Some(skin) => {
-                Some(skin::joint_matrices(document, self.hierarchy, skin, &format!("{}/skin", node.place))?)
-            }
+        document.sound(&format!("{place}/skin"))?;
+        let joints = match node.skin() {
+            Some(skin) => Some(skin::joint_matrices(document, self.hierarchy, &skin)?),
             None => None,
         };
         let instances = match joints {
@@ -206,8 +205,9 @@ impl MeshNode<'_> {
                 append(scene, document, primitive, &placement, scene.nodes.len() as u32, *material)?;
             }
             if scene.parts.len() > first_part {
-                let name = node.name().map_or_else(|| format!("node {}", self.index), String::from);
-                scene.nodes.push(Node { name, index: self.index as u32 });
+                let index = node.index();
+                let name = named(node.name()).unwrap_or_else(|| format!("node {index}"));
+                scene.nodes.push(Node { name, index: index as u32 });
             }
         }
         primitives.into_iter().for_each(|(primitive, _)| primitive.release(document));
@@ -217,23 +217,27 @@ impl MeshNode<'_> {
     /// The primitives of a mesh that have triangles, and their materials in the scene.
     fn primitives(
         &self,
-        mesh: &Object<'_>,
+        mesh: &gltf::Mesh<'_>,
         weights: &[f64],
         used: &mut UsedMaterials,
         progress: &dyn Progress,
     ) -> Result<Vec<(Primitive, u32)>, Stop> {
         let document = self.document;
         let mut primitives = Vec::new();
-        for object in mesh.objects("primitives")? {
+        let place = format!("/meshes/{}", mesh.index());
+        document.sound(&place)?;
+        document.sound(&format!("{place}/primitives"))?;
+        for file in mesh.primitives() {
             progress.check()?;
-            match Primitive::read(document, &object, weights) {
+            let place = format!("{place}/primitives/{}", file.index());
+            match Primitive::read(document, &file, &place, weights) {
                 Ok(Some(primitive)) => {
-                    let material = used.index(document, primitive.material, &primitive.place)?;
+                    let material = used.index(document, primitive.material, &primitive.place);
                     primitives.push((primitive, material));
                 }
                 Ok(None) => {}
                 Err(fault @ Fault::NoData { .. }) => {
-                    document.warn(format!("{}: left out, because of {fault}", object.place))
+                    document.warn(format!("{place}: left out, because of {fault}"))
                 }
                 Err(fault) => return Err(fault.into()),
             }
@@ -266,32 +270,28 @@ fn complete(scene: &mut Scene) {
 /// Counts what the file holds.
 fn inspection(document: &Document<'_>, scene: &Scene) -> Inspection {
     let mut primitives = [0; 7];
-    for mesh in 0..document.len("meshes") {
-        let list = document.item("meshes", mesh, "").and_then(|mesh| mesh.objects("primitives"));
-        for primitive in list.unwrap_or_default() {
-            let mode = primitive.index("mode").ok().flatten().unwrap_or(crate::triangulation::TRIANGLES);
-            if let Some(count) = primitives.get_mut(mode) {
-                *count += 1;
+    for mesh in document.typed().meshes() {
+        for primitive in mesh.primitives() {
+            let place = format!("/meshes/{}/primitives/{}", mesh.index(), primitive.index());
+            if document.sound(&format!("{place}/mode")).is_ok() {
+                primitives[primitive.mode().as_gl_enum() as usize] += 1;
             }
         }
     }
-    let root = document.root();
-    let asset = root.object("asset").ok().flatten();
-    let lights = root.extension("KHR_lights_punctual").ok().flatten();
     Inspection {
-        generator: asset.and_then(|asset| asset.text("generator").ok().flatten()).map(String::from),
+        generator: document.typed().as_json().asset.generator.clone(),
         nodes: document.len("nodes"),
         meshes: document.len("meshes"),
         primitives,
         materials: document.len("materials"),
         images: document.len("images"),
         cameras: document.len("cameras"),
-        lights: lights.and_then(|lights| lights.list("lights").ok()).map_or(0, <[_]>::len),
+        lights: document.len("lights"),
         skins: document.len("skins"),
         animations: document.len("animations"),
         triangles: scene.triangles.len(),
-        extensions_used: extension::names(document, "extensionsUsed"),
-        extensions_required: extension::names(document, "extensionsRequired"),
+        extensions_used: extension::used(document).map(String::from).collect(),
+        extensions_required: extension::required(document).map(String::from).collect(),
         warnings: scene.warnings.clone(),
     }
 }

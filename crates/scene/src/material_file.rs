@@ -1,10 +1,11 @@
 //! Materials of the file, reduced to what light transport here uses, and the images they need.
 
-use crate::document::Document;
+use crate::document::{Document, named};
 use crate::error::Fault;
-use crate::json_object::Object;
+use crate::json_object::integer;
 use crate::{AlphaMode, Image, Material, TextureRef, Wrap};
 use glam::{Mat3, Vec2, Vec3, Vec4};
+use gltf::texture::{MagFilter, TextureTransform, WrappingMode};
 use std::collections::HashMap;
 
 /// glTF's default material.
@@ -39,106 +40,114 @@ impl<'a> MaterialReader<'a> {
 
     /// The name of material `index`.
     pub fn name(&self, index: usize) -> String {
-        let object = self.document.item("materials", index, "");
-        object.ok().and_then(|object| object.name()).map_or_else(|| format!("material {index}"), String::from)
+        let material = self.document.typed().materials().nth(index);
+        material.and_then(|material| named(material.name())).unwrap_or_else(|| format!("material {index}"))
     }
 
     /// Material `index`, which is used by `place`.
     pub fn read(&mut self, index: usize, place: &str) -> Result<Material, Fault> {
-        let object = self.document.item("materials", index, place)?;
-        let pbr = object.object("pbrMetallicRoughness")?;
-        let mut material = Material { name: self.name(index), ..default_material() };
-        if let Some(pbr) = &pbr {
-            let color = pbr.numbers::<4>("baseColorFactor")?.unwrap_or([1.0; 4]);
-            material.base_color = Vec4::from_array(color.map(|v| v as f32));
-            material.metallic = unit(pbr, "metallicFactor", 1.0)?;
-            material.roughness = unit(pbr, "roughnessFactor", 1.0)?;
-            material.base_color_texture = self.texture(pbr, "baseColorTexture")?;
-        }
-        let strength = match object.extension("KHR_materials_emissive_strength")? {
-            Some(extension) => extension.number("emissiveStrength")?.unwrap_or(1.0),
-            None => 1.0,
+        let document = self.document;
+        let place = document.entry("materials", index, place)?;
+        let name = self.name(index);
+        let Some(file) = document.typed().materials().nth(index) else {
+            return Ok(Material { name, ..default_material() });
         };
-        let emissive = object.numbers::<3>("emissiveFactor")?.unwrap_or([0.0; 3]);
-        material.emissive = Vec3::from_array(emissive.map(|v| (v * strength) as f32));
-        if !material.base_color.is_finite() || !material.emissive.is_finite() {
-            return Err(Fault::Malformed { place: object.place, what: "its colours are not finite".into() });
+        document.sound(&place)?;
+        for key in ["pbrMetallicRoughness", "emissiveFactor", "doubleSided", "extensions"] {
+            document.sound_below(&format!("{place}/{key}"))?;
         }
-        if material.emissive != Vec3::ZERO {
-            material.emissive_texture = self.texture(&object, "emissiveTexture")?;
+        let pbr = file.pbr_metallic_roughness();
+        let strength = file.emissive_strength().unwrap_or(1.0);
+        let base_color = Vec4::from_array(pbr.base_color_factor());
+        let emissive = strength * Vec3::from_array(file.emissive_factor());
+        if !base_color.is_finite() || !emissive.is_finite() {
+            return Err(Fault::Malformed { place, what: "its colours are not finite".into() });
         }
-        if let Some(extension) = object.extension("KHR_materials_specular")? {
-            material.specular = unit(&extension, "specularFactor", 1.0)?;
-        }
-        material.unlit = object.extension("KHR_materials_unlit")?.is_some();
-        material.double_sided = object.flag("doubleSided")?;
-        material.alpha = match object.text("alphaMode")?.unwrap_or("OPAQUE") {
-            "OPAQUE" => AlphaMode::Opaque,
-            "MASK" => AlphaMode::Mask(object.number("alphaCutoff")?.unwrap_or(0.5) as f32),
-            "BLEND" => AlphaMode::Blend,
-            other => {
-                self.document
-                    .warn(format!("{}/alphaMode: {other:?} is unknown; taken as OPAQUE", object.place));
-                AlphaMode::Opaque
-            }
+        let base_color_texture = match pbr.base_color_texture() {
+            Some(info) => self.texture(&info, &format!("{place}/pbrMetallicRoughness/baseColorTexture"))?,
+            None => None,
         };
-        Ok(material)
-    }
-
-    /// The texture of a property; nothing (which is white) with a warning if its image cannot be had.
-    fn texture(&mut self, owner: &Object<'_>, key: &str) -> Result<Option<TextureRef>, Fault> {
-        let Some(info) = owner.object(key)? else { return Ok(None) };
-        let texture = info.required("index", info.index("index")?)?;
-        let texture = self.document.item("textures", texture, &format!("{}/index", info.place))?;
-        let mut uv_set = info.integer("texCoord")?.unwrap_or(0);
-        let mut matrix = Mat3::IDENTITY;
-        if let Some(transform) = info.extension("KHR_texture_transform")? {
-            matrix = texture_transform(&transform)?;
-            uv_set = transform.integer("texCoord")?.unwrap_or(uv_set);
-        }
-        if uv_set > 1 {
-            self.document.warn(format!(
-                "{}: needs TEXCOORD_{uv_set}; sets 0 and 1 are read, so it is white",
-                info.place
-            ));
-            return Ok(None);
-        }
-        let Some(image) = self.texture_image(&texture)? else { return Ok(None) };
-        let (mut wrap, mut nearest) = ([Wrap::Repeat; 2], false);
-        if let Some(sampler) = texture.index("sampler")? {
-            let sampler = self.document.item("samplers", sampler, &format!("{}/sampler", texture.place))?;
-            wrap = [self.wrap(&sampler, "wrapS")?, self.wrap(&sampler, "wrapT")?];
-            nearest = sampler.integer("magFilter")? == Some(9728);
-        }
-        Ok(Some(TextureRef { image, uv_set: uv_set as u8, transform: matrix, wrap, nearest }))
-    }
-
-    fn wrap(&self, sampler: &Object<'_>, key: &str) -> Result<Wrap, Fault> {
-        Ok(match sampler.integer(key)?.unwrap_or(10497) {
-            10497 => Wrap::Repeat,
-            33071 => Wrap::Clamp,
-            33648 => Wrap::Mirror,
-            other => {
-                self.document.warn(format!("{}/{key}: {other} is unknown; taken as repeat", sampler.place));
-                Wrap::Repeat
+        let mut emissive_texture = None;
+        if emissive != Vec3::ZERO {
+            let place = format!("{place}/emissiveTexture");
+            document.sound_below(&place)?;
+            if let Some(info) = file.emissive_texture() {
+                emissive_texture = self.texture(&info, &place)?;
             }
+        }
+        let alpha = match file.alpha_mode() {
+            gltf::material::AlphaMode::Opaque => AlphaMode::Opaque,
+            gltf::material::AlphaMode::Mask => {
+                document.sound(&format!("{place}/alphaCutoff"))?;
+                AlphaMode::Mask(file.alpha_cutoff().unwrap_or(0.5))
+            }
+            gltf::material::AlphaMode::Blend => AlphaMode::Blend,
+        };
+        Ok(Material {
+            name,
+            base_color,
+            base_color_texture,
+            emissive,
+            emissive_texture,
+            metallic: pbr.metallic_factor().clamp(0.0, 1.0),
+            roughness: pbr.roughness_factor().clamp(0.0, 1.0),
+            specular: file.specular().map_or(1.0, |specular| specular.specular_factor()).clamp(0.0, 1.0),
+            unlit: file.unlit(),
+            alpha,
+            double_sided: file.double_sided(),
         })
     }
 
+    /// The texture of a property; nothing (which is white) with a warning if its image cannot be had.
+    fn texture(&mut self, info: &gltf::texture::Info<'_>, place: &str) -> Result<Option<TextureRef>, Fault> {
+        let transform = info.texture_transform();
+        let own_set = transform.as_ref().and_then(|transform| transform.tex_coord());
+        let uv_set = match own_set.unwrap_or(info.tex_coord()) {
+            set @ (0 | 1) => set as u8,
+            set => {
+                self.document
+                    .warn(format!("{place}: needs TEXCOORD_{set}; sets 0 and 1 are read, so it is white"));
+                return Ok(None);
+            }
+        };
+        let texture = info.texture();
+        let texture_place = format!("/textures/{}", texture.index());
+        self.document.sound(&texture_place)?;
+        self.document.sound(&format!("{texture_place}/sampler"))?;
+        let Some(image) = self.texture_image(&texture, &texture_place) else { return Ok(None) };
+        let sampler = texture.sampler();
+        Ok(Some(TextureRef {
+            image,
+            uv_set,
+            transform: transform.map_or(Mat3::IDENTITY, |transform| texture_transform(&transform)),
+            wrap: [sampler.wrap_s(), sampler.wrap_t()].map(wrap),
+            nearest: sampler.mag_filter() == Some(MagFilter::Nearest),
+        }))
+    }
+
     /// The first of a texture's images that can be read: WebP, then the plain one.
-    fn texture_image(&mut self, texture: &Object<'_>) -> Result<Option<u32>, Fault> {
-        let webp = texture.extension("EXT_texture_webp")?;
-        let sources =
-            [webp.map(|webp| webp.index("source")).transpose()?.flatten(), texture.index("source")?];
-        for source in sources.into_iter().flatten() {
-            if let Some(image) = self.image(source, &format!("{}/source", texture.place)) {
-                return Ok(Some(image));
+    fn texture_image(&mut self, texture: &gltf::Texture<'_>, place: &str) -> Option<u32> {
+        let webp = texture.extension_value("EXT_texture_webp").and_then(|webp| integer(webp.get("source")?));
+        // The typed view relies on the source to be there.
+        let json = self.document.typed().as_json().textures.get(texture.index());
+        let plain = json.map(|texture| texture.source.value()).filter(|&i| i < self.document.len("images"));
+        let webp = (webp.map(|index| index as usize), format!("{place}/extensions/EXT_texture_webp/source"));
+        let (mut is_told, mut sources) = (false, 0);
+        for (source, place) in [webp, (plain, format!("{place}/source"))] {
+            if let Err(fault) = self.document.sound(&place) {
+                self.document.warn(format!("{fault}; the texture is white"));
+                is_told = true;
+            }
+            let Some(source) = source else { continue };
+            sources += 1;
+            if let Some(image) = self.image(source, &place) {
+                return Some(image);
             }
         }
-        if sources == [None, None] {
-            self.document.warn(format!("{}: has no image of a supported format; it is white", texture.place));
+        if sources == 0 && !is_told {
+            self.document.warn(format!("{place}: has no image of a supported format; it is white"));
         }
-        Ok(None)
+        None
     }
 
     fn image(&mut self, index: usize, place: &str) -> Option<u32> {
@@ -160,23 +169,22 @@ impl<'a> MaterialReader<'a> {
     }
 }
 
-/// A number in [0, 1].
-fn unit(object: &Object<'_>, key: &str, default: f64) -> Result<f32, Fault> {
-    Ok(object.number(key)?.unwrap_or(default).clamp(0.0, 1.0) as f32)
+fn wrap(mode: WrappingMode) -> Wrap {
+    match mode {
+        WrappingMode::Repeat => Wrap::Repeat,
+        WrappingMode::ClampToEdge => Wrap::Clamp,
+        WrappingMode::MirroredRepeat => Wrap::Mirror,
+    }
 }
 
 /// KHR_texture_transform: translation · rotation · scale. The rotation runs counter-clockwise as seen with v
 /// downwards, that is, from +v to +u.
-fn texture_transform(transform: &Object<'_>) -> Result<Mat3, Fault> {
-    let vector = |key, default| -> Result<Vec2, Fault> {
-        Ok(transform.numbers::<2>(key)?.map_or(default, |v| Vec2::from_array(v.map(|v| v as f32))))
-    };
-    let (offset, scale) = (vector("offset", Vec2::ZERO)?, vector("scale", Vec2::ONE)?);
-    let (sin, cos) = transform.number("rotation")?.unwrap_or(0.0).sin_cos();
-    let (sin, cos) = (sin as f32, cos as f32);
-    Ok(Mat3::from_cols(
+fn texture_transform(transform: &TextureTransform<'_>) -> Mat3 {
+    let (offset, scale) = (Vec2::from_array(transform.offset()), Vec2::from_array(transform.scale()));
+    let (sin, cos) = transform.rotation().sin_cos();
+    Mat3::from_cols(
         Vec3::new(cos * scale.x, -sin * scale.x, 0.0),
         Vec3::new(sin * scale.y, cos * scale.y, 0.0),
         offset.extend(1.0),
-    ))
+    )
 }

@@ -3,9 +3,9 @@
 use crate::accessor::{Accessor, Component};
 use crate::document::Document;
 use crate::error::Fault;
-use crate::json_object::Object;
-use crate::triangulation::{TRIANGLES, triangle, triangle_count};
+use crate::triangulation::{triangle, triangle_count};
 use glam::{DVec3, Vec2, Vec4};
+use gltf::mesh::{Mode, Semantic};
 
 /// The triangles of a primitive and the vertices they use.
 pub(crate) struct Primitive {
@@ -33,43 +33,45 @@ impl Primitive {
     /// Reads a primitive under the weights of its morph targets; `None` if it has no triangles.
     pub fn read(
         document: &Document<'_>,
-        object: &Object<'_>,
+        file: &gltf::Primitive<'_>,
+        place: &str,
         weights: &[f64],
     ) -> Result<Option<Self>, Fault> {
         /// Reading the properties takes as long as reading so many values.
         const PROPERTIES: u64 = 256;
-        document.budget.work(PROPERTIES + weights.len() as u64, &object.place)?;
-        let mode = object.index("mode")?.unwrap_or(TRIANGLES);
+        document.budget.work(PROPERTIES + weights.len() as u64, place)?;
+        document.sound(place)?;
+        document.sound(&format!("{place}/mode"))?;
+        let mode = file.mode();
         if triangle_count(mode, 0).is_none() {
-            if mode >= crate::triangulation::MODE_NAMES.len() {
-                return Err(object.malformed("mode", format!("{mode} is unknown")));
-            }
             return Ok(None);
         }
-        if object.extension("KHR_draco_mesh_compression")?.is_some() {
-            document.warn(format!(
-                "{}: its Draco-compressed form is ignored, the plain one is read",
-                object.place
-            ));
+        document.sound_below(&format!("{place}/extensions"))?;
+        if file.extension_value("KHR_draco_mesh_compression").is_some() {
+            document.warn(format!("{place}: its Draco-compressed form is ignored, the plain one is read"));
         }
-        let attributes = object.required("attributes", object.object("attributes")?)?;
-        let Some(position) = attributes.index("POSITION")? else {
-            document.warn(format!("{}/attributes: has no POSITION and is left out", object.place));
+        let attributes = Attributes { document, file, place: format!("{place}/attributes") };
+        document.sound(&attributes.place)?;
+        let position_place = format!("{}/POSITION", attributes.place);
+        document.sound(&position_place)?;
+        let Some(position) = file.get(&Semantic::Positions) else {
+            document.warn(format!("{}: has no POSITION and is left out", attributes.place));
             return Ok(None);
         };
-        let place = format!("{}/POSITION", attributes.place);
-        let position = Accessor::open(document, position, &place)?.expect_components(&[3], "POSITION")?;
-        let corners = corners(document, object, position.count, mode)?;
+        let position = Accessor::open(document, position.index(), &position_place)?;
+        let position = position.expect_components(&[3], "POSITION")?;
+        document.sound(&format!("{place}/material"))?;
+        let corners = corners(document, file, place, position.count)?;
         let (triangles, vertices) = compact(&corners);
         drop(corners);
         if triangles.is_empty() {
             return Ok(None);
         }
         let memory = triangles.len() as u64 * 12 + vertices.len() as u64 * VERTEX_BYTES;
-        document.budget.memory(memory, &object.place)?;
+        document.budget.memory(memory, place)?;
         let mut primitive = Self {
-            place: object.place.clone(),
-            material: object.index("material")?,
+            place: place.into(),
+            material: file.material().index(),
             triangles,
             positions: vertices.iter().map(|&v| DVec3::from_array(position.doubles(v as usize))).collect(),
             normals: Vec::new(),
@@ -79,9 +81,9 @@ impl Primitive {
             influences_per_vertex: 0,
             memory,
         };
-        primitive.read_attributes(document, &attributes, &vertices, position.count)?;
-        primitive.read_influences(document, &attributes, &vertices, position.count)?;
-        primitive.morph(document, object, &vertices, position.count, weights)?;
+        primitive.read_attributes(&attributes, &vertices, position.count)?;
+        primitive.read_influences(&attributes, &vertices, position.count)?;
+        primitive.morph(document, file, &vertices, position.count, weights)?;
         Ok(Some(primitive))
     }
 
@@ -93,25 +95,22 @@ impl Primitive {
     /// Normals, texture coordinates and colours. What is broken about them is left out with a warning.
     fn read_attributes(
         &mut self,
-        document: &Document<'_>,
-        attributes: &Object<'_>,
+        attributes: &Attributes<'_>,
         vertices: &[u32],
         count: usize,
     ) -> Result<(), Fault> {
-        let open =
-            |name: &str, components: &[usize]| attribute(document, attributes, name, components, count);
-        document.budget.work(12 * vertices.len() as u64, &attributes.place)?;
-        if let Some(normal) = open("NORMAL", &[3]) {
+        let open = |semantic, components: &[usize]| attributes.open(&semantic, components, count);
+        attributes.document.budget.work(12 * vertices.len() as u64, &attributes.place)?;
+        if let Some(normal) = open(Semantic::Normals, &[3]) {
             self.normals = vertices.iter().map(|&v| DVec3::from_array(normal.doubles(v as usize))).collect();
         }
-        for (set, name) in ["TEXCOORD_0", "TEXCOORD_1"].into_iter().enumerate() {
-            if let Some(uv) = open(name, &[2]) {
+        for (set, uvs) in self.uv.iter_mut().enumerate() {
+            if let Some(uv) = open(Semantic::TexCoords(set as u32), &[2]) {
                 let finite = |uv: Vec2| if uv.is_finite() { uv } else { Vec2::ZERO };
-                self.uv[set] =
-                    vertices.iter().map(|&v| finite(Vec2::from_array(uv.floats(v as usize)))).collect();
+                *uvs = vertices.iter().map(|&v| finite(Vec2::from_array(uv.floats(v as usize)))).collect();
             }
         }
-        if let Some(color) = open("COLOR_0", &[3, 4]) {
+        if let Some(color) = open(Semantic::Colors(0), &[3, 4]) {
             let opaque = color.shape.components() == 3;
             let read = |&v: &u32| {
                 let color = match opaque {
@@ -128,17 +127,17 @@ impl Primitive {
     /// JOINTS_n and WEIGHTS_n, weights summing to 1.
     fn read_influences(
         &mut self,
-        document: &Document<'_>,
-        attributes: &Object<'_>,
+        attributes: &Attributes<'_>,
         vertices: &[u32],
         count: usize,
     ) -> Result<(), Fault> {
         // Further sets are the exporters' exception; each is four joints.
-        const MAX_SETS: usize = 4;
+        const MAX_SETS: u32 = 4;
+        let document = attributes.document;
         let mut sets = Vec::new();
         for set in 0..MAX_SETS {
-            let joints = attribute(document, attributes, &format!("JOINTS_{set}"), &[4], count);
-            let weights = attribute(document, attributes, &format!("WEIGHTS_{set}"), &[4], count);
+            let joints = attributes.open(&Semantic::Joints(set), &[4], count);
+            let weights = attributes.open(&Semantic::Weights(set), &[4], count);
             let (Some(joints), Some(weights)) = (joints, weights) else { break };
             if !matches!(joints.component, Component::U8 | Component::U16) {
                 document.warn(format!("{}: joints cannot be of this type; left out", joints.place));
@@ -179,21 +178,30 @@ impl Primitive {
     fn morph(
         &mut self,
         document: &Document<'_>,
-        object: &Object<'_>,
+        file: &gltf::Primitive<'_>,
         vertices: &[u32],
         count: usize,
         weights: &[f64],
     ) -> Result<(), Fault> {
-        for (target, &weight) in object.objects("targets")?.iter().zip(weights) {
+        let place = format!("{}/targets", self.place);
+        document.sound(&place)?;
+        for ((i, target), &weight) in file.morph_targets().enumerate().zip(weights) {
+            let place = format!("{place}/{i}");
+            document.sound(&place)?;
             if weight == 0.0 {
                 continue;
             }
-            document.budget.work(12 * vertices.len() as u64, &target.place)?;
-            let open =
-                |name: &str, components: &[usize]| attribute(document, target, name, components, count);
-            if let Some(index) = target.index("POSITION")? {
-                let place = format!("{}/POSITION", target.place);
-                let delta = Accessor::open(document, index, &place)?.expect_components(&[3], "POSITION")?;
+            document.budget.work(12 * vertices.len() as u64, &place)?;
+            let open = |name: &str, components: &[usize]| {
+                // Typed targets know neither texture coordinates nor colours.
+                let place = format!("{place}/{name}");
+                attribute(document, document.index_at(&place), &place, name, components, count)
+            };
+            let position_place = format!("{place}/POSITION");
+            document.sound(&position_place)?;
+            if let Some(delta) = target.positions() {
+                let delta = Accessor::open(document, delta.index(), &position_place)?;
+                let delta = delta.expect_components(&[3], "POSITION")?;
                 if delta.count < count {
                     return Err(delta.malformed(format!("has {} elements for {count} vertices", delta.count)));
                 }
@@ -201,7 +209,9 @@ impl Primitive {
                     *position += weight * DVec3::from_array(delta.doubles(v as usize));
                 }
             }
-            if let Some(delta) = open("NORMAL", &[3]) {
+            let normal_place = format!("{place}/NORMAL");
+            let normals = target.normals().map(|normals| normals.index());
+            if let Some(delta) = attribute(document, normals, &normal_place, "NORMAL", &[3], count) {
                 for (normal, &v) in self.normals.iter_mut().zip(vertices) {
                     *normal += weight * DVec3::from_array(delta.doubles(v as usize));
                 }
@@ -228,25 +238,43 @@ impl Primitive {
     }
 }
 
+/// The attributes of a primitive.
+struct Attributes<'a> {
+    document: &'a Document<'a>,
+    file: &'a gltf::Primitive<'a>,
+    /// JSON pointer.
+    place: String,
+}
+
+impl<'a> Attributes<'a> {
+    /// An attribute that the picture can do without.
+    fn open(&self, semantic: &Semantic, components: &[usize], count: usize) -> Option<Accessor<'a>> {
+        let index = self.file.get(semantic).map(|accessor| accessor.index());
+        let name = semantic.to_string();
+        attribute(self.document, index, &format!("{}/{name}", self.place), &name, components, count)
+    }
+}
+
 /// An attribute that the picture can do without: nothing, with a warning, if it is broken.
 fn attribute<'a>(
     document: &'a Document<'_>,
-    attributes: &Object<'_>,
+    index: Option<usize>,
+    place: &str,
     name: &str,
     components: &[usize],
     count: usize,
 ) -> Option<Accessor<'a>> {
     let open = || -> Result<Option<Accessor<'a>>, Fault> {
-        let Some(index) = attributes.index(name)? else { return Ok(None) };
-        let place = format!("{}/{name}", attributes.place);
-        let accessor = Accessor::open(document, index, &place)?.expect_components(components, name)?;
+        document.sound(place)?;
+        let Some(index) = index else { return Ok(None) };
+        let accessor = Accessor::open(document, index, place)?.expect_components(components, name)?;
         if accessor.count < count {
             return Err(accessor.malformed(format!("has {} elements for {count} vertices", accessor.count)));
         }
         Ok(Some(accessor))
     };
     open().unwrap_or_else(|fault| {
-        document.warn(format!("{}/{name}: left out, because of {fault}", attributes.place));
+        document.warn(format!("{place}: left out, because of {fault}"));
         None
     })
 }
@@ -254,13 +282,15 @@ fn attribute<'a>(
 /// The corners of all triangles; those with a vertex that does not exist are left out with a warning.
 fn corners(
     document: &Document<'_>,
-    object: &Object<'_>,
+    file: &gltf::Primitive<'_>,
+    place: &str,
     count: usize,
-    mode: usize,
 ) -> Result<Vec<[u32; 3]>, Fault> {
-    let indices = match object.index("indices")? {
-        Some(index) => {
-            let indices = Accessor::open(document, index, &format!("{}/indices", object.place))?;
+    let (mode, indices_place) = (file.mode(), format!("{place}/indices"));
+    document.sound(&indices_place)?;
+    let indices = match file.indices() {
+        Some(indices) => {
+            let indices = Accessor::open(document, indices.index(), &indices_place)?;
             let indices = indices.expect_components(&[1], "indices")?;
             if !matches!(indices.component, Component::U8 | Component::U16 | Component::U32) {
                 return Err(indices.malformed("indices must be unsigned integers"));
@@ -271,15 +301,12 @@ fn corners(
     };
     let number = indices.as_ref().map_or(count, |indices| indices.count);
     let triangles = triangle_count(mode, number).unwrap_or(0);
-    if mode == TRIANGLES && number % 3 != 0 {
-        document.warn(format!(
-            "{}: its {number} corners are not a multiple of 3; the rest is left out",
-            object.place
-        ));
+    if mode == Mode::Triangles && number % 3 != 0 {
+        document.warn(format!("{place}: its {number} corners are not a multiple of 3; the rest is left out"));
     }
     document.budget.triangles(triangles as u64)?;
-    document.budget.work(3 * triangles as u64, &object.place)?;
-    document.budget.memory(12 * triangles as u64, &object.place)?;
+    document.budget.work(3 * triangles as u64, place)?;
+    document.budget.memory(12 * triangles as u64, place)?;
     let vertex =
         |corner: usize| indices.as_ref().map_or(corner as u32, |indices| indices.stored(corner, 0) as u32);
     let mut corners = Vec::with_capacity(triangles);
@@ -292,8 +319,7 @@ fn corners(
     if corners.len() < triangles {
         let dropped = triangles - corners.len();
         document.warn(format!(
-            "{}/indices: {dropped} of {triangles} triangles refer to vertices beyond the {count} there are; left out",
-            object.place
+            "{indices_place}: {dropped} of {triangles} triangles refer to vertices beyond the {count} there are; left out"
         ));
     }
     document.budget.release(12 * triangles as u64);

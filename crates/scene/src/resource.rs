@@ -5,21 +5,21 @@
 
 use crate::document::Document;
 use crate::error::Fault;
-use crate::json_object::Object;
+use gltf::buffer::Source;
 use std::borrow::Cow;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
 impl<'a> Document<'a> {
-    /// The bytes of the `uri` of `owner` (a buffer or image).
-    pub fn resource(&self, owner: &Object<'_>, uri: &str) -> Result<Vec<u8>, Fault> {
+    /// The bytes of the `uri` of the buffer or image at `owner`.
+    pub fn resource(&self, owner: &str, uri: &str) -> Result<Vec<u8>, Fault> {
         let refuse = |what: &str| Fault::Resource {
-            place: format!("{}/uri", owner.place),
+            place: format!("{owner}/uri"),
             uri: shortened(uri),
             what: what.into(),
         };
         if let Some(data) = data_uri(uri) {
-            self.budget.memory(data.len() as u64, &owner.place)?;
+            self.budget.memory(data.len() as u64, owner)?;
             return decode_data(data).ok_or_else(|| refuse("is not valid data (export the scene again)"));
         }
         let path = inner_path(uri).map_err(refuse)?;
@@ -35,49 +35,50 @@ impl<'a> Document<'a> {
 
     /// The bytes of a buffer, as far as they are declared and there. They are read once.
     pub fn buffer(&self, index: usize, place: &str) -> Result<&[u8], Fault> {
-        let buffer = self.item("buffers", index, place)?;
-        let declared = buffer.required("byteLength", buffer.integer("byteLength")?)?;
-        let declared = usize::try_from(declared).unwrap_or(usize::MAX);
-        let bytes: &[u8] = match (buffer.text("uri")?, self.chunk) {
-            (Some(uri), _) => {
+        let own = self.entry("buffers", index, place)?;
+        self.sound_below(&own)?;
+        let buffer = self.typed().buffers().nth(index);
+        let Some((declared, source)) = buffer.map(|buffer| (buffer.length(), buffer.source())) else {
+            return Err(Fault::NoData { place: own });
+        };
+        let bytes: &[u8] = match (source, self.chunk) {
+            (Source::Uri(uri), _) => {
                 let cell = &self.buffers[index];
                 if cell.get().is_none() {
-                    let bytes = self.resource(&buffer, uri)?;
+                    let bytes = self.resource(&own, uri)?;
                     cell.get_or_init(|| bytes);
                 }
                 cell.get().map_or(&[], Vec::as_slice)
             }
-            (None, Some(chunk)) if index == 0 => chunk,
-            (None, _) => return Err(Fault::NoData { place: buffer.place }),
+            (Source::Bin, Some(chunk)) if index == 0 => chunk,
+            (Source::Bin, _) => return Err(Fault::NoData { place: own }),
         };
         if bytes.len() < declared {
-            self.warn(format!(
-                "{}/byteLength: declares {declared} bytes, but there are {}",
-                buffer.place,
-                bytes.len()
-            ));
+            self.warn(format!("{own}/byteLength: declares {declared} bytes, but there are {}", bytes.len()));
         }
         Ok(&bytes[..bytes.len().min(declared)])
     }
 
     /// The bytes of a buffer view and its stride, if it declares one.
     pub fn buffer_view(&self, index: usize, place: &str) -> Result<(&[u8], Option<usize>), Fault> {
-        let view = self.item("bufferViews", index, place)?;
-        let buffer = view.required("buffer", view.index("buffer")?)?;
-        let bytes = self.buffer(buffer, &format!("{}/buffer", view.place))?;
-        let offset = view.integer("byteOffset")?.unwrap_or(0);
-        let length = view.required("byteLength", view.integer("byteLength")?)?;
-        let range = offset.checked_add(length).filter(|&end| end <= bytes.len() as u64);
-        let Some(end) = range else {
+        let own = self.entry("bufferViews", index, place)?;
+        self.sound_below(&own)?;
+        let Some(view) = self.typed().views().nth(index) else {
+            return Err(Fault::NoData { place: own });
+        };
+        let buffer = view.buffer().index();
+        let bytes = self.buffer(buffer, &format!("{own}/buffer"))?;
+        let (offset, length) = (view.offset(), view.length());
+        let Some(end) = offset.checked_add(length).filter(|&end| end <= bytes.len()) else {
             return Err(Fault::Malformed {
-                place: view.place,
+                place: own,
                 what: format!(
                     "bytes {offset} + {length} do not fit buffer {buffer} of {} bytes",
                     bytes.len()
                 ),
             });
         };
-        Ok((&bytes[offset as usize..end as usize], view.index("byteStride")?))
+        Ok((&bytes[offset..end], view.stride()))
     }
 }
 

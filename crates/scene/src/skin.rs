@@ -12,23 +12,24 @@ use crate::error::Fault;
 use crate::hierarchy::Hierarchy;
 use glam::DMat4;
 
-/// World-from-mesh matrix of every joint of skin `index`, which `place` refers to.
+/// World-from-mesh matrix of every joint of a skin.
 pub(crate) fn joint_matrices(
     document: &Document<'_>,
     hierarchy: &Hierarchy,
-    index: usize,
-    place: &str,
+    skin: &gltf::Skin<'_>,
 ) -> Result<Vec<DMat4>, Fault> {
-    let skin = document.item("skins", index, place)?;
-    let joints = skin.indices("joints")?;
-    document.budget.work(64 * joints.len() as u64, &skin.place)?;
+    let place = format!("/skins/{}", skin.index());
+    document.sound_below(&place)?;
+    let joints: Vec<usize> = skin.joints().map(|joint| joint.index()).collect();
+    document.budget.work(64 * joints.len() as u64, &place)?;
+    let malformed = |what: String| Fault::Malformed { place: format!("{place}/joints"), what };
     if joints.is_empty() {
-        return Err(skin.malformed("joints", "is empty"));
+        return Err(malformed("is empty".into()));
     }
-    let bind = match skin.index("inverseBindMatrices")? {
+    let bind = match skin.inverse_bind_matrices() {
         Some(accessor) => {
-            let place = format!("{}/inverseBindMatrices", skin.place);
-            let bind = Accessor::open(document, accessor, &place)?;
+            let place = format!("{place}/inverseBindMatrices");
+            let bind = Accessor::open(document, accessor.index(), &place)?;
             if bind.shape.components() != 16 || bind.component != Component::F32 {
                 return Err(bind.malformed("inverse bind matrices must be MAT4 of floats"));
             }
@@ -45,7 +46,7 @@ pub(crate) fn joint_matrices(
     };
     let matrix = |(i, &joint): (usize, &usize)| {
         let world = hierarchy.world.get(joint).copied().flatten();
-        let world = world.ok_or_else(|| skin.malformed("joints", format!("nodes[{joint}] is not there")))?;
+        let world = world.ok_or_else(|| malformed(format!("nodes[{joint}] is not there")))?;
         let inverse_bind =
             bind.as_ref().map_or(DMat4::IDENTITY, |bind| DMat4::from_cols_array(&bind.doubles(i)));
         Ok(world * inverse_bind)

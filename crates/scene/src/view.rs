@@ -1,37 +1,53 @@
 //! The cameras of the file, and the framing of a scene that has none.
 
-use crate::document::Document;
+use crate::document::{Document, named};
 use crate::error::Fault;
-use crate::json_object::Object;
 use crate::{Scene, SceneCamera};
 use glam::{DMat3, DMat4, DVec3};
+use gltf::camera::Projection;
+use gltf::json::camera::Type;
+use gltf::json::validation::Checked;
 use std::f64::consts::PI;
 
 /// The camera of a node that stands at `world`, if it is a perspective one that can be used.
 pub(crate) fn node_camera(
     document: &Document<'_>,
-    node: &Object<'_>,
+    node: &gltf::Node<'_>,
     world: DMat4,
 ) -> Result<Option<SceneCamera>, Fault> {
-    let Some(index) = node.index("camera")? else { return Ok(None) };
-    let camera = document.item("cameras", index, &format!("{}/camera", node.place))?;
+    document.sound(&format!("/nodes/{}/camera", node.index()))?;
+    let Some(camera) = node.camera() else { return Ok(None) };
+    let index = camera.index();
+    let place = format!("/cameras/{index}");
     let skip = |why: &str| {
-        document.warn(format!("{}: {why}; the camera is left out", camera.place));
+        document.warn(format!("{place}: {why}; the camera is left out"));
         Ok(None)
     };
-    match camera.required("type", camera.text("type")?)? {
-        "perspective" => {}
-        "orthographic" => return skip("is orthographic, and only perspective cameras have a lens"),
-        other => return skip(&format!("its type {other:?} is unknown")),
+    if let Err(fault) = document.sound(&format!("{place}/type")) {
+        document.warn(format!("{fault}; the camera is left out"));
+        return Ok(None);
     }
-    let perspective = camera.required("perspective", camera.object("perspective")?)?;
-    let yfov = perspective.required("yfov", perspective.number("yfov")?)?;
+    document.sound_below(&place)?;
+    // The typed view relies on the type and the property of that name to agree.
+    let json = document.typed().as_json().cameras.get(index);
+    match json.map(|camera| (&camera.type_, &camera.perspective)) {
+        Some((Checked::Valid(Type::Perspective), Some(_))) => {}
+        Some((Checked::Valid(Type::Perspective), None)) => {
+            return Err(Fault::Malformed {
+                place: format!("{place}/perspective"),
+                what: "is missing".into(),
+            });
+        }
+        _ => return skip("is orthographic, and only perspective cameras have a lens"),
+    }
+    let Projection::Perspective(perspective) = camera.projection() else { return Ok(None) };
+    let yfov = f64::from(perspective.yfov());
     if !(yfov > 0.0 && yfov < PI) {
         return skip("its yfov is not between 0 and π");
     }
-    let aspect = perspective.number("aspectRatio")?.filter(|&aspect| aspect > 0.0);
+    let aspect = perspective.aspect_ratio().map(f64::from).filter(|&aspect| aspect > 0.0);
     let Some(camera_to_world) = rigid(world) else { return skip("its transform is singular") };
-    let name = camera.name().or(node.name()).map_or_else(|| format!("camera {index}"), String::from);
+    let name = named(camera.name()).or(named(node.name())).unwrap_or_else(|| format!("camera {index}"));
     Ok(Some(SceneCamera { name, camera_to_world, yfov, aspect, focus_distance: 1.0 }))
 }
 

@@ -1,6 +1,6 @@
 //! Buffers, their views, and accessors: what fits, what is aligned, and whether the declared bounds are true.
 
-use crate::accessor::{Accessor, Component, Shape};
+use crate::accessor::{Accessor, Component, Shape, component_of};
 use crate::document::Document;
 use crate::error::Fault;
 use crate::json_object::Object;
@@ -77,7 +77,7 @@ fn buffer_view(document: &Document<'_>, view: &Object<'_>) {
 /// What the numbers of the document say about where the elements lie.
 fn layout(document: &Document<'_>, accessor: &Object<'_>) {
     let warn = |what: String| document.warn(format!("{}: {what}", accessor.place));
-    let component = accessor.integer("componentType").ok().flatten().and_then(Component::of);
+    let component = accessor.integer("componentType").ok().flatten().and_then(component_of);
     let shape = accessor.text("type").ok().flatten().and_then(Shape::of);
     let (Some(component), Some(shape)) = (component, shape) else { return };
     let count = integer(accessor, "count", 0);
@@ -99,7 +99,7 @@ fn layout(document: &Document<'_>, accessor: &Object<'_>) {
     }
     for (key, component, size) in [("indices", None, 0), ("values", Some(component), shape.size(component))] {
         let Ok(Some(part)) = sparse.object(key) else { continue };
-        let of_its_own = part.integer("componentType").ok().flatten().and_then(Component::of);
+        let of_its_own = part.integer("componentType").ok().flatten().and_then(component_of);
         let Some(component) = component.or(of_its_own) else { continue };
         placed(document, &part, component, replaced, size.max(component.size()), false);
         let view = part

@@ -12,11 +12,11 @@ use std::io::Cursor;
 const WEBP: &str = "EXT_texture_webp";
 
 pub(super) fn check(document: &Document<'_>) {
-    let webp_is_declared = extension::names(document, "extensionsUsed").iter().any(|name| name == WEBP);
+    let webp_is_declared = extension::used(document).any(|name| name == WEBP);
     let mut formats = Vec::new();
     for index in 0..document.len("images") {
         let image = document.item("images", index, "").ok();
-        formats.push(image.and_then(|image| format(document, &image, webp_is_declared)));
+        formats.push(image.and_then(|image| format(document, index, &image, webp_is_declared)));
     }
     for index in 0..document.len("textures") {
         let Ok(texture) = document.item("textures", index, "") else { continue };
@@ -36,7 +36,12 @@ pub(super) fn check(document: &Document<'_>) {
 }
 
 /// The format of an image, by its first bytes; warns if they are not what the document says.
-fn format(document: &Document<'_>, image: &Object<'_>, webp_is_declared: bool) -> Option<&'static str> {
+fn format(
+    document: &Document<'_>,
+    index: usize,
+    image: &Object<'_>,
+    webp_is_declared: bool,
+) -> Option<&'static str> {
     if let Ok(Some(view)) = image.index("bufferView") {
         let strided =
             document.item("bufferViews", view, "").is_ok_and(|view| view.get("byteStride").is_some());
@@ -50,7 +55,7 @@ fn format(document: &Document<'_>, image: &Object<'_>, webp_is_declared: bool) -
     if !document.budget.check(64) {
         return None;
     }
-    let bytes = match document.image_bytes(image) {
+    let bytes = match document.image_bytes(index, "") {
         Ok(bytes) => bytes,
         Err(fault) => {
             document.warn(fault.to_string());

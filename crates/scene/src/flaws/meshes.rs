@@ -1,15 +1,15 @@
 //! Meshes: names, formats and numbers of attributes, indices, morph targets, and what materials need of them.
 
 use super::vertex_data;
-use crate::accessor::{Accessor, Component};
+use crate::accessor::{Accessor, Component, component_of};
+use crate::attribute_name::AttributeName;
 use crate::document::Document;
 use crate::extension;
 use crate::json_object::Object;
 use std::collections::HashMap;
 
 pub(super) fn check(document: &Document<'_>) {
-    let quantized =
-        extension::names(document, "extensionsUsed").iter().any(|name| name == "KHR_mesh_quantization");
+    let quantized = extension::used(document).any(|name| name == "KHR_mesh_quantization");
     let mut check =
         MeshCheck { document, quantized, views: HashMap::new(), vertex_accessors: HashMap::new() };
     for index in 0..document.len("meshes") {
@@ -33,25 +33,6 @@ struct MeshCheck<'a> {
     views: HashMap<usize, Use>,
     /// The vertex accessors of each buffer view that has no stride.
     vertex_accessors: HashMap<usize, Vec<usize>>,
-}
-
-/// An attribute's name, taken apart.
-struct Semantic<'a> {
-    base: &'a str,
-    set: Option<usize>,
-}
-
-impl<'a> Semantic<'a> {
-    /// `None` for a name that glTF does not know.
-    fn of(name: &'a str) -> Option<Self> {
-        if matches!(name, "POSITION" | "NORMAL" | "TANGENT") || name.starts_with('_') && name.len() > 1 {
-            return Some(Self { base: name, set: None });
-        }
-        let (base, set) = name.split_once('_')?;
-        let canonical = set == "0" || !set.starts_with('0') && set.bytes().all(|byte| byte.is_ascii_digit());
-        let known = matches!(base, "TEXCOORD" | "COLOR" | "JOINTS" | "WEIGHTS");
-        (known && canonical).then(|| set.parse().ok()).flatten().map(|set| Self { base, set: Some(set) })
-    }
 }
 
 impl<'a> MeshCheck<'a> {
@@ -118,17 +99,17 @@ impl<'a> MeshCheck<'a> {
     }
 
     fn names(&self, attributes: &Object<'_>) {
-        let mut sets: HashMap<&str, Vec<usize>> = HashMap::new();
+        let mut sets: HashMap<&str, Vec<u32>> = HashMap::new();
         for (name, _) in attributes.entries() {
-            match Semantic::of(name) {
-                Some(Semantic { base, set: Some(set) }) => sets.entry(base).or_default().push(set),
+            match AttributeName::of(name) {
+                Some(AttributeName { base, set: Some(set) }) => sets.entry(base).or_default().push(set),
                 Some(_) => {}
                 None => self.warn(&format!("{}/{name}", attributes.place), "is no name of an attribute"),
             }
         }
         for (base, mut sets) in sets.clone() {
             sets.sort_unstable();
-            if sets.iter().enumerate().any(|(i, &set)| i != set) {
+            if sets.iter().enumerate().any(|(i, &set)| i != set as usize) {
                 self.warn(&attributes.place, format!("the sets of {base} do not count from 0 without gaps"));
             }
         }
@@ -141,8 +122,8 @@ impl<'a> MeshCheck<'a> {
     /// Whether an accessor's type suits its attribute.
     fn format(&self, place: &str, name: &str, accessor: &Object<'_>, target: bool) {
         use Component::{F32, I8, I16, U8, U16, U32};
-        let Some(Semantic { base, .. }) = Semantic::of(name) else { return };
-        let component = accessor.integer("componentType").ok().flatten().and_then(Component::of);
+        let Some(AttributeName { base, .. }) = AttributeName::of(name) else { return };
+        let component = accessor.integer("componentType").ok().flatten().and_then(component_of);
         let (Some(component), Ok(Some(shape))) = (component, accessor.text("type")) else { return };
         let normalized = accessor.flag("normalized").unwrap_or(false);
         if base.starts_with('_') {
@@ -179,7 +160,7 @@ impl<'a> MeshCheck<'a> {
 
     /// Alignment and exclusive use of the buffer view of a vertex accessor.
     fn vertex_view(&mut self, place: &str, index: usize, accessor: &Object<'_>) {
-        let component = accessor.integer("componentType").ok().flatten().and_then(Component::of);
+        let component = accessor.integer("componentType").ok().flatten().and_then(component_of);
         let shape = accessor.text("type").ok().flatten().and_then(crate::accessor::Shape::of);
         let Some((view_index, view)) = self.view(place, accessor, Use::Vertices) else { return };
         let stride = view.integer("byteStride").ok().flatten();
@@ -254,7 +235,7 @@ impl<'a> MeshCheck<'a> {
     fn target(&mut self, target: &Object<'a>, attributes: &Object<'a>, count: Option<u64>) {
         for (name, _) in target.entries() {
             let place = format!("{}/{name}", target.place);
-            if Semantic::of(name).is_none() {
+            if AttributeName::of(name).is_none() {
                 self.warn(&place, "is no name of an attribute");
             }
             if attributes.get(name).is_none() {

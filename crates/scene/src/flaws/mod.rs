@@ -9,7 +9,6 @@ mod images;
 mod meshes;
 mod nodes;
 mod properties;
-mod schema;
 mod vertex_data;
 
 use crate::document::Document;
@@ -43,8 +42,8 @@ fn versions_and_extensions(document: &Document<'_>) {
     {
         document.warn("/asset/minVersion: is greater than the version");
     }
-    let names = |key| extension::names(document, key).into_iter().collect::<BTreeSet<String>>();
-    let (used, required) = (names("extensionsUsed"), names("extensionsRequired"));
+    let used: BTreeSet<&str> = extension::used(document).collect();
+    let required: BTreeSet<&str> = extension::required(document).collect();
     for name in required.difference(&used) {
         document.warn(format!("/extensionsRequired: {name} is not in extensionsUsed"));
     }

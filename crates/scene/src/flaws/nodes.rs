@@ -17,7 +17,6 @@ pub(super) fn check(document: &Document<'_>) {
     for node in nodes.iter().flatten() {
         transform(document, node);
         mesh_and_skin(document, node);
-        light_reference(document, node);
     }
     for index in 0..document.len("scenes") {
         let Ok(scene) = document.item("scenes", index, "") else { continue };
@@ -204,18 +203,5 @@ fn lights(document: &Document<'_>) {
             }
             _ => {}
         }
-    }
-}
-
-/// A light reference into the lights of the document.
-fn light_reference(document: &Document<'_>, node: &Object<'_>) {
-    const EXTENSION: &str = "KHR_lights_punctual";
-    let Ok(Some(reference)) = node.extension(EXTENSION) else { return };
-    let lights = document.root().extension(EXTENSION).ok().flatten();
-    let count = lights.and_then(|lights| lights.list("lights").ok()).map_or(0, <[_]>::len);
-    if let Ok(Some(light)) = reference.index("light")
-        && light >= count
-    {
-        document.warn(format!("{}/light: refers to light {light}, which does not exist", reference.place));
     }
 }

@@ -1,22 +1,21 @@
 //! Checks every property of the document against the tables.
 
-use super::schema::{Kind, ROOT, Spec};
 use crate::document::Document;
 use crate::extension;
 use crate::json_object::integer;
+use crate::schema::{Kind, ROOT, Spec};
 use serde_json::{Map, Value};
 use std::collections::HashSet;
 
 /// Warns of every property that is missing, of the wrong type, out of its range or refers to nothing.
 pub(super) fn check(document: &Document<'_>) {
-    let walk =
-        Walk { document, declared: extension::names(document, "extensionsUsed").into_iter().collect() };
+    let walk = Walk { document, declared: extension::used(document).collect() };
     walk.object(document.value(), &ROOT, String::new());
 }
 
 struct Walk<'a> {
     document: &'a Document<'a>,
-    declared: HashSet<String>,
+    declared: HashSet<&'a str>,
 }
 
 impl Walk<'_> {
@@ -54,7 +53,7 @@ impl Walk<'_> {
         let Some(map) = value.as_object() else { return self.warn(&place, "is not an object") };
         for (name, value) in map {
             let place = format!("{place}/{name}");
-            if !self.declared.contains(name) {
+            if !self.declared.contains(name.as_str()) {
                 self.warn(&place, "is not declared in extensionsUsed");
             }
             match spec.extensions.iter().find(|(known, _)| known == name) {
@@ -132,7 +131,7 @@ impl Walk<'_> {
             }),
             Kind::Object(spec) => self.object(value, spec, place),
             Kind::List(spec) => self.items(value, &place, |value, place| self.object(value, spec, place)),
-            Kind::Attributes => self.attributes(value, place),
+            Kind::Accessors | Kind::Attributes => self.attributes(value, place),
             Kind::Targets => self.items(value, &place, |value, place| self.attributes(value, place)),
         }
     }

@@ -1,7 +1,8 @@
-//! What glTF 2.0 says about the properties of its objects: their types, ranges and references, as tables.
+//! What glTF 2.0 says about the properties of its objects: their types, ranges and references, as tables. They
+//! serve twice: to tell of flaws, and to mend a document so that it can be typed.
 
 /// What a property may be.
-pub(super) enum Kind {
+pub(crate) enum Kind {
     Flag,
     Text,
     /// In a closed range.
@@ -28,7 +29,9 @@ pub(super) enum Kind {
     Object(&'static Spec),
     /// Objects, at least one.
     List(&'static Spec),
-    /// Names of attributes and their accessors, at least one.
+    /// Accessors by name, at least one.
+    Accessors,
+    /// Accessors by the name of a vertex attribute, at least one.
     Attributes,
     /// Several of them.
     Targets,
@@ -37,7 +40,7 @@ pub(super) enum Kind {
 use Kind::*;
 
 /// The properties of an object.
-pub(super) struct Spec {
+pub(crate) struct Spec {
     pub required: &'static [(&'static str, Kind)],
     pub optional: &'static [(&'static str, Kind)],
     /// The extensions that may stand here, among those that are read.
@@ -46,20 +49,24 @@ pub(super) struct Spec {
     pub needs: &'static [(&'static str, &'static str)],
     /// Exactly one of these.
     pub one_of: &'static [&'static str],
+    /// Optional properties that the typed document cannot do without; they are empty if the file leaves them out.
+    pub filled: &'static [&'static str],
 }
 
-const NONE: Spec = Spec { required: &[], optional: &[], extensions: &[], needs: &[], one_of: &[] };
+const NONE: Spec =
+    Spec { required: &[], optional: &[], extensions: &[], needs: &[], one_of: &[], filled: &[] };
 
 const ANY: (f64, f64) = (f64::NEG_INFINITY, f64::INFINITY);
 const COUNT: Kind = Integer(1, u64::MAX);
 const OFFSET: Kind = Integer(0, u64::MAX);
+const SET: Kind = Integer(0, u32::MAX as u64);
 const UNIT: Kind = Number(0.0, 1.0);
 const COLOR: Kind = Numbers(3, 3, 0.0, 1.0);
 const fn numbers(least: usize, most: usize) -> Kind {
     Numbers(least, most, ANY.0, ANY.1)
 }
 
-pub(super) static ROOT: Spec = Spec {
+pub(crate) static ROOT: Spec = Spec {
     required: &[("asset", Object(&ASSET))],
     optional: &[
         ("extensionsUsed", Texts),
@@ -241,21 +248,21 @@ static SPECULAR: Spec = Spec {
 
 static TEXTURE_INFO: Spec = Spec {
     required: &[("index", Index("textures"))],
-    optional: &[("texCoord", OFFSET)],
+    optional: &[("texCoord", SET)],
     extensions: &[("KHR_texture_transform", &TEXTURE_TRANSFORM)],
     ..NONE
 };
 
 static NORMAL_TEXTURE: Spec = Spec {
     required: &[("index", Index("textures"))],
-    optional: &[("texCoord", OFFSET), ("scale", Number(ANY.0, ANY.1))],
+    optional: &[("texCoord", SET), ("scale", Number(ANY.0, ANY.1))],
     extensions: &[("KHR_texture_transform", &TEXTURE_TRANSFORM)],
     ..NONE
 };
 
 static OCCLUSION_TEXTURE: Spec = Spec {
     required: &[("index", Index("textures"))],
-    optional: &[("texCoord", OFFSET), ("strength", UNIT)],
+    optional: &[("texCoord", SET), ("strength", UNIT)],
     extensions: &[("KHR_texture_transform", &TEXTURE_TRANSFORM)],
     ..NONE
 };
@@ -265,7 +272,7 @@ static TEXTURE_TRANSFORM: Spec = Spec {
         ("offset", numbers(2, 2)),
         ("rotation", Number(ANY.0, ANY.1)),
         ("scale", numbers(2, 2)),
-        ("texCoord", OFFSET),
+        ("texCoord", SET),
     ],
     ..NONE
 };
@@ -284,6 +291,7 @@ static PRIMITIVE: Spec = Spec {
         ("mode", Code(&[0, 1, 2, 3, 4, 5, 6])),
         ("targets", Targets),
     ],
+    extensions: &[("KHR_draco_mesh_compression", &NONE)],
     ..NONE
 };
 
@@ -305,7 +313,7 @@ static NODE: Spec = Spec {
     ..NONE
 };
 
-static INSTANCING: Spec = Spec { required: &[("attributes", Attributes)], ..NONE };
+static INSTANCING: Spec = Spec { required: &[("attributes", Accessors)], ..NONE };
 
 static SAMPLER: Spec = Spec {
     optional: &[
@@ -318,7 +326,8 @@ static SAMPLER: Spec = Spec {
     ..NONE
 };
 
-static SCENE: Spec = Spec { optional: &[("name", Text), ("nodes", Indices("nodes"))], ..NONE };
+static SCENE: Spec =
+    Spec { optional: &[("name", Text), ("nodes", Indices("nodes"))], filled: &["nodes"], ..NONE };
 
 static SKIN: Spec = Spec {
     required: &[("joints", Indices("nodes"))],
@@ -345,6 +354,7 @@ static LIGHT: Spec = Spec {
         ("range", Above(0.0)),
         ("spot", Object(&SPOT)),
     ],
+    filled: &["spot"],
     ..NONE
 };
 
@@ -356,4 +366,4 @@ static SPOT: Spec = Spec {
     ..NONE
 };
 
-static NODE_LIGHT: Spec = Spec { required: &[("light", OFFSET)], ..NONE };
+static NODE_LIGHT: Spec = Spec { required: &[("light", Index("lights"))], ..NONE };
