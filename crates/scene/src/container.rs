@@ -1,5 +1,8 @@
 //! The outer shell of a file: JSON text and, in a .glb, the binary chunk behind it.
 //!
+//! The `gltf` crate's own splitter refuses files that are cut short, which open here as far as they go, and trusts
+//! the length in the header; so the chunks are taken apart here.
+//!
 //! Before the JSON is parsed its structure is counted, because a parsed document can take a hundred times
 //! the memory of its text.
 

@@ -55,7 +55,7 @@ impl<'a> Document<'a> {
             return Err(Fault::NotGltf("its JSON is not an object".into()));
         }
         check_version(&Object::new(&root, String::new())?)?;
-        let (typed, faults) = mending::typed(&root)?;
+        let (typed, faults) = mending::typed(&root, &budget)?;
         let buffers = (0..mending::len(&root, "buffers")).map(|_| OnceCell::new()).collect();
         let document =
             Self { root, typed, faults, chunk, folder, budget, warnings: RefCell::default(), buffers };
@@ -182,7 +182,7 @@ const MAX_WORK: u64 = 1 << 30;
 const MAX_CHECKS: u64 = 1 << 27;
 
 impl Budget {
-    fn new(options: &LoadOptions) -> Self {
+    pub fn new(options: &LoadOptions) -> Self {
         Self {
             memory: Cell::new(options.max_memory),
             triangles: Cell::new(options.max_triangles),

@@ -7,6 +7,7 @@
 //! [`Fault`] at its place: whoever needs that place asks [`Faults`] first, and nobody else is bothered.
 
 use crate::attribute_name::AttributeName;
+use crate::document::Budget;
 use crate::error::Fault;
 use crate::json_object::integer;
 use crate::schema::{Kind, ROOT, Spec};
@@ -69,10 +70,13 @@ impl Faults {
 }
 
 /// The typed document and what had to be left out of it. Every index in it exists, unless there is a fault at its
-/// place.
-pub(crate) fn typed(root: &Value) -> Result<(gltf::Document, Faults), Fault> {
-    let mut mending = Mending { root, faults: Faults::default() };
+/// place. What it takes beyond twice the size of the JSON comes from `budget`.
+pub(crate) fn typed(root: &Value, budget: &Budget) -> Result<(gltf::Document, Faults), Fault> {
+    let mut mending = Mending { root, budget, faults: Faults::default(), stop: None };
     let (mended, _) = mending.object(root, &ROOT, "");
+    if let Some(stop) = mending.stop {
+        return Err(stop);
+    }
     let root = serde_json::from_value(Value::Object(mended))
         .map_err(|error| Fault::NotGltf(format!("its JSON is invalid: {error}")))?;
     Ok((gltf::Document::from_json_without_validation(root), mending.faults))
@@ -89,7 +93,10 @@ pub(crate) fn len(root: &Value, collection: &str) -> usize {
 
 struct Mending<'a> {
     root: &'a Value,
+    budget: &'a Budget,
     faults: Faults,
+    /// The budget is used up.
+    stop: Option<Fault>,
 }
 
 /// What is wrong with a property; nothing if it is noted already, further inside.
@@ -102,9 +109,12 @@ fn wrong<T>(what: impl Into<String>) -> Result<T, Wrong> {
 impl Mending<'_> {
     /// An object, and whether it has all that it cannot do without.
     fn object(&mut self, value: &Value, spec: &Spec, place: &str) -> (Map<String, Value>, bool) {
+        /// What stands in for an object takes more than the number or text that the file has in its place.
+        const STAND_IN: u64 = 3000;
         let none = Map::new();
         let map = value.as_object().unwrap_or_else(|| {
             self.faults.note(place, "is not an object".into());
+            self.stop = self.stop.take().or(self.budget.memory(STAND_IN, "what is wrong with it").err());
             &none
         });
         let (mut mended, mut whole) = (Map::new(), true);
@@ -175,7 +185,7 @@ impl Mending<'_> {
             },
             Kind::Word(words) => match value.as_str() {
                 Some(word) if words.contains(&word) => Ok(value.clone()),
-                Some(word) => wrong(format!("{word:?} is unknown")),
+                Some(word) => wrong(format!("{:?} is unknown", word.chars().take(40).collect::<String>())),
                 None => wrong("is not a text"),
             },
             Kind::Numbers(least, most, ..) => match value.as_array() {
@@ -238,7 +248,11 @@ impl Mending<'_> {
     ) -> Result<Value, Wrong> {
         let Some(list) = value.as_array() else { return wrong("is not an array") };
         let items = list.iter().enumerate();
-        Ok(items.filter_map(|(i, value)| item(self, value, &format!("{place}/{i}"))).collect())
+        let mended = items.filter_map(|(i, value)| match self.stop {
+            None => item(self, value, &format!("{place}/{i}")),
+            Some(_) => None,
+        });
+        Ok(mended.collect())
     }
 
     /// Accessors by name, as far as the name is known.
@@ -282,6 +296,18 @@ fn stand_in(kind: &Kind) -> Value {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::LoadOptions;
+
+    fn typed(root: &Value) -> Result<(gltf::Document, Faults), Fault> {
+        super::typed(root, &Budget::new(&LoadOptions { max_memory: 1 << 20, ..LoadOptions::default() }))
+    }
+
+    #[test]
+    fn stand_ins_are_paid_for() {
+        let nodes = |count| json!({"asset": {"version": "2.0"}, "nodes": vec![0; count]});
+        assert_eq!(typed(&nodes(300)).unwrap().0.nodes().count(), 300);
+        assert!(typed(&nodes(400)).is_err_and(|fault| fault.to_string().contains("raise the limit")));
+    }
 
     #[test]
     fn whole_numbers_may_be_floats() {
