@@ -1,6 +1,6 @@
 //! The help windows: every shortcut by the command table, and what this program is.
 
-use egui::{Context, Grid, RichText, ScrollArea, Window};
+use egui::{Align2, Context, Grid, RichText, ScrollArea, Window};
 use session::{COMMANDS, Menu};
 
 /// Pointer gestures, which no command table knows.
@@ -29,7 +29,9 @@ impl Help {
     /// Draws the open ones.
     pub fn show(&mut self, context: &Context, adapter: &str) {
         let shortcuts =
-            Window::new("Keyboard and mouse").open(&mut self.shortcuts).default_size([560.0, 460.0]);
+            Window::new("Keyboard and mouse").open(&mut self.shortcuts).default_size([660.0, 480.0]);
+        let middle = context.content_rect().center();
+        let shortcuts = shortcuts.pivot(Align2::CENTER_CENTER).default_pos(middle);
         shortcuts.collapsible(false).show(context, |ui| {
             ScrollArea::vertical().auto_shrink([false; 2]).show(ui, |ui| {
                 table(ui, "Mouse and pen", GESTURES.iter().map(|(key, what)| (key.to_string(), *what)));
@@ -41,6 +43,7 @@ impl Help {
             });
         });
         let about = Window::new("About Focus Brush").open(&mut self.about).default_width(400.0);
+        let about = about.pivot(Align2::CENTER_CENTER).default_pos(middle);
         about.collapsible(false).resizable(false).show(context, |ui| {
             ui.label(RichText::new(concat!("Focus Brush ", env!("CARGO_PKG_VERSION"))).strong());
             ui.label("Paint onto a 3D scene how it is focused, and see the picture that rays through a wide aperture form.");
@@ -57,7 +60,7 @@ fn table(ui: &mut egui::Ui, title: &str, rows: impl Iterator<Item = (String, &'s
         return;
     }
     ui.label(RichText::new(title).strong());
-    Grid::new(title).num_columns(2).min_col_width(150.0).show(ui, |ui| {
+    Grid::new(title).num_columns(2).min_col_width(280.0).show(ui, |ui| {
         for (key, what) in rows {
             ui.monospace(key);
             ui.label(what);

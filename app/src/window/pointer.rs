@@ -3,7 +3,7 @@
 use super::brush_ring::BrushRing;
 use super::{Action, Tool};
 use egui::{Event, PointerButton, Pos2, Response, Ui};
-use session::{Command, FillRegion, Session, StrokePoint};
+use session::{Command, FillRegion, Session, StrokePoint, StrokeTarget};
 use trace::Ray;
 
 /// What the user holds.
@@ -45,6 +45,8 @@ impl StrokeInput {
             input.events.iter().find_map(press)
         });
         let down = ui.input(|input| input.pointer.primary_down());
+        let pressure = ui.input(|input| pen_pressure(&input.events));
+        let point = |ray| StrokePoint { at: StrokeTarget::Ray(ray), pressure };
         if self.painting && !session.is_painting() {
             // Taken back meanwhile, by Esc or undo: the rest of the drag paints nothing.
             self.painting = false;
@@ -59,7 +61,7 @@ impl StrokeInput {
                 if mode != document.brush.mode {
                     actions.push(Command::SetBrush(focus::Brush { mode, ..document.brush.clone() }).into());
                 }
-                actions.push(Command::BeginStroke(StrokePoint::ray(ray)).into());
+                actions.push(Command::BeginStroke(point(ray)).into());
                 self.painting = true;
                 self.last = Some(position);
             } else {
@@ -82,7 +84,7 @@ impl StrokeInput {
             if Some(position) != self.last
                 && let Some(ray) = ray(position)
             {
-                actions.push(Command::ExtendStroke(StrokePoint::ray(ray)).into());
+                actions.push(Command::ExtendStroke(point(ray)).into());
                 self.last = Some(position);
             }
         }
@@ -92,6 +94,15 @@ impl StrokeInput {
         }
         actions
     }
+}
+
+/// The pressure of a pen or finger where the system tells it; a mouse presses fully.
+fn pen_pressure(events: &[Event]) -> f32 {
+    let force = |event: &Event| match event {
+        Event::Touch { force, .. } => *force,
+        _ => None,
+    };
+    events.iter().rev().find_map(force).map_or(1.0, |force| force.clamp(0.0, 1.0))
 }
 
 /// What a tool that does not paint does where it is clicked.

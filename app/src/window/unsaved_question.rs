@@ -31,12 +31,14 @@ pub enum Answer {
 #[derive(Default)]
 pub struct UnsavedQuestion {
     next: Option<Next>,
+    /// Whether the keyboard is on Save already.
+    focused: bool,
 }
 
 impl UnsavedQuestion {
     /// Asks before `next`.
     pub fn ask(&mut self, next: Next) {
-        self.next = Some(next);
+        *self = Self { next: Some(next), focused: false };
     }
 
     /// Whether it is open.
@@ -57,6 +59,9 @@ impl UnsavedQuestion {
             ui.add_space(10.0);
             ui.horizontal(|ui| {
                 let save = ui.button("Save").on_hover_text("Save, then go on.");
+                if !std::mem::replace(&mut self.focused, true) {
+                    save.request_focus();
+                }
                 if save.clicked() {
                     answer = Some(Answer::Save(next.clone()));
                 }

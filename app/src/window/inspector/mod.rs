@@ -27,6 +27,8 @@ impl Inspector {
         hover: Option<SurfaceHit>,
         actions: &mut Vec<Action>,
     ) {
+        // Narrow enough for label, slider and number at the inspector's least width.
+        ui.spacing_mut().slider_width = 110.0;
         ScrollArea::vertical().auto_shrink([false; 2]).show(ui, |ui| {
             let Some(document) = session.document() else {
                 ui.add_space(8.0);
@@ -57,7 +59,7 @@ fn history(ui: &mut Ui, document: &Document, actions: &mut Vec<Action>) {
     if names.is_empty() {
         ui.weak("Nothing to take back.");
     }
-    ScrollArea::vertical().id_salt("history").max_height(160.0).show(ui, |ui| {
+    ScrollArea::vertical().id_salt("history").max_height(160.0).min_scrolled_height(120.0).show(ui, |ui| {
         for (back, name) in names.iter().rev().enumerate() {
             let text = format!("{}  {name}", names.len() - back);
             let tip = if back == 0 {

@@ -41,7 +41,7 @@ impl ScenePanel {
         let filter = self.filter.to_lowercase();
         let rows: Vec<_> = rows.into_iter().filter(|row| row.name.to_lowercase().contains(&filter)).collect();
         let height = ui.text_style_height(&egui::TextStyle::Button) + 6.0;
-        ScrollArea::vertical().id_salt("scene list").max_height(180.0).show_rows(
+        ScrollArea::vertical().id_salt("scene list").max_height(180.0).min_scrolled_height(150.0).show_rows(
             ui,
             height,
             rows.len(),
