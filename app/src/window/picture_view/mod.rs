@@ -241,7 +241,10 @@ impl PictureView {
         let text = match session.preview_activity() {
             PreviewActivity::Baking if pinhole => "rebuilding the light field, shown without blur meanwhile",
             PreviewActivity::Baking => "rebuilding the light field",
-            _ if pinhole => "shown without blur: the light field was not built (F5 builds it)",
+            PreviewActivity::Splatting if pinhole => "drawing the picture, shown without blur meanwhile",
+            PreviewActivity::Idle if pinhole => {
+                "shown without blur: the light field was not built (F5 builds it)"
+            }
             _ => return,
         };
         let at = self.rect.left_bottom() + vec2(8.0, -6.0);
