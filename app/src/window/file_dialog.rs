@@ -40,7 +40,7 @@ impl Purpose {
             Self::ExportPicture => "Export the picture",
             Self::ExportFocusMap => "Export the focus map",
             Self::ExportScene => "Export the unwrapped scene",
-            Self::ImportFocusMap => "Import a focus map",
+            Self::ImportFocusMap => "Import a focus map or a recipe",
             Self::ApertureMask => "Choose an aperture mask",
         }
     }
@@ -49,7 +49,8 @@ impl Purpose {
         match self {
             Self::Open => &["glb", "gltf", "fbrush"],
             Self::SaveAs => &["fbrush"],
-            Self::ExportPicture | Self::ExportFocusMap | Self::ImportFocusMap => &["exr", "png"],
+            Self::ExportPicture | Self::ExportFocusMap => &["exr", "png"],
+            Self::ImportFocusMap => &["exr", "png", "json"],
             Self::ExportScene => &["glb"],
             Self::ApertureMask => &["png", "jpg", "jpeg", "exr"],
         }

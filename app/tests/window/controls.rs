@@ -1,6 +1,6 @@
 //! Every control has a name and a tooltip's worth of help; the lens follows its controls.
 
-use crate::acting::Person;
+use crate::acting::{Person, at};
 use crate::small_scene;
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable;
@@ -56,4 +56,22 @@ fn keys_that_are_typed_into_a_field_are_no_shortcuts() {
     person.presses(Modifiers::NONE, Key::G);
     person.presses(Modifiers::NONE, Key::Escape);
     assert_eq!(person.shell().tool(), tool);
+}
+
+#[test]
+fn the_blur_slider_follows_mouse_and_keys_and_snaps_at_sharp() {
+    let (mut person, _folder) = opened();
+    let track =
+        person.window.get_all_by_label("Blur").find(|node| node.rect().width() > 100.0).unwrap().rect();
+    assert_eq!(person.document().brush.target.t, 1.0);
+    person.clicks(at(track, 0.8, 0.5));
+    let far = person.document().brush.target.t;
+    assert!(far > 1.0);
+    person.presses(Modifiers::NONE, Key::ArrowLeft);
+    let less = person.document().brush.target.t;
+    assert!(less > 1.0 && less < far, "an arrow moves it a little: {far} to {less}");
+    person.clicks(at(track, 0.49, 0.5));
+    assert_eq!(person.document().brush.target.t, 1.0, "near the middle it is sharp");
+    person.clicks(at(track, 0.2, 0.5));
+    assert!(person.document().brush.target.t < 1.0, "near on the left");
 }
