@@ -1,8 +1,8 @@
 //! The command line: a thin layer over the `session` crate.
 //!
-//! * [`arguments`]: what can be typed. One file a subcommand does it: [`info`], [`unwrap`], [`bake`], [`render`],
-//!   [`compare`], [`export`], [`doctor`].
-//! * [`console`]: progress on stderr, results on stdout. [`failure`]: errors and exit codes.
+//! * `arguments`: what can be typed. One file a subcommand does it: `info`, `unwrap`, `bake`, `render`,
+//!   `compare`, `export`, `doctor`.
+//! * `console`: progress on stderr, results on stdout. `failure`: errors and exit codes.
 
 mod arguments;
 mod bake;
