@@ -149,7 +149,13 @@ impl Input {
     pub fn camera(&self, choice: Option<&CameraChoice>) -> Result<Camera, SessionError> {
         match choice {
             None => Ok(self.camera.clone()),
-            Some(CameraChoice::File(file)) => Ok(read_camera(file, &self.camera)?),
+            Some(CameraChoice::File(file)) => {
+                // A framing that was made up for a scene without a camera is nothing that a camera file counts on.
+                let is_invented =
+                    self.project.is_none() && self.salf.is_none() && self.scene.camera_is_invented;
+                let defaults = if is_invented { &Camera::default() } else { &self.camera };
+                Ok(read_camera(file, defaults)?)
+            }
             Some(CameraChoice::Named(name)) => {
                 let saved = self.project.iter().flat_map(|project| &project.cameras);
                 let mut saved = saved.filter(|named| named.name == *name).map(|named| named.camera.clone());
