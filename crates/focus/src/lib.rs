@@ -6,18 +6,18 @@
 //! * [`Canvas`]: the surface behind the map's texels, found by world position.
 //! * [`Brush`] and [`Stroke`]: painting with spheres along a path on the surface, as one transaction.
 //! * [`fill`]: the same value over a node, part, material or chart.
-//! * [`History`]: undo and redo under a byte budget.
+//! * [`Edit`]: what undo takes back and redo makes again.
 
 mod bake;
 mod brush;
 mod canvas;
 mod changed;
 mod dab;
+mod edit;
 mod error;
 mod fill;
 mod focus_image;
 mod focus_map;
-mod history;
 mod recipe;
 mod smooth;
 mod source;
@@ -27,11 +27,11 @@ mod texel_tree;
 pub use brush::{Brush, BrushMode, Channels, PenSample};
 pub use canvas::{Canvas, CanvasTexel};
 pub use changed::Changed;
+pub use edit::Edit;
 pub use error::FocusError;
 pub use fill::{FillTarget, fill};
 pub use focus_image::FocusImage;
 pub use focus_map::{FocusMap, TILE_SIDE};
-pub use history::{Applied, Edit, History};
 pub use recipe::{FocusRecipe, RecipeEntry};
 pub use source::{Focus, FocusSource};
 pub use stroke::{Stroke, SurfaceHit};

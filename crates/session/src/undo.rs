@@ -77,7 +77,12 @@ impl Undo {
     fn push(&mut self, step: Step) {
         self.undone.clear();
         self.done.push_back(step);
-        while self.bytes() > BUDGET_BYTES && self.done.len() > 1 {
+        self.forget_beyond(BUDGET_BYTES);
+    }
+
+    /// Forgets the oldest steps beyond a budget; the latest is kept.
+    fn forget_beyond(&mut self, budget_bytes: usize) {
+        while self.bytes() > budget_bytes && self.done.len() > 1 {
             self.done.pop_front();
         }
     }
@@ -160,6 +165,23 @@ mod tests {
         assert_eq!(undo.undo(&mut map, &mut camera), None);
         undo.redo(&mut map, &mut camera);
         assert_eq!(camera.focus_distance, 8.0);
+    }
+
+    #[test]
+    fn the_oldest_steps_are_forgotten_first() {
+        let mut undo = Undo::default();
+        for k in 0..10 {
+            undo.push_camera("Focus distance", focused(3.0 + k as f64), focused(4.0 + k as f64));
+            undo.finish_run();
+        }
+        let (ten, budget) = (undo.bytes(), undo.bytes() / 2);
+        undo.forget_beyond(budget);
+        assert!(undo.bytes() <= budget && undo.bytes() > ten / 3);
+        let (mut map, mut camera) = (FocusMap::new(4, 4, FocusOffset::STANDARD), focused(13.0));
+        undo.undo(&mut map, &mut camera);
+        assert_eq!(camera.focus_distance, 12.0);
+        undo.forget_beyond(0);
+        assert_eq!(undo.names().count(), 1, "the latest is kept");
     }
 
     #[test]

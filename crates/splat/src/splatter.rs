@@ -43,6 +43,8 @@ pub struct Splatter {
     sharing: Vec<[i64; 4]>,
     /// By what the sharing sum is multiplied, a pixel.
     shares: Vec<f32>,
+    /// The largest radiance of any sample, at least 1.
+    brightest: f64,
     picture: Picture,
 }
 
@@ -51,7 +53,9 @@ impl Splatter {
     pub fn new(salf: Arc<Salf>) -> Self {
         let camera = &salf.camera;
         let pixels = camera.width as usize * camera.height as usize;
+        let radiances = salf.samples.par_iter().map(|sample| sample.radiance.max_element());
         Self {
+            brightest: radiances.reduce(|| 1.0, f32::max) as f64,
             lens: SplatLens::new(&camera.aperture, camera.optics(), camera.aperture_radius),
             placed: Vec::new(),
             free: vec![[0; 4]; pixels],
@@ -144,7 +148,7 @@ impl Splatter {
     fn resolve(&mut self, rows: Range<u32>) -> Result<(), SplatError> {
         let width = self.salf.camera.width as usize;
         let range = rows.start as usize * width..rows.end as usize * width;
-        let brightest = self.brightest().max(1.0);
+        let brightest = self.brightest;
         let sums =
             self.free[range.clone()].par_chunks(width).zip(self.sharing[range.clone()].par_chunks(width));
         let shares = self.shares[range.clone()].par_chunks(width);
@@ -164,12 +168,6 @@ impl Splatter {
             }
             Ok(())
         })
-    }
-
-    /// The largest radiance of any sample.
-    fn brightest(&self) -> f64 {
-        let radiances = self.salf.samples.par_iter().map(|sample| sample.radiance.max_element());
-        radiances.reduce(|| 0.0, f32::max) as f64
     }
 
     /// Whether every sample is dim enough for the integers.
