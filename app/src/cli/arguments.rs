@@ -125,8 +125,9 @@ pub struct RenderArguments {
     /// Where the splat runs; there is no GPU backend yet, so auto is cpu
     #[arg(long, value_enum, default_value_t = BackendName::Auto)]
     pub backend: BackendName,
-    /// The error in pixels that the splat may make for speed; it is exact so far, whatever this allows
-    #[arg(long, value_name = "PX", default_value_t = 0.5, value_parser = not_negative)]
+    /// How coarse, in pixels, the splat may know what partly hidden points see of the aperture: smaller is more exact
+    /// and slower to bake
+    #[arg(long, value_name = "PX", default_value_t = 2.0, value_parser = not_negative)]
     pub tolerance: f64,
     /// Rays a pixel of the ground truth
     #[arg(long, value_name = "N", default_value_t = 64, value_parser = clap::value_parser!(u32).range(1..=1 << 20))]

@@ -35,6 +35,7 @@ pub fn run(arguments: &RenderArguments, console: &Console) -> Result<(), Failure
     let open_seconds = start.elapsed().as_secs_f64();
 
     let options = RenderOptions {
+        tolerance_px: arguments.tolerance,
         renderer,
         samples_per_pixel: arguments.spp,
         seed: arguments.seed,

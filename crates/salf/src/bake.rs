@@ -22,17 +22,29 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use trace::{Radiance, Tracer};
 
 /// How the light field is sampled.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 pub struct BakeOptions {
     /// How far outside the frame to sample at least, px: the radius of the largest circle of confusion that paint
     /// may give. What the standard picture needs is always sampled.
     pub margin_px: f64,
+    /// How large a cell of a partly visible aperture may be on the picture, px, where 16 cells a side allow it: up to
+    /// eight times this circle of confusion, samples have 8 cells a side. Smaller is more exact and slower.
+    pub tolerance_px: f64,
+}
+
+impl Default for BakeOptions {
+    fn default() -> Self {
+        Self { margin_px: 0.0, tolerance_px: Self::TOLERANCE_PX }
+    }
 }
 
 impl BakeOptions {
+    /// The tolerance unless another one is asked for, px.
+    pub const TOLERANCE_PX: f64 = 2.0;
+
     /// Sampled as far outside the frame as `focus` needs.
     pub fn for_focus(tracer: &Tracer, camera: &Camera, focus: &dyn SurfaceField<FocusOffset>) -> Self {
-        Self { margin_px: painted_margin_px(tracer, &View::new(camera), focus) }
+        Self { margin_px: painted_margin_px(tracer, &View::new(camera), focus), ..Self::default() }
     }
 }
 
@@ -60,7 +72,8 @@ pub fn bake(
     options: &BakeOptions,
     progress: &dyn Progress,
 ) -> Result<Salf, Cancelled> {
-    let view = View::new(camera);
+    let mut view = View::new(camera);
+    view.tolerance_px = options.tolerance_px;
     let margin = standard_margin_px(tracer.scene(), &view).max(options.margin_px);
     let domain = Domain::new(camera.width, camera.height, margin);
     let placement = Placement::new(tracer.scene(), &view);

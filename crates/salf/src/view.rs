@@ -1,5 +1,6 @@
 //! The baked camera, ready for rays: pixels to chief rays, aperture points to the world.
 
+use crate::bake::BakeOptions;
 use glam::{DVec2, DVec3};
 use lens::{Camera, Optics};
 use scene::Scene;
@@ -15,6 +16,8 @@ pub struct View<'a> {
     up: DVec3,
     /// Splat radius in px for κ = 1: half the side of the aperture square as a point sees it.
     pub radius_per_kappa_px: f64,
+    /// How large a cell of a partly visible aperture may be on the picture, px.
+    pub tolerance_px: f64,
 }
 
 impl<'a> View<'a> {
@@ -27,6 +30,7 @@ impl<'a> View<'a> {
             right: camera.world_direction(DVec3::X),
             up: camera.world_direction(DVec3::Y),
             radius_per_kappa_px: optics.splat_radius_px(1.0),
+            tolerance_px: BakeOptions::TOLERANCE_PX,
         }
     }
 

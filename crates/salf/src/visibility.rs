@@ -7,13 +7,10 @@ use crate::view::View;
 use glam::DVec2;
 use trace::{Ray, Tracer};
 
-/// Circle of confusion, px, up to which 8 × 8 cells are fine enough: a cell is then at most two pixels.
-const COARSE_UP_TO_PX: f64 = 16.0;
-
 /// Cells a side for a point of inverse depth `inverse_depth`.
 pub fn cells_a_side(view: &View, inverse_depth: f64) -> usize {
     let kappa = view.optics.standard_kappa(inverse_depth);
-    if view.optics.circle_of_confusion_px(kappa) <= COARSE_UP_TO_PX { 8 } else { 16 }
+    if view.optics.circle_of_confusion_px(kappa) <= 8.0 * view.tolerance_px { 8 } else { 16 }
 }
 
 /// The cells of the aperture that a patch sees: one jittered ray each, from a random member. `None` if it sees none.

@@ -89,7 +89,8 @@ impl LightField {
         progress: &dyn Progress,
     ) -> Result<Self, SessionError> {
         let needed = BakeOptions::for_focus(&stage.tracer, camera, focus).margin_px;
-        let options = BakeOptions { margin_px: needed + MARGIN_HEADROOM * camera.height as f64 };
+        let margin_px = needed + MARGIN_HEADROOM * camera.height as f64;
+        let options = BakeOptions { margin_px, ..BakeOptions::default() };
         let radiance = light(&stage.tracer, camera);
         let salf = Arc::new(salf::bake(&stage.tracer, &radiance, camera, &options, progress)?);
         Ok(Self {

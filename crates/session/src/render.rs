@@ -10,7 +10,7 @@ use lens::{Camera, Picture};
 use project::Layer;
 use salf::{BakeOptions, Salf, SalfStatistics};
 use serde::Serialize;
-use slf::DirectLight;
+use slf::{DirectLight, DirectLightOptions};
 use splat::Splatter;
 use std::sync::Arc;
 use std::time::Instant;
@@ -38,13 +38,21 @@ pub struct RenderOptions {
     pub samples_per_pixel: u32,
     /// Seed of the ray tracer's scramble.
     pub seed: u32,
+    /// How coarse the light field may be, px (see [`BakeOptions::tolerance_px`]).
+    pub tolerance_px: f64,
     /// The pictures that come along.
     pub aovs: Vec<Aov>,
 }
 
 impl Default for RenderOptions {
     fn default() -> Self {
-        Self { renderer: Renderer::Splat, samples_per_pixel: 64, seed: 0, aovs: Vec::new() }
+        Self {
+            renderer: Renderer::Splat,
+            samples_per_pixel: 64,
+            seed: 0,
+            tolerance_px: BakeOptions::TOLERANCE_PX,
+            aovs: Vec::new(),
+        }
     }
 }
 
@@ -96,14 +104,21 @@ pub(crate) fn light(tracer: &Arc<Tracer>, camera: &Camera) -> DirectLight {
     DirectLight::new(tracer.clone(), DVec3::from_array(camera.background).as_vec3())
 }
 
-/// Bakes the light field that `camera` needs to show `focus`.
+/// Light for the ground truth, which shades many points a pixel: a few shadow rays each are enough.
+fn light_for_many_points(tracer: &Arc<Tracer>, camera: &Camera) -> DirectLight {
+    let background = DVec3::from_array(camera.background).as_vec3();
+    DirectLight::with_options(tracer.clone(), background, DirectLightOptions { emitter_samples: 2 })
+}
+
+/// Bakes the light field that `camera` needs to show `focus`, as coarse as `tolerance_px` allows.
 pub fn bake(
     tracer: &Arc<Tracer>,
     camera: &Camera,
     focus: &Focus,
+    tolerance_px: f64,
     steps: &dyn Steps,
 ) -> Result<Salf, SessionError> {
-    let options = BakeOptions::for_focus(tracer, camera, focus);
+    let options = BakeOptions { tolerance_px, ..BakeOptions::for_focus(tracer, camera, focus) };
     Ok(salf::bake(tracer, &light(tracer, camera), camera, &options, &*steps.begin("baking"))?)
 }
 
@@ -119,7 +134,7 @@ pub fn render(
     let mut cost = RenderCost::default();
     let picture = match options.renderer {
         Renderer::Splat => {
-            let salf = bake(tracer, camera, focus, steps)?;
+            let salf = bake(tracer, camera, focus, options.tolerance_px, steps)?;
             let bake_seconds = start.elapsed().as_secs_f64();
             let mut rendered = splat(Arc::new(salf), tracer, camera, focus, options, steps)?;
             rendered.cost.bake_seconds = bake_seconds;
@@ -129,7 +144,14 @@ pub fn render(
             let samples_per_pixel = options.samples_per_pixel;
             let truth = TruthOptions { samples_per_pixel, seed: options.seed };
             let progress = steps.begin("tracing");
-            trace::truth::render(tracer, &light(tracer, camera), focus, camera, &truth, &*progress)?
+            trace::truth::render(
+                tracer,
+                &light_for_many_points(tracer, camera),
+                focus,
+                camera,
+                &truth,
+                &*progress,
+            )?
         }
         Renderer::Blur => {
             let hits = first_hits(tracer, camera, focus, steps)?;
