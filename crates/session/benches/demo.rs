@@ -1,7 +1,7 @@
 //! Times the road from scene to picture on the demo: `cargo bench -p session --bench demo [-- WIDTH HEIGHT]`.
 //!
-//! Prints medians beside F, the time to copy one RGB float frame with all cores in the same run, and checks on the way
-//! that a dab equals a render from scratch, and one thread the picture of many, bit for bit.
+//! Prints times (of the dab and of F: medians) beside F, the time to copy one RGB float frame with all cores in the same
+//! run, and checks on the way that a dab equals a render from scratch, and one thread the picture of many, bit for bit.
 
 use lens::{Camera, FocusOffset, Picture};
 use progress::Unwatched;
@@ -78,8 +78,8 @@ fn main() {
         start.elapsed().as_secs_f64()
     };
     let standard = focus::FocusRecipe::default().evaluate(&scene).expect("empty recipes fit");
-    report("full splat, unpainted", median((0..3).map(|_| render(&standard))));
-    report("full splat, painted", median((0..3).map(|_| render(&focus))));
+    report("full splat, unpainted", render(&standard));
+    report("full splat, painted", render(&focus));
     let painted = splatter.picture().clone();
 
     let dab = dab_samples(&splatter, width as f32, height as f32);
