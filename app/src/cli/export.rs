@@ -65,7 +65,7 @@ fn focus_map(input: &Input, path: &Path, console: &Console) -> Result<(), Failur
 fn glb(input: &Input, path: &Path, console: &Console) -> Result<(), Failure> {
     check_folder(path)?;
     let atlas = input.atlas(&unwrap_options(None), console)?;
-    Ok(write_unwrapped(path, &input.scene, &atlas)?)
+    Ok(write_unwrapped(path, &input.scene, &atlas, console)?)
 }
 
 fn layers(input: &Input, path: &Path, console: &Console) -> Result<(), Failure> {

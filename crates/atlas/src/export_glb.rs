@@ -7,6 +7,7 @@
 use crate::glb_materials;
 use crate::{Atlas, AtlasError};
 use glam::{DVec3, Vec2, Vec3, Vec4};
+use progress::{Progress, Stage};
 use scene::{LightKind, Scene};
 use serde_json::{Map, Value, json};
 use std::collections::{BTreeSet, HashMap};
@@ -19,12 +20,21 @@ const ELEMENT_ARRAY_BUFFER: u32 = 34963;
 const FLOAT: u32 = 5126;
 const UNSIGNED_INT: u32 = 5125;
 
+/// The share of the work that meshes are; textures, which are packed as PNG, take the rest.
+const MESHES_SHARE: f32 = 0.3;
+
 /// Writes the scene with its atlas to a file, replacing it only when the new one is complete.
 ///
 /// # Errors
-/// The file cannot be written, or is too large for a GLB.
-pub fn write_glb(scene: &Scene, atlas: &Atlas, path: &Path) -> Result<(), AtlasError> {
-    let bytes = glb_bytes(scene, atlas)?;
+/// The file cannot be written, is too large for a GLB, or the work was cancelled; the old file then stays.
+pub fn write_glb(
+    scene: &Scene,
+    atlas: &Atlas,
+    path: &Path,
+    progress: &dyn Progress,
+) -> Result<(), AtlasError> {
+    let bytes = glb_bytes(scene, atlas, progress)?;
+    progress.check()?;
     let write = || {
         let mut file = atomic_write_file::AtomicWriteFile::open(path)?;
         file.write_all(&bytes)?;
@@ -36,11 +46,11 @@ pub fn write_glb(scene: &Scene, atlas: &Atlas, path: &Path) -> Result<(), AtlasE
 /// The bytes of [`write_glb`]. The atlas must be of this scene.
 ///
 /// # Errors
-/// A texture cannot be encoded, or all is too large for a GLB.
-pub fn glb_bytes(scene: &Scene, atlas: &Atlas) -> Result<Vec<u8>, AtlasError> {
+/// A texture cannot be encoded, all is too large for a GLB, or the work was cancelled.
+pub fn glb_bytes(scene: &Scene, atlas: &Atlas, progress: &dyn Progress) -> Result<Vec<u8>, AtlasError> {
     let mut glb = Glb::default();
-    write_meshes(&mut glb, scene, atlas);
-    glb_materials::write(&mut glb, scene)?;
+    write_meshes(&mut glb, scene, atlas, &Stage::new(progress, 0.0, MESHES_SHARE))?;
+    glb_materials::write(&mut glb, scene, &Stage::new(progress, MESHES_SHARE, 1.0))?;
     write_cameras(&mut glb, scene);
     write_lights(&mut glb, scene);
     glb.finish()
@@ -139,9 +149,16 @@ impl Glb {
     }
 }
 
-fn write_meshes(glb: &mut Glb, scene: &Scene, atlas: &Atlas) {
+fn write_meshes(
+    glb: &mut Glb,
+    scene: &Scene,
+    atlas: &Atlas,
+    progress: &dyn Progress,
+) -> Result<(), AtlasError> {
     let mut primitives: Vec<Vec<Value>> = vec![Vec::new(); scene.nodes.len()];
-    for part in &scene.parts {
+    for (index, part) in scene.parts.iter().enumerate() {
+        progress.check()?;
+        progress.report(index as f32 / scene.parts.len() as f32);
         let vertices = SplitVertices::new(scene, atlas, part.triangles.clone());
         if !vertices.indices.is_empty() {
             primitives[part.node as usize].push(primitive(glb, scene, part, &vertices));
@@ -155,6 +172,7 @@ fn write_meshes(glb: &mut Glb, scene: &Scene, atlas: &Atlas) {
         }
     }
     glb.set("meshes", meshes);
+    Ok(())
 }
 
 /// The vertices of a part, one for each pair of scene vertex and place in the atlas.

@@ -2,6 +2,7 @@
 
 use crate::AtlasError;
 use crate::export_glb::Glb;
+use progress::Progress;
 use scene::{AlphaMode, Image, ImageLevel, Material, Scene, TextureRef, Wrap};
 use serde_json::{Map, Value, json};
 use std::collections::{BTreeMap, BTreeSet};
@@ -10,12 +11,14 @@ use std::collections::{BTreeMap, BTreeSet};
 pub(crate) const SECOND_SET: u32 = 2;
 
 /// Adds `materials`, `textures`, `samplers` and `images`.
-pub(crate) fn write(glb: &mut Glb, scene: &Scene) -> Result<(), AtlasError> {
+pub(crate) fn write(glb: &mut Glb, scene: &Scene, progress: &dyn Progress) -> Result<(), AtlasError> {
     let mut textures = Textures::default();
     let materials: Vec<Value> = scene.materials.iter().map(|m| material(glb, m, &mut textures)).collect();
     let mut images: BTreeMap<u32, usize> = BTreeMap::new();
     let mut image_values = Vec::new();
-    for &(image, ..) in &textures.list {
+    for (done, &(image, ..)) in textures.list.iter().enumerate() {
+        progress.check()?;
+        progress.report(done as f32 / textures.list.len() as f32);
         if let Some(picture) = scene.images.get(image as usize).filter(|_| !images.contains_key(&image)) {
             let view = glb.add_view(&png_of(picture)?, None);
             images.insert(image, image_values.len());

@@ -48,7 +48,7 @@ fn what_is_written_reads_back() {
     let atlas = unwrap(&scene, &UnwrapOptions::default());
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("out.glb");
-    write_glb(&scene, &atlas, &path).unwrap();
+    write_glb(&scene, &atlas, &path, &Unwatched).unwrap();
     let again = scene::load(&path, &LoadOptions::default(), &Unwatched).unwrap();
     assert_eq!(again.warnings, Vec::<String>::new());
     assert_eq!(again.triangles.len(), scene.triangles.len());
@@ -79,6 +79,6 @@ fn what_is_written_reads_back() {
 fn a_folder_that_is_not_there_is_named() {
     let scene = rich_scene();
     let atlas = unwrap(&scene, &UnwrapOptions::default());
-    let error = write_glb(&scene, &atlas, "/nowhere/at/all/out.glb".as_ref()).unwrap_err();
+    let error = write_glb(&scene, &atlas, "/nowhere/at/all/out.glb".as_ref(), &Unwatched).unwrap_err();
     assert!(error.to_string().starts_with("/nowhere/at/all/out.glb: "), "{error}");
 }
