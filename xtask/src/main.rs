@@ -16,6 +16,7 @@ mod demo;
 mod licences;
 mod packages;
 mod run;
+mod shared_build;
 
 use chore::Failure;
 

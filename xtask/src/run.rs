@@ -15,19 +15,11 @@ pub fn run(arguments: &[OsString]) -> Result<(), Failure> {
         return focus_brush(arguments);
     }
     if arguments.is_empty() {
-        let demo = repository().join("assets/demo");
-        let options = [
-            demo.join("demo.glb").into_os_string(),
-            "--camera".into(),
-            demo.join("demo.camera.json").into_os_string(),
-            "--focus".into(),
-            demo.join("demo.focus.json").into_os_string(),
-        ];
-        return render("demo", &options);
+        return render("demo", &repository().join("assets/demo/demo.fbrush"));
     }
     for file in arguments {
         let stem = Path::new(file).file_stem().unwrap_or(file).to_string_lossy();
-        render(&stem, std::slice::from_ref(file))?;
+        render(&stem, Path::new(file))?;
     }
     Ok(())
 }
@@ -47,20 +39,19 @@ pub fn window(arguments: &[OsString]) -> Result<(), Failure> {
     execute(Command::new("bash").arg(script).args(arguments).env("FOCUS_BRUSH", program))
 }
 
-fn render(stem: &str, options: &[OsString]) -> Result<(), Failure> {
+fn render(stem: &str, file: &Path) -> Result<(), Failure> {
     let folder = repository().join("target/pictures");
     std::fs::create_dir_all(&folder).map_err(|e| Failure::new(format!("{}: {e}", folder.display())))?;
     let picture = folder.join(format!("{stem}.png"));
     eprintln!("There is no display here: rendering {stem} to a picture.");
-    let mut arguments = vec![OsString::from("render")];
-    arguments.extend_from_slice(options);
-    arguments.extend(["-o".into(), picture.clone().into_os_string()]);
-    focus_brush(&arguments)?;
+    let picture_file = picture.clone().into_os_string();
+    focus_brush(&["render".into(), file.into(), "-o".into(), picture_file])?;
     println!("The picture is {}", picture.display());
     Ok(())
 }
 
-fn focus_brush(arguments: &[OsString]) -> Result<(), Failure> {
+/// Builds the program and runs it with these arguments.
+pub fn focus_brush(arguments: &[OsString]) -> Result<(), Failure> {
     execute(Command::new(build_focus_brush()?).args(arguments))
 }
 

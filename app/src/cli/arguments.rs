@@ -25,6 +25,8 @@ pub struct Arguments {
 pub enum Subcommand {
     /// What is in a file, the health of its mesh, what would be baked
     Info(InfoArguments),
+    /// Make a project of a scene, with a camera and a focus to begin with
+    New(NewArguments),
     /// Write a scene with the atlas as its second UV set (TEXCOORD_1)
     Unwrap(UnwrapArguments),
     /// Bake the light field of a scene or project into a file
@@ -47,6 +49,22 @@ pub struct InfoArguments {
     /// Write JSON to stdout
     #[arg(long)]
     pub json: bool,
+}
+
+/// `new`.
+#[derive(Debug, Args)]
+pub struct NewArguments {
+    /// The scene (.glb, .gltf)
+    pub scene: PathBuf,
+    /// Where to write the project
+    #[arg(short, long, value_name = "PROJECT.fbrush")]
+    pub output: PathBuf,
+    /// A camera file, or the name of a camera in the scene (default: the scene's first)
+    #[arg(long, value_name = "CAM.json|NAME", value_parser = camera_choice)]
+    pub camera: Option<CameraChoice>,
+    /// How it is focused to begin with: a recipe (.json) or a focus map (.exr, .png) (default: the ordinary lens)
+    #[arg(long, value_name = "RECIPE.json|MAP.exr|png")]
+    pub focus: Option<PathBuf>,
 }
 
 /// `unwrap`.

@@ -1,6 +1,6 @@
 //! The command line: a thin layer over the `session` crate.
 //!
-//! * `arguments`: what can be typed. One file a subcommand does it: `info`, `unwrap`, `bake`, `render`,
+//! * `arguments`: what can be typed. One file a subcommand does it: `info`, `new`, `unwrap`, `bake`, `render`,
 //!   `compare`, `export`, `doctor`.
 //! * `console`: progress on stderr, results on stdout. `failure`: errors and exit codes.
 
@@ -12,6 +12,7 @@ mod doctor;
 mod export;
 mod failure;
 mod info;
+mod new;
 mod render;
 mod shot;
 mod unwrap;
@@ -61,6 +62,7 @@ fn dispatch(command: Subcommand) -> Result<(), Failure> {
     let console = Console::new();
     match command {
         Subcommand::Info(arguments) => info::run(&arguments, &console),
+        Subcommand::New(arguments) => new::run(&arguments, &console),
         Subcommand::Unwrap(arguments) => unwrap::run(&arguments, &console),
         Subcommand::Bake(arguments) => bake::run(&arguments, &console),
         Subcommand::Render(arguments) => render::run(&arguments, &console),

@@ -1,10 +1,9 @@
 //! Where the demo lies: beside the program, in its share folder, or in the source tree it was built from.
 
-use session::Command;
 use std::path::{Path, PathBuf};
 
-/// The command that opens the demo: its scene as its makers shot and focused it. None where it is not installed.
-pub fn open() -> Option<Command> {
+/// The demo's project. None where it is not installed.
+pub fn project() -> Option<PathBuf> {
     let program = std::env::current_exe().ok();
     let beside = program.as_deref().and_then(Path::parent);
     let folders = [
@@ -13,12 +12,27 @@ pub fn open() -> Option<Command> {
         Some(Path::new(env!("CARGO_MANIFEST_DIR")).join("../assets/demo")),
         Some(PathBuf::from("assets/demo")),
     ];
-    let folder = folders.into_iter().flatten().find(|folder| folder.join("demo.glb").is_file())?;
-    let folder = folder.canonicalize().unwrap_or(folder);
-    let file = |name| folder.join(name);
-    Some(Command::OpenShot {
-        scene: file("demo.glb"),
-        camera: file("demo.camera.json"),
-        focus: file("demo.focus.json"),
-    })
+    let files = folders.into_iter().flatten().map(|folder| folder.join("demo.fbrush"));
+    let file = files.into_iter().find(|file| file.is_file())?;
+    Some(file.canonicalize().unwrap_or(file))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use progress::Unwatched;
+    use session::{Input, Stage};
+
+    #[test]
+    fn the_demo_is_painted_and_fits_its_scene() {
+        let file = project().expect("assets/demo/demo.fbrush is there");
+        let input = Input::open(&file, &Unwatched).unwrap();
+        assert_eq!(input.warnings, Vec::<String>::new(), "made for the scene beside it");
+        let atlas = input.atlas(&Default::default(), &Unwatched).unwrap();
+        let stage = Stage::of(input.scene.clone(), atlas, &Unwatched).unwrap();
+        let map = input.project.unwrap().focus_map.expect("it is painted");
+        let sharp = stage.canvas.texels().iter().filter(|t| map.at(t.x, t.y) == lens::FocusOffset::SHARP);
+        let share = sharp.count() as f64 / stage.canvas.texels().len() as f64;
+        assert!(share > 0.01 && share < 0.9, "some of it is painted sharp: {share}");
+    }
 }

@@ -27,6 +27,7 @@ mod tower;
 mod view;
 
 use crate::chore::{Failure, repository};
+use crate::run::focus_brush;
 use glam::Vec3;
 use serde_json::{Value, json};
 use sheet::Sheet;
@@ -36,8 +37,8 @@ use view::View;
 /// Columns of the light sheet.
 const SHEET_WIDTH: usize = 1024;
 
-/// Writes `demo.glb`, `demo.camera.json` and `demo.focus.json` into `assets/demo`. `sky_rays` a texel decide how
-/// smooth the light is.
+/// Writes `demo.glb`, `demo.camera.json`, `demo.focus.json` and the project of the three, `demo.fbrush`, into
+/// `assets/demo`. `sky_rays` a texel decide how smooth the light is.
 pub fn demo(sky_rays: usize) -> Result<(), Failure> {
     let view = View::default();
     let (objects, lamps) = garden_at_dusk(&view);
@@ -61,7 +62,19 @@ pub fn demo(sky_rays: usize) -> Result<(), Failure> {
     };
     write("demo.glb", &glb::glb(&objects, &sheet, &texture, &view)?)?;
     write("demo.camera.json", pretty(&view.file()).as_bytes())?;
-    write("demo.focus.json", pretty(&recipe()).as_bytes())
+    write("demo.focus.json", pretty(&recipe()).as_bytes())?;
+    let file = |name: &str| folder.join(name).into_os_string();
+    let [scene, camera, focus] = ["demo.glb", "demo.camera.json", "demo.focus.json"].map(file);
+    focus_brush(&[
+        "new".into(),
+        scene,
+        "--camera".into(),
+        camera,
+        "--focus".into(),
+        focus,
+        "-o".into(),
+        file("demo.fbrush"),
+    ])
 }
 
 fn pretty(value: &Value) -> String {

@@ -1,0 +1,25 @@
+//! `focus-brush new`.
+
+use super::arguments::NewArguments;
+use super::console::Console;
+use super::failure::Failure;
+use super::shot::{check_folder, unwrap_options};
+use project::ProjectFile;
+use session::Document;
+
+/// Makes a project of a scene.
+pub fn run(arguments: &NewArguments, console: &Console) -> Result<(), Failure> {
+    let output = &arguments.output;
+    let is_project = output.extension().is_some_and(|e| e.eq_ignore_ascii_case(ProjectFile::EXTENSION));
+    if !is_project {
+        let what = format!("projects end in .{} (name one)", ProjectFile::EXTENSION);
+        return Err(Failure::usage(format!("{}: {what}", output.display())));
+    }
+    check_folder(output)?;
+    let (camera, focus) = (arguments.camera.as_ref(), arguments.focus.as_deref());
+    let document = Document::begin(&arguments.scene, camera, focus, &unwrap_options(None), console)?;
+    console.warn(&document.warnings);
+    document.to_project().save(output)?;
+    console.note(&format!("wrote {}", output.display()));
+    Ok(())
+}
