@@ -1,5 +1,6 @@
 //! The menus, straight from the command table.
 
+use super::inspector::is_layer_command_possible;
 use super::{Action, ViewSettings};
 use egui::{Button, Ui};
 use session::{COMMANDS, CommandId, CommandInfo, Document, Menu};
@@ -45,6 +46,10 @@ fn begins_group(id: CommandId) -> bool {
             | ShowFocus
             | ResetLayout
             | FillPart
+            | DuplicateLayer
+            | RaiseLayer
+            | LayerAbove
+            | AddMask
             | FocusHere
             | ResetMap
             | BrushLarger
@@ -86,6 +91,9 @@ pub fn is_possible(id: CommandId, state: &MenuState<'_>) -> bool {
         Undo => state.document.is_some_and(|document| document.undo_name().is_some()),
         Redo => state.document.is_some_and(|document| document.redo_name().is_some()),
         Stop => state.working,
+        RemoveLayer | RaiseLayer | LowerLayer | LayerAbove | LayerBelow | AddMask | RemoveMask => {
+            state.document.is_some_and(|document| is_layer_command_possible(id, document))
+        }
         _ => state.document.is_some(),
     }
 }

@@ -115,7 +115,7 @@ fn click(session: &Session, tool: Tool, ray: &Ray) -> Option<Action> {
         Tool::FillChart => Command::Fill(FillRegion::Chart(hit), target),
         Tool::FocusHere => Command::FocusHere(hit),
         Tool::Pick => Command::Pick(hit),
-        Tool::Brush | Tool::Smooth | Tool::Reset => return None,
+        Tool::Brush | Tool::Smooth | Tool::Sharpen | Tool::Reset => return None,
     };
     Some(command.into())
 }

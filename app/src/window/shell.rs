@@ -173,11 +173,11 @@ impl Shell {
     }
 
     fn open_demo(&mut self) {
-        match demo::open() {
-            Some(command) => {
+        match demo::project() {
+            Some(project) => {
                 self.opening = None;
                 self.showing_demo = true;
-                self.apply(command);
+                self.apply(Command::OpenTemplate(project));
             }
             None => self.toasts.error("assets/demo: the demo is not installed (open a scene with Ctrl+O)"),
         }
@@ -228,6 +228,12 @@ impl Shell {
         let Some(document) = self.session.document() else { return };
         let base = document.path.clone().unwrap_or_else(|| document.scene().path.clone());
         let stem = base.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
+        // What is made of the demo does not belong among the program's own files.
+        let base = if self.showing_demo && document.path.is_none() {
+            own_folder().join(stem.as_str())
+        } else {
+            base
+        };
         let name = match purpose {
             Purpose::SaveAs => format!("{stem}.fbrush"),
             Purpose::ExportPicture => format!("{stem}.png"),
@@ -283,7 +289,11 @@ impl Shell {
                     self.toasts.error(text);
                 }
                 Event::Notice(text) => self.toasts.notice(text),
-                Event::CameraChanged | Event::BrushChanged | Event::PreviewReady(_) | Event::Progress(_) => {}
+                Event::CameraChanged
+                | Event::LayersChanged
+                | Event::BrushChanged
+                | Event::PreviewReady(_)
+                | Event::Progress(_) => {}
             }
         }
     }
@@ -469,6 +479,16 @@ impl Shell {
             }
         });
     }
+}
+
+/// Where the user's own files go when nothing says where: documents, else home, else here.
+fn own_folder() -> PathBuf {
+    let folders = directories::UserDirs::new();
+    let own = folders.and_then(|folders| {
+        let documents = folders.document_dir().filter(|folder| folder.is_dir());
+        Some(documents.unwrap_or(folders.home_dir()).to_path_buf())
+    });
+    own.or_else(|| std::env::current_dir().ok()).unwrap_or_default()
 }
 
 impl eframe::App for Shell {

@@ -11,7 +11,9 @@ pub enum Tool {
     Brush,
     /// Strokes that even out.
     Smooth,
-    /// Strokes that give the ordinary lens back.
+    /// Strokes that make ramps into steps.
+    Sharpen,
+    /// Strokes that give the ordinary lens back, or take the layer's mask away.
     Reset,
     /// A click fills the object.
     FillObject,
@@ -35,6 +37,7 @@ impl Tool {
         match self {
             Tool::Brush => CommandId::Brush,
             Tool::Smooth => CommandId::Smooth,
+            Tool::Sharpen => CommandId::Sharpen,
             Tool::Reset => CommandId::Erase,
             Tool::FillObject => CommandId::FillPart,
             Tool::FillMaterial => CommandId::FillMaterial,
@@ -49,6 +52,7 @@ impl Tool {
         match self {
             Tool::Brush => "Brush",
             Tool::Smooth => "Smooth",
+            Tool::Sharpen => "Sharpen",
             Tool::Reset => "Reset",
             Tool::FillObject => "Fill",
             Tool::FillMaterial => "Fill material",
@@ -60,13 +64,14 @@ impl Tool {
 
     /// Whether it paints strokes; else a click does it.
     pub fn paints(self) -> bool {
-        matches!(self, Tool::Brush | Tool::Smooth | Tool::Reset)
+        matches!(self, Tool::Brush | Tool::Smooth | Tool::Sharpen | Tool::Reset)
     }
 
     /// The brush mode of its strokes; `chosen` is the Brush tool's own.
     pub fn mode(self, chosen: BrushMode) -> BrushMode {
         match self {
             Tool::Smooth => BrushMode::Smooth,
+            Tool::Sharpen => BrushMode::Sharpen,
             Tool::Reset => BrushMode::Reset,
             _ => chosen,
         }
@@ -79,6 +84,7 @@ impl Tool {
                 "Drag in either view to paint the chosen focus. [ and ] change the size, Esc takes a stroke back."
             }
             Tool::Smooth => "Drag in either view to even out the focus.",
+            Tool::Sharpen => "Drag in either view to turn soft changes of focus into hard ones.",
             Tool::Reset => "Drag in either view to give the ordinary lens back.",
             Tool::FillObject => "Click an object in either view to give it the chosen focus.",
             Tool::FillMaterial => "Click a material in either view to give it the chosen focus.",

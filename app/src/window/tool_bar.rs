@@ -12,6 +12,7 @@ pub fn tool_bar(ui: &mut Ui, document: Option<&Document>, tool: Tool, actions: &
     ui.horizontal(|ui| {
         for candidate in Tool::BAR {
             let chosen = candidate == tool
+                || (candidate == Tool::Smooth && tool == Tool::Sharpen)
                 || (candidate == Tool::FillObject && matches!(tool, Tool::FillMaterial | Tool::FillChart));
             let label = if chosen { tool.label() } else { candidate.label() };
             let info = candidate.command().info();

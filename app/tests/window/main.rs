@@ -3,5 +3,6 @@
 mod acting;
 mod controls;
 mod documents;
+mod layers;
 mod painting;
 mod small_scene;

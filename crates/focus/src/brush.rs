@@ -13,6 +13,8 @@ pub struct Brush {
     pub hardness: f64,
     /// The most that a stroke (or, where dabs build up, a dab) does, in [0, 1].
     pub strength: f64,
+    /// The share of that which one dab does, in (0, 1]: below 1 a stroke builds up where dabs overlap.
+    pub flow: f64,
     /// Distance between dabs as a share of the radius, in [0.01, 10].
     pub spacing: f64,
     /// What it does.
@@ -46,7 +48,9 @@ pub enum BrushMode {
     Subtract,
     /// Evens out differences; dabs build up.
     Smooth,
-    /// Moves them back to the standard lens. As [`Self::Set`].
+    /// Makes ramps steeper, up to a step; dabs build up.
+    Sharpen,
+    /// Moves them back to the standard lens; on a map with a mask, takes the mask away. As [`Self::Set`].
     Reset,
 }
 
@@ -61,12 +65,14 @@ pub enum Channels {
     /// Both.
     #[default]
     Both,
+    /// Neither, only how much the layer counts: its mask.
+    Mask,
 }
 
 impl Channels {
-    /// Whether t, and whether the anchor is touched.
-    pub fn touches(self) -> [bool; 2] {
-        [self != Self::Anchor, self != Self::T]
+    /// Whether t, the anchor and the mask are touched. Whoever paints a layer paints its mask too.
+    pub fn touches(self) -> [bool; 3] {
+        [matches!(self, Self::T | Self::Both), matches!(self, Self::Anchor | Self::Both), true]
     }
 }
 
@@ -90,6 +96,7 @@ impl Default for Brush {
             radius: 0.1,
             hardness: 0.5,
             strength: 1.0,
+            flow: 1.0,
             spacing: 0.25,
             mode: BrushMode::Set,
             target: FocusOffset::SHARP,
@@ -111,6 +118,7 @@ impl Brush {
             _ if !(self.radius > 0.0 && self.radius.is_finite()) => Some("radius must be above 0 and finite"),
             _ if !unit.contains(&self.hardness) => Some("hardness must be in [0, 1]"),
             _ if !unit.contains(&self.strength) => Some("strength must be in [0, 1]"),
+            _ if !(self.flow > 0.0 && self.flow <= 1.0) => Some("flow must be above 0 and at most 1"),
             _ if !(0.01..=10.0).contains(&self.spacing) => Some("spacing must be in [0.01, 10]"),
             _ if !self.target.is_valid() => Some("target needs a finite t and an anchor in [0, 1]"),
             _ if !(low <= high && low.is_finite() && high.is_finite()) => {
@@ -132,6 +140,7 @@ impl Brush {
             BrushMode::Add => "Add stroke",
             BrushMode::Subtract => "Subtract stroke",
             BrushMode::Smooth => "Smooth stroke",
+            BrushMode::Sharpen => "Sharpen stroke",
             BrushMode::Reset => "Reset stroke",
         }
     }

@@ -141,24 +141,33 @@ impl Canvas {
         self.tree.points()[index] - (center - self.origin).as_vec3()
     }
 
-    /// [t, anchor] of a texel.
-    pub(crate) fn value(&self, map: &FocusMap, index: usize) -> [f32; 2] {
+    /// [t, anchor, mask] of a texel.
+    pub(crate) fn value(&self, map: &FocusMap, index: usize) -> [f32; 3] {
         let texel = &self.texels[index];
-        map.texel(texel.x, texel.y)
+        let [t, anchor] = map.texel(texel.x, texel.y);
+        [t, anchor, map.mask_at(texel.x, texel.y)]
     }
 
-    /// Writes a texel and the gutters that copy it; notes in `changed` what was not so before.
+    /// Writes [t, anchor, mask] of a texel and the gutters that copy it (a map without mask ignores the mask);
+    /// notes in `changed` what was not so before.
     pub(crate) fn write(
         &self,
         map: &mut FocusMap,
         index: usize,
-        value: [f32; 2],
+        [t, anchor, share]: [f32; 3],
         changed: &mut Vec<[u32; 2]>,
     ) {
         let texel = &self.texels[index];
         for &[x, y] in [[texel.x, texel.y]].iter().chain(self.gutters_of(index)) {
-            if map.texel(x, y) != value {
-                map.set(x, y, value);
+            let mut differs = map.texel(x, y) != [t, anchor];
+            if differs {
+                map.set(x, y, [t, anchor]);
+            }
+            if let Some(mask) = map.mask.as_mut().filter(|mask| mask.at(x, y) != share) {
+                mask.set(x, y, share);
+                differs = true;
+            }
+            if differs {
                 changed.push([x, y]);
             }
         }

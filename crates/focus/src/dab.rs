@@ -1,8 +1,10 @@
 //! One touch of the brush.
 
+use crate::focus_map::texel_of;
 use crate::smooth::Smoothed;
-use crate::{Brush, BrushMode, Canvas, CanvasTexel, FocusMap};
+use crate::{Brush, BrushMode, Canvas, CanvasTexel, Channels, FocusMap};
 use glam::{DVec3, Vec3};
+use lens::FocusOffset;
 
 /// A sphere of paint: where the brush touches, and how strongly.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,23 +34,23 @@ impl Dab {
         }
     }
 
-    /// Texels under the dab (indices into the canvas) and how strongly each is painted, in (0, 1]. A dab
-    /// smaller than the texels takes the one that it lies in.
+    /// Texels under the dab (indices into the canvas) and the brush's falloff at each, in (0, 1]. A dab smaller
+    /// than the texels takes the one that it lies in.
     pub fn covered(&self, brush: &Brush, canvas: &Canvas) -> Vec<(usize, f32)> {
         let mut covered = Vec::new();
         let mut any_within = false;
         canvas.within(self.center, self.radius, |index, distance| {
             if self.faces(brush, &canvas.texels()[index]) {
                 any_within = true;
-                let share = self.strength * brush.falloff(distance as f64 / self.radius);
+                let share = brush.falloff(distance as f64 / self.radius);
                 if share > 0.0 {
                     covered.push((index, share as f32));
                 }
             }
         });
-        if !any_within && self.strength > 0.0 {
+        if !any_within {
             let texel = canvas.nearest(self.center, |texel| self.faces(brush, texel));
-            covered.extend(texel.map(|index| (index, self.strength as f32)));
+            covered.extend(texel.map(|index| (index, 1.0)));
         }
         covered
     }
@@ -64,19 +66,20 @@ impl Dab {
         changed: &mut Vec<[u32; 2]>,
     ) {
         let covered = self.covered(brush, canvas);
-        let channels = brush.channels.touches();
+        let touches = brush.channels.touches();
+        let mut write = |map: &mut FocusMap, index, value| {
+            write_channels(canvas, map, index, value, touches, changed);
+        };
         match brush.mode {
             BrushMode::Set | BrushMode::Reset => {
-                let target = crate::focus_map::texel_of(match brush.mode {
-                    BrushMode::Reset => lens::FocusOffset::STANDARD,
-                    _ => brush.target,
-                });
                 for (index, share) in covered {
-                    if share > stroke.coverage[index] {
+                    let ceiling = share * self.strength as f32;
+                    let before = stroke.coverage[index];
+                    if ceiling > before {
+                        let share = before + (ceiling - before) * brush.flow as f32;
                         stroke.coverage[index] = share;
                         let from = canvas.value(stroke.before, index);
-                        let moved = [0, 1].map(|k| toward(from[k], target[k], share));
-                        write_channels(canvas, map, index, moved, channels, changed);
+                        write(map, index, washed(brush, map.has_mask(), from, share));
                     }
                 }
             }
@@ -84,24 +87,31 @@ impl Dab {
                 let sign = if brush.mode == BrushMode::Add { 1.0 } else { -1.0 };
                 let step = [sign * (brush.target.t - 1.0), sign * brush.target.anchor];
                 for (index, share) in covered {
+                    let share = share * (self.strength * brush.flow) as f32;
                     let from = canvas.value(map, index);
                     let limits = [brush.offset_limits, [0.0, 1.0]];
-                    let moved = [0, 1].map(|k| {
+                    let [t, anchor] = [0, 1].map(|k| {
                         // What already lies outside the limits may stay, but not go further.
                         let [low, high] = limits[k].map(|limit| limit as f32);
                         let sum = (from[k] as f64 + step[k] * share as f64) as f32;
                         sum.clamp(low.min(from[k]), high.max(from[k]))
                     });
-                    write_channels(canvas, map, index, moved, channels, changed);
+                    write(map, index, [t, anchor, toward(from[2], 1.0, share)]);
                 }
             }
-            BrushMode::Smooth => {
+            BrushMode::Smooth | BrushMode::Sharpen => {
                 let smoothed = Smoothed::new(self, brush, canvas, map);
+                let [low, high] = smoothed.bounds();
                 for (index, share) in covered {
+                    let share = share * (self.strength * brush.flow) as f32;
                     let from = canvas.value(map, index);
                     let mean = smoothed.at(canvas.offset_from(index, self.center), from);
-                    let moved = [0, 1].map(|k| toward(from[k], mean[k], share));
-                    write_channels(canvas, map, index, moved, channels, changed);
+                    let moved = [0, 1, 2].map(|k| match brush.mode {
+                        // Away from the mean, but not beyond what is there: a ramp becomes a step, without a rim.
+                        BrushMode::Sharpen => (from[k] + (from[k] - mean[k]) * share).clamp(low[k], high[k]),
+                        _ => toward(from[k], mean[k], share),
+                    });
+                    write(map, index, moved);
                 }
             }
         }
@@ -114,6 +124,23 @@ pub(crate) struct Wash<'a> {
     pub coverage: &'a mut [f32],
 }
 
+/// [t, anchor, mask] of a texel that was `from` when the stroke began and is painted by `share`.
+///
+/// On a map with a mask the paint lies over what is there (Porter and Duff's *over*): the mask grows to
+/// m + s(1 − m), and the value moves toward the target by the share that the new paint has of it. Reset then takes
+/// the mask away; without one it gives the ordinary lens back.
+fn washed(brush: &Brush, has_mask: bool, from: [f32; 3], share: f32) -> [f32; 3] {
+    let [t, anchor, mask] = from;
+    let resets = brush.mode == BrushMode::Reset;
+    if resets && (has_mask || brush.channels == Channels::Mask) {
+        return [t, anchor, toward(mask, 0.0, share)];
+    }
+    let target = texel_of(if resets { FocusOffset::STANDARD } else { brush.target });
+    let grown = toward(mask, 1.0, share);
+    let own = if grown > 0.0 { (share / grown).min(1.0) } else { 0.0 };
+    [toward(t, target[0], own), toward(anchor, target[1], own), grown]
+}
+
 /// `share` of the way from a to b; exactly b at 1, and exactly a where both are equal.
 fn toward(a: f32, b: f32, share: f32) -> f32 {
     if share >= 1.0 { b } else { a + (b - a) * share }
@@ -124,12 +151,12 @@ pub(crate) fn write_channels(
     canvas: &Canvas,
     map: &mut FocusMap,
     index: usize,
-    value: [f32; 2],
-    touches: [bool; 2],
+    value: [f32; 3],
+    touches: [bool; 3],
     changed: &mut Vec<[u32; 2]>,
 ) {
     let now = canvas.value(map, index);
-    let kept = [0, 1].map(|k| if touches[k] { value[k] } else { now[k] });
+    let kept = [0, 1, 2].map(|k| if touches[k] { value[k] } else { now[k] });
     if kept != now {
         canvas.write(map, index, kept, changed);
     }

@@ -1,6 +1,6 @@
 //! One undoable change of a focus map: its tiles before and after.
 
-use crate::focus_map::{TILE_TEXELS, Tile};
+use crate::tile_grid::{Tile, TileGrid};
 use crate::{Changed, FocusMap};
 use lens::FocusOffset;
 use std::sync::Arc;
@@ -9,23 +9,35 @@ use std::sync::Arc;
 #[derive(Clone, Debug)]
 pub struct Edit {
     name: String,
-    /// Index, before, after.
-    tiles: Vec<(usize, Arc<Tile>, Arc<Tile>)>,
-    /// Before, after.
-    background: [FocusOffset; 2],
+    values: Vec<TileChange<[f32; 2]>>,
+    mask: Vec<TileChange<f32>>,
+    /// Before, after: the background's focus and mask.
+    background: [(FocusOffset, f32); 2],
+}
+
+/// A tile: its index, before, after.
+type TileChange<T> = (usize, Arc<Tile<T>>, Arc<Tile<T>>);
+
+/// Which end of a change.
+#[derive(Clone, Copy)]
+enum End {
+    Before,
+    After,
 }
 
 impl Edit {
-    /// What turns `before` into `after`, two maps of one size; `None` if they are equal. Cheap where `after`
-    /// was made from a clone of `before`: only tiles that were written are looked at.
+    /// What turns `before` into `after`, two maps of one size that both have a mask or both have none; `None` if
+    /// they are equal. Cheap where `after` was made from a clone of `before`: only tiles that were written are
+    /// looked at.
     pub fn between(name: impl Into<String>, before: &FocusMap, after: &FocusMap) -> Option<Self> {
         debug_assert_eq!(before.size(), after.size());
-        let pairs = before.tiles().iter().zip(after.tiles()).enumerate();
-        let differ = pairs.filter(|(_, (a, b))| !Arc::ptr_eq(a, b) && a != b);
-        let tiles: Vec<_> = differ.map(|(index, (a, b))| (index, a.clone(), b.clone())).collect();
-        let background = [before.background, after.background];
-        let empty = tiles.is_empty() && background[0] == background[1];
-        (!empty).then(|| Self { name: name.into(), tiles, background })
+        debug_assert_eq!(before.mask.is_some(), after.mask.is_some());
+        let values = changes(&before.texels, &after.texels);
+        let masks = before.mask.as_ref().zip(after.mask.as_ref());
+        let mask = masks.map_or(Vec::new(), |(before, after)| changes(before, after));
+        let background = [before, after].map(|map| (map.background, map.background_mask));
+        let empty = values.is_empty() && mask.is_empty() && background[0] == background[1];
+        (!empty).then(|| Self { name: name.into(), values, mask, background })
     }
 
     /// Its name in the undo list.
@@ -36,8 +48,7 @@ impl Edit {
     /// Memory that it keeps alive: in a history each tile is shared with the neighbouring edit or the map, so
     /// an edit counts one of its two.
     pub fn bytes(&self) -> usize {
-        size_of::<Self>()
-            + self.tiles.len() * (size_of::<Tile>() + size_of::<(usize, Arc<Tile>, Arc<Tile>)>())
+        size_of::<Self>() + bytes_of(&self.values) + bytes_of(&self.mask)
     }
 
     /// Whether the background's focus is part of it.
@@ -47,28 +58,48 @@ impl Edit {
 
     /// Makes the change. Returns what changed.
     pub fn apply(&self, map: &mut FocusMap) -> Changed {
-        self.replace(map, |(_, _, after)| after, self.background[1])
+        self.replace(map, End::After)
     }
 
     /// Takes the change back, to the same bits. Returns what changed.
     pub fn revert(&self, map: &mut FocusMap) -> Changed {
-        self.replace(map, |(_, before, _)| before, self.background[0])
+        self.replace(map, End::Before)
     }
 
-    fn replace(
-        &self,
-        map: &mut FocusMap,
-        side: impl Fn(&(usize, Arc<Tile>, Arc<Tile>)) -> &Arc<Tile>,
-        background: FocusOffset,
-    ) -> Changed {
-        let mut changed = Vec::new();
-        for entry in &self.tiles {
-            let (index, a, b) = entry;
-            let differing = (0..TILE_TEXELS).filter(|&k| a[k] != b[k]);
-            changed.extend(differing.filter_map(|k| map.position(*index, k)));
-            map.set_tile(*index, side(entry).clone());
+    fn replace(&self, map: &mut FocusMap, end: End) -> Changed {
+        let mut changed = replace_tiles(&self.values, &mut map.texels, end);
+        if let Some(mask) = &mut map.mask {
+            changed.extend(replace_tiles(&self.mask, mask, end));
         }
-        map.background = background;
+        (map.background, map.background_mask) = self.background[end as usize];
         Changed::new(changed)
     }
+}
+
+/// The tiles in which two grids differ.
+fn changes<T: Copy + PartialEq>(before: &TileGrid<T>, after: &TileGrid<T>) -> Vec<TileChange<T>> {
+    let pairs = before.tiles().iter().zip(after.tiles()).enumerate();
+    let differ = pairs.filter(|(_, (a, b))| !Arc::ptr_eq(a, b) && a != b);
+    differ.map(|(index, (a, b))| (index, a.clone(), b.clone())).collect()
+}
+
+fn replace_tiles<T: Copy + PartialEq>(
+    changes: &[TileChange<T>],
+    grid: &mut TileGrid<T>,
+    end: End,
+) -> Vec<[u32; 2]> {
+    let mut changed = Vec::new();
+    for (index, before, after) in changes {
+        changed.extend(grid.differing(*index, before, after));
+        let tile = match end {
+            End::Before => before,
+            End::After => after,
+        };
+        grid.set_tile(*index, tile.clone());
+    }
+    changed
+}
+
+fn bytes_of<T>(changes: &[TileChange<T>]) -> usize {
+    changes.len() * (size_of::<Tile<T>>() + size_of::<TileChange<T>>())
 }

@@ -39,10 +39,12 @@ pub fn fill(
     }
     let touches = channels.touches();
     if target == FillTarget::Background {
-        let [t, anchor] = touches;
+        let [t, anchor, _] = touches;
+        map.background_mask = 1.0;
         map.background.t = if t { value.t } else { map.background.t };
         map.background.anchor = if anchor { value.anchor } else { map.background.anchor };
     }
+    let [t, anchor] = texel_of(value);
     let mut changed = Vec::new();
     for (index, texel) in canvas.texels().iter().enumerate() {
         let inside = match target {
@@ -54,7 +56,7 @@ pub fn fill(
             FillTarget::Background => false,
         };
         if inside {
-            write_channels(canvas, map, index, texel_of(value), touches, &mut changed);
+            write_channels(canvas, map, index, [t, anchor, 1.0], touches, &mut changed);
         }
     }
     Ok(Changed::new(changed))

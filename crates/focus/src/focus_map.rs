@@ -1,83 +1,111 @@
-//! A focus offset a texel of the atlas.
+//! A focus offset a texel of the atlas, and on a layer how much each counts.
 
+use crate::tile_grid::TileGrid;
 use glam::DVec2;
 use lens::FocusOffset;
-use std::sync::Arc;
-
-/// Rows and columns of a tile: the unit of copying, of undo and of comparing.
-pub const TILE_SIDE: u32 = 64;
-
-/// Texels of a tile.
-pub(crate) const TILE_TEXELS: usize = (TILE_SIDE * TILE_SIDE) as usize;
-
-/// A square of texels, [t, anchor] each, row by row. Tiles at the right and lower border hang over.
-pub(crate) type Tile = [[f32; 2]; TILE_TEXELS];
 
 /// The painted focus map: t and anchor over the atlas, and the background's focus. Texels that no surface
 /// covers hold dilated values.
 ///
+/// The map of a layer may have a *mask*: how much each texel of it counts, in [0, 1]. Without one all count
+/// fully.
+///
 /// The texels lie in tiles that clones share until one of them is written: a clone is a snapshot that costs
 /// a pointer a tile, so a renderer may hold one while painting goes on.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct FocusMap {
-    width: u32,
-    height: u32,
-    tiles: Vec<Arc<Tile>>,
+    pub(crate) texels: TileGrid<[f32; 2]>,
+    pub(crate) mask: Option<TileGrid<f32>>,
     /// The focus of what lies at infinity.
     pub background: FocusOffset,
+    /// The mask of what lies at infinity, in [0, 1]; 1 in a map without mask.
+    pub background_mask: f32,
 }
 
 impl FocusMap {
     /// A map of one value, the background included. Both sides must be above 0.
     pub fn new(width: u32, height: u32, value: FocusOffset) -> Self {
-        let tile = Arc::new([texel_of(value); TILE_TEXELS]);
-        let tiles = width.div_ceil(TILE_SIDE) as usize * height.div_ceil(TILE_SIDE) as usize;
-        Self { width, height, tiles: vec![tile; tiles], background: value }
+        let texels = TileGrid::new(width, height, texel_of(value));
+        Self { texels, mask: None, background: value, background_mask: 1.0 }
+    }
+
+    /// A map of the ordinary lens whose mask is 0: nothing of it counts yet.
+    pub fn clear(width: u32, height: u32) -> Self {
+        let mut map = Self::new(width, height, FocusOffset::STANDARD);
+        map.mask = Some(TileGrid::new(width, height, 0.0));
+        map.background_mask = 0.0;
+        map
     }
 
     /// A map of the given texels, [t, anchor] each, row 0 on top. `None` unless there are width × height.
     pub fn from_rows(width: u32, height: u32, texels: &[[f32; 2]], background: FocusOffset) -> Option<Self> {
-        if texels.len() as u64 != width as u64 * height as u64 {
-            return None;
-        }
-        let tiles_across = width.div_ceil(TILE_SIDE);
-        let tile_count = tiles_across * height.div_ceil(TILE_SIDE);
-        let tiles = (0..tile_count).map(|index| {
-            let [x0, y0] = [index % tiles_across * TILE_SIDE, index / tiles_across * TILE_SIDE];
-            let mut tile = [texel_of(FocusOffset::STANDARD); TILE_TEXELS];
-            for y in y0..(y0 + TILE_SIDE).min(height) {
-                let columns = (x0 + TILE_SIDE).min(width) - x0;
-                let from = y as usize * width as usize + x0 as usize;
-                let to = ((y - y0) * TILE_SIDE) as usize;
-                tile[to..to + columns as usize].copy_from_slice(&texels[from..from + columns as usize]);
-            }
-            Arc::new(tile)
-        });
-        Some(Self { width, height, tiles: tiles.collect(), background })
+        let texels = TileGrid::from_rows(width, height, texels, texel_of(FocusOffset::STANDARD))?;
+        Some(Self { texels, mask: None, background, background_mask: 1.0 })
     }
 
     /// All texels, [t, anchor] each, row 0 on top. Inverse of [`Self::from_rows`].
     pub fn to_rows(&self) -> Vec<[f32; 2]> {
-        let mut rows = Vec::with_capacity(self.width as usize * self.height as usize);
-        for y in 0..self.height {
-            rows.extend((0..self.width).map(|x| self.texel(x, y)));
+        self.texels.to_rows()
+    }
+
+    /// The mask of all texels, row 0 on top; `None` where there is no mask.
+    pub fn mask_rows(&self) -> Option<Vec<f32>> {
+        self.mask.as_ref().map(TileGrid::to_rows)
+    }
+
+    /// Whether the map has a mask.
+    pub fn has_mask(&self) -> bool {
+        self.mask.is_some()
+    }
+
+    /// Gives the map a mask, row 0 on top, or takes it away. False, and nothing is done, unless there are
+    /// width × height values.
+    #[must_use]
+    pub fn set_mask_rows(&mut self, mask: Option<&[f32]>) -> bool {
+        let [width, height] = self.size();
+        match mask.map(|rows| TileGrid::from_rows(width, height, rows, 0.0)) {
+            Some(None) => return false,
+            Some(Some(mask)) => self.mask = Some(mask),
+            None => self.remove_mask(),
         }
-        rows
+        true
+    }
+
+    /// Gives a map without mask one that counts everywhere, so that it can be painted.
+    pub fn add_mask(&mut self) {
+        let [width, height] = self.size();
+        self.mask.get_or_insert_with(|| TileGrid::new(width, height, 1.0));
+    }
+
+    /// Takes the mask away: the map counts everywhere.
+    pub fn remove_mask(&mut self) {
+        (self.mask, self.background_mask) = (None, 1.0);
+    }
+
+    /// Makes the map count where it did not, and the other way round.
+    pub fn invert_mask(&mut self) {
+        let [width, height] = self.size();
+        let inverted: Vec<f32> = match &self.mask {
+            Some(mask) => mask.to_rows().into_iter().map(|m| 1.0 - m).collect(),
+            None => vec![0.0; width as usize * height as usize],
+        };
+        self.mask = TileGrid::from_rows(width, height, &inverted, 0.0);
+        self.background_mask = 1.0 - self.background_mask;
     }
 
     /// Columns, the atlas's.
     pub fn width(&self) -> u32 {
-        self.width
+        self.size()[0]
     }
 
     /// Rows, the atlas's.
     pub fn height(&self) -> u32 {
-        self.height
+        self.size()[1]
     }
 
     /// Columns and rows.
     pub fn size(&self) -> [u32; 2] {
-        [self.width, self.height]
+        self.texels.size()
     }
 
     /// The value of a texel, which must lie in the map.
@@ -88,14 +116,17 @@ impl FocusMap {
 
     /// [t, anchor] of a texel, which must lie in the map.
     pub fn texel(&self, x: u32, y: u32) -> [f32; 2] {
-        let (tile, within) = self.place(x, y);
-        self.tiles[tile][within]
+        self.texels.at(x, y)
+    }
+
+    /// How much a texel counts, in [0, 1].
+    pub fn mask_at(&self, x: u32, y: u32) -> f32 {
+        self.mask.as_ref().map_or(1.0, |mask| mask.at(x, y))
     }
 
     /// Sets [t, anchor] of a texel, which must lie in the map. Copies its tile if a clone shares it.
     pub fn set(&mut self, x: u32, y: u32, value: [f32; 2]) {
-        let (tile, within) = self.place(x, y);
-        Arc::make_mut(&mut self.tiles[tile])[within] = value;
+        self.texels.set(x, y, value);
     }
 
     /// The value at a position in texel coordinates (x right, y down; texel (i, j) is centred at
@@ -105,54 +136,22 @@ impl FocusMap {
         let p = position - DVec2::splat(0.5);
         let low = p.floor();
         let f = p - low;
+        let [width, height] = self.size();
         let clamp = |i: f64, count: u32| i.clamp(0.0, (count - 1) as f64) as u32;
-        let [x0, x1] = [low.x, low.x + 1.0].map(|x| clamp(x, self.width));
-        let [y0, y1] = [low.y, low.y + 1.0].map(|y| clamp(y, self.height));
+        let [x0, x1] = [low.x, low.x + 1.0].map(|x| clamp(x, width));
+        let [y0, y1] = [low.y, low.y + 1.0].map(|y| clamp(y, height));
         let corners = [self.texel(x0, y0), self.texel(x1, y0), self.texel(x0, y1), self.texel(x1, y1)];
         bilinear(corners, f)
     }
 
-    /// Whether all numbers are usable: t finite and anchor in [0, 1].
+    /// Whether all numbers are usable: t finite, anchor and mask in [0, 1].
     pub fn is_valid(&self) -> bool {
-        let usable = |[t, a]: &[f32; 2]| t.is_finite() && (0.0..=1.0).contains(a);
-        self.background.is_valid() && self.tiles.iter().all(|tile| tile.iter().all(usable))
-    }
-
-    /// The tiles, row by row.
-    pub(crate) fn tiles(&self) -> &[Arc<Tile>] {
-        &self.tiles
-    }
-
-    /// Replaces a tile.
-    pub(crate) fn set_tile(&mut self, index: usize, tile: Arc<Tile>) {
-        self.tiles[index] = tile;
-    }
-
-    /// The map position of a place in a tile, if it lies in the map.
-    pub(crate) fn position(&self, tile: usize, within: usize) -> Option<[u32; 2]> {
-        let across = self.width.div_ceil(TILE_SIDE);
-        let x = tile as u32 % across * TILE_SIDE + within as u32 % TILE_SIDE;
-        let y = tile as u32 / across * TILE_SIDE + within as u32 / TILE_SIDE;
-        (x < self.width && y < self.height).then_some([x, y])
-    }
-
-    /// The tile of a texel, and where in it.
-    fn place(&self, x: u32, y: u32) -> (usize, usize) {
-        debug_assert!(x < self.width && y < self.height);
-        let tile = y / TILE_SIDE * self.width.div_ceil(TILE_SIDE) + x / TILE_SIDE;
-        (tile as usize, (y % TILE_SIDE * TILE_SIDE + x % TILE_SIDE) as usize)
-    }
-}
-
-impl PartialEq for FocusMap {
-    /// Same size, background and texels.
-    fn eq(&self, other: &Self) -> bool {
-        self.size() == other.size()
-            && self.background == other.background
-            && self.tiles.iter().zip(&other.tiles).enumerate().all(|(tile, (a, b))| {
-                let inside = |within: usize| self.position(tile, within).is_some();
-                Arc::ptr_eq(a, b) || (0..TILE_TEXELS).all(|k| a[k] == b[k] || !inside(k))
-            })
+        let unit = 0.0..=1.0;
+        let usable = |[t, a]: &[f32; 2]| t.is_finite() && unit.contains(a);
+        self.background.is_valid()
+            && unit.contains(&self.background_mask)
+            && self.texels.tiles().iter().all(|tile| tile.iter().all(usable))
+            && self.mask.iter().flat_map(TileGrid::tiles).all(|tile| tile.iter().all(|m| unit.contains(m)))
     }
 }
 
@@ -176,6 +175,7 @@ pub(crate) fn bilinear([a, b, c, d]: [[f32; 2]; 4], f: DVec2) -> FocusOffset {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::sync::Arc;
 
     #[test]
     fn rows_come_back_and_snapshots_stay() {
@@ -189,7 +189,8 @@ mod tests {
         assert_eq!(map.at(129, 69), FocusOffset::new(5.0, 0.5));
         assert_eq!(snapshot.to_rows(), rows);
         assert_ne!(map, snapshot);
-        let shared = map.tiles().iter().zip(snapshot.tiles()).filter(|(a, b)| Arc::ptr_eq(a, b));
+        let shared =
+            map.texels.tiles().iter().zip(snapshot.texels.tiles()).filter(|(a, b)| Arc::ptr_eq(a, b));
         assert_eq!(shared.count(), 3 * 2 - 1);
     }
 

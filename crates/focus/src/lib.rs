@@ -5,33 +5,47 @@
 //! * [`FocusRecipe`]: focus by name of material and node, for scripts; evaluates to a [`Focus`].
 //! * [`Canvas`]: the surface behind the map's texels, found by world position.
 //! * [`Brush`] and [`Stroke`]: painting with spheres along a path on the surface, as one transaction.
+//! * [`FocusLayer`] and [`LayerStack`]: maps with masks, joined by a [`Blend`]; a [`DepthCurve`] makes an adjustment
+//!   layer. What they make together is a map again, and that is what is rendered.
 //! * [`fill`]: the same value over a node, part, material or chart.
 //! * [`Edit`]: what undo takes back and redo makes again.
 
 mod bake;
+mod blend;
 mod brush;
 mod canvas;
 mod changed;
+mod curve;
 mod dab;
+mod depth_curve;
 mod edit;
 mod error;
 mod fill;
 mod focus_image;
 mod focus_map;
+mod layer;
+mod layer_stack;
 mod recipe;
 mod smooth;
 mod source;
 mod stroke;
 mod texel_tree;
+mod tile_grid;
 
+pub use blend::Blend;
 pub use brush::{Brush, BrushMode, Channels, PenSample};
 pub use canvas::{Canvas, CanvasTexel};
 pub use changed::Changed;
+pub use curve::Curve;
+pub use depth_curve::DepthCurve;
 pub use edit::Edit;
 pub use error::FocusError;
 pub use fill::{FillTarget, fill};
 pub use focus_image::FocusImage;
-pub use focus_map::{FocusMap, TILE_SIDE};
+pub use focus_map::FocusMap;
+pub use layer::FocusLayer;
+pub use layer_stack::LayerStack;
 pub use recipe::{FocusRecipe, RecipeEntry};
 pub use source::{Focus, FocusSource};
 pub use stroke::{Stroke, SurfaceHit};
+pub use tile_grid::TILE_SIDE;

@@ -15,12 +15,14 @@ const CELLS_ALONG_RADIUS: f32 = 4.0;
 /// The means around a dab.
 pub(crate) struct Smoothed {
     /// The value that the sums are relative to.
-    reference: [f32; 2],
+    reference: [f32; 3],
+    /// The least and the greatest of each number around the dab.
+    bounds: [[f32; 3]; 2],
     cell_side: f32,
     /// Cells on each side of the grid.
     side: i32,
-    /// Weight and weighted differences of t and anchor a cell.
-    cells: Vec<[f64; 3]>,
+    /// Weight and weighted differences of t, anchor and mask a cell.
+    cells: Vec<[f64; 4]>,
 }
 
 impl Smoothed {
@@ -37,8 +39,9 @@ impl Smoothed {
         let cell_side = (dab.radius as f32 / CELLS_ALONG_RADIUS).max(2.0 * texel_side);
         let reach = dab.radius as f32 + 2.0 * cell_side;
         let side = 2 * (reach / cell_side).ceil() as i32 + 2;
-        let empty = vec![[0.0; 3]; (side * side * side) as usize];
-        let mut smoothed = Self { reference: [0.0; 2], cell_side, side, cells: empty };
+        let empty = vec![[0.0; 4]; (side * side * side) as usize];
+        let bounds = [[f32::INFINITY; 3], [f32::NEG_INFINITY; 3]];
+        let mut smoothed = Self { reference: [0.0; 3], bounds, cell_side, side, cells: empty };
         let mut reference = None;
         canvas.within(dab.center, reach as f64, |index, _| {
             let texel = &canvas.texels()[index];
@@ -46,14 +49,17 @@ impl Smoothed {
                 return;
             }
             let value = canvas.value(map, index);
-            let [t, anchor] = *reference.get_or_insert(value);
-            let difference = [value[0] as f64 - t as f64, value[1] as f64 - anchor as f64];
+            let from = *reference.get_or_insert(value);
+            let difference = [0, 1, 2].map(|k| value[k] as f64 - from[k] as f64);
+            for (k, value) in value.into_iter().enumerate() {
+                let [low, high] = &mut smoothed.bounds;
+                (low[k], high[k]) = (low[k].min(value), high[k].max(value));
+            }
             for (cell, share) in smoothed.around(canvas.offset_from(index, dab.center)) {
                 let weight = share * texel.area;
                 let sums = &mut smoothed.cells[cell];
                 sums[0] += weight;
-                sums[1] += weight * difference[0];
-                sums[2] += weight * difference[1];
+                (0..3).for_each(|k| sums[k + 1] += weight * difference[k]);
             }
         });
         smoothed.reference = reference.unwrap_or_default();
@@ -61,18 +67,23 @@ impl Smoothed {
     }
 
     /// The mean at a point given relative to the dab's centre; `otherwise` where no texel is near.
-    pub fn at(&self, offset: Vec3, otherwise: [f32; 2]) -> [f32; 2] {
-        let mut sums = [0.0; 3];
+    pub fn at(&self, offset: Vec3, otherwise: [f32; 3]) -> [f32; 3] {
+        let mut sums = [0.0; 4];
         for (cell, share) in self.around(offset) {
             for (sum, value) in sums.iter_mut().zip(self.cells[cell]) {
                 *sum += share * value;
             }
         }
         if sums[0] > 0.0 {
-            [0, 1].map(|k| (self.reference[k] as f64 + sums[k + 1] / sums[0]) as f32)
+            [0, 1, 2].map(|k| (self.reference[k] as f64 + sums[k + 1] / sums[0]) as f32)
         } else {
             otherwise
         }
+    }
+
+    /// The least and the greatest of t, anchor and mask around the dab.
+    pub fn bounds(&self) -> [[f32; 3]; 2] {
+        self.bounds
     }
 
     /// The eight cells around a point with its trilinear shares; those outside the grid are left out.

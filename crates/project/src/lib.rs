@@ -17,12 +17,14 @@ mod error;
 mod exr_file;
 mod focus_map_file;
 mod json;
+mod layer_entries;
 mod manifest;
 mod picture_file;
 mod png_file;
 mod project_file;
 mod recipe;
 mod recovery;
+mod texel_bytes;
 
 pub use camera::{camera_from_json, camera_to_json, read_aperture_mask, read_camera, write_camera};
 pub use compare::{Comparison, ErrorMaps, compare, error_maps};

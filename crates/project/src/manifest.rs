@@ -2,6 +2,7 @@
 
 use crate::ProjectError;
 use crate::container::{Container, DAMAGED_CURE};
+use crate::layer_entries::LayerEntries;
 use focus::Brush;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -16,8 +17,11 @@ pub(crate) const MANIFEST: &str = "manifest.json";
 /// What the manifest calls the format.
 const FORMAT: &str = "focus-brush project";
 
-/// The version that is written. It changes when an older program would misread the file.
-pub(crate) const VERSION: u64 = 1;
+/// The newest version. It changes when an older program would misread the file.
+pub(crate) const VERSION: u64 = 2;
+
+/// The version of a project without layers: older programs lose nothing of it.
+const WITHOUT_LAYERS: u64 = 1;
 
 /// The largest manifest that is read, bytes.
 const LARGEST_MANIFEST: u64 = 16 << 20;
@@ -40,6 +44,8 @@ pub(crate) struct Manifest {
     pub view: Value,
     #[serde(default)]
     pub focus_map: Option<MapEntry>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub layers: Option<LayerEntries>,
     /// Checksum of every other entry by its name: hex SHA-256 of its unpacked bytes.
     #[serde(default)]
     pub checksums: BTreeMap<String, String>,
@@ -70,9 +76,9 @@ pub(crate) struct MapEntry {
 }
 
 impl Manifest {
-    /// A manifest of this version.
-    pub fn format() -> (String, u64) {
-        (FORMAT.to_string(), VERSION)
+    /// What a manifest calls the format, and the oldest version that can say it all.
+    pub fn format(has_layers: bool) -> (String, u64) {
+        (FORMAT.to_string(), if has_layers { VERSION } else { WITHOUT_LAYERS })
     }
 
     /// Reads and checks the manifest.

@@ -7,7 +7,8 @@
 //! | --- | --- |
 //! | `manifest.json` | format, version, scene, cameras, exposure, brush, view, checksums of the rest |
 //! | `atlas.bin` | the unwrapping, as the atlas writes it |
-//! | `focus.f32` | t and anchor a texel, f32 little endian, row by row |
+//! | `focus.f32` | t and anchor a texel, f32 little endian, row by row: what all layers make together |
+//! | `layers/N.f32`, `layers/N.mask.f32` | the same of one layer, and its mask; where there are layers |
 //! | `masks/N.f32` | the aperture mask of camera N: width and height as u32, then transmissions as f32 |
 //!
 //! The scene itself stays where it is; its path is kept relative to the project, so that both may be moved
@@ -17,8 +18,10 @@ use crate::ProjectError;
 use crate::camera::{camera_from_json, camera_to_json};
 use crate::container::{Container, DAMAGED_CURE, pack};
 use crate::disk::{read_bytes, write_verified};
+use crate::layer_entries;
 use crate::manifest::{CameraEntry, MANIFEST, Manifest, MapEntry, SceneReference, sha256_hex};
-use focus::{Brush, FocusMap};
+use crate::texel_bytes::pairs;
+use focus::{Brush, FocusLayer, FocusMap, LayerStack};
 use lens::{ApertureMask, ApertureShape, Camera, Exposure, FocusOffset};
 use serde_json::Value;
 use std::path::{Component, Path, PathBuf};
@@ -65,6 +68,9 @@ pub struct ProjectFile {
     pub atlas: Option<Vec<u8>>,
     /// The focus map; `None` if nothing is painted.
     pub focus_map: Option<FocusMap>,
+    /// The layers that make the focus map; `None` where one plain layer does. The values of adjustment layers are
+    /// not saved: they follow from curve and camera ([`LayerStack::evaluate`]).
+    pub layers: Option<LayerStack>,
     /// The background's focus where there is no focus map; else the map's own counts.
     pub background_focus: FocusOffset,
 }
@@ -96,6 +102,7 @@ impl ProjectFile {
             view: Value::Null,
             atlas: None,
             focus_map: None,
+            layers: None,
             background_focus: FocusOffset::STANDARD,
         })
     }
@@ -121,7 +128,7 @@ impl ProjectFile {
         let bytes =
             self.to_bytes(file).map_err(|source| ProjectError::Write { file: file.to_owned(), source })?;
         write_verified(file, &bytes, |back| match Self::from_bytes(file, back) {
-            Ok(read) if read.scene_sha256 == self.scene_sha256 && read.focus_map == self.focus_map => Ok(()),
+            Ok(read) if self.is_same_paint(&read) => Ok(()),
             Ok(_) => Err("its content differs".to_string()),
             Err(error) => Err(error.to_string()),
         })
@@ -130,6 +137,21 @@ impl ProjectFile {
     /// Reads a document. The scene's path is made absolute from where the project now lies.
     pub fn load(file: &Path) -> Result<Self, ProjectError> {
         Self::from_bytes(file, &read_bytes(file)?)
+    }
+
+    /// Whether another has the same scene and paint. The values of adjustment layers are not looked at.
+    fn is_same_paint(&self, other: &Self) -> bool {
+        let layers = |project: &Self| {
+            project.layers.clone().map(|stack| {
+                let same = stack.layers().iter().map(|layer| {
+                    let values = layer.curve.is_none().then(|| layer.map.clone());
+                    (layer.name.clone(), values, layer.map.mask_rows(), layer.curve.clone())
+                });
+                same.collect::<Vec<_>>()
+            })
+        };
+        (&self.scene_sha256, &self.focus_map) == (&other.scene_sha256, &other.focus_map)
+            && layers(self) == layers(other)
     }
 
     /// What would be saved but not read again.
@@ -144,8 +166,14 @@ impl ProjectFile {
         if let Some(problem) = self.brush.problem() {
             return Err(error(format!("brush: {problem}")));
         }
-        let usable =
-            self.focus_map.as_ref().is_none_or(FocusMap::is_valid) && self.background_focus.is_valid();
+        let layers = self.layers.iter().flat_map(LayerStack::layers);
+        let size = self.focus_map.as_ref().map(FocusMap::size);
+        if self.layers.as_ref().is_some_and(|layers| Some(layers.size()) != size) {
+            return Err(error("its layers do not have the size of its focus map".to_string()));
+        }
+        let usable = self.focus_map.as_ref().is_none_or(FocusMap::is_valid)
+            && layers.into_iter().all(FocusLayer::is_valid)
+            && self.background_focus.is_valid();
         if usable { Ok(()) } else { Err(error("the focus has values that are not finite".to_string())) }
     }
 
@@ -171,8 +199,9 @@ impl ProjectFile {
             entries.push((FOCUS_MAP.to_string(), bytes));
             MapEntry { entry: FOCUS_MAP.to_string(), width: map.width(), height: map.height() }
         });
+        let layers = self.layers.as_ref().map(|layers| layer_entries::write(layers, &mut entries));
         let background = self.focus_map.as_ref().map_or(self.background_focus, |map| map.background);
-        let (format, version) = Manifest::format();
+        let (format, version) = Manifest::format(layers.is_some());
         let manifest = Manifest {
             format,
             version,
@@ -188,6 +217,7 @@ impl ProjectFile {
             brush: self.brush.clone(),
             view: self.view.clone(),
             focus_map,
+            layers,
             checksums: entries.iter().map(|(name, bytes)| (name.clone(), sha256_hex(bytes))).collect(),
         };
         let manifest = serde_json::to_vec_pretty(&manifest).map_err(std::io::Error::other)?;
@@ -236,6 +266,13 @@ impl ProjectFile {
             Some(entry) => Some(read_focus_map(file, entry, &manifest, &mut container, background_focus)?),
             None => None,
         };
+        let layers = match (&manifest.layers, &manifest.focus_map) {
+            (Some(rows), Some(size)) => {
+                Some(layer_entries::read(file, rows, size, &manifest, &mut container)?)
+            }
+            (Some(_), None) => return Err(error("has layers but no focus map".to_string())),
+            (None, _) => None,
+        };
         Ok(Self {
             scene: absolute_path(&manifest.scene.path, file),
             scene_sha256: manifest.scene.sha256.clone(),
@@ -246,6 +283,7 @@ impl ProjectFile {
             view: manifest.view,
             atlas,
             focus_map,
+            layers,
             background_focus,
         })
     }
@@ -297,10 +335,7 @@ fn read_focus_map(
         );
     }
     let bytes = manifest.entry(file, container, &entry.entry, size)?;
-    let value = |bytes: &[u8]| f32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]);
-    let texels: Vec<[f32; 2]> =
-        bytes.chunks_exact(8).map(|texel| [value(&texel[..4]), value(&texel[4..])]).collect();
-    let map = FocusMap::from_rows(entry.width, entry.height, &texels, background)
+    let map = FocusMap::from_rows(entry.width, entry.height, &pairs(&bytes), background)
         .ok_or_else(|| container.error(&entry.entry, "does not have the size that the manifest says"))?;
     if !map.is_valid() {
         return Err(container.error(&entry.entry, "has values that are not finite"));

@@ -46,6 +46,67 @@ fn document(folder: &Path) -> ProjectFile {
 }
 
 #[test]
+fn layers_come_back_the_same_and_a_plain_document_stays_as_older_programs_know_it() {
+    let folder = TempDir::new().unwrap();
+    let file = folder.path().join("layers.fbrush");
+    let plain = document(folder.path());
+    plain.save(&file).unwrap();
+    let manifest = |file: &Path| {
+        let mut zip = zip::ZipArchive::new(std::fs::File::open(file).unwrap()).unwrap();
+        let manifest = zip.by_name("manifest.json").unwrap();
+        serde_json::from_reader::<_, serde_json::Value>(manifest).unwrap()
+    };
+    assert_eq!((&manifest(&file)["version"], manifest(&file).get("layers")), (&1.into(), None));
+
+    let mut masked = FocusMap::clear(130, 70);
+    masked.set(5, 6, [0.8, 0.25]);
+    masked.background = FocusOffset::SHARP;
+    let mut rows = masked.mask_rows().unwrap();
+    rows[6 * 130 + 5] = 0.75;
+    assert!(masked.set_mask_rows(Some(&rows)) && !masked.set_mask_rows(Some(&rows[1..])));
+    masked.background_mask = 0.5;
+    let curve = focus::DepthCurve::sharp_between(0.5, 20.0).unwrap();
+    let layers = vec![
+        focus::FocusLayer::painted("Paint", plain.focus_map.clone().unwrap()),
+        focus::FocusLayer {
+            opacity: 0.3,
+            blend: focus::Blend::MultiplyDefocus,
+            is_visible: false,
+            ..focus::FocusLayer::painted("far \"lamp\"", masked)
+        },
+        focus::FocusLayer {
+            curve: Some(curve),
+            ..focus::FocusLayer::painted("surface", FocusMap::new(130, 70, FocusOffset::STANDARD))
+        },
+    ];
+    let layers = focus::LayerStack::new(layers, 1).unwrap();
+    let layered = ProjectFile { layers: Some(layers.clone()), ..plain };
+    layered.save(&file).unwrap();
+    assert_eq!(manifest(&file)["version"], 2);
+    let again = ProjectFile::load(&file).unwrap();
+    assert!(again == layered);
+
+    // What cannot be is refused, on saving and on opening.
+    let small = focus::LayerStack::of(FocusMap::new(4, 4, FocusOffset::STANDARD));
+    let error = ProjectFile { layers: Some(small), ..layered.clone() }.save(&file).unwrap_err();
+    assert!(error.to_string().contains("layers"), "{error}");
+    let broken = repack(&file, &|name, bytes| match name {
+        "manifest.json" => {
+            let text = String::from_utf8(bytes).unwrap();
+            text.replacen("\"opacity\": 0.3", "\"opacity\": 3.0", 1).into_bytes()
+        }
+        _ => bytes,
+    });
+    let error = ProjectFile::load(&broken).unwrap_err().to_string();
+    assert!(error.contains("layers that cannot be used"), "{error}");
+    let damaged = repack(&file, &|name, bytes| match name {
+        "layers/1.mask.f32" => bytes[4..].into(),
+        _ => bytes,
+    });
+    assert!(ProjectFile::load(&damaged).unwrap_err().to_string().contains("layers/1.mask.f32"));
+}
+
+#[test]
 fn documents_come_back_the_same() {
     let folder = TempDir::new().unwrap();
     let file = folder.path().join("work.fbrush");
@@ -162,7 +223,7 @@ fn wrong_content_is_told_with_its_entry() {
     };
     assert!(load(&|_, bytes| bytes).is_ok());
     let cases: [(Change<'_>, &str); 8] = [
-        (&in_manifest("\"version\": 1", "\"version\": 2"), "update the program"),
+        (&in_manifest("\"version\": 1", "\"version\": 3"), "update the program"),
         (&in_manifest("focus-brush project", "shopping list"), "shopping list"),
         (&in_manifest("\"active_camera\": 1", "\"active_camera\": 2"), "camera 2 of 2"),
         (&in_manifest("\"width\": 130", "\"width\": 131"), "focus.f32"),

@@ -1,6 +1,6 @@
 //! What a session can be asked to do, and what it tells back.
 
-use crate::{CameraEdit, JobId, JobStatus, SurfaceHit};
+use crate::{CameraEdit, JobId, JobStatus, LayerEdit, SurfaceHit};
 use focus::Brush;
 use lens::{Exposure, FocusOffset};
 use std::ops::Range;
@@ -12,15 +12,8 @@ use trace::Ray;
 pub enum Command {
     /// Opens a scene or a project in the background; the document that is open stays until the new one is ready.
     Open(PathBuf),
-    /// Opens a scene with a camera file and a recipe (or a focus map) as what it begins with.
-    OpenShot {
-        /// The scene.
-        scene: PathBuf,
-        /// Its camera file.
-        camera: PathBuf,
-        /// Its recipe or focus map.
-        focus: PathBuf,
-    },
+    /// Opens a project as what a new document begins with: the first save asks for a file.
+    OpenTemplate(PathBuf),
     /// Saves to the project's own file. An error where it has none yet.
     Save,
     /// Saves to this file and keeps it as the project's own.
@@ -60,6 +53,10 @@ pub enum Command {
     CommitStroke,
     /// Takes the stroke back, leaving no trace.
     AbortStroke,
+    /// Changes the layers of focus.
+    Layer(LayerEdit),
+    /// Paints on another layer from now on, counted from the bottom.
+    ActivateLayer(usize),
     /// Gives a whole region a focus.
     Fill(FillRegion, FocusOffset),
     /// Returns everything to the ordinary lens.
@@ -138,6 +135,8 @@ pub enum Event {
     CameraChanged,
     /// Texels of the focus map changed: columns and rows.
     MapChanged(Range<u32>, Range<u32>),
+    /// The layers changed (also by undo), or another one is painted on.
+    LayersChanged,
     /// The brush changed (by picking).
     BrushChanged,
     /// A new preview is ready: [`crate::Session::preview`].

@@ -28,6 +28,7 @@ pub enum CommandId {
     ResetLayout,
     Brush,
     Smooth,
+    Sharpen,
     Erase,
     FillPart,
     FillMaterial,
@@ -44,6 +45,17 @@ pub enum CommandId {
     BrushFarther,
     BrushSharp,
     ToggleAnchor,
+    AddLayer,
+    AddDepthCurve,
+    DuplicateLayer,
+    RemoveLayer,
+    RaiseLayer,
+    LowerLayer,
+    LayerAbove,
+    LayerBelow,
+    AddMask,
+    InvertMask,
+    RemoveMask,
     OpenAperture,
     CloseAperture,
     FocusNearer,
@@ -66,6 +78,7 @@ pub enum Menu {
     Edit,
     View,
     Focus,
+    Layer,
     Lens,
     Render,
     Help,
@@ -73,8 +86,8 @@ pub enum Menu {
 
 impl Menu {
     /// All menus, left to right.
-    pub const ALL: [Menu; 7] =
-        [Menu::File, Menu::Edit, Menu::View, Menu::Focus, Menu::Lens, Menu::Render, Menu::Help];
+    pub const ALL: [Menu; 8] =
+        [Menu::File, Menu::Edit, Menu::View, Menu::Focus, Menu::Layer, Menu::Lens, Menu::Render, Menu::Help];
 
     /// The title in the menu bar.
     pub fn title(self) -> &'static str {
@@ -83,6 +96,7 @@ impl Menu {
             Menu::Edit => "Edit",
             Menu::View => "View",
             Menu::Focus => "Focus",
+            Menu::Layer => "Layer",
             Menu::Lens => "Lens",
             Menu::Render => "Render",
             Menu::Help => "Help",
@@ -184,6 +198,7 @@ pub const COMMANDS: &[CommandInfo] = &[
     row(CommandId::ResetLayout, Menu::View, None, "Reset layout", "Put the panels back where they were at first."),
     row(CommandId::Brush, Menu::Focus, Shortcut::key("B"), "Brush", "Paint the chosen focus."),
     row(CommandId::Smooth, Menu::Focus, Shortcut::key("S"), "Smooth", "Even out the painted focus."),
+    row(CommandId::Sharpen, Menu::Focus, Shortcut::shift("S"), "Sharpen", "Turn soft changes of the painted focus into hard ones."),
     row(CommandId::Erase, Menu::Focus, Shortcut::key("E"), "Reset brush", "Paint the ordinary lens back."),
     row(CommandId::FillPart, Menu::Focus, Shortcut::key("G"), "Fill object", "Give the whole clicked object the chosen focus."),
     row(CommandId::FillMaterial, Menu::Focus, None, "Fill material", "Give everything of the clicked material the chosen focus."),
@@ -200,6 +215,17 @@ pub const COMMANDS: &[CommandInfo] = &[
     row(CommandId::BrushFarther, Menu::Focus, Shortcut::key("Period"), "Blur farther", "Move the brush's focus toward far blur."),
     row(CommandId::BrushSharp, Menu::Focus, Shortcut::key("X"), "Paint sharp", "Set the brush to perfectly sharp, wherever the camera focuses."),
     row(CommandId::ToggleAnchor, Menu::Focus, Shortcut::key("A"), "Anchor: lens or point", "Paint blur relative to the lens, or to the point itself."),
+    row(CommandId::AddLayer, Menu::Layer, Shortcut::command_shift("N"), "Add layer", "Add an empty layer to paint on, above this one."),
+    row(CommandId::AddDepthCurve, Menu::Layer, None, "Add depth curve", "Add a layer that gives every depth the blur of a curve you draw."),
+    row(CommandId::DuplicateLayer, Menu::Layer, Shortcut::command("J"), "Duplicate layer", "Add a copy of this layer."),
+    row(CommandId::RemoveLayer, Menu::Layer, Shortcut::shift("Delete"), "Remove layer", "Take this layer away."),
+    row(CommandId::RaiseLayer, Menu::Layer, Shortcut::command("CloseBracket"), "Raise layer", "Move this layer above the next one."),
+    row(CommandId::LowerLayer, Menu::Layer, Shortcut::command("OpenBracket"), "Lower layer", "Move this layer beneath the one before."),
+    row(CommandId::LayerAbove, Menu::Layer, Shortcut::key("PageUp"), "Layer above", "Paint on the next layer above."),
+    row(CommandId::LayerBelow, Menu::Layer, Shortcut::key("PageDown"), "Layer beneath", "Paint on the next layer beneath."),
+    row(CommandId::AddMask, Menu::Layer, None, "Add mask", "Give this layer a mask that can be painted; it counts everywhere at first."),
+    row(CommandId::InvertMask, Menu::Layer, None, "Invert mask", "Make this layer count where it did not, and the other way round."),
+    row(CommandId::RemoveMask, Menu::Layer, None, "Remove mask", "Make this layer count everywhere."),
     row(CommandId::OpenAperture, Menu::Lens, Shortcut::key("Plus"), "Open aperture", "Open the aperture by a third of a stop."),
     row(CommandId::CloseAperture, Menu::Lens, Shortcut::key("Minus"), "Close aperture", "Close the aperture by a third of a stop."),
     row(CommandId::FocusNearer, Menu::Lens, Shortcut::shift("Comma"), "Focus nearer", "Focus the lens a twentieth nearer."),

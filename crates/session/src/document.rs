@@ -1,12 +1,12 @@
 //! What is open: the scene, its focus and its camera.
 
-use crate::input::{Input, InputKind};
+use crate::input::{CameraChoice, Input, InputKind};
 use crate::undo::Undo;
 use crate::{SessionError, Stage, Steps};
 use atlas::UnwrapOptions;
-use focus::{Brush, FocusMap};
+use focus::{Brush, Changed, FocusMap, FocusRecipe, LayerStack, RecipeEntry};
 use lens::{Camera, Exposure};
-use project::{NamedCamera, ProjectFile};
+use project::{FocusFile, NamedCamera, ProjectFile};
 use scene::{Scene, SceneCamera};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -16,7 +16,9 @@ use std::sync::Arc;
 pub struct Document {
     /// Scene, atlas and what works on them.
     pub stage: Arc<Stage>,
-    /// The focus as painted.
+    /// The layers of focus.
+    pub layers: LayerStack,
+    /// What the layers make together: the focus as it is rendered and exported.
     pub map: FocusMap,
     /// The shot camera.
     pub camera: Camera,
@@ -30,6 +32,8 @@ pub struct Document {
     pub path: Option<PathBuf>,
     /// What is odd about its files but does no harm, a sentence each.
     pub warnings: Vec<String>,
+    /// The camera's pose that the curves of the layers were evaluated for.
+    pub(crate) curves_for: glam::DMat4,
     /// What is saved beside the fields above.
     template: ProjectFile,
     /// Steps of undo and redo.
@@ -64,15 +68,86 @@ impl Document {
         let mut document = Self::of(input, unwrap, steps)?;
         document.path = is_project.then(|| path.into());
         if is_recovered {
-            document.revision += 1;
-            let what = "unsaved work from last time was restored (save it to keep it)";
-            document.warnings.push(format!("{}: {what}", path.display()));
+            document.note_recovery(path);
         }
         Ok(document)
     }
 
+    /// Opens a project as what a new document begins with: it has no file of its own until it is saved as one.
+    /// Unsaved work on the same scene is restored as by [`Self::open`].
+    pub fn open_template(
+        path: &Path,
+        unwrap: &UnwrapOptions,
+        steps: &dyn Steps,
+    ) -> Result<Self, SessionError> {
+        let template = ProjectFile::load(path)?;
+        let recovered = project::find_recovery(&recovery_path(&template.scene, false), None);
+        let is_recovered = recovered.is_some();
+        let input = Input::open_project(path, recovered.unwrap_or(template), steps)?;
+        let mut document = Self::of(input, unwrap, steps)?;
+        if is_recovered {
+            document.note_recovery(path);
+        }
+        Ok(document)
+    }
+
+    /// Begins a document: a scene with a camera and a focus (a recipe or a focus map), where they are given.
+    pub fn begin(
+        scene: &Path,
+        camera: Option<&CameraChoice>,
+        focus: Option<&Path>,
+        unwrap: &UnwrapOptions,
+        steps: &dyn Steps,
+    ) -> Result<Self, SessionError> {
+        if InputKind::of(scene)? != InputKind::Scene {
+            return Err(SessionError::bad(scene, "is no scene (give a .glb or .gltf)"));
+        }
+        let input = Input::open(scene, steps)?;
+        let camera = input.camera(camera)?;
+        let mut document = Self::of(input, unwrap, steps)?;
+        document.camera = camera;
+        if let Some(focus) = focus {
+            document.map = document.imported_focus(focus)?;
+            document.layers = LayerStack::of(document.map.clone());
+        }
+        Ok(document)
+    }
+
+    /// The focus map that a recipe or a focus map gives this document.
+    pub(crate) fn imported_focus(&self, path: &Path) -> Result<FocusMap, SessionError> {
+        let stage = &self.stage;
+        let recipe = match project::read_focus(path)? {
+            FocusFile::Map(map) if map.atlas_hash.is_some() => {
+                return Ok(map.into_atlas_map(path, &stage.atlas)?);
+            }
+            FocusFile::Map(map) => FocusRecipe {
+                background: map.background.map(RecipeEntry::Value),
+                default: RecipeEntry::Map(Arc::new(map.image)),
+                ..Default::default()
+            },
+            FocusFile::Recipe(recipe) => recipe,
+        };
+        let focus = recipe.evaluate(&stage.scene).map_err(|error| SessionError::bad(path, error))?;
+        Ok(focus.bake(&stage.texels))
+    }
+
+    fn note_recovery(&mut self, path: &Path) {
+        self.revision += 1;
+        let what = "unsaved work from last time was restored (save it to keep it)";
+        self.warnings.push(format!("{}: {what}", path.display()));
+    }
+
     fn of(input: Input, unwrap: &UnwrapOptions, steps: &dyn Steps) -> Result<Self, SessionError> {
         let (stage, map) = input.stage(unwrap, steps)?;
+        let stored = input.project.as_ref().and_then(|project| project.layers.clone());
+        let (layers, map) = match stored {
+            Some(mut layers) => {
+                layers.evaluate(&stage.canvas, &input.camera);
+                let map = layers.composite();
+                (layers, map)
+            }
+            None => (LayerStack::of(map.clone()), map),
+        };
         let template = match &input.project {
             Some(project) => project.clone(),
             None => {
@@ -85,7 +160,9 @@ impl Document {
         };
         Ok(Self {
             stage: Arc::new(stage),
+            layers,
             map,
+            curves_for: input.camera.camera_to_world,
             camera: input.camera.clone(),
             exposure: input.exposure(),
             brush: template.brush.clone(),
@@ -109,7 +186,19 @@ impl Document {
         project.atlas = Some(self.stage.atlas.to_bytes());
         project.background_focus = self.map.background;
         project.focus_map = Some(self.map.clone());
+        project.layers = (!self.layers.is_single()).then(|| self.layers.clone());
         project
+    }
+
+    /// Brings the map up to date after `changed` texels of any layer have changed, or after any change (`None`).
+    /// Returns what changed in the map, and whether the background's focus did.
+    pub(crate) fn recomposite(&mut self, changed: Option<&Changed>) -> (Changed, bool) {
+        let background = self.map.background;
+        let changed = match changed {
+            Some(changed) => self.layers.recomposite(&mut self.map, changed),
+            None => self.layers.recomposite_all(&mut self.map),
+        };
+        (changed, background != self.map.background)
     }
 
     /// Where unsaved work is kept.

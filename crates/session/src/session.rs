@@ -273,7 +273,7 @@ impl Session {
     pub fn apply(&mut self, command: Command) -> Result<(), SessionError> {
         match command {
             Command::Open(path) => self.open(path),
-            Command::OpenShot { scene, camera, focus } => self.open_shot(scene, camera, focus),
+            Command::OpenTemplate(path) => self.open_template(path),
             Command::Undo => self.step_back(),
             Command::Redo => self.step_forward(),
             Command::Camera(edit) => self.edit_camera(edit),
@@ -305,6 +305,8 @@ impl Session {
             Command::ExtendStroke(point) => self.extend_stroke(point),
             Command::CommitStroke => self.commit_stroke(),
             Command::AbortStroke => self.abort_stroke(),
+            Command::Layer(edit) => self.edit_layers(edit),
+            Command::ActivateLayer(index) => self.activate_layer(index),
             Command::Fill(region, focus) => self.fill(region, focus),
             Command::ResetMap => self.reset_map(),
             Command::SetBackgroundFocus(focus) => {
@@ -377,7 +379,7 @@ impl Session {
             return self.abort_stroke();
         }
         let document = self.opened()?;
-        let undone = document.undo.undo(&mut document.map, &mut document.camera);
+        let undone = document.undo.undo(&mut document.layers, &mut document.camera);
         self.after_step(undone)
     }
 
@@ -386,7 +388,7 @@ impl Session {
             return Ok(());
         }
         let document = self.opened()?;
-        let done = document.undo.redo(&mut document.map, &mut document.camera);
+        let done = document.undo.redo(&mut document.layers, &mut document.camera);
         self.after_step(done)
     }
 
@@ -397,11 +399,17 @@ impl Session {
                 self.opened()?.revision += 1;
                 self.events.push(Event::CameraChanged);
                 self.show_camera();
-                Ok(())
+                self.follow_camera()
             }
-            Some(Undone::Paint { texels, background }) => {
+            Some(Undone::Paint { texels, .. }) => {
                 self.opened()?.revision += 1;
-                self.show_paint(Changed { texels }, background)
+                self.events.push(Event::LayersChanged);
+                self.show_layers(Some(Changed { texels }))
+            }
+            Some(Undone::Layers) => {
+                self.opened()?.revision += 1;
+                self.events.push(Event::LayersChanged);
+                self.show_layers(None)
             }
         }
     }
@@ -418,7 +426,25 @@ impl Session {
         document.revision += 1;
         self.events.push(Event::CameraChanged);
         self.show_camera();
-        Ok(())
+        self.follow_camera()
+    }
+
+    /// Depth curves follow the shot camera.
+    fn follow_camera(&mut self) -> Result<(), SessionError> {
+        let document = self.opened()?;
+        if !document.layers.has_curves() || document.curves_for == document.camera.camera_to_world {
+            return Ok(());
+        }
+        document.curves_for = document.camera.camera_to_world;
+        let stage = document.stage.clone();
+        document.layers.evaluate(&stage.canvas, &document.camera);
+        self.show_layers(None)
+    }
+
+    /// Brings the map up to date after a change of layers (of these texels, or of whatever) and shows it.
+    fn show_layers(&mut self, changed: Option<Changed>) -> Result<(), SessionError> {
+        let (changed, background) = self.opened()?.recomposite(changed.as_ref());
+        self.show_paint(changed, background)
     }
 
     /// Shows changed texels in the views.

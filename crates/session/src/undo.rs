@@ -1,6 +1,6 @@
 //! Undo and redo of paint and lens in the order in which they happened.
 
-use focus::{Edit, FocusMap};
+use focus::{Edit, LayerStack};
 use lens::Camera;
 use std::collections::VecDeque;
 
@@ -10,8 +10,10 @@ const BUDGET_BYTES: usize = 256 << 20;
 /// One step.
 #[derive(Clone, Debug)]
 enum Step {
-    /// Of the focus map.
-    Paint(Edit),
+    /// Of the map of one layer.
+    Paint { layer: usize, edit: Edit },
+    /// Of the layers themselves.
+    Layers { name: &'static str, before: Box<LayerStack>, after: Box<LayerStack> },
     /// Of the camera.
     Camera { name: &'static str, before: Box<Camera>, after: Box<Camera> },
 }
@@ -19,14 +21,17 @@ enum Step {
 impl Step {
     fn name(&self) -> &str {
         match self {
-            Self::Paint(edit) => edit.name(),
-            Self::Camera { name, .. } => name,
+            Self::Paint { edit, .. } => edit.name(),
+            Self::Layers { name, .. } | Self::Camera { name, .. } => name,
         }
     }
 
     fn bytes(&self) -> usize {
         match self {
-            Self::Paint(edit) => edit.bytes(),
+            Self::Paint { edit, .. } => size_of::<Step>() + edit.bytes(),
+            Self::Layers { before, after, .. } => {
+                size_of::<Step>() + before.bytes_beside(after) + after.bytes_beside(before)
+            }
             Self::Camera { .. } => size_of::<Step>() + 2 * size_of::<Camera>(),
         }
     }
@@ -35,8 +40,10 @@ impl Step {
 /// What a step of undo or redo changed.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Undone {
-    /// These texels, and perhaps the background.
+    /// These texels of a layer, and perhaps its background.
     Paint { texels: Vec<[u32; 2]>, background: bool },
+    /// The layers, in whatever way.
+    Layers,
     /// The camera.
     Camera,
 }
@@ -46,15 +53,27 @@ pub(crate) enum Undone {
 pub(crate) struct Undo {
     done: VecDeque<Step>,
     undone: Vec<Step>,
-    /// Whether the next camera edit of the same name joins the latest step.
+    /// Whether the next edit of the same name joins the latest step.
     run: bool,
 }
 
 impl Undo {
-    /// Takes up a change of the map.
-    pub fn push_paint(&mut self, edit: Edit) {
-        self.push(Step::Paint(edit));
+    /// Takes up a change of the map of a layer.
+    pub fn push_paint(&mut self, layer: usize, edit: Edit) {
+        self.push(Step::Paint { layer, edit });
         self.run = false;
+    }
+
+    /// Takes up a change of the layers; edits of one name in a row are one step where `joins` says so.
+    pub fn push_layers(&mut self, name: &'static str, before: LayerStack, after: LayerStack, joins: bool) {
+        match self.done.back_mut() {
+            Some(Step::Layers { name: last, after: end, .. }) if self.run && joins && *last == name => {
+                **end = after;
+                self.undone.clear();
+            }
+            _ => self.push(Step::Layers { name, before: before.into(), after: after.into() }),
+        }
+        self.run = joins;
     }
 
     /// Takes up a change of the camera; edits of one name in a row are one step.
@@ -69,7 +88,7 @@ impl Undo {
         self.run = true;
     }
 
-    /// Ends a run of camera edits.
+    /// Ends a run of edits.
     pub fn finish_run(&mut self) {
         self.run = false;
     }
@@ -88,12 +107,18 @@ impl Undo {
     }
 
     /// Takes the latest step back.
-    pub fn undo(&mut self, map: &mut FocusMap, camera: &mut Camera) -> Option<Undone> {
+    pub fn undo(&mut self, layers: &mut LayerStack, camera: &mut Camera) -> Option<Undone> {
         let step = self.done.pop_back()?;
         self.run = false;
         let undone = match &step {
-            Step::Paint(edit) => {
-                Undone::Paint { texels: edit.revert(map).texels, background: edit.changes_background() }
+            Step::Paint { layer, edit } => {
+                layers.activate(*layer);
+                let texels = edit.revert(&mut layers.active_mut().map).texels;
+                Undone::Paint { texels, background: edit.changes_background() }
+            }
+            Step::Layers { before, .. } => {
+                *layers = (**before).clone();
+                Undone::Layers
             }
             Step::Camera { before, .. } => {
                 *camera = (**before).clone();
@@ -105,12 +130,18 @@ impl Undo {
     }
 
     /// Makes the step again that was taken back last.
-    pub fn redo(&mut self, map: &mut FocusMap, camera: &mut Camera) -> Option<Undone> {
+    pub fn redo(&mut self, layers: &mut LayerStack, camera: &mut Camera) -> Option<Undone> {
         let step = self.undone.pop()?;
         self.run = false;
         let done = match &step {
-            Step::Paint(edit) => {
-                Undone::Paint { texels: edit.apply(map).texels, background: edit.changes_background() }
+            Step::Paint { layer, edit } => {
+                layers.activate(*layer);
+                let texels = edit.apply(&mut layers.active_mut().map).texels;
+                Undone::Paint { texels, background: edit.changes_background() }
+            }
+            Step::Layers { after, .. } => {
+                *layers = (**after).clone();
+                Undone::Layers
             }
             Step::Camera { after, .. } => {
                 *camera = (**after).clone();
@@ -142,7 +173,12 @@ impl Undo {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use focus::{FocusLayer, FocusMap};
     use lens::FocusOffset;
+
+    fn blank() -> LayerStack {
+        LayerStack::of(FocusMap::new(4, 4, FocusOffset::STANDARD))
+    }
 
     fn focused(at: f64) -> Camera {
         Camera { focus_distance: at, ..Camera::default() }
@@ -151,19 +187,19 @@ mod tests {
     #[test]
     fn a_dragged_slider_is_one_step() {
         let mut undo = Undo::default();
-        let mut map = FocusMap::new(4, 4, FocusOffset::STANDARD);
+        let mut layers = blank();
         let mut camera = focused(3.0);
         for k in 0..5 {
             undo.push_camera("Focus distance", focused(3.0 + k as f64), focused(4.0 + k as f64));
         }
         undo.finish_run();
         undo.push_camera("Focus distance", focused(8.0), focused(9.0));
-        assert_eq!(undo.undo(&mut map, &mut camera), Some(Undone::Camera));
+        assert_eq!(undo.undo(&mut layers, &mut camera), Some(Undone::Camera));
         assert_eq!(camera.focus_distance, 8.0);
-        undo.undo(&mut map, &mut camera);
+        undo.undo(&mut layers, &mut camera);
         assert_eq!(camera.focus_distance, 3.0);
-        assert_eq!(undo.undo(&mut map, &mut camera), None);
-        undo.redo(&mut map, &mut camera);
+        assert_eq!(undo.undo(&mut layers, &mut camera), None);
+        undo.redo(&mut layers, &mut camera);
         assert_eq!(camera.focus_distance, 8.0);
     }
 
@@ -177,32 +213,54 @@ mod tests {
         let (ten, budget) = (undo.bytes(), undo.bytes() / 2);
         undo.forget_beyond(budget);
         assert!(undo.bytes() <= budget && undo.bytes() > ten / 3);
-        let (mut map, mut camera) = (FocusMap::new(4, 4, FocusOffset::STANDARD), focused(13.0));
-        undo.undo(&mut map, &mut camera);
+        let (mut layers, mut camera) = (blank(), focused(13.0));
+        undo.undo(&mut layers, &mut camera);
         assert_eq!(camera.focus_distance, 12.0);
         undo.forget_beyond(0);
         assert_eq!(undo.names().count(), 1, "the latest is kept");
     }
 
     #[test]
-    fn paint_and_lens_are_undone_in_order() {
+    fn paint_layers_and_lens_are_undone_in_order() {
         let mut undo = Undo::default();
-        let before = FocusMap::new(4, 4, FocusOffset::STANDARD);
-        let mut map = before.clone();
-        map.set(1, 2, [0.5, 1.0]);
-        let painted = map.clone();
+        let mut layers = blank();
+        let before = layers.clone();
+        layers.active_mut().map.set(1, 2, [0.5, 1.0]);
+        let edit = Edit::between("Brush stroke", &before.active().map, &layers.active().map).unwrap();
+        undo.push_paint(0, edit);
+        let painted = layers.clone();
+        assert!(layers.insert(FocusLayer::painted("Layer 1", FocusMap::clear(4, 4))));
+        undo.push_layers("Add layer", painted.clone(), layers.clone(), false);
+        let two = layers.clone();
         let mut camera = focused(5.0);
-        undo.push_paint(Edit::between("Brush stroke", &before, &map).unwrap());
         undo.push_camera("Focus distance", focused(3.0), focused(5.0));
         assert_eq!(undo.undo_name(), Some("Focus distance"));
-        undo.undo(&mut map, &mut camera);
-        assert_eq!((camera.focus_distance, &map), (3.0, &painted));
-        let undone = undo.undo(&mut map, &mut camera);
+        undo.undo(&mut layers, &mut camera);
+        assert_eq!((camera.focus_distance, &layers), (3.0, &two));
+        assert_eq!(undo.undo(&mut layers, &mut camera), Some(Undone::Layers));
+        assert_eq!(layers, painted);
+        let undone = undo.undo(&mut layers, &mut camera);
         assert_eq!(undone, Some(Undone::Paint { texels: vec![[1, 2]], background: false }));
-        assert_eq!(map, before);
-        undo.redo(&mut map, &mut camera);
-        assert_eq!(map, painted);
+        assert_eq!(layers, before);
+        undo.redo(&mut layers, &mut camera);
+        undo.redo(&mut layers, &mut camera);
+        assert_eq!(layers, two);
         undo.push_camera("Focus distance", focused(3.0), focused(6.0));
         assert_eq!(undo.redo_name(), None, "a new step forgets what was undone");
+    }
+
+    #[test]
+    fn a_dragged_opacity_is_one_step() {
+        let mut undo = Undo::default();
+        let (mut layers, mut camera) = (blank(), focused(3.0));
+        let first = layers.clone();
+        for k in 1..=5 {
+            let before = layers.clone();
+            layers.active_mut().opacity = 1.0 - 0.1 * k as f64;
+            undo.push_layers("Layer opacity", before, layers.clone(), true);
+        }
+        undo.undo(&mut layers, &mut camera);
+        assert_eq!(layers, first);
+        assert_eq!(undo.undo_name(), None);
     }
 }

@@ -188,6 +188,70 @@ fn what_is_saved_is_opened_again() {
 }
 
 #[test]
+fn the_unwrapped_scene_is_written_in_the_background_or_not_at_all() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = folder.path().join("quads.glb");
+    tiny_glb::write(&scene);
+    let mut session = opened(&scene);
+    let unwrapped = folder.path().join("unwrapped.glb");
+    session.apply(Command::ExportScene(unwrapped.clone())).unwrap();
+    let job = session.jobs().pop().expect("it is done in the background");
+    assert!(job.label.contains("unwrapped.glb") && job.can_cancel, "{job:?}");
+    let events = settle(&mut session);
+    assert!(events.contains(&Event::Written(unwrapped.clone())));
+    let again = session::load_scene(&unwrapped, &progress::Unwatched).unwrap();
+    let document = session.document().unwrap();
+    assert_eq!(again.triangles.len(), document.scene().triangles.len());
+    let size = glam::Vec2::new(document.stage.atlas.width as f32, document.stage.atlas.height as f32);
+    let place = again.corner_uv(0, 1)[0] * size;
+    assert!(place.distance(document.stage.atlas.corners[0][0]) < 1e-3, "TEXCOORD_1 is the atlas");
+
+    let wrong = folder.path().join("unwrapped.obj");
+    session.apply(Command::ExportScene(wrong.clone())).unwrap();
+    while !session.is_settled() {
+        std::thread::sleep(Duration::from_millis(5));
+        let failed = session.poll().into_iter().any(|event| matches!(event, Event::Failed(_)));
+        assert!(!failed || !wrong.exists());
+    }
+
+    // Cancelled before it began: there is no file.
+    let progress = session::JobProgress::default();
+    progress.cancel();
+    let never = folder.path().join("never.glb");
+    let stage = &session.document().unwrap().stage;
+    let stopped = atlas::write_glb(&stage.scene, &stage.atlas, &never, &progress);
+    assert!(matches!(stopped, Err(atlas::AtlasError::Cancelled)) && !never.exists());
+}
+
+#[test]
+fn a_template_begins_a_document_without_a_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = folder.path().join("quads.glb");
+    let template = folder.path().join("template.fbrush");
+    tiny_glb::write(&scene);
+    let recipe = folder.path().join("recipe.json");
+    std::fs::write(&recipe, r#"{"nodes": {"card": {"t": 1.1, "anchor": 1}}}"#).unwrap();
+    let unwrap = Default::default();
+    let begun = session::Document::begin(&scene, None, Some(&recipe), &unwrap, &progress::Unwatched).unwrap();
+    begun.to_project().save(&template).unwrap();
+    let bytes = std::fs::read(&template).unwrap();
+
+    let mut session = Session::new(SessionOptions { preview_size: 120, ..Default::default() }).unwrap();
+    session.apply(Command::OpenTemplate(template.clone())).unwrap();
+    settle(&mut session);
+    let document = session.document().unwrap();
+    assert_eq!((document.path.as_ref(), document.is_unsaved()), (None, false));
+    let card = session.pick(&session.picture_ray(DVec2::new(0.4, 0.5)).unwrap()).unwrap();
+    assert!((session.focus_at(&card).unwrap().t - 1.1).abs() < 1e-6);
+    assert!(session.apply(Command::Save).is_err(), "a template is not saved over");
+    let own = folder.path().join("own.fbrush");
+    session.apply(Command::SaveAs(own.clone())).unwrap();
+    settle(&mut session);
+    assert_eq!(session.document().unwrap().path.as_ref(), Some(&own));
+    assert_eq!(std::fs::read(&template).unwrap(), bytes);
+}
+
+#[test]
 fn unsaved_work_is_restored() {
     let folder = tempfile::tempdir().unwrap();
     let scene = folder.path().join("quads.glb");

@@ -25,6 +25,9 @@ pub fn brush_panel(ui: &mut Ui, document: &Document, hover: Option<SurfaceHit>, 
         row(ui, "Strength", STRENGTH_TIP, |ui| {
             ui.add(Slider::new(&mut brush.strength, 0.0..=1.0).max_decimals(2))
         });
+        let tip =
+            "The share of the strength that one dab does: below 1 a stroke builds up where dabs overlap.";
+        row(ui, "Flow", tip, |ui| ui.add(Slider::new(&mut brush.flow, 0.01..=1.0).max_decimals(2)));
         row(ui, "Hardness", HARDNESS_TIP, |ui| {
             ui.add(Slider::new(&mut brush.hardness, 0.0..=1.0).max_decimals(2))
         });
@@ -46,12 +49,13 @@ pub fn brush_panel(ui: &mut Ui, document: &Document, hover: Option<SurfaceHit>, 
                 })
                 .response
         });
-        let tip = "Which of the two painted numbers the brush touches: the blur t, what it is relative to, or both.";
+        let tip = "Which of the two painted numbers the brush touches: the blur t, what it is relative to, both, or only how much the layer counts.";
         row(ui, "Touches", tip, |ui| {
             let channels = [
                 (Channels::Both, "blur and anchor"),
                 (Channels::T, "blur only"),
                 (Channels::Anchor, "anchor only"),
+                (Channels::Mask, "mask only"),
             ];
             let name =
                 channels.iter().find(|(channel, _)| *channel == brush.channels).map_or("", |(_, name)| name);

@@ -1,11 +1,15 @@
 //! The inspector: what the document is made of, section by section. Panels read the document and emit actions.
 
 mod brush_panel;
+mod curve_editor;
 mod focus_panel;
+mod layers_panel;
 mod lens_panel;
 mod modelled_panel;
 mod scene_panel;
 mod shape_panel;
+
+pub use layers_panel::is_layer_command_possible;
 
 use super::{Action, ViewSettings, controls};
 use egui::{CollapsingHeader, ScrollArea, Ui};
@@ -37,6 +41,7 @@ impl Inspector {
             };
             section(ui, "Lens", true, |ui| lens_panel::lens_panel(ui, document, actions));
             section(ui, "Focus", true, |ui| focus_panel::focus_panel(ui, document, actions));
+            section(ui, "Layers", true, |ui| layers_panel::layers_panel(ui, document, actions));
             section(ui, "Brush", true, |ui| brush_panel::brush_panel(ui, document, hover, actions));
             section(ui, "Picture", true, |ui| lens_panel::picture_panel(ui, document, settings, actions));
             section(ui, "Scene", false, |ui| self.scene.ui(ui, document, actions));

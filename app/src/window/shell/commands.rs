@@ -9,7 +9,7 @@ use crate::window::{Tool, ViewSettings, layout};
 use egui::Context;
 use focus::{Brush, BrushMode};
 use lens::{Exposure, FocusOffset};
-use session::{CameraEdit, Command, CommandId, FillRegion};
+use session::{CameraEdit, Command, CommandId, FillRegion, LayerEdit};
 
 /// What a key changes of the brush's size.
 const SIZE_STEP: f64 = 1.15;
@@ -50,6 +50,7 @@ impl Shell {
             }
             CommandId::Brush => self.choose(Tool::Brush),
             CommandId::Smooth => self.choose(Tool::Smooth),
+            CommandId::Sharpen => self.choose(Tool::Sharpen),
             CommandId::Erase => self.choose(Tool::Reset),
             CommandId::FillPart => self.choose(Tool::FillObject),
             CommandId::FillMaterial => self.choose(Tool::FillMaterial),
@@ -80,6 +81,17 @@ impl Shell {
             CommandId::ToggleAnchor => self.edit_brush(|brush, _| {
                 brush.target.anchor = if brush.target.anchor < 0.5 { 1.0 } else { 0.0 };
             }),
+            CommandId::AddLayer => self.apply(Command::Layer(LayerEdit::AddPaint)),
+            CommandId::AddDepthCurve => self.apply(Command::Layer(LayerEdit::AddCurve)),
+            CommandId::DuplicateLayer => self.edit_layer(LayerEdit::Duplicate),
+            CommandId::RemoveLayer => self.edit_layer(LayerEdit::Remove),
+            CommandId::RaiseLayer => self.edit_layer(|from| LayerEdit::Shift { from, to: from + 1 }),
+            CommandId::LowerLayer => self.edit_layer(|from| LayerEdit::Shift { from, to: from - 1 }),
+            CommandId::LayerAbove => self.activate_layer(1),
+            CommandId::LayerBelow => self.activate_layer(-1),
+            CommandId::AddMask => self.edit_layer(LayerEdit::AddMask),
+            CommandId::InvertMask => self.edit_layer(LayerEdit::InvertMask),
+            CommandId::RemoveMask => self.edit_layer(LayerEdit::RemoveMask),
             CommandId::OpenAperture => {
                 self.edit_camera(|camera| CameraEdit::FNumber(camera.f_number() / THIRD_STOP))
             }
@@ -127,6 +139,20 @@ impl Shell {
         let mode = tool.mode(if own { document.brush.mode } else { BrushMode::Set });
         self.edit_brush(|brush, _| brush.mode = mode);
         self.tool = tool;
+    }
+
+    /// Changes the layer that is painted on.
+    fn edit_layer(&mut self, edit: impl FnOnce(usize) -> LayerEdit) {
+        let Some(document) = self.session.document() else { return };
+        let edit = edit(document.layers.active_index());
+        self.apply(Command::Layer(edit));
+    }
+
+    fn activate_layer(&mut self, step: isize) {
+        let Some(document) = self.session.document() else { return };
+        if let Some(index) = document.layers.active_index().checked_add_signed(step) {
+            self.apply(Command::ActivateLayer(index));
+        }
     }
 
     fn edit_brush(&mut self, edit: impl FnOnce(&mut Brush, f64)) {

@@ -6,9 +6,9 @@ use crate::error::file_name;
 use crate::render::{RenderOptions, Renderer, render};
 use crate::steps::JobSteps;
 use crate::{Aov, SessionError, write_unwrapped};
-use focus::{Focus, FocusMap};
-use project::{FocusFile, FocusMapFile, PictureOptions, write_focus_map, write_picture};
-use std::path::{Path, PathBuf};
+use focus::Focus;
+use project::{FocusMapFile, PictureOptions, write_focus_map, write_picture};
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -31,18 +31,11 @@ impl Session {
         })
     }
 
-    pub(super) fn open_shot(
-        &mut self,
-        scene: PathBuf,
-        camera: PathBuf,
-        focus: PathBuf,
-    ) -> Result<(), SessionError> {
+    pub(super) fn open_template(&mut self, path: PathBuf) -> Result<(), SessionError> {
         let unwrap = self.options.unwrap.clone();
-        let label = format!("opening {}", file_name(&scene));
+        let label = format!("opening {}", file_name(&path));
         self.start(label, move |progress| {
-            let mut document = Document::open(&scene, &unwrap, &JobSteps { progress })?;
-            document.camera = project::read_camera(&camera, &document.camera)?;
-            document.map = imported(&focus, &document)?;
+            let document = Document::open_template(&path, &unwrap, &JobSteps { progress })?;
             Ok(Outcome::Opened(Box::new(document)))
         })
     }
@@ -137,8 +130,8 @@ impl Session {
 
     pub(super) fn export_scene(&mut self, path: PathBuf) -> Result<(), SessionError> {
         let stage = self.opened()?.stage.clone();
-        self.start(format!("writing {}", file_name(&path)), move |_| {
-            write_unwrapped(&path, &stage.scene, &stage.atlas)?;
+        self.start(format!("writing {}", file_name(&path)), move |progress| {
+            write_unwrapped(&path, &stage.scene, &stage.atlas, &JobSteps { progress })?;
             Ok(Outcome::Written(path, Vec::new()))
         })
     }
@@ -147,8 +140,8 @@ impl Session {
     pub(super) fn import_focus_map(&mut self, path: PathBuf) -> Result<(), SessionError> {
         self.commit_stroke()?;
         let document = self.opened()?;
-        let map = imported(&path, document)?;
-        self.replace_map("Import focus", map)
+        let map = document.imported_focus(&path)?;
+        self.import_map(map)
     }
 
     pub(super) fn render_truth(&mut self, samples_per_pixel: u32) -> Result<(), SessionError> {
@@ -189,20 +182,4 @@ impl Drop for Session {
             self.forget_recovery();
         }
     }
-}
-
-/// The focus map that a file gives a document.
-fn imported(path: &Path, document: &Document) -> Result<FocusMap, SessionError> {
-    let stage = &document.stage;
-    let recipe = match project::read_focus(path)? {
-        FocusFile::Map(map) if map.atlas_hash.is_some() => return Ok(map.into_atlas_map(path, &stage.atlas)?),
-        FocusFile::Map(map) => focus::FocusRecipe {
-            background: map.background.map(focus::RecipeEntry::Value),
-            default: focus::RecipeEntry::Map(Arc::new(map.image)),
-            ..Default::default()
-        },
-        FocusFile::Recipe(recipe) => recipe,
-    };
-    let focus = recipe.evaluate(&stage.scene).map_err(|error| SessionError::bad(path, error))?;
-    Ok(focus.bake(&stage.texels))
 }

@@ -2,9 +2,9 @@
 
 use super::Session;
 use crate::picking::pick;
-use crate::{FillRegion, SessionError, StrokePoint, StrokeTarget, SurfaceHit};
-use focus::{Changed, Channels, Edit, FillTarget, FocusMap, PenSample, Stroke, fill};
-use lens::FocusOffset;
+use crate::{Event, FillRegion, LayerEdit, SessionError, Stage, StrokePoint, StrokeTarget, SurfaceHit};
+use focus::{Brush, Channels, Edit, FillTarget, FocusLayer, FocusMap, LayerStack, PenSample, Stroke, fill};
+use lens::{Camera, FocusOffset};
 
 impl Session {
     pub(super) fn begin_stroke(&mut self, point: StrokePoint) -> Result<(), SessionError> {
@@ -12,7 +12,10 @@ impl Session {
             self.commit_stroke()?;
         }
         let document = self.opened()?;
-        let stroke = Stroke::begin(&document.map, document.stage.canvas.clone(), document.brush.clone());
+        let layer = document.layers.active();
+        let channels = paintable(layer, document.brush.channels)?;
+        let brush = Brush { channels, ..document.brush.clone() };
+        let stroke = Stroke::begin(&layer.map, document.stage.canvas.clone(), brush);
         self.stroke = Some(stroke.map_err(|error| SessionError::BadInput(error.to_string()))?);
         self.extend_stroke(point)
     }
@@ -30,15 +33,16 @@ impl Session {
         };
         let front = document.stage.scene.area_normal(hit.point.triangle).try_normalize();
         let hit = focus::SurfaceHit { position: hit.position, normal: front.map(|n| n.as_vec3()) };
-        let changed = stroke.extend(&mut document.map, hit, PenSample { pressure: point.pressure as f64 });
-        self.show_paint(changed, false)
+        let pen = PenSample { pressure: point.pressure as f64 };
+        let changed = stroke.extend(&mut document.layers.active_mut().map, hit, pen);
+        self.show_layers(Some(changed))
     }
 
     pub(super) fn commit_stroke(&mut self) -> Result<(), SessionError> {
         let Some(stroke) = self.stroke.take() else { return Ok(()) };
         let document = self.opened()?;
-        if let Some(edit) = stroke.commit(&document.map) {
-            document.undo.push_paint(edit);
+        if let Some(edit) = stroke.commit(&document.layers.active().map) {
+            document.undo.push_paint(document.layers.active_index(), edit);
             document.revision += 1;
             self.preview_thread.settle();
         }
@@ -47,8 +51,8 @@ impl Session {
 
     pub(super) fn abort_stroke(&mut self) -> Result<(), SessionError> {
         let Some(stroke) = self.stroke.take() else { return Ok(()) };
-        let changed = stroke.abort(&mut self.opened()?.map);
-        self.show_paint(changed, false)
+        let changed = stroke.abort(&mut self.opened()?.layers.active_mut().map);
+        self.show_layers(Some(changed))
     }
 
     pub(super) fn fill(&mut self, region: FillRegion, focus: FocusOffset) -> Result<(), SessionError> {
@@ -78,43 +82,85 @@ impl Session {
     ) -> Result<(), SessionError> {
         self.commit_stroke()?;
         let document = self.opened()?;
-        let before = document.map.clone();
-        let changed = fill(&mut document.map, &document.stage.canvas, target, focus, Channels::Both)
+        let channels = paintable(document.layers.active(), Channels::Both)?;
+        let canvas = document.stage.canvas.clone();
+        let map = &mut document.layers.active_mut().map;
+        let before = map.clone();
+        let changed = fill(map, &canvas, target, focus, channels)
             .map_err(|error| SessionError::BadInput(error.to_string()))?;
-        self.finish_edit(name, &before, changed)
+        let Some(edit) = Edit::between(name, &before, map) else { return Ok(()) };
+        document.undo.push_paint(document.layers.active_index(), edit);
+        document.revision += 1;
+        self.show_layers(Some(changed))
     }
 
     pub(super) fn reset_map(&mut self) -> Result<(), SessionError> {
         self.commit_stroke()?;
-        let document = self.opened()?;
-        let [width, height] = document.map.size();
+        let [width, height] = self.opened()?.map.size();
         let blank = FocusMap::new(width, height, FocusOffset::STANDARD);
-        self.replace_map("Reset all paint", blank)
+        self.change_layers("Reset all paint", false, |layers, _, _| {
+            *layers = LayerStack::of(blank);
+            Ok(())
+        })
     }
 
-    /// Puts another map in the place of the document's, as one step of undo.
-    pub(super) fn replace_map(&mut self, name: &str, map: FocusMap) -> Result<(), SessionError> {
-        let document = self.opened()?;
-        let Some(edit) = Edit::between(name, &document.map, &map) else { return Ok(()) };
-        let texels = edit.apply(&mut document.map);
-        let background = edit.changes_background();
-        document.undo.push_paint(edit);
-        document.revision += 1;
-        self.show_paint(texels, background)
+    /// Puts a map in the place of the active layer's values, or above it where those come from a curve.
+    pub(super) fn import_map(&mut self, map: FocusMap) -> Result<(), SessionError> {
+        self.change_layers("Import focus", false, |layers, stage, camera| {
+            if layers.active().curve.is_some() {
+                LayerEdit::AddPaint.apply(layers, stage, camera)?;
+            }
+            layers.active_mut().map = map;
+            Ok(())
+        })
     }
 
-    /// Takes up a change that was made to the map.
-    pub(super) fn finish_edit(
+    pub(super) fn edit_layers(&mut self, edit: LayerEdit) -> Result<(), SessionError> {
+        self.commit_stroke()?;
+        let (name, joins) = (edit.name(), edit.joins_runs());
+        self.change_layers(name, joins, |layers, stage, camera| edit.apply(layers, stage, camera))
+    }
+
+    pub(super) fn activate_layer(&mut self, index: usize) -> Result<(), SessionError> {
+        self.commit_stroke()?;
+        self.opened()?.layers.activate(index);
+        self.events.push(Event::LayersChanged);
+        Ok(())
+    }
+
+    /// Changes the layers as one step of undo. A change that fails, or changes nothing, leaves no trace.
+    fn change_layers(
         &mut self,
-        name: &str,
-        before: &FocusMap,
-        changed: Changed,
+        name: &'static str,
+        joins: bool,
+        change: impl FnOnce(&mut LayerStack, &Stage, &Camera) -> Result<(), SessionError>,
     ) -> Result<(), SessionError> {
         let document = self.opened()?;
-        let Some(edit) = Edit::between(name, before, &document.map) else { return Ok(()) };
-        let background = edit.changes_background();
-        document.undo.push_paint(edit);
+        let before = document.layers.clone();
+        let mut after = before.clone();
+        change(&mut after, &document.stage, &document.camera)?;
+        if after == before {
+            return Ok(());
+        }
+        document.layers = after.clone();
+        document.curves_for = document.camera.camera_to_world;
+        document.undo.push_layers(name, before, after, joins);
         document.revision += 1;
-        self.show_paint(changed, background)
+        self.events.push(Event::LayersChanged);
+        self.show_layers(None)
     }
+}
+
+/// What a brush with these channels touches of a layer: of an adjustment layer only its mask can be painted.
+fn paintable(layer: &FocusLayer, channels: Channels) -> Result<Channels, SessionError> {
+    let bad = |what: String| Err(SessionError::BadInput(what));
+    let name = &layer.name;
+    if !layer.is_visible {
+        return bad(format!("{name}: the layer is hidden (show it, or choose another one)"));
+    }
+    let channels = if layer.curve.is_some() { Channels::Mask } else { channels };
+    if channels == Channels::Mask && !layer.map.has_mask() {
+        return bad(format!("{name}: the layer has no mask to paint (add one in the Layers panel)"));
+    }
+    Ok(channels)
 }

@@ -1,0 +1,151 @@
+//! The layers of focus, the topmost first.
+
+use super::curve_editor::curve_editor;
+use crate::window::Action;
+use crate::window::controls::{self, finish, row, rows};
+use egui::{Button, ComboBox, Slider, TextEdit, Ui};
+use focus::{Blend, FocusLayer};
+use session::{Command, CommandId, Document, LayerEdit};
+
+/// The list of layers, and what can be changed of the one that is painted on.
+pub fn layers_panel(ui: &mut Ui, document: &Document, actions: &mut Vec<Action>) {
+    let layers = document.layers.layers();
+    let active = document.layers.active_index();
+    for (index, layer) in layers.iter().enumerate().rev() {
+        ui.horizontal(|ui| {
+            let mut visible = layer.is_visible;
+            let tip = if visible { "Hide this layer." } else { "Show this layer." };
+            let shown = ui.checkbox(&mut visible, "").on_hover_text(tip);
+            controls::named(&shown, &format!("Show {}", layer.name));
+            if shown.changed() {
+                actions.push(Command::Layer(LayerEdit::Visible(index, visible)).into());
+            }
+            let chosen = controls::list_row(ui, index == active, &title(layer));
+            if chosen.on_hover_text("Paint on this layer.").clicked() {
+                actions.push(Command::ActivateLayer(index).into());
+            }
+        });
+    }
+    ui.horizontal_wrapped(|ui| {
+        let mut button = |id: CommandId, label: &str| {
+            let info = id.info();
+            let key = info.shortcut.map(|key| format!(" ({key})")).unwrap_or_default();
+            let response = ui.add_enabled(is_layer_command_possible(id, document), Button::new(label));
+            let tip = format!("{}{key}", info.tooltip);
+            if response.on_hover_text(&tip).on_disabled_hover_text(tip).clicked() {
+                actions.push(id.into());
+            }
+        };
+        button(CommandId::AddLayer, "+ Layer");
+        button(CommandId::AddDepthCurve, "+ Depth curve");
+        button(CommandId::DuplicateLayer, "Duplicate");
+        button(CommandId::RaiseLayer, "Up");
+        button(CommandId::LowerLayer, "Down");
+        button(CommandId::RemoveLayer, "Remove");
+    });
+    active_layer(ui, document, active, &layers[active], actions);
+}
+
+/// Whether a command about layers can do something now.
+pub fn is_layer_command_possible(id: CommandId, document: &Document) -> bool {
+    let (count, active) = (document.layers.layers().len(), document.layers.active_index());
+    match id {
+        CommandId::RemoveLayer => count > 1,
+        CommandId::RaiseLayer | CommandId::LayerAbove => active + 1 < count,
+        CommandId::LowerLayer | CommandId::LayerBelow => active > 0,
+        CommandId::RemoveMask => document.layers.active().map.has_mask(),
+        CommandId::AddMask => !document.layers.active().map.has_mask(),
+        _ => true,
+    }
+}
+
+/// What the list says of a layer.
+fn title(layer: &FocusLayer) -> String {
+    let mut title = layer.name.clone();
+    if layer.blend != Blend::Set {
+        title += &format!("  · {}", blend_name(layer.blend).to_lowercase());
+    }
+    if layer.opacity < 1.0 {
+        title += &format!("  · {:.0} %", layer.opacity * 100.0);
+    }
+    title
+}
+
+fn active_layer(
+    ui: &mut Ui,
+    document: &Document,
+    index: usize,
+    layer: &FocusLayer,
+    actions: &mut Vec<Action>,
+) {
+    let edit = |edit: LayerEdit| Action::from(Command::Layer(edit));
+    rows(ui, "layer", |ui| {
+        let mut name = layer.name.clone();
+        let response = row(ui, "Name", "What this layer is called.", |ui| {
+            ui.add(TextEdit::singleline(&mut name).desired_width(150.0))
+        });
+        if response.changed() {
+            actions.push(edit(LayerEdit::Rename(index, name)));
+        }
+        finish(&response, actions);
+
+        let mut opacity = layer.opacity * 100.0;
+        let response = row(ui, "Opacity", "How much this layer counts.", |ui| {
+            ui.add(Slider::new(&mut opacity, 0.0..=100.0).suffix(" %").max_decimals(0))
+        });
+        if response.changed() {
+            actions.push(edit(LayerEdit::Opacity(index, opacity / 100.0)));
+        }
+        finish(&response, actions);
+
+        let tip = "How this layer joins what lies beneath it. Set: t and anchor each move toward this layer's. Mix: the blur does, at every depth. Add: its offset is added. Multiply: the blur beneath is multiplied by its t.";
+        row(ui, "Blending", tip, |ui| {
+            let combo =
+                ComboBox::from_id_salt("layer blend").selected_text(blend_name(layer.blend)).width(150.0);
+            combo
+                .show_ui(ui, |ui| {
+                    for blend in Blend::ALL {
+                        if ui.selectable_label(blend == layer.blend, blend_name(blend)).clicked() {
+                            actions.push(edit(LayerEdit::Blend(index, blend)));
+                        }
+                    }
+                })
+                .response
+        });
+        let tip = "Where this layer counts. Painting on a layer with a mask extends it; the Reset brush takes it away.";
+        row(ui, "Mask", tip, |ui| {
+            ui.horizontal(|ui| {
+                let state = if layer.map.has_mask() { "painted" } else { "everywhere" };
+                let label = ui.label(state);
+                let mut button = |id: CommandId, label: &str| {
+                    let button = Button::new(label);
+                    let response = ui.add_enabled(is_layer_command_possible(id, document), button);
+                    let tip = id.info().tooltip;
+                    if response.on_hover_text(tip).on_disabled_hover_text(tip).clicked() {
+                        actions.push(id.into());
+                    }
+                };
+                if layer.map.has_mask() {
+                    button(CommandId::InvertMask, "Invert");
+                    button(CommandId::RemoveMask, "Remove");
+                } else {
+                    button(CommandId::AddMask, "Add");
+                }
+                label
+            })
+            .inner
+        });
+    });
+    if let Some(curve) = &layer.curve {
+        curve_editor(ui, document, index, curve, actions);
+    }
+}
+
+fn blend_name(blend: Blend) -> &'static str {
+    match blend {
+        Blend::Set => "Set",
+        Blend::Mix => "Mix blur",
+        Blend::Add => "Add",
+        Blend::MultiplyDefocus => "Multiply blur",
+    }
+}

@@ -1,0 +1,141 @@
+//! Layers: painted on, blended, hidden, drawn as a curve, undone, saved.
+
+use crate::acting::{Person, at, difference};
+use crate::small_scene;
+use egui::{Key, Modifiers};
+use egui_kittest::kittest::Queryable;
+use focus::Blend;
+use lens::FocusOffset;
+
+fn opened() -> (Person, tempfile::TempDir) {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("wall.glb");
+    small_scene::write(&file);
+    (Person::opens(&file), folder)
+}
+
+impl Person {
+    fn focus_at(&self, x: f64, y: f64) -> FocusOffset {
+        let session = self.shell().session();
+        let hit = session.pick(&session.picture_ray(glam::DVec2::new(x, y)).unwrap()).unwrap();
+        session.focus_at(&hit).unwrap()
+    }
+
+    fn adds_a_layer_of_blur(&mut self) {
+        self.presses(Modifiers::COMMAND | Modifiers::SHIFT, Key::N);
+        for _ in 0..8 {
+            self.presses(Modifiers::NONE, Key::Period);
+        }
+        let rect = self.picture_rect();
+        let path: Vec<_> = (0..=10).map(|k| at(rect, 0.6 + 0.03 * k as f32, 0.5)).collect();
+        self.paints(&path);
+    }
+}
+
+#[test]
+fn a_layer_is_painted_hidden_shown_weakened_and_taken_back() {
+    let (mut person, _folder) = opened();
+    let (blank, picture) = (person.document().map.clone(), person.picture());
+    person.adds_a_layer_of_blur();
+    assert_eq!(person.document().layers.layers().len(), 2);
+    let target = person.document().brush.target;
+    assert!((person.focus_at(0.75, 0.5).t - target.t).abs() < 1e-4);
+    assert_eq!(person.document().layers.layers()[0].map, blank, "beneath, nothing was painted");
+    let painted = (person.document().map.clone(), person.picture());
+
+    person.window.get_by_label("Show Layer 1").click();
+    person.waits();
+    assert_eq!(person.document().map, blank);
+    assert_eq!(difference(&person.picture(), &picture), 0.0);
+    // A hidden layer is not painted on by mistake.
+    let middle = at(person.picture_rect(), 0.75, 0.5);
+    person.clicks(middle);
+    assert!(person.complaints().iter().any(|text| text.contains("hidden")), "{:?}", person.complaints());
+    assert_eq!(person.document().map, blank);
+    person.window.get_by_label("Show Layer 1").click();
+    person.waits();
+    assert_eq!(person.document().map, painted.0);
+    assert_eq!(difference(&person.picture(), &painted.1), 0.0);
+
+    let slider = person.window.get_all_by_label("Opacity").find(|node| node.rect().width() > 90.0);
+    let track = slider.expect("a slider").rect();
+    person.clicks(at(track, 0.5, 0.5));
+    let opacity = person.document().layers.active().opacity;
+    assert!(opacity > 0.3 && opacity < 0.7, "{opacity}");
+    let half = person.focus_at(0.75, 0.5);
+    assert!(
+        (half.t - (1.0 + opacity * (target.t - 1.0))).abs() < 1e-4 && (half.anchor - opacity).abs() < 1e-4
+    );
+
+    let steps = person.document().undo_names().count();
+    for _ in 0..steps {
+        person.presses(Modifiers::COMMAND, Key::Z);
+    }
+    person.waits();
+    assert_eq!(person.document().layers.layers().len(), 1);
+    assert_eq!(person.document().map, blank);
+    assert_eq!(difference(&person.picture(), &picture), 0.0, "all taken back, to the bit");
+    for _ in 0..steps {
+        person.presses(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
+    }
+    person.waits();
+    assert_eq!(person.document().layers.active().opacity, opacity);
+    assert_eq!(person.focus_at(0.75, 0.5), half);
+}
+
+#[test]
+fn the_reset_brush_uncovers_what_lies_beneath_and_layers_are_saved() {
+    let (mut person, folder) = opened();
+    person.adds_a_layer_of_blur();
+    person.presses(Modifiers::NONE, Key::E);
+    let rect = person.picture_rect();
+    person.clicks(at(rect, 0.75, 0.5));
+    assert_eq!(person.focus_at(0.75, 0.5), FocusOffset::STANDARD);
+    let layer = person.document().layers.active().clone();
+    assert!(layer.map.has_mask());
+
+    // An adjustment layer above: a curve that blurs what is far, multiplied onto what lies beneath.
+    let wall = person.focus_at(0.95, 0.9);
+    assert_eq!(wall, FocusOffset::STANDARD);
+    person.window.get_by_label("+ Depth curve").click();
+    person.waits();
+    assert_eq!(person.focus_at(0.95, 0.9).anchor, 1.0, "sharp at every depth to begin with");
+    person.window.get_by_label("Blur over depth").scroll_to_me();
+    person.window.run_steps(60);
+    let drawing = person.window.get_by_label("Blur over depth").rect();
+    let right = person.document().layers.active().curve.clone().unwrap().curve.points().len();
+    person.clicks(at(drawing, 0.91, 0.25));
+    let curve = person.document().layers.active().curve.clone().unwrap();
+    assert_eq!(curve.curve.points().len(), right + 1, "a click draws another point");
+    assert!(curve.curve.points()[right][1] > 1.0, "far blur is on top");
+    assert_eq!(person.document().undo_name(), Some("Depth curve"));
+    person.window.get_by_label("Blending").click();
+    person.window.run_steps(3);
+    person.window.get_by_label("Multiply blur").click();
+    person.waits();
+    assert_eq!(person.document().layers.active().blend, Blend::MultiplyDefocus);
+
+    let project = folder.path().join("wall.fbrush");
+    person.presses(Modifiers::COMMAND, Key::S);
+    person.window.get_by_label("Save").click();
+    person.waits();
+    assert!(project.is_file(), "{:?}", person.complaints());
+    let (layers, map, picture) =
+        (person.document().layers.clone(), person.document().map.clone(), person.picture());
+    drop(person);
+    let mut person = Person::opens(&project);
+    assert_eq!(person.document().layers, layers);
+    assert_eq!(person.document().map, map);
+    assert_eq!(difference(&person.picture(), &picture), 0.0);
+
+    // Order counts, and is a matter of two keys.
+    person.presses(Modifiers::COMMAND, Key::OpenBracket);
+    assert_eq!(person.document().layers.active_index(), 1);
+    assert_eq!(person.document().layers.layers()[2].name, "Layer 1");
+    person.presses(Modifiers::NONE, Key::PageUp);
+    assert_eq!(person.document().layers.active().name, "Layer 1");
+    person.presses(Modifiers::SHIFT, Key::Delete);
+    person.waits();
+    assert_eq!(person.document().layers.layers().len(), 2);
+    assert!(person.complaints().is_empty(), "{:?}", person.complaints());
+}

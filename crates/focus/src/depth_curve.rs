@@ -1,0 +1,55 @@
+//! A focal surface drawn as a curve: the blur that every depth gets.
+
+use crate::{Canvas, Curve, FocusMap};
+use lens::{Camera, FocusOffset};
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+
+/// t as a curve over the logarithm of depth, the same for everything at one depth in the shot camera.
+///
+/// With anchor 1 the curve is the blur itself: where it runs at t = 1 everything is sharp, so an ordinary lens's
+/// one plane of focus becomes as many planes, or as deep a zone, as one draws. With anchor 0 it shifts the lens's.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct DepthCurve {
+    /// ln(depth in scene units) to t.
+    pub curve: Curve,
+    /// What t is relative to, in [0, 1].
+    pub anchor: f64,
+}
+
+impl DepthCurve {
+    /// Sharp at every depth between two (both above 0): what one begins to draw from.
+    pub fn sharp_between(nearest: f64, farthest: f64) -> Option<Self> {
+        let curve = Curve::new([nearest, farthest].map(|depth| [depth.ln(), 1.0]))?;
+        Some(Self { curve, anchor: 1.0 })
+    }
+
+    /// Whether it can be used.
+    pub fn is_valid(&self) -> bool {
+        self.curve.is_valid() && (0.0..=1.0).contains(&self.anchor)
+    }
+
+    /// The focus at a depth: infinite is beyond the last point; what lies behind the camera is as near as can be.
+    pub fn at(&self, depth: f64) -> FocusOffset {
+        FocusOffset::new(self.curve.at(depth.max(f64::MIN_POSITIVE).ln()), self.anchor)
+    }
+
+    /// The focus of every texel of a canvas, by its depth in `camera`.
+    pub fn evaluate(&self, canvas: &Canvas, camera: &Camera) -> FocusMap {
+        let values: Vec<[f32; 2]> = canvas
+            .texels()
+            .par_iter()
+            .map(|texel| crate::focus_map::texel_of(self.at(camera.camera_from_world(texel.position).z)))
+            .collect();
+        let [width, height] = canvas.size();
+        let mut map = FocusMap::new(width, height, FocusOffset::STANDARD);
+        map.background = self.at(f64::INFINITY);
+        for (index, (texel, value)) in canvas.texels().iter().zip(values).enumerate() {
+            map.set(texel.x, texel.y, value);
+            for &[x, y] in canvas.gutters_of(index) {
+                map.set(x, y, value);
+            }
+        }
+        map
+    }
+}

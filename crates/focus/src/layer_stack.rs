@@ -1,0 +1,224 @@
+//! The layers of focus, bottom to top, and what they make together.
+
+use crate::focus_map::texel_of;
+use crate::tile_grid::{TILE_TEXELS, Tile, TileGrid};
+use crate::{Blend, Canvas, Changed, FocusLayer, FocusMap};
+use lens::{Camera, FocusOffset};
+use rayon::prelude::*;
+use std::collections::BTreeSet;
+use std::sync::Arc;
+
+/// The layers of a document, bottom to top; there is always one at least, and all have one size. Beneath the lowest
+/// lies the ordinary lens. A clone is a cheap snapshot.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LayerStack {
+    layers: Vec<FocusLayer>,
+    active: usize,
+}
+
+/// What the first layer of a document is called.
+const BASE: &str = "Paint";
+
+impl LayerStack {
+    /// Layers that a document may have.
+    pub const MOST_LAYERS: usize = 64;
+
+    /// A document's first layer.
+    pub fn of(map: FocusMap) -> Self {
+        Self { layers: vec![FocusLayer::painted(BASE, map)], active: 0 }
+    }
+
+    /// Layers from a file. `None` where there are none, too many, unusable ones, or sizes differ; an `active` that
+    /// is not there is the topmost.
+    pub fn new(layers: Vec<FocusLayer>, active: usize) -> Option<Self> {
+        let size = layers.first()?.map.size();
+        let fits = |layer: &FocusLayer| layer.map.size() == size && layer.is_valid();
+        let usable = layers.len() <= Self::MOST_LAYERS && layers.iter().all(fits);
+        let active = active.min(layers.len() - 1);
+        usable.then_some(Self { layers, active })
+    }
+
+    /// The layers, bottom to top.
+    pub fn layers(&self) -> &[FocusLayer] {
+        &self.layers
+    }
+
+    /// Which layer is painted on.
+    pub fn active_index(&self) -> usize {
+        self.active
+    }
+
+    /// The layer that is painted on.
+    pub fn active(&self) -> &FocusLayer {
+        &self.layers[self.active]
+    }
+
+    /// A layer, to be changed.
+    pub fn layer_mut(&mut self, index: usize) -> Option<&mut FocusLayer> {
+        self.layers.get_mut(index)
+    }
+
+    /// The layer that is painted on, to be changed.
+    pub fn active_mut(&mut self) -> &mut FocusLayer {
+        &mut self.layers[self.active]
+    }
+
+    /// Paints on another layer from now on.
+    pub fn activate(&mut self, index: usize) {
+        self.active = index.min(self.layers.len() - 1);
+    }
+
+    /// Columns and rows of every layer.
+    pub fn size(&self) -> [u32; 2] {
+        self.layers[0].map.size()
+    }
+
+    /// Whether there is nothing but one plain layer, as in a document that never had another.
+    pub fn is_single(&self) -> bool {
+        self.layers.len() == 1 && self.layers[0].is_plain() && self.layers[0].curve.is_none()
+    }
+
+    /// Puts a layer above the active one and makes it active. False where there are too many already.
+    #[must_use]
+    pub fn insert(&mut self, layer: FocusLayer) -> bool {
+        debug_assert_eq!(layer.map.size(), self.size());
+        if self.layers.len() >= Self::MOST_LAYERS {
+            return false;
+        }
+        self.active += 1;
+        self.layers.insert(self.active, layer);
+        true
+    }
+
+    /// Takes a layer away; the last one stays. Whether there was one to take.
+    pub fn remove(&mut self, index: usize) -> bool {
+        if self.layers.len() < 2 || index >= self.layers.len() {
+            return false;
+        }
+        self.layers.remove(index);
+        if self.active > index || self.active == self.layers.len() {
+            self.active -= 1;
+        }
+        true
+    }
+
+    /// Moves a layer to another place; the active one stays the same layer.
+    pub fn shift(&mut self, from: usize, to: usize) {
+        if from.max(to) >= self.layers.len() {
+            return;
+        }
+        let layer = self.layers.remove(from);
+        self.layers.insert(to, layer);
+        self.active = match self.active {
+            active if active == from => to,
+            active if from < active && active <= to => active - 1,
+            active if to <= active && active < from => active + 1,
+            active => active,
+        };
+    }
+
+    /// Whether any layer depends on where the shot camera stands.
+    pub fn has_curves(&self) -> bool {
+        self.layers.iter().any(|layer| layer.curve.is_some())
+    }
+
+    /// Takes the values of all curves for a shot camera.
+    pub fn evaluate(&mut self, canvas: &Canvas, camera: &Camera) {
+        self.layers.iter_mut().for_each(|layer| layer.evaluate(canvas, camera));
+    }
+
+    /// What the layers make together: a map without mask.
+    pub fn composite(&self) -> FocusMap {
+        let [width, height] = self.size();
+        let mut map = FocusMap::new(width, height, FocusOffset::STANDARD);
+        self.composite_tiles(&mut map, None);
+        map
+    }
+
+    /// Brings a composite up to date after texels of any layer have changed. Returns what changed in it; the
+    /// background is brought up to date as well.
+    pub fn recomposite(&self, map: &mut FocusMap, changed: &Changed) -> Changed {
+        let tiles: BTreeSet<usize> = changed.texels.iter().map(|&texel| map.texels.tile_of(texel)).collect();
+        self.composite_tiles(map, Some(tiles.into_iter().collect()))
+    }
+
+    /// Brings a composite up to date, whatever has changed. Returns what changed in it.
+    pub fn recomposite_all(&self, map: &mut FocusMap) -> Changed {
+        self.composite_tiles(map, None)
+    }
+
+    fn composite_tiles(&self, map: &mut FocusMap, tiles: Option<Vec<usize>>) -> Changed {
+        map.background = self.background();
+        let tiles = tiles.unwrap_or_else(|| (0..map.texels.tiles().len()).collect());
+        let beneath = Arc::new([texel_of(FocusOffset::STANDARD); TILE_TEXELS]);
+        let made: Vec<_> =
+            tiles.par_iter().map(|&index| (index, self.composite_tile(index, &beneath))).collect();
+        let mut changed = Vec::new();
+        for (index, tile) in made {
+            changed.extend(map.texels.differing(index, &map.texels.tiles()[index], &tile));
+            map.texels.set_tile(index, tile);
+        }
+        Changed::new(changed)
+    }
+
+    /// A tile of the composite. What a plain layer hides is not looked at; its own tile is shared.
+    fn composite_tile(&self, index: usize, beneath: &Arc<Tile<[f32; 2]>>) -> Arc<Tile<[f32; 2]>> {
+        let lowest = self.layers.iter().rposition(FocusLayer::is_plain);
+        let mut tile =
+            lowest.map_or_else(|| beneath.clone(), |k| self.layers[k].map.texels.tiles()[index].clone());
+        for layer in &self.layers[lowest.map_or(0, |k| k + 1)..] {
+            let mask = layer.map.mask.as_ref().map(|mask: &TileGrid<f32>| &mask.tiles()[index]);
+            let is_empty = mask.is_some_and(|mask| mask.iter().all(|m| *m == 0.0));
+            if !layer.is_visible || is_empty {
+                continue;
+            }
+            let (opacity, values) = (layer.opacity as f32, &layer.map.texels.tiles()[index]);
+            let joined = Arc::make_mut(&mut tile);
+            for (k, value) in joined.iter_mut().enumerate() {
+                let share = opacity * mask.map_or(1.0, |mask| mask[k]);
+                *value = layer.blend.join(*value, values[k], share);
+            }
+        }
+        tile
+    }
+
+    fn background(&self) -> FocusOffset {
+        let visible = self.layers.iter().filter(|layer| layer.is_visible);
+        visible.fold(FocusOffset::STANDARD, |beneath, layer| {
+            let share = layer.opacity as f32 * layer.map.background_mask;
+            if layer.blend == Blend::Set && share == 1.0 {
+                return layer.map.background;
+            }
+            let [t, anchor] = layer.blend.join(texel_of(beneath), texel_of(layer.map.background), share);
+            FocusOffset::new(t as f64, anchor as f64)
+        })
+    }
+
+    /// Memory that the difference to a newer state keeps alive, in bytes: tiles that are not shared.
+    pub fn bytes_beside(&self, other: &Self) -> usize {
+        let mut shared = BTreeSet::new();
+        for layer in &other.layers {
+            shared.extend(layer.map.texels.tiles().iter().map(|tile| Arc::as_ptr(tile) as usize));
+            shared.extend(masks(layer).map(|tile| Arc::as_ptr(tile) as usize));
+        }
+        let mut bytes = 0;
+        for layer in &self.layers {
+            let own = |pointer: usize, bytes: usize| if shared.contains(&pointer) { 0 } else { bytes };
+            let mut seen = BTreeSet::new();
+            for tile in layer.map.texels.tiles() {
+                let pointer = Arc::as_ptr(tile) as usize;
+                bytes += if seen.insert(pointer) { own(pointer, size_of_val(&**tile)) } else { 0 };
+            }
+            for tile in masks(layer) {
+                let pointer = Arc::as_ptr(tile) as usize;
+                bytes += if seen.insert(pointer) { own(pointer, size_of_val(&**tile)) } else { 0 };
+            }
+            bytes += size_of::<FocusLayer>() + layer.map.texels.tiles().len() * size_of::<usize>();
+        }
+        bytes
+    }
+}
+
+fn masks(layer: &FocusLayer) -> impl Iterator<Item = &Arc<Tile<f32>>> {
+    layer.map.mask.iter().flat_map(TileGrid::tiles)
+}

@@ -1,0 +1,118 @@
+//! The layers of focus in a project.
+//!
+//! Each layer has a row in the manifest and, where it has them, an entry for its values and one for its mask. An
+//! adjustment layer has no values of its own: they follow from its curve and the camera. What the layers make
+//! together is saved as the focus map as well, so that programs which only render need not know layers.
+
+use crate::ProjectError;
+use crate::container::Container;
+use crate::manifest::{MANIFEST, Manifest, MapEntry};
+use crate::texel_bytes::{floats, pairs};
+use focus::{Blend, DepthCurve, FocusLayer, FocusMap, LayerStack};
+use lens::FocusOffset;
+use serde::{Deserialize, Serialize};
+use std::path::Path;
+
+/// The layers' part of the manifest.
+#[derive(Debug, Serialize, Deserialize)]
+pub(crate) struct LayerEntries {
+    /// Which one is painted on, counted from the bottom.
+    pub active: usize,
+    /// Bottom to top.
+    pub layers: Vec<LayerEntry>,
+}
+
+/// A layer.
+#[derive(Debug, Serialize, Deserialize)]
+pub(crate) struct LayerEntry {
+    pub name: String,
+    pub visible: bool,
+    pub opacity: f64,
+    pub blend: Blend,
+    /// Of the background: t, anchor, mask.
+    pub background: [f64; 3],
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub curve: Option<DepthCurve>,
+    /// Entry of the values: t and anchor of every texel.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub values: Option<String>,
+    /// Entry of the mask: a number a texel.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub mask: Option<String>,
+}
+
+/// The manifest's rows for the layers; their entries are added to `entries`.
+pub(crate) fn write(layers: &LayerStack, entries: &mut Vec<(String, Vec<u8>)>) -> LayerEntries {
+    let mut put = |name: String, bytes: Vec<u8>| {
+        entries.push((name.clone(), bytes));
+        name
+    };
+    let row = |(index, layer): (usize, &FocusLayer)| {
+        let values = layer.curve.is_none().then(|| {
+            let bytes = layer.map.to_rows().iter().flatten().flat_map(|value| value.to_le_bytes()).collect();
+            put(format!("layers/{index}.f32"), bytes)
+        });
+        let mask = layer.map.mask_rows().map(|mask| {
+            let bytes = mask.iter().flat_map(|share| share.to_le_bytes()).collect();
+            put(format!("layers/{index}.mask.f32"), bytes)
+        });
+        let FocusOffset { t, anchor } = layer.map.background;
+        LayerEntry {
+            name: layer.name.clone(),
+            visible: layer.is_visible,
+            opacity: layer.opacity,
+            blend: layer.blend,
+            background: [t, anchor, layer.map.background_mask as f64],
+            curve: layer.curve.clone(),
+            values,
+            mask,
+        }
+    };
+    LayerEntries {
+        active: layers.active_index(),
+        layers: layers.layers().iter().enumerate().map(row).collect(),
+    }
+}
+
+/// Reads the layers; `size` is the focus map's. The values of adjustment layers are still to be evaluated.
+pub(crate) fn read(
+    file: &Path,
+    rows: &LayerEntries,
+    size: &MapEntry,
+    manifest: &Manifest,
+    container: &mut Container<'_>,
+) -> Result<LayerStack, ProjectError> {
+    let texels = size.width as u64 * size.height as u64;
+    let mut layers = Vec::new();
+    for row in &rows.layers {
+        let [t, anchor, background_mask] = row.background;
+        let background = FocusOffset { t, anchor };
+        let wrong_size = "does not have the size that the manifest says";
+        let mut map = match &row.values {
+            Some(entry) => {
+                let bytes = manifest.entry(file, container, entry, texels * 8)?;
+                FocusMap::from_rows(size.width, size.height, &pairs(&bytes), background)
+                    .ok_or_else(|| container.error(entry, wrong_size))?
+            }
+            None => FocusMap::new(size.width, size.height, FocusOffset::STANDARD),
+        };
+        if let Some(entry) = &row.mask {
+            let bytes = manifest.entry(file, container, entry, texels * 4)?;
+            if !map.set_mask_rows(Some(&floats(&bytes))) {
+                return Err(container.error(entry, wrong_size));
+            }
+            map.background_mask = background_mask as f32;
+        }
+        map.background = background;
+        layers.push(FocusLayer {
+            name: row.name.clone(),
+            is_visible: row.visible,
+            opacity: row.opacity,
+            blend: row.blend,
+            map,
+            curve: row.curve.clone(),
+        });
+    }
+    LayerStack::new(layers, rows.active)
+        .ok_or_else(|| container.error(MANIFEST, "has layers that cannot be used"))
+}

@@ -1,0 +1,16 @@
+//! Texels as bytes: f32, little endian.
+
+/// The numbers; bytes that are left over make no number.
+pub(crate) fn floats(bytes: &[u8]) -> Vec<f32> {
+    bytes.as_chunks::<4>().0.iter().map(|word| f32::from_le_bytes(*word)).collect()
+}
+
+/// The numbers two by two.
+pub(crate) fn pairs(bytes: &[u8]) -> Vec<[f32; 2]> {
+    bytes
+        .as_chunks::<8>()
+        .0
+        .iter()
+        .map(|[a, b, c, d, e, f, g, h]| [[*a, *b, *c, *d], [*e, *f, *g, *h]].map(f32::from_le_bytes))
+        .collect()
+}

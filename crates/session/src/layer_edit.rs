@@ -1,0 +1,176 @@
+//! A change of the layers of focus.
+
+use crate::{SessionError, Stage};
+use focus::{Blend, DepthCurve, FocusLayer, FocusMap, LayerStack};
+use lens::Camera;
+
+/// A change of the layers of focus; layers are counted from the bottom. Each is one step of undo, a run of edits of
+/// one kind (a dragged slider) as well.
+#[derive(Clone, Debug, PartialEq)]
+pub enum LayerEdit {
+    /// An empty layer to paint on, above the active one; it becomes the active one.
+    AddPaint,
+    /// An adjustment layer by a curve over depth, above the active one; it becomes the active one.
+    AddCurve,
+    /// A copy of a layer, above the active one; it becomes the active one.
+    Duplicate(usize),
+    /// Takes a layer away; the last one stays.
+    Remove(usize),
+    /// Another name.
+    Rename(usize, String),
+    /// Whether it counts at all.
+    Visible(usize, bool),
+    /// How much it counts, in [0, 1].
+    Opacity(usize, f64),
+    /// How it joins what lies beneath.
+    Blend(usize, Blend),
+    /// To another place.
+    Shift {
+        /// From where.
+        from: usize,
+        /// To where it then is.
+        to: usize,
+    },
+    /// Another curve for an adjustment layer.
+    Curve(usize, DepthCurve),
+    /// Gives a layer without mask one that counts everywhere.
+    AddMask(usize),
+    /// Makes a mask count where it did not, and the other way round; a layer without one then counts nowhere.
+    InvertMask(usize),
+    /// Takes the mask away: the layer counts everywhere.
+    RemoveMask(usize),
+}
+
+impl LayerEdit {
+    /// Its name in the undo list.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::AddPaint => "Add layer",
+            Self::AddCurve => "Add depth curve",
+            Self::Duplicate(_) => "Duplicate layer",
+            Self::Remove(_) => "Remove layer",
+            Self::Rename(..) => "Rename layer",
+            Self::Visible(..) => "Show or hide layer",
+            Self::Opacity(..) => "Layer opacity",
+            Self::Blend(..) => "Layer blending",
+            Self::Shift { .. } => "Move layer",
+            Self::Curve(..) => "Depth curve",
+            Self::AddMask(_) => "Add mask",
+            Self::InvertMask(_) => "Invert mask",
+            Self::RemoveMask(_) => "Remove mask",
+        }
+    }
+
+    /// Whether edits of this kind in a row are one step of undo.
+    pub(crate) fn joins_runs(&self) -> bool {
+        matches!(self, Self::Rename(..) | Self::Opacity(..) | Self::Curve(..))
+    }
+
+    /// Does it.
+    pub(crate) fn apply(
+        self,
+        layers: &mut LayerStack,
+        stage: &Stage,
+        camera: &Camera,
+    ) -> Result<(), SessionError> {
+        let bad = |what: &str| Err(SessionError::BadInput(format!("layers: {what}")));
+        match self {
+            Self::AddPaint => {
+                let [width, height] = layers.size();
+                let layer = FocusLayer::painted(free_name(layers, "Layer"), FocusMap::clear(width, height));
+                return inserted(layers, layer);
+            }
+            Self::AddCurve => {
+                let Some(curve) = first_curve(stage, camera) else {
+                    return bad("nothing stands before the camera (turn it toward the scene)");
+                };
+                let name = free_name(layers, "Depth curve");
+                let mut layer = FocusLayer::adjusted(name, curve, &stage.canvas, camera);
+                layer.map.add_mask();
+                return inserted(layers, layer);
+            }
+            Self::Duplicate(index) => {
+                let Some(layer) = layers.layers().get(index) else { return bad("there is no such layer") };
+                let name = free_name(layers, &layer.name);
+                let copy = FocusLayer { name, ..layer.clone() };
+                return inserted(layers, copy);
+            }
+            Self::Remove(index) => {
+                if !layers.remove(index) {
+                    return bad("the last layer stays (reset the paint to clear it)");
+                }
+                return Ok(());
+            }
+            Self::Shift { from, to } => {
+                layers.shift(from, to);
+                return Ok(());
+            }
+            Self::Opacity(_, opacity) if !(0.0..=1.0).contains(&opacity) => {
+                return bad("opacity must be in [0, 1]");
+            }
+            Self::Curve(_, ref curve) if !curve.is_valid() => {
+                return bad("the curve must have points with finite numbers");
+            }
+            _ => {}
+        }
+        let index = match &self {
+            Self::Rename(index, _)
+            | Self::Visible(index, _)
+            | Self::Opacity(index, _)
+            | Self::Blend(index, _)
+            | Self::Curve(index, _)
+            | Self::AddMask(index)
+            | Self::InvertMask(index)
+            | Self::RemoveMask(index) => *index,
+            _ => layers.active_index(),
+        };
+        let Some(layer) = layers.layer_mut(index) else { return bad("there is no such layer") };
+        match self {
+            Self::Rename(_, name) => layer.name = name,
+            Self::Visible(_, visible) => layer.is_visible = visible,
+            Self::Opacity(_, opacity) => layer.opacity = opacity,
+            Self::Blend(_, blend) => layer.blend = blend,
+            Self::Curve(_, curve) => {
+                if layer.curve.is_none() {
+                    return bad("only an adjustment layer has a curve (add one)");
+                }
+                layer.curve = Some(curve);
+                layer.evaluate(&stage.canvas, camera);
+            }
+            Self::AddMask(_) => layer.map.add_mask(),
+            Self::InvertMask(_) => layer.map.invert_mask(),
+            Self::RemoveMask(_) => layer.map.remove_mask(),
+            Self::AddPaint | Self::AddCurve | Self::Duplicate(_) | Self::Remove(_) | Self::Shift { .. } => {}
+        }
+        Ok(())
+    }
+}
+
+fn inserted(layers: &mut LayerStack, layer: FocusLayer) -> Result<(), SessionError> {
+    if layers.insert(layer) {
+        return Ok(());
+    }
+    let most = LayerStack::MOST_LAYERS;
+    Err(SessionError::BadInput(format!("layers: there are {most} already (remove one first)")))
+}
+
+/// `wanted`, with the first number that no layer has yet.
+fn free_name(layers: &LayerStack, wanted: &str) -> String {
+    let stem = wanted.trim_end_matches(|c: char| c.is_ascii_digit()).trim_end();
+    let taken = |name: &str| layers.layers().iter().any(|layer| layer.name == name);
+    let numbered = (1..).map(|number| format!("{stem} {number}"));
+    numbered.into_iter().find(|name| !taken(name)).unwrap_or_else(|| stem.to_string())
+}
+
+/// Sharp from the nearest to the farthest thing, with a point to take hold of where the lens focuses.
+fn first_curve(stage: &Stage, camera: &Camera) -> Option<DepthCurve> {
+    let depths = stage.canvas.texels().iter().map(|texel| camera.camera_from_world(texel.position).z);
+    let (near, far) = depths
+        .filter(|depth| *depth > 0.0)
+        .fold((f64::INFINITY, 0.0), |(near, far), depth| (depth.min(near), depth.max(far)));
+    let curve = DepthCurve::sharp_between(near, far)?;
+    let focus = camera.focus_distance;
+    let points = curve.curve.points().iter().copied();
+    let held = (focus > near * 1.05 && focus < far / 1.05).then_some([focus.ln(), 1.0]);
+    Some(DepthCurve { curve: focus::Curve::new(points.chain(held))?, ..curve })
+}
