@@ -8,7 +8,8 @@
 /// | t, 0 | offset relative to the sensor: the ray travels t·d |
 /// | t, 1 | offset relative to the point's own focal conjugate: the same blur wherever the camera focuses |
 ///
-/// Any finite t is allowed (negative too: the ray is then followed backwards, which only blurs more).
+/// Any finite t is allowed (negative too: the ray is then followed backwards, which only blurs more). Readers
+/// refuse what is not valid; where it gets into a field all the same it counts as [`Self::STANDARD`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FocusOffset {
     /// The focus offset t, the transmission distance as a share of the anchor's distance; 1 is no offset.
@@ -33,6 +34,11 @@ impl FocusOffset {
         self == Self::STANDARD
     }
 
+    /// Itself where it is valid, else the standard lens: what every renderer takes it for.
+    pub fn or_standard(self) -> Self {
+        if self.is_valid() { self } else { Self::STANDARD }
+    }
+
     /// Whether both numbers are usable: t finite and anchor in [0, 1].
     pub fn is_valid(self) -> bool {
         self.t.is_finite() && (0.0..=1.0).contains(&self.anchor)
@@ -42,5 +48,19 @@ impl FocusOffset {
 impl Default for FocusOffset {
     fn default() -> Self {
         Self::STANDARD
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_not_valid_counts_as_standard() {
+        let painted = FocusOffset::new(-3.0, 0.5);
+        assert_eq!(painted.or_standard(), painted);
+        for (t, anchor) in [(f64::NAN, 0.0), (f64::INFINITY, 1.0), (1.1, f64::NAN), (1.1, -0.1), (1.1, 1.1)] {
+            assert_eq!(FocusOffset::new(t, anchor).or_standard(), FocusOffset::STANDARD, "{t} {anchor}");
+        }
     }
 }

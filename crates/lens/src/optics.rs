@@ -26,6 +26,9 @@ pub struct Optics {
     pub half_height_px: f64,
 }
 
+/// Beyond this t any lens blurs beyond any picture, and the terms of κ could overflow.
+const LARGEST_OFFSET: f64 = 1e100;
+
 impl Optics {
     /// The defocus κ of a point of depth z = 1/`inverse_depth`, painted `focus`:
     ///
@@ -36,9 +39,11 @@ impl Optics {
     /// κ < 0 is near defocus (the aperture's shape appears turned by 180°), κ > 0 far defocus (upright).
     /// Infinite s or z are the value 0 of their reciprocals, and z = f, where the focal conjugate z' is at
     /// infinity, is an ordinary value: z' and the travelled distance T = t·lerp(d, z', a) are never formed.
-    /// Finite for every finite argument.
+    /// Finite for every finite depth: an offset that is not valid counts as the standard one, and one beyond
+    /// ±1e100 as that.
     pub fn kappa(&self, inverse_depth: f64, focus: FocusOffset) -> f64 {
-        let (t, a) = (focus.t, focus.anchor);
+        let FocusOffset { t, anchor: a } = focus.or_standard();
+        let t = t.clamp(-LARGEST_OFFSET, LARGEST_OFFSET);
         (t - 1.0) / self.image_distance + t * (1.0 - a) * (self.inverse_focus_distance - inverse_depth)
     }
 
@@ -153,14 +158,14 @@ mod tests {
     }
 
     #[test]
-    fn every_finite_input_has_a_finite_kappa() {
+    fn every_offset_has_a_finite_kappa() {
         let o = optics();
         let at_infinity = Optics { inverse_focus_distance: 0.0, ..o };
         let f = o.focal_length();
         for o in [o, at_infinity] {
             for z in DEPTHS.into_iter().chain([f, -1.0, -1e-9]) {
-                for t in [0.0, 1.0, -3.0, 1e6] {
-                    for a in [0.0, 0.5, 1.0] {
+                for t in [0.0, 1.0, -3.0, 1e6, f64::MAX, f64::MIN, f64::NAN, f64::INFINITY] {
+                    for a in [0.0, 0.5, 1.0, 2.0, f64::NAN] {
                         assert!(o.kappa(1.0 / z, FocusOffset::new(t, a)).is_finite(), "{z} {t} {a}");
                     }
                 }
