@@ -20,12 +20,15 @@ pub struct Kernel {
 
 /// The aperture in rows, in units of the lens's own radius.
 ///
-/// Rows are boxes, and few of them spread more, or less, than the shape they stand for; stretched about their mean they
-/// have its variance. So where neighbouring samples take different levels, no light is moved to or from between them.
+/// Rows are boxes, and few of them lie beside, and spread more or less than, the shape they stand for; moved to its mean
+/// and stretched about it they have its variance. So where neighbouring samples take different levels, no light is moved
+/// to or from between them, and a small opening in a large mask stays in its place.
 struct Level {
     rows: Vec<ApertureRow>,
     open_area: f64,
+    /// Mean of the rows as they are cut, and where it is moved to.
     mean: DVec2,
+    target: DVec2,
     stretch: DVec2,
 }
 
@@ -91,7 +94,7 @@ impl Kernel {
     pub fn new(aperture: &Aperture, stop: f64) -> Self {
         let mut levels: Vec<_> = (0..=Self::FINEST).map(|level| Level::new(aperture, 1 << level)).collect();
         let (mean, deviation) = levels[Self::FINEST].moments();
-        levels.iter_mut().for_each(|level| level.match_moments(deviation));
+        levels.iter_mut().for_each(|level| level.match_moments(mean, deviation));
         let cells = [8, 16].map(|side| levels[Self::FINEST].cell_shares(stop, side));
         Self { stop, levels, mean: mean * stop, deviation: deviation * stop, cells }
     }
@@ -182,7 +185,7 @@ impl Level {
     fn new(aperture: &Aperture, rows: usize) -> Self {
         let rows = aperture.rows(rows);
         let open_area = rows.open_area();
-        Self { rows: rows.rows, open_area, mean: DVec2::ZERO, stretch: DVec2::ONE }
+        Self { rows: rows.rows, open_area, mean: DVec2::ZERO, target: DVec2::ZERO, stretch: DVec2::ONE }
     }
 
     /// Pieces at most `longest` wide along their row.
@@ -196,7 +199,7 @@ impl Level {
         let height = 2.0 / self.rows.len() as f64;
         for (i, row) in self.rows.iter().enumerate() {
             let v = -1.0 + height * (i as f64 + 0.5);
-            let middle = (self.mean.y + (v - self.mean.y) * self.stretch.y) * stop;
+            let middle = (self.target.y + (v - self.mean.y) * self.stretch.y) * stop;
             let half_height = height / 2.0 * self.stretch.y * stop;
             if !in_band([middle - half_height, middle + half_height]) {
                 continue;
@@ -206,7 +209,7 @@ impl Level {
                 let width = (run.end - run.start) / parts;
                 for part in 0..parts as usize {
                     let u = run.start + width * (part as f64 + 0.5);
-                    let center = self.mean + (DVec2::new(u, v) - self.mean) * self.stretch;
+                    let center = self.target + (DVec2::new(u, v) - self.mean) * self.stretch;
                     emit(Piece {
                         center: center * stop,
                         half_size: DVec2::new(width, height) / 2.0 * self.stretch * stop,
@@ -217,10 +220,11 @@ impl Level {
         }
     }
 
-    /// Stretches the level to a given standard deviation.
-    fn match_moments(&mut self, wanted: DVec2) {
+    /// Moves and stretches the level to a given mean and standard deviation.
+    fn match_moments(&mut self, target: DVec2, wanted: DVec2) {
         let (mean, deviation) = self.moments();
         self.mean = mean;
+        self.target = target;
         self.stretch = wanted / deviation;
     }
 
@@ -325,6 +329,21 @@ mod tests {
             assert!((sum - 2.0).abs() < 1e-6, "{radius}: {sum}");
             assert!(mean.distance(DVec2::new(0.1, -0.05)) < 2e-3, "{radius}: {mean}");
             assert!((square / 2.0).distance(DVec2::splat(0.25)) < 6e-3, "{radius}: {square}");
+        }
+    }
+
+    /// One texel of a large mask keeps its place at every size, to half a cell of the finest level.
+    #[test]
+    fn a_small_opening_stays_in_its_place() {
+        let mut transmission = vec![0.0; 64 * 64];
+        transmission[5 * 64 + 50] = 1.0;
+        let mask = lens::ApertureMask { width: 64, height: 64, transmission, file: String::new() };
+        let kernel = Kernel::new(&ApertureShape::Mask(mask.into()).into(), 1.0);
+        let texel = DVec2::new(50.5 / 32.0 - 1.0, 1.0 - 5.5 / 32.0);
+        for radius in [0.1, 1.0, 3.0, 20.0, 100.0] {
+            let mut mean = DVec2::ZERO;
+            kernel.pieces(radius, ONE, |_| true, |piece| mean += piece.share * piece.center);
+            assert!(mean.distance(texel) < 1.0 / 128.0, "{radius}: {mean}, expected {texel}");
         }
     }
 

@@ -6,6 +6,9 @@ use lens::{Aperture, FocusOffset, Optics};
 use salf::Sample;
 use scene::SurfaceField;
 
+/// A larger splat leaves less than half a quantum in any pixel, however bright ([`crate::fixed_point::BRIGHTEST`]): nothing.
+const WIDEST_PX: f64 = (1u64 << 30) as f64;
+
 /// Aperture and optics of one picture, in units of the baked aperture.
 pub struct SplatLens {
     kernel: Kernel,
@@ -33,7 +36,8 @@ impl SplatLens {
 
     /// Where `focus` sends a sample.
     pub fn place(&self, sample: &Sample, focus: &dyn SurfaceField<FocusOffset>) -> Placed {
-        let offset = sample.surface.map_or_else(|| focus.at_infinity(), |point| focus.at(point));
+        let offset =
+            sample.surface.map_or_else(|| focus.at_infinity(), |point| focus.at(point)).or_standard();
         if offset.is_standard() {
             self.standard(sample)
         } else {
@@ -50,7 +54,7 @@ impl SplatLens {
 
     /// The aperture image of a sample.
     pub fn image<'a>(&'a self, sample: &'a Sample, placed: Placed) -> ApertureImage<'a> {
-        let radius_px = self.optics.splat_radius_px(placed.kappa);
+        let radius_px = self.optics.splat_radius_px(placed.kappa).clamp(-WIDEST_PX, WIDEST_PX);
         ApertureImage { sample, kernel: &self.kernel, radius_px, depth_share: placed.depth_share }
     }
 }
