@@ -14,6 +14,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("salf", &["slf", "trace", "scene", "lens", "progress"]),
     ("focus", &["atlas", "scene", "lens"]),
     ("splat", &["salf", "focus", "scene", "lens", "progress"]),
+    ("hard-cases", &["lens", "scene", "atlas", "trace", "slf", "salf", "focus", "splat", "progress"]),
     ("project", &["scene", "focus", "atlas", "lens"]),
     ("session", &["lens", "progress", "scene", "atlas", "trace", "slf", "salf", "focus", "splat", "project"]),
     (

@@ -1,0 +1,115 @@
+//! Surfaces on, behind and across the aperture plane, and those that run to the horizon.
+
+use crate::case::{Case, Effort, Finding, UNTRIED};
+use crate::measure::{farthest_from, largest_difference, rms_difference, senseless, worst};
+use crate::scenery::{Mesh, scene_of};
+use crate::shot::{Shot, picture_of};
+use glam::{DVec3, Vec2};
+use lens::{Camera, FocusOffset, Picture};
+use progress::{Cancelled, Progress};
+
+pub const CASES: &[Case] = &[
+    Case {
+        name: "points on and behind the aperture plane",
+        reason: "They send no light through the aperture to the sensor: with them the picture is what it is without.",
+        control: "(x, y)/z taken for them too: how many land in the frame",
+        check: behind,
+    },
+    Case {
+        name: "triangles that straddle the aperture plane",
+        reason: "Of a floor that runs under the camera the part in front is seen whole: splat and ray tracing agree.",
+        control: "triangles with a corner behind left out",
+        check: straddling,
+    },
+    Case {
+        name: "grazing planes to the horizon",
+        reason: "A floor of radiance 1 under a background of radiance 1 is 1 everywhere, however grazing, as a sample's \
+                 weight is linear over the aperture, w + tilt·u; what is left is a ripple by the nearest floor.",
+        control: "a weight without tilt, the same toward every aperture point",
+        check: grazing,
+    },
+];
+
+const WHITE: [f32; 3] = [1.0; 3];
+
+fn camera(effort: Effort) -> Camera {
+    let (width, height) = effort.pick((96, 72), (48, 36));
+    Camera { width, height, yfov: 0.6, aperture_radius: 0.1, focus_distance: 3.0, ..Camera::default() }
+}
+
+/// A horizontal rectangle from `from` to `to` in depth, `half` to either side.
+fn floor(height: f64, [from, to]: [f64; 2], half: f64) -> Mesh {
+    Mesh::rectangle(DVec3::new(-half, height, -from), DVec3::X * 2.0 * half, DVec3::Z * (from - to))
+}
+
+fn behind(effort: Effort, progress: &dyn Progress) -> Result<Finding, Cancelled> {
+    let wall = Mesh::wall(4.0, 1.0);
+    let unseen = [
+        Mesh::wall(-1.0, 3.0),
+        Mesh::wall(-1e-9, 3.0),
+        Mesh::rectangle(DVec3::new(0.2, -1.0, 0.0), DVec3::X, DVec3::Y * 2.0),
+        floor(-1.0, [-5.0, 0.0], 2.0),
+        Mesh::triangle([DVec3::new(0.3, 0.0, 0.0), DVec3::new(0.4, 0.2, 2.0), DVec3::new(0.5, 0.0, 2.0)]),
+    ];
+    let camera = camera(effort);
+    let alone = Shot::new(scene_of([(&wall, WHITE)]), camera.clone());
+    let all = std::iter::once((&wall, WHITE)).chain(unseen.iter().map(|mesh| (mesh, [9.0, 9.0, 9.0])));
+    let both = Shot::new(scene_of(all), camera.clone());
+    let mut differences = Vec::new();
+    for offset in [FocusOffset::STANDARD, FocusOffset::new(0.97, 1.0)] {
+        let pictures = |shot: &Shot| -> Result<[Picture; 2], Cancelled> {
+            Ok([shot.splat(offset, progress)?, shot.truth(offset, 4, progress)?])
+        };
+        let [expected, found] = [pictures(&alone)?, pictures(&both)?];
+        differences.extend((0..2).map(|k| largest_difference(&found[k], &expected[k])));
+    }
+    let optics = camera.optics();
+    let projected = unseen.iter().flat_map(|mesh| &mesh.positions).filter(|position| {
+        let q = optics.chief(camera.camera_from_world(**position));
+        q.x.abs() <= camera.aspect() && q.y.abs() <= 1.0
+    });
+    let expected = "the picture without them, bit for bit, splatted and traced";
+    Ok(Finding::of(expected, [("difference", 0.0)], [worst(differences)], [projected.count() as f64]))
+}
+
+fn straddling(effort: Effort, progress: &dyn Progress) -> Result<Finding, Cancelled> {
+    let meshes = [
+        (floor(-0.4, [-3.0, 40.0], 30.0), [0.9, 0.6, 0.3]),
+        // A wall beside the camera, edge-on to it.
+        (Mesh::rectangle(DVec3::new(0.45, -2.0, 2.0), DVec3::Y * 4.0, DVec3::Z * -9.0), [0.2, 0.5, 0.9]),
+    ];
+    let camera = Camera { background: [0.05; 3], ..camera(effort) };
+    let shot = Shot::new(scene_of(meshes.iter().map(|(mesh, color)| (mesh, *color))), camera.clone());
+    let samples = effort.pick(256, 200);
+    let culled = Shot::new(scene_of([]), camera);
+    let mut right = [0.0f64; 2];
+    let mut wrong = 0.0f64;
+    for offset in [FocusOffset::STANDARD, FocusOffset::new(0.98, 1.0)] {
+        let truth = shot.truth(offset, samples, progress)?;
+        let splat = shot.splat(offset, progress)?;
+        right =
+            [right[0].max(rms_difference(&splat, &truth)), right[1] + senseless(&splat) + senseless(&truth)];
+        wrong = wrong.max(rms_difference(&culled.splat(offset, progress)?, &truth));
+    }
+    let expected = "splat and ray tracing agree to 0.02 (RMS, radiances 0.05 … 0.9); no senseless number";
+    Ok(Finding::of(expected, [("RMS", 0.02), ("senseless", 0.0)], right, [wrong, UNTRIED]))
+}
+
+fn grazing(effort: Effort, progress: &dyn Progress) -> Result<Finding, Cancelled> {
+    let camera = Camera { background: [1.0; 3], ..camera(effort) };
+    let (mut splatted, mut traced, mut untilted) = (Vec::new(), Vec::new(), Vec::new());
+    for height in [-0.2, -0.4, -1.0, -20.0] {
+        let scene = scene_of([(&floor(height, [-1.0, 1e6], 1e6), WHITE)]);
+        let shot = Shot::new(scene, camera.clone());
+        let salf = shot.salf(FocusOffset::STANDARD, progress)?;
+        let focus = shot.focus(FocusOffset::STANDARD);
+        let mut flat = salf.clone();
+        flat.samples.iter_mut().for_each(|sample| sample.tilt = Vec2::ZERO);
+        splatted.push(farthest_from(&picture_of(salf, &focus, progress)?, 1.0));
+        untilted.push(farthest_from(&picture_of(flat, &focus, progress)?, 1.0));
+        traced.push(farthest_from(&shot.truth(FocusOffset::STANDARD, 4, progress)?, 1.0));
+    }
+    let limits = [("splat", 0.03), ("truth", 1e-6)];
+    let expected = "1 ± 0.03 splatted, 1 traced, from floors 2 to 200 aperture radii below";
+    Ok(Finding::of(expected, limits, [worst(splatted), worst(traced)], [worst(untilted), UNTRIED]))
+}

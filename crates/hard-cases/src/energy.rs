@@ -1,0 +1,160 @@
+//! Light is neither made nor lost.
+
+use crate::case::{Case, Effort, Finding, UNTRIED};
+use crate::light_field::{offset_of, picture_of_stars, star};
+use crate::measure::{energy, worst};
+use crate::random::Random;
+use crate::scenery::{Mesh, scene_of};
+use crate::shot::{Shot, picture_of};
+use glam::{DVec2, DVec3};
+use lens::{Camera, Exposure, FocusOffset, Picture};
+use progress::{Cancelled, Progress};
+use salf::{Salf, Visibility};
+use std::f64::consts::{PI, SQRT_2};
+
+pub const CASES: &[Case] = &[
+    Case {
+        name: "energy: picture + outside = input",
+        reason: "What a frame cuts off is what an over-wide frame has beyond it, bit for bit, and all of it is the input, but \
+                 for the rounding of each of a splat's pixels to a quantum of 2⁻²⁸.",
+        control: "mass of the rays that land in the frame, taken for all",
+        check: inside_and_outside,
+    },
+    Case {
+        name: "energy: the sum does not depend on t",
+        reason: "Paint moves light and makes none: over a frame wide enough the sum stays.",
+        control: "the normalised picture, whose sum is not energy",
+        check: invariant_to_paint,
+    },
+    Case {
+        name: "energy: behind an occluder",
+        reason: "What an occluder takes is the same for every t but for how the unpainted picture shares what cells of \
+                 visibility leave.",
+        control: "every sample taken to see the whole aperture",
+        check: behind_an_occluder,
+    },
+];
+
+/// Half the step of the splat's sums.
+const HALF_QUANTUM: f64 = 1.0 / (1u64 << 29) as f64;
+
+fn inside_and_outside(effort: Effort, progress: &dyn Progress) -> Result<Finding, Cancelled> {
+    const FRAME: u32 = 33;
+    const BORDER: u32 = 48;
+    let camera = |side: u32| Camera { width: side, height: side, aperture_radius: 0.1, ..Camera::default() };
+    let (small, wide) = (camera(FRAME), camera(FRAME + 2 * BORDER));
+    let count = effort.pick(400, 60);
+    let mut random = Random(11);
+    // On a grid that f32 holds exactly in either frame.
+    let mut coordinate = || (random.unit() * f64::from(FRAME) * 256.0).floor() / 256.0;
+    let places: Vec<_> = (0..count).map(|_| DVec2::new(coordinate(), coordinate())).collect();
+    let (mut crop, mut lost, mut shares, mut cut) = (Vec::new(), Vec::new(), Vec::new(), f64::INFINITY);
+    for radius in [-30.0, -3.0, 0.7, 11.0, 40.0] {
+        let of = |camera: &Camera, shift: f64| {
+            let samples = places.iter().map(|&place| star(place + shift, 0.5, 1.0)).collect();
+            // The same radius in px in both.
+            let offset = offset_of(radius / camera.optics().splat_radius_px(1.0), camera);
+            picture_of_stars(camera, samples, offset, progress)
+        };
+        let (inner, outer) = (of(&small, 0.0)?, of(&wide, f64::from(BORDER))?);
+        crop.push(difference_to_crop(&inner, &outer, BORDER as usize));
+        let lost_by_splat = (energy(&outer) - f64::from(count)) / f64::from(count);
+        lost.push(lost_by_splat);
+        // The disc, grown by a pixel's diagonal, holds all the pixels that it touches.
+        shares.push(lost_by_splat / (HALF_QUANTUM * PI * (f64::abs(radius) + SQRT_2).powi(2)));
+        cut = cut.min((energy(&inner) - f64::from(count)).abs() / f64::from(count));
+    }
+    let limits = [("frame", 0.0), ("lost", 1e-6), ("half quanta a splat and pixel", 1.0)];
+    let expected = "the frame is a crop of the over-wide one, bit for bit; its sum the input's to 1e-6 and to half a quantum \
+                    a splat and pixel";
+    Ok(Finding::of(
+        expected,
+        limits,
+        [worst(crop), worst(lost), worst(shares)],
+        [UNTRIED, cut, cut / HALF_QUANTUM],
+    ))
+}
+
+/// The largest difference between a picture and the middle of a wider one.
+fn difference_to_crop(inner: &Picture, outer: &Picture, border: usize) -> f64 {
+    let (width, outer_width) = (inner.width as usize, outer.width as usize);
+    worst((0..inner.radiance.len()).map(|k| {
+        let (x, y) = (k % width + border, k / width + border);
+        f64::from(inner.radiance[k][1] - outer.radiance[y * outer_width + x][1])
+    }))
+}
+
+/// Two squares before a black background, the nearer one at `near_x`: 0 hides part of the farther one.
+fn squares(effort: Effort, near_x: f64) -> Shot {
+    let side = effort.pick(160, 96);
+    let camera = Camera {
+        width: side,
+        height: side,
+        yfov: 1.2,
+        focus_distance: 3.0,
+        aperture_radius: 0.15,
+        sensor_height: 0.2,
+        ..Camera::default()
+    };
+    let near = Mesh::rectangle(DVec3::new(near_x, -0.1, -2.0), DVec3::X * 0.3, DVec3::new(0.0, 0.3, -0.2));
+    let far = Mesh::rectangle(DVec3::new(-0.3, -0.4, -4.0), DVec3::X * 0.9, DVec3::Y * 0.6);
+    Shot::new(scene_of([(&near, [0.5, 0.8, 0.2]), (&far, [0.9, 0.3, 0.4])]), camera)
+}
+
+/// Paint that moves light about; the last is none.
+const OFFSETS: [FocusOffset; 5] = [
+    FocusOffset::new(0.85, 1.0),
+    FocusOffset::new(1.1, 0.0),
+    FocusOffset::new(0.9, 0.5),
+    FocusOffset::new(1.2, 1.0),
+    FocusOffset::STANDARD,
+];
+
+/// How far sums differ, as a share of the largest.
+fn spread(sums: &[f64]) -> f64 {
+    let (low, high) = sums.iter().fold((f64::INFINITY, 0.0), |(l, h): (f64, f64), &s| (l.min(s), h.max(s)));
+    (high - low) / high
+}
+
+fn invariant_to_paint(effort: Effort, progress: &dyn Progress) -> Result<Finding, Cancelled> {
+    let shot = squares(effort, -0.9);
+    let (mut splatted, mut normalised, mut traced) = (Vec::new(), Vec::new(), Vec::new());
+    for offset in OFFSETS {
+        let picture = shot.splat(offset, progress)?;
+        splatted.push(energy(&picture));
+        normalised.push(energy(&Picture { radiance: picture.exposed(Exposure::Normalise), ..picture }));
+        traced.push(energy(&shot.truth(offset, 16, progress)?));
+    }
+    // The traced sum's own uncertainty, from other random numbers.
+    let mut others = Vec::new();
+    for seed in 2..effort.pick(10, 6) {
+        others.push(energy(&shot.seeded_truth(FocusOffset::STANDARD, 16, seed, progress)?));
+    }
+    let mean = others.iter().sum::<f64>() / others.len() as f64;
+    let variance = others.iter().map(|sum| (sum - mean).powi(2)).sum::<f64>() / (others.len() - 1) as f64;
+    let deviations = spread(&traced) / (variance.sqrt() / mean);
+    let limits = [("splat", 1e-4), ("truth, standard errors", 1.0)];
+    let expected = "the same for every t and anchor to 0.01 % splatted, to a standard error traced";
+    Ok(Finding::of(expected, limits, [spread(&splatted), deviations], [spread(&normalised), UNTRIED]))
+}
+
+fn behind_an_occluder(effort: Effort, progress: &dyn Progress) -> Result<Finding, Cancelled> {
+    let shot = squares(effort, -0.15);
+    let salf = shot.salf(OFFSETS[0], progress)?;
+    let mut blind = salf.clone();
+    blind.samples.iter_mut().for_each(|sample| sample.visibility = Visibility::Open);
+    let sums = |salf: &Salf| -> Result<Vec<f64>, Cancelled> {
+        let sum = |&offset| Ok(energy(&picture_of(salf.clone(), &shot.focus(offset), progress)?));
+        OFFSETS.iter().map(sum).collect()
+    };
+    let (sums, blind) = (sums(&salf)?, sums(&blind)?);
+    let traced = energy(&shot.truth(FocusOffset::STANDARD, 64, progress)?);
+    let painted = OFFSETS.len() - 1;
+    let relative = |sum: f64| (sum / traced - 1.0).abs();
+    let limits = [("painted", 1e-4), ("unpainted", 0.01), ("against truth", 0.01)];
+    let right = [spread(&sums[..painted]), spread(&sums), worst(sums.iter().map(|&sum| relative(sum)))];
+    let wrong = [UNTRIED, UNTRIED, blind.iter().map(|&sum| relative(sum)).fold(f64::INFINITY, f64::min)];
+    let expected = "painted ones alike to 0.01 %; the unpainted one, whose pixels are filled to coverage 1, to 1 %; all \
+                    those of the truth to 1 %";
+    Ok(Finding::of(expected, limits, right, wrong))
+}

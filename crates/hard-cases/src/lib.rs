@@ -1,0 +1,78 @@
+//! The numerically hard cases, by name.
+//!
+//! Each [`Case`] puts one awkward input through the product, measures what comes out against a closed form or a
+//! reasoned bound, and applies *the same check* to a deliberately wrong computation, which must fail it: a check
+//! that passes both proves nothing. [`suite`] lists them, [`run`] runs them; `docs/hard-cases.md` shows the table.
+//!
+//! | file | idea |
+//! | --- | --- |
+//! | `defocus` | κ where other forms of the formula have a pole |
+//! | `offsets` | focus offsets that make no sense |
+//! | `aperture_plane` | surfaces on, behind and across the aperture, and up to the horizon |
+//! | `scaling` | the same scene in other units |
+//! | `rays` | closed meshes and close shells |
+//! | `triangles` | triangles without area, needles, duplicates |
+//! | `texels` | texels whose centre lies beside their triangle, paint at a seam |
+//! | `ranges` | the very bright beside the very dim |
+//! | `furnace` | a scene of radiance 1 is 1 |
+//! | `energy` | light is neither made nor lost |
+//! | `sampling` | aperture points have the density of the transmission |
+//! | `masks` | aperture pictures without light, with little, with very many texels |
+
+mod aperture_plane;
+mod case;
+mod defocus;
+mod energy;
+mod furnace;
+mod light_field;
+mod masks;
+mod measure;
+mod offsets;
+mod random;
+mod ranges;
+mod rays;
+mod sampling;
+mod scaling;
+mod scenery;
+mod shot;
+mod texels;
+mod triangles;
+
+pub use case::{Case, Effort, Outcome};
+
+use progress::{Cancelled, Progress, Stage};
+
+/// All cases, in the order of the table.
+pub fn suite() -> Vec<Case> {
+    [
+        defocus::CASES,
+        offsets::CASES,
+        aperture_plane::CASES,
+        scaling::CASES,
+        rays::CASES,
+        triangles::CASES,
+        texels::CASES,
+        ranges::CASES,
+        furnace::CASES,
+        energy::CASES,
+        sampling::CASES,
+        masks::CASES,
+    ]
+    .concat()
+}
+
+/// Runs the cases whose names contain `filter` (all if it is empty).
+///
+/// A case is the unit of progress and of cancelling; the longest takes some seconds at [`Effort::Full`].
+pub fn run(filter: &str, effort: Effort, progress: &dyn Progress) -> Result<Vec<Outcome>, Cancelled> {
+    let chosen: Vec<_> = suite().into_iter().filter(|case| case.name.contains(filter)).collect();
+    let count = chosen.len() as f32;
+    let outcomes = chosen.iter().enumerate().map(|(index, case)| {
+        progress.check()?;
+        let outcome =
+            case.run(effort, &Stage::new(progress, index as f32 / count, (index + 1) as f32 / count))?;
+        progress.report((index + 1) as f32 / count);
+        Ok(outcome)
+    });
+    outcomes.collect()
+}

@@ -1,0 +1,40 @@
+//! Light fields made sample by sample: background samples, which the focus at infinity places.
+
+use crate::scenery::scene_of;
+use crate::shot::picture_of;
+use focus::Focus;
+use glam::{DVec2, Vec2, Vec3};
+use lens::{Camera, FocusOffset, Picture};
+use progress::{Cancelled, Progress};
+use salf::{Salf, Sample, Visibility};
+
+/// A sample of the background at a pixel position, a square of the given half side, px, that sees the whole aperture.
+/// Its weight is its area.
+pub fn star(center: DVec2, half_px: f64, radiance: f32) -> Sample {
+    Sample {
+        center: center.as_vec2(),
+        half_size: Vec2::splat(half_px as f32),
+        inverse_depth: 0.0,
+        weight: (4.0 * half_px * half_px) as f32,
+        tilt: Vec2::ZERO,
+        radiance: Vec3::splat(radiance),
+        surface: None,
+        visibility: Visibility::Open,
+    }
+}
+
+/// The focus that gives a background sample the defocus κ: t = 1 + κd relative to the point.
+pub fn offset_of(kappa: f64, camera: &Camera) -> FocusOffset {
+    FocusOffset::new(1.0 + kappa * camera.optics().image_distance, 1.0)
+}
+
+/// The picture of such samples under one focus.
+pub fn picture_of_stars(
+    camera: &Camera,
+    samples: Vec<Sample>,
+    offset: FocusOffset,
+    progress: &dyn Progress,
+) -> Result<Picture, Cancelled> {
+    let focus = Focus::constant(scene_of([]), offset);
+    picture_of(Salf { camera: camera.clone(), margin_px: 0, samples }, &focus, progress)
+}

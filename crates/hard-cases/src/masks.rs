@@ -1,0 +1,127 @@
+//! Aperture pictures without light, with little, with very many texels.
+
+use crate::case::{Case, Effort, Finding, UNTRIED};
+use crate::light_field::{offset_of, picture_of_stars, star};
+use crate::measure::{energy, worst};
+use crate::sampling::mask;
+use glam::DVec2;
+use lens::{Aperture, ApertureShape, Camera, Picture};
+use progress::{Cancelled, Progress};
+
+pub const CASES: &[Case] = &[
+    Case {
+        name: "aperture mask all black",
+        reason: "No light passes, and exposure divides by the open area: such a mask is refused by name.",
+        control: "a check of the range of the transmissions alone",
+        check: black,
+    },
+    Case {
+        name: "aperture mask of one texel",
+        reason: "Its splat is the sharp one, moved by κ·R times the place of the texel, up in the mask being up on the \
+                 picture in far defocus.",
+        control: "the mask read from the bottom row up",
+        check: one_texel,
+    },
+    Case {
+        name: "aperture mask of 4096²",
+        reason: "A checkerboard of single texels passes half the light, whatever it is cut to.",
+        control: "the mask asked at the middle of each of 128² cells",
+        check: many_texels,
+    },
+];
+
+fn black(_: Effort, _: &dyn Progress) -> Result<Finding, Cancelled> {
+    let masks = [1, 2, 64].map(|side| Aperture::from(mask(side, |_| 0.0)));
+    let accepted =
+        |refuses: &dyn Fn(&Aperture) -> bool| masks.iter().filter(|mask| !refuses(mask)).count() as f64;
+    let by_name = |aperture: &Aperture| {
+        let camera = Camera { aperture: aperture.clone(), ..Camera::default() };
+        camera.validate().is_err_and(|error| error.field == "aperture mask")
+    };
+    let by_range = |aperture: &Aperture| match &aperture.shape {
+        ApertureShape::Mask(mask) => !mask.transmission.iter().all(|t| (0.0..=1.0).contains(t)),
+        _ => false,
+    };
+    Ok(Finding::of(
+        "refused, naming the mask",
+        [("accepted", 0.0)],
+        [accepted(&by_name)],
+        [accepted(&by_range)],
+    ))
+}
+
+const FRAME_PX: u32 = 97;
+
+/// Mass, and the centroid from the frame's middle, px, y up.
+fn centroid(picture: &Picture) -> (f64, DVec2) {
+    let middle = f64::from(FRAME_PX - 1) / 2.0;
+    let mass = energy(picture);
+    let place = |k: usize| {
+        DVec2::new((k % FRAME_PX as usize) as f64 - middle, middle - (k / FRAME_PX as usize) as f64)
+    };
+    let moment: DVec2 =
+        picture.radiance.iter().enumerate().map(|(k, rgb)| place(k) * f64::from(rgb[1])).sum();
+    (mass, moment / mass)
+}
+
+fn camera_with(aperture: Aperture) -> Camera {
+    Camera {
+        width: FRAME_PX,
+        height: FRAME_PX,
+        yfov: 0.48,
+        aperture_radius: 10.0,
+        aperture,
+        ..Camera::default()
+    }
+}
+
+fn one_texel(effort: Effort, progress: &dyn Progress) -> Result<Finding, Cancelled> {
+    let side = effort.pick(512, 128);
+    let half_texel = 1.0 / f64::from(side);
+    // A texel in the upper right, off every coarser grid's symmetry.
+    let open = DVec2::new(0.4, 0.7);
+    let is_open = move |u: DVec2| f32::from((u - open).abs().max_element() < half_texel);
+    let upright = mask(side, is_open);
+    let turned = mask(side, move |u| is_open(DVec2::new(u.x, -u.y)));
+    let error = |shape: ApertureShape| -> Result<[f64; 2], Cancelled> {
+        let camera = camera_with(shape.into());
+        let (mut masses, mut places) = (Vec::new(), Vec::new());
+        for radius_px in [-40.0, -5.0, -0.3, 0.0, 0.3, 1.0, 5.0, 17.0, 40.0] {
+            let kappa = radius_px / camera.optics().splat_radius_px(1.0);
+            let samples = vec![star(DVec2::splat(f64::from(FRAME_PX) / 2.0), 0.5, 1.0)];
+            let picture = picture_of_stars(&camera, samples, offset_of(kappa, &camera), progress)?;
+            let (mass, center) = centroid(&picture);
+            masses.push(mass - 1.0);
+            places.push(center.distance(open * radius_px) / (f64::abs(radius_px) / 128.0 + 0.02));
+        }
+        Ok([worst(masses), worst(places)])
+    };
+    let expected = format!(
+        "mass 1 ± 1e-6, centre at κRu to half of one of the 128² cells that masks are cut to, radii \
+                           −40 … 40 px, one of {side}² texels"
+    );
+    let limits = [("mass", 1e-6), ("centre, half cells", 1.0)];
+    Ok(Finding::of(expected, limits, error(upright)?, error(turned)?))
+}
+
+fn many_texels(effort: Effort, progress: &dyn Progress) -> Result<Finding, Cancelled> {
+    let side = effort.pick(4096, 512);
+    let texel = |u: f64| ((u + 1.0) / 2.0 * f64::from(side)) as u32;
+    let aperture = Aperture::from(mask(side, |u| f32::from((texel(u.x) + texel(u.y)).is_multiple_of(2))));
+    let areas = [1, 8, 16, 128].map(|rows| aperture.rows(rows).open_area() / 2.0 - 1.0);
+    progress.check()?;
+    let camera = camera_with(aperture.clone());
+    let samples = vec![star(DVec2::splat(f64::from(FRAME_PX) / 2.0), 0.5, 1.0)];
+    let kappa = 20.0 / camera.optics().splat_radius_px(1.0);
+    let picture = picture_of_stars(&camera, samples, offset_of(kappa, &camera), progress)?;
+    let (mass, center) = centroid(&picture);
+    let asked = |k: u32| {
+        let u = DVec2::new(f64::from(k % 128) + 0.5, f64::from(k / 128) + 0.5) / 64.0 - 1.0;
+        aperture.transmission(u)
+    };
+    let asked_area = (0..128 * 128).map(asked).sum::<f64>() / f64::from(64 * 64) / 2.0 - 1.0;
+    let limits = [("area", 1e-6), ("mass", 1e-5), ("centre", 0.02)];
+    let right = [worst(areas), mass - 1.0, center.length()].map(f64::abs);
+    let expected = format!("{side}² texels: open area 2 to 1e-6; mass 1 to 1e-5; centred to 0.02 px");
+    Ok(Finding::of(expected, limits, right, [asked_area.abs(), UNTRIED, UNTRIED]))
+}

@@ -1,0 +1,41 @@
+//! What is measured on pictures.
+
+use lens::Picture;
+
+/// The largest of some magnitudes; NaN if any of them is.
+pub fn worst(magnitudes: impl IntoIterator<Item = f64>) -> f64 {
+    magnitudes.into_iter().fold(0.0, |most: f64, value| {
+        if most.is_nan() || value.is_nan() { f64::NAN } else { most.max(value.abs()) }
+    })
+}
+
+/// How many of a picture's numbers are NaN, infinite or below 0.
+pub fn senseless(picture: &Picture) -> f64 {
+    let numbers = picture.radiance.iter().flatten().chain(&picture.coverage);
+    numbers.filter(|value| !(value.is_finite() && **value >= 0.0)).count() as f64
+}
+
+/// The largest distance of any radiance (conserved) from `value`.
+pub fn farthest_from(picture: &Picture, value: f64) -> f64 {
+    worst(picture.radiance.iter().flatten().map(|&c| f64::from(c) - value))
+}
+
+/// The largest difference between two pictures, radiance and coverage.
+pub fn largest_difference(a: &Picture, b: &Picture) -> f64 {
+    let numbers = |p: &Picture| {
+        p.radiance.iter().flatten().chain(&p.coverage).map(|&c| f64::from(c)).collect::<Vec<_>>()
+    };
+    worst(numbers(a).into_iter().zip(numbers(b)).map(|(a, b)| a - b))
+}
+
+/// Root mean square difference of the radiances.
+pub fn rms_difference(a: &Picture, b: &Picture) -> f64 {
+    let pairs = a.radiance.iter().flatten().zip(b.radiance.iter().flatten());
+    let squares: f64 = pairs.map(|(a, b)| f64::from(a - b).powi(2)).sum();
+    (squares / (3.0 * a.radiance.len() as f64)).sqrt()
+}
+
+/// The sum of all pixels, green.
+pub fn energy(picture: &Picture) -> f64 {
+    picture.radiance.iter().map(|rgb| f64::from(rgb[1])).sum()
+}

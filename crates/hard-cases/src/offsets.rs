@@ -1,0 +1,85 @@
+//! Focus offsets that make no sense.
+
+use crate::case::{Case, Effort, Finding, UNTRIED};
+use crate::measure::{largest_difference, senseless, worst};
+use crate::scenery::{Mesh, scene_of};
+use crate::shot::Shot;
+use focus::{FocusRecipe, RecipeEntry};
+use glam::DVec3;
+use lens::{Camera, FocusOffset};
+use progress::{Cancelled, Progress};
+
+pub const CASES: &[Case] = &[
+    Case {
+        name: "t = 0, negative, up to 1e300",
+        reason: "Any finite t is a lens: the picture has finite numbers of 0 or more, however far the light goes.",
+        control: "(t − 1)/d and the rest of κ added where both overflow",
+        check: any_finite_offset,
+    },
+    Case {
+        name: "t = NaN, ±∞, anchor outside [0, 1]",
+        reason: "Recipes refuse what is not a number; where it gets into a field all the same it counts as unpainted.",
+        control: "κ of the number as it is",
+        check: not_a_number,
+    },
+];
+
+fn shot() -> Shot {
+    let patch = Mesh::rectangle(DVec3::new(-0.2, -0.3, -2.0), DVec3::X * 0.5, DVec3::Y * 0.4);
+    let scene = scene_of([(&Mesh::wall(4.0, 50.0), [1.0, 0.5, 0.2]), (&patch, [0.1, 2.0, 0.7])]);
+    Shot::new(scene, Camera { width: 18, height: 12, aperture_radius: 0.1, ..Camera::default() })
+}
+
+const ANCHORS: [f64; 3] = [0.0, 0.5, 1.0];
+
+fn any_finite_offset(effort: Effort, progress: &dyn Progress) -> Result<Finding, Cancelled> {
+    let shot = shot();
+    let every = [0.0, -1e-9, -1.0, -3.0, 1e6, -1e6, 1e30, 1e300, f64::MAX, f64::MIN];
+    let (mut in_pictures, mut raw) = (0.0, 0.0);
+    for (index, &t) in every.iter().enumerate() {
+        let anchors = effort.pick(&ANCHORS[..], &ANCHORS[index % 3..=index % 3]);
+        for &anchor in anchors {
+            let offset = FocusOffset::new(t, anchor);
+            in_pictures += senseless(&shot.splat(offset, progress)?);
+            raw += f64::from(!raw_kappa(&shot.camera, offset).is_finite());
+        }
+        // Wide blur is slow to trace.
+        if index % effort.pick(1, 4) == 0 {
+            in_pictures += senseless(&shot.truth(FocusOffset::new(t, 0.5), 1, progress)?);
+        }
+    }
+    let expected = "no number of any picture is NaN, infinite or negative";
+    Ok(Finding::of(expected, [("senseless", 0.0)], [in_pictures], [raw]))
+}
+
+/// κ at depth 2 as it is written, without a guard.
+fn raw_kappa(camera: &Camera, FocusOffset { t, anchor }: FocusOffset) -> f64 {
+    let optics = camera.optics();
+    (t - 1.0) / optics.image_distance + t * (1.0 - anchor) * (optics.inverse_focus_distance - 0.5)
+}
+
+fn not_a_number(effort: Effort, progress: &dyn Progress) -> Result<Finding, Cancelled> {
+    let shot = shot();
+    let offsets = [
+        FocusOffset::new(f64::NAN, 0.0),
+        FocusOffset::new(f64::INFINITY, 1.0),
+        FocusOffset::new(f64::NEG_INFINITY, 0.5),
+        FocusOffset::new(1.0, f64::NAN),
+        FocusOffset::new(1.1, 1.5),
+        FocusOffset::new(1.1, -0.1),
+    ];
+    let standard =
+        [shot.splat(FocusOffset::STANDARD, progress)?, shot.truth(FocusOffset::STANDARD, 4, progress)?];
+    let (mut accepted, mut differences, mut raw) = (0.0, Vec::new(), Vec::new());
+    for offset in effort.pick(&offsets[..], &offsets[..3]) {
+        let recipe = FocusRecipe { default: RecipeEntry::Value(*offset), ..FocusRecipe::default() };
+        accepted += f64::from(recipe.evaluate(shot.tracer.scene()).is_ok());
+        differences.push(largest_difference(&shot.splat(*offset, progress)?, &standard[0]));
+        differences.push(largest_difference(&shot.truth(*offset, 4, progress)?, &standard[1]));
+        let optics = shot.camera.optics();
+        raw.push(raw_kappa(&shot.camera, *offset) - optics.standard_kappa(0.5));
+    }
+    let expected = "recipes refuse it; given to the renderers, the unpainted picture bit for bit";
+    let limits = [("accepted", 0.0), ("difference", 0.0)];
+    Ok(Finding::of(expected, limits, [accepted, worst(differences)], [UNTRIED, worst(raw)]))
+}

@@ -1,0 +1,48 @@
+//! Pseudo-random numbers, the same every time.
+
+use glam::{DVec2, DVec3};
+
+/// SplitMix64 (Steele, Lea and Flood 2014).
+pub struct Random(pub u64);
+
+impl Random {
+    /// In [0, 1).
+    pub fn unit(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let x = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        let x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((x ^ (x >> 31)) >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    /// In [−1, 1)³.
+    pub fn in_cube(&mut self) -> DVec3 {
+        DVec3::from_array(std::array::from_fn(|_| 2.0 * self.unit() - 1.0))
+    }
+
+    /// A unit vector.
+    pub fn direction(&mut self) -> DVec3 {
+        loop {
+            let v = self.in_cube();
+            if (1e-3..=1.0).contains(&v.length_squared()) {
+                return v.normalize();
+            }
+        }
+    }
+
+    /// Barycentrics, uniform over the triangle.
+    pub fn in_triangle(&mut self) -> DVec2 {
+        let (a, b) = (self.unit(), self.unit());
+        if a + b > 1.0 { DVec2::new(1.0 - a, 1.0 - b) } else { DVec2::new(a, b) }
+    }
+
+    /// Barycentrics on a corner (a third of them) or an edge.
+    pub fn on_outline(&mut self) -> DVec2 {
+        let along = self.unit();
+        match (self.unit() * 6.0) as u32 {
+            0 => DVec2::new(0.0, along),
+            1 => DVec2::new(along, 0.0),
+            2 | 3 => DVec2::new(along, 1.0 - along),
+            _ => [DVec2::ZERO, DVec2::X, DVec2::Y][(along * 3.0) as usize],
+        }
+    }
+}

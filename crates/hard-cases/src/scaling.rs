@@ -1,0 +1,84 @@
+//! The same scene in other units.
+
+use crate::case::{Case, Effort, Finding};
+use crate::measure::{largest_difference, rms_difference, worst};
+use crate::scenery::{Mesh, scene_of};
+use crate::shot::Shot;
+use glam::{DMat4, DQuat, DVec3};
+use lens::{Camera, FocusOffset, Picture};
+use progress::{Cancelled, Progress};
+
+pub const CASES: &[Case] = &[
+    Case {
+        name: "scaled by 2^±20",
+        reason: "A power of two changes exponents alone, if nothing holds a length of its own: the picture has the same \
+                 bits.",
+        control: "all lengths scaled but the sensor's height",
+        check: by_powers_of_two,
+    },
+    Case {
+        name: "scaled by 1e±6",
+        reason: "Other factors round differently, which moves a ray across an outline now and then and no more.",
+        control: "all lengths scaled but the sensor's height",
+        check: by_powers_of_ten,
+    },
+];
+
+/// The scene with all lengths (or all but the sensor's height) times `factor`.
+fn shot(effort: Effort, factor: f64, sensor_factor: f64) -> Shot {
+    let sphere = Mesh::sphere(DVec3::new(0.3, 0.1, -2.0), 0.4, 12).scaled(factor);
+    let wall = Mesh::wall(5.0, 20.0).scaled(factor);
+    let floor =
+        Mesh::rectangle(DVec3::new(-9.0, -0.6, 2.0), DVec3::X * 18.0, DVec3::Z * -20.0).scaled(factor);
+    let scene = scene_of([(&sphere, [0.9, 0.4, 0.1]), (&wall, [0.2, 0.3, 0.4]), (&floor, [0.5, 0.6, 0.5])]);
+    let turn = DQuat::from_rotation_y(0.1) * DQuat::from_rotation_x(-0.05);
+    let pose = DMat4::from_rotation_translation(turn, DVec3::new(0.1, 0.2, 0.3) * factor);
+    let (width, height) = effort.pick((64, 48), (40, 30));
+    let camera = Camera {
+        width,
+        height,
+        yfov: 0.6,
+        focus_distance: 2.5 * factor,
+        aperture_radius: 0.06 * factor,
+        sensor_height: 0.05 * sensor_factor,
+        camera_to_world: pose,
+        ..Camera::default()
+    };
+    Shot::new(scene, camera)
+}
+
+fn pictures(shot: &Shot, progress: &dyn Progress) -> Result<[Picture; 2], Cancelled> {
+    let offset = FocusOffset::new(0.97, 0.5);
+    Ok([shot.splat(offset, progress)?, shot.truth(offset, 16, progress)?])
+}
+
+/// The largest of some difference to the scene as it is, of scenes scaled by the two factors.
+fn compared(
+    effort: Effort,
+    [factors, sensor_factors]: [[f64; 2]; 2],
+    difference: fn(&Picture, &Picture) -> f64,
+    progress: &dyn Progress,
+) -> Result<[f64; 2], Cancelled> {
+    let expected = pictures(&shot(effort, 1.0, 1.0), progress)?;
+    let mut differences = [Vec::new(), Vec::new()];
+    for (factor, sensor_factor) in factors.into_iter().zip(sensor_factors) {
+        let found = pictures(&shot(effort, factor, sensor_factor), progress)?;
+        (0..2).for_each(|k| differences[k].push(difference(&found[k], &expected[k])));
+    }
+    Ok(differences.map(worst))
+}
+
+fn by_powers_of_two(effort: Effort, progress: &dyn Progress) -> Result<Finding, Cancelled> {
+    let factors = [20.0, -20.0].map(f64::exp2);
+    let right = compared(effort, [factors, factors], largest_difference, progress)?;
+    let wrong = compared(effort, [factors, [1.0; 2]], largest_difference, progress)?;
+    Ok(Finding::of("the same bits, splatted and traced", [("splat", 0.0), ("truth", 0.0)], right, wrong))
+}
+
+fn by_powers_of_ten(effort: Effort, progress: &dyn Progress) -> Result<Finding, Cancelled> {
+    let factors = [1e6, 1e-6];
+    let right = compared(effort, [factors, factors], rms_difference, progress)?;
+    let wrong = compared(effort, [factors, [1.0; 2]], rms_difference, progress)?;
+    let limits = [("splat", 1e-4), ("truth", 1e-4)];
+    Ok(Finding::of("the same to 1e-4 (RMS), splatted and traced", limits, right, wrong))
+}

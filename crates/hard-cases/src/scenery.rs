@@ -1,0 +1,98 @@
+//! Scenes made of corners. The camera of most cases stands at the origin and looks along −z.
+
+use glam::{DVec3, Vec4};
+use scene::{AlphaMode, Material, Node, Part, Scene, Triangle};
+use std::sync::Arc;
+
+/// A mesh: positions and triangles.
+#[derive(Clone, Debug, Default)]
+pub struct Mesh {
+    pub positions: Vec<DVec3>,
+    pub triangles: Vec<[u32; 3]>,
+}
+
+impl Mesh {
+    /// A lone triangle.
+    pub fn triangle(corners: [DVec3; 3]) -> Self {
+        Self { positions: corners.to_vec(), triangles: vec![[0, 1, 2]] }
+    }
+
+    /// The parallelogram from `corner` along two sides; counter-clockwise seen from where side × other points.
+    pub fn rectangle(corner: DVec3, side: DVec3, other: DVec3) -> Self {
+        let positions = vec![corner, corner + side, corner + side + other, corner + other];
+        Self { positions, triangles: vec![[0, 1, 2], [0, 2, 3]] }
+    }
+
+    /// A square facing the camera at a depth, centred on the axis.
+    pub fn wall(depth: f64, half: f64) -> Self {
+        Self::rectangle(DVec3::new(-half, -half, -depth), DVec3::X * 2.0 * half, DVec3::Y * 2.0 * half)
+    }
+
+    /// A sphere of `rings` × 2·`rings` quads, closed exactly: neighbours share their vertices.
+    pub fn sphere(center: DVec3, radius: f64, rings: u32) -> Self {
+        let columns = 2 * rings;
+        let mut positions = vec![center + DVec3::Y * radius];
+        for ring in 1..rings {
+            let (sin, cos) = (std::f64::consts::PI * f64::from(ring) / f64::from(rings)).sin_cos();
+            for column in 0..columns {
+                let azimuth = std::f64::consts::TAU * f64::from(column) / f64::from(columns);
+                positions.push(center + radius * DVec3::new(sin * azimuth.cos(), cos, -sin * azimuth.sin()));
+            }
+        }
+        let south = positions.len() as u32;
+        positions.push(center - DVec3::Y * radius);
+        let at = |ring: u32, column: u32| 1 + (ring - 1) * columns + column % columns;
+        let mut triangles = Vec::new();
+        for column in 0..columns {
+            triangles.push([0, at(1, column), at(1, column + 1)]);
+            for ring in 1..rings - 1 {
+                let [a, b] = [at(ring, column), at(ring + 1, column)];
+                let [c, d] = [at(ring + 1, column + 1), at(ring, column + 1)];
+                triangles.extend([[a, b, c], [a, c, d]]);
+            }
+            triangles.push([south, at(rings - 1, column + 1), at(rings - 1, column)]);
+        }
+        Self { positions, triangles }
+    }
+
+    /// The mesh with every coordinate multiplied.
+    pub fn scaled(mut self, factor: f64) -> Self {
+        self.positions.iter_mut().for_each(|p| *p *= factor);
+        self
+    }
+}
+
+/// A scene in which each mesh is a part (and a node) of its own, unlit in its radiance and seen from both sides.
+pub fn scene_of<'a>(meshes: impl IntoIterator<Item = (&'a Mesh, [f32; 3])>) -> Arc<Scene> {
+    let mut scene = Scene::default();
+    for (index, (mesh, [r, g, b])) in meshes.into_iter().enumerate() {
+        let first_vertex = scene.positions.len() as u32;
+        let first = scene.triangles.len() as u32;
+        let index = index as u32;
+        scene.positions.extend(&mesh.positions);
+        let corners = mesh.triangles.iter().map(|t| t.map(|v| v + first_vertex));
+        scene.triangles.extend(corners.map(|vertices| Triangle { vertices, part: index }));
+        scene.nodes.push(Node { name: format!("node {index}"), index });
+        scene.parts.push(Part {
+            node: index,
+            material: index,
+            triangles: first..scene.triangles.len() as u32,
+            has_uv: [false; 2],
+            mirrored: false,
+        });
+        scene.materials.push(Material {
+            name: format!("material {index}"),
+            base_color: Vec4::new(r, g, b, 1.0),
+            base_color_texture: None,
+            emissive: glam::Vec3::ZERO,
+            emissive_texture: None,
+            metallic: 0.0,
+            roughness: 1.0,
+            specular: 1.0,
+            unlit: true,
+            alpha: AlphaMode::Opaque,
+            double_sided: true,
+        });
+    }
+    Arc::new(scene)
+}

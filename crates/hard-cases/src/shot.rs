@@ -1,0 +1,87 @@
+//! A scene before a camera, rendered by the splat and by the ground truth.
+
+use focus::Focus;
+use lens::{Camera, FocusOffset, Picture};
+use progress::{Cancelled, Progress};
+use salf::{BakeOptions, Salf, bake};
+use scene::Scene;
+use slf::DirectLight;
+use splat::{SplatError, Splatter};
+use std::sync::Arc;
+use trace::Tracer;
+use trace::truth::{self, TruthOptions};
+
+/// A scene and a camera.
+pub struct Shot {
+    pub tracer: Arc<Tracer>,
+    pub camera: Camera,
+    radiance: Arc<DirectLight>,
+}
+
+impl Shot {
+    pub fn new(scene: Arc<Scene>, camera: Camera) -> Self {
+        let tracer = Arc::new(Tracer::new(scene));
+        let background = glam::DVec3::from(camera.background).as_vec3();
+        let radiance = Arc::new(DirectLight::new(tracer.clone(), background));
+        Self { tracer, camera, radiance }
+    }
+
+    /// The same scene before another camera.
+    pub fn with_camera(&self, camera: Camera) -> Self {
+        Self { tracer: self.tracer.clone(), camera, radiance: self.radiance.clone() }
+    }
+
+    /// One focus for everything.
+    pub fn focus(&self, offset: FocusOffset) -> Focus {
+        Focus::constant(self.tracer.scene().clone(), offset)
+    }
+
+    /// The light field, sampled as far outside the frame as `offset` needs.
+    pub fn salf(&self, offset: FocusOffset, progress: &dyn Progress) -> Result<Salf, Cancelled> {
+        let options = BakeOptions::for_focus(&self.tracer, &self.camera, &self.focus(offset));
+        bake(&self.tracer, &*self.radiance, &self.camera, &options, progress)
+    }
+
+    /// The splatted picture.
+    pub fn splat(&self, offset: FocusOffset, progress: &dyn Progress) -> Result<Picture, Cancelled> {
+        picture_of(self.salf(offset, progress)?, &self.focus(offset), progress)
+    }
+
+    /// The ray-traced picture, of `samples` rays a pixel.
+    pub fn truth(
+        &self,
+        offset: FocusOffset,
+        samples: u32,
+        progress: &dyn Progress,
+    ) -> Result<Picture, Cancelled> {
+        self.seeded_truth(offset, samples, 1, progress)
+    }
+
+    /// The same with other random numbers.
+    pub fn seeded_truth(
+        &self,
+        offset: FocusOffset,
+        samples: u32,
+        seed: u32,
+        progress: &dyn Progress,
+    ) -> Result<Picture, Cancelled> {
+        let options = TruthOptions { samples_per_pixel: samples, seed };
+        truth::render(&self.tracer, &*self.radiance, &self.focus(offset), &self.camera, &options, progress)
+    }
+}
+
+/// A light field's picture. One that was refused as too bright is all NaN, which no check lets pass.
+pub fn picture_of(salf: Salf, focus: &Focus, progress: &dyn Progress) -> Result<Picture, Cancelled> {
+    let camera = salf.camera.clone();
+    let mut splatter = Splatter::new(Arc::new(salf));
+    match splatter.render(&camera, focus, progress) {
+        Ok(()) => Ok(splatter.picture().clone()),
+        Err(SplatError::Cancelled) => Err(Cancelled),
+        Err(_) => {
+            let mut refused = Picture::black(camera.width, camera.height);
+            refused.radiance.fill([f32::NAN; 3]);
+            refused.coverage.fill(f32::NAN);
+            Ok(refused)
+        }
+    }
+}
