@@ -35,7 +35,7 @@ mod view_settings;
 
 pub use action::Action;
 pub use paint_view::PaintView;
-pub use picture_view::PictureView;
+pub use picture_view::{PictureView, Shown};
 pub use shell::Shell;
 pub use toasts::Severity;
 pub use tool::Tool;

@@ -17,7 +17,7 @@ use super::layout::{self, Pane, Panes};
 use super::menu_bar::{MenuState, is_possible, menu_bar};
 use super::paint_view::PaintView;
 use super::palette::Palette;
-use super::picture_view::PictureView;
+use super::picture_view::{PictureView, Shown};
 use super::pointer::Hand;
 use super::status_line::{Hover, StatusNotes, status_line};
 use super::toasts::{Severity, Toasts};
@@ -29,7 +29,8 @@ use eframe::{CreationContext, Frame, Storage};
 use egui::{CentralPanel, Context, Panel, Ui, ViewportCommand};
 use egui_tiles::Tree;
 use session::{
-    CameraEdit, Command, CommandId, Event, PreviewActivity, Session, SessionError, SessionOptions,
+    CameraEdit, Command, CommandId, Event, PreviewActivity, ReferenceKind, Session, SessionError,
+    SessionOptions,
 };
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -282,7 +283,8 @@ impl Shell {
                         self.paint.map_changed(document, columns, rows);
                     }
                 }
-                Event::TruthReady => self.picture.truth_ready(),
+                Event::ReferenceReady(ReferenceKind::Truth) => self.picture.show(Shown::Truth),
+                Event::ReferenceReady(_) => {}
                 Event::Written(path) => self.written(path, context),
                 Event::Failed(text) => {
                     self.after_save = None;

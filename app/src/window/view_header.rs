@@ -58,12 +58,27 @@ fn paint_header(ui: &mut Ui, settings: &mut ViewSettings) {
         .on_hover_text("Lines where the blur is 1, 4 and 16 px wide.");
 }
 
+/// A menu of the pictures that can be shown.
+fn choose_picture(ui: &mut Ui, name: &str, shown: &mut Shown) {
+    let combo = egui::ComboBox::from_id_salt(name).selected_text(shown.name()).width(104.0);
+    let response = combo.show_ui(ui, |ui| {
+        for choice in Shown::ALL {
+            ui.selectable_value(shown, choice, choice.name()).on_hover_text(choice.tip());
+        }
+    });
+    controls::named(&response.response, name);
+    response.response.on_hover_text(shown.tip());
+}
+
 fn picture_header(ui: &mut Ui, session: &Session, picture: &mut PictureView, actions: &mut Vec<Action>) {
-    if session.truth().is_some() {
-        ui.selectable_value(&mut picture.shown, Shown::Painted, "Live").on_hover_text("The live picture.");
-        ui.selectable_value(&mut picture.shown, Shown::Truth, "Ray traced")
-            .on_hover_text("The ray-traced picture, to compare with (F12 traces it anew).");
+    choose_picture(ui, "Shown picture", &mut picture.shown);
+    let mut wiping = picture.wipe.is_on;
+    let key = CommandId::Wipe.info().shortcut.map(|key| format!(" ({key})")).unwrap_or_default();
+    let tip = format!("{}{key}", CommandId::Wipe.info().tooltip);
+    if ui.checkbox(&mut wiping, "Compare with").on_hover_text(tip).changed() {
+        actions.push(CommandId::Wipe.into());
     }
+    ui.add_enabled_ui(wiping, |ui| choose_picture(ui, "Compared picture", &mut picture.wipe.against));
     for (id, label) in [(CommandId::PictureFit, "Fit"), (CommandId::PictureActualSize, "100 %")] {
         if ui.add(Button::new(label)).on_hover_text(id.info().tooltip).clicked() {
             actions.push(id.into());

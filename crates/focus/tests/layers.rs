@@ -181,9 +181,8 @@ fn sharpening_makes_a_ramp_steeper_without_a_rim_and_flow_builds_up() {
     for _ in 0..4 {
         stroke(&mut layers, &mut map, &canvas, &painter(BrushMode::Sharpen, 1.0));
     }
-    let slope = |map: &FocusMap| {
-        (0..SIZE[0] - 6).map(|x| map.at(x + 4, 30).t - map.at(x, 30).t).fold(0.0, f64::max)
-    };
+    let slope =
+        |map: &FocusMap| (0..SIZE[0] - 6).map(|x| map.at(x + 4, 30).t - map.at(x, 30).t).fold(0.0, f64::max);
     assert!(slope(&map) > 1.5 * slope(&ramp), "{} {}", slope(&map), slope(&ramp));
     let range = |map: &FocusMap| {
         let t = canvas.texels().iter().map(|texel| map.at(texel.x, texel.y).t);

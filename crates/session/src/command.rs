@@ -1,6 +1,6 @@
 //! What a session can be asked to do, and what it tells back.
 
-use crate::{CameraEdit, JobId, JobStatus, LayerEdit, SurfaceHit};
+use crate::{CameraEdit, JobId, JobStatus, LayerEdit, ReferenceKind, SurfaceHit};
 use focus::Brush;
 use lens::{Exposure, FocusOffset};
 use std::ops::Range;
@@ -70,9 +70,11 @@ pub enum Command {
 
     /// Bakes the light field anew.
     Bake,
-    /// Ray traces the picture in the background, at the preview's size.
-    RenderTruth {
-        /// Rays a pixel.
+    /// Makes a picture to compare the live one with, in the background, at the preview's size.
+    MakeReference {
+        /// Which.
+        kind: ReferenceKind,
+        /// Rays a pixel of a ray-traced one.
         samples_per_pixel: u32,
     },
     /// Stops one piece of background work.
@@ -141,8 +143,8 @@ pub enum Event {
     BrushChanged,
     /// A new preview is ready: [`crate::Session::preview`].
     PreviewReady(u64),
-    /// The ray-traced picture is ready: [`crate::Session::truth`].
-    TruthReady,
+    /// A picture to compare with is ready: [`crate::Session::reference`].
+    ReferenceReady(ReferenceKind),
     /// Background work went on.
     Progress(JobStatus),
     /// A file was written.

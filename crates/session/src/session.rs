@@ -1,5 +1,6 @@
 //! The session: commands in, events out, one document open at a time.
 
+mod comparing;
 mod files;
 mod painting;
 
@@ -10,12 +11,13 @@ use crate::picking::{chief_ray, pick};
 use crate::preview::PreviewThread;
 use crate::undo::Undone;
 use crate::{
-    CameraEdit, Command, Event, JobId, JobStatus, Preview, PreviewActivity, SessionError, SurfaceHit,
+    CameraEdit, Command, Event, JobId, JobStatus, Preview, PreviewActivity, Reference, ReferenceKind,
+    SessionError, SurfaceHit,
 };
 use atlas::UnwrapOptions;
 use focus::{Changed, FillTarget, Stroke};
 use glam::DVec2;
-use lens::{Camera, FocusOffset, Picture};
+use lens::{Camera, FocusOffset};
 use std::path::PathBuf;
 use std::sync::{Arc, mpsc};
 use std::time::{Duration, Instant};
@@ -75,20 +77,7 @@ pub(crate) enum Outcome {
         revision: u64,
     },
     Written(PathBuf, Vec<String>),
-    Truth(Box<Truth>),
-}
-
-/// A ray-traced picture of the document, to compare the preview with.
-#[derive(Clone, Debug)]
-pub struct Truth {
-    /// The picture.
-    pub picture: Arc<Picture>,
-    /// The camera it was traced with.
-    pub camera: Camera,
-    /// Rays a pixel.
-    pub samples_per_pixel: u32,
-    /// Seconds it took.
-    pub seconds: f64,
+    Reference(Box<Reference>),
 }
 
 /// An open document and the work on it. See the crate's documentation.
@@ -105,7 +94,10 @@ pub struct Session {
     /// The newest preview that was seen, of whatever document.
     seen_preview: u64,
     recovery: Recovery,
-    truth: Option<Truth>,
+    /// The pictures to compare with, one of a kind.
+    references: Vec<Reference>,
+    /// Which of the jobs make such pictures.
+    reference_jobs: Vec<(JobId, ReferenceKind)>,
     jobs: Vec<Job>,
     last_job: u64,
     outcomes: mpsc::Receiver<(JobId, Result<Outcome, SessionError>)>,
@@ -128,7 +120,8 @@ impl Session {
             preview_camera: None,
             seen_preview: 0,
             recovery: Recovery::default(),
-            truth: None,
+            references: Vec::new(),
+            reference_jobs: Vec::new(),
             jobs: Vec::new(),
             last_job: PREVIEW_JOB.0,
             outcomes,
@@ -146,11 +139,6 @@ impl Session {
     /// The last good picture.
     pub fn preview(&self) -> Option<&Preview> {
         self.preview.as_ref()
-    }
-
-    /// The last ray-traced picture of this document.
-    pub fn truth(&self) -> Option<&Truth> {
-        self.truth.as_ref()
     }
 
     /// What the preview is being drawn as.
@@ -200,6 +188,7 @@ impl Session {
     pub fn poll(&mut self) -> Vec<Event> {
         while let Ok((id, outcome)) = self.outcomes.try_recv() {
             self.jobs.retain(|job| job.id != id);
+            self.reference_jobs.retain(|(job, _)| *job != id);
             match outcome {
                 Ok(outcome) => self.take(outcome),
                 Err(SessionError::Cancelled) => {}
@@ -228,7 +217,8 @@ impl Session {
             Outcome::Opened(document) => {
                 self.forget_recovery();
                 self.generation += 1;
-                (self.stroke, self.truth, self.preview) = (None, None, None);
+                (self.stroke, self.preview) = (None, None);
+                self.references.clear();
                 let camera = self.scaled_camera(&document.camera);
                 self.preview_camera = Some(camera.clone());
                 let stage = (document.stage.clone(), self.generation);
@@ -262,10 +252,7 @@ impl Session {
                 self.events.extend(notices.into_iter().map(Event::Notice));
                 self.events.push(Event::Written(path));
             }
-            Outcome::Truth(truth) => {
-                self.truth = Some(*truth);
-                self.events.push(Event::TruthReady);
-            }
+            Outcome::Reference(reference) => self.take_reference(*reference),
         }
     }
 
@@ -348,7 +335,9 @@ impl Session {
             Command::ExportFocusMap(path) => self.export_focus_map(path),
             Command::ExportScene(path) => self.export_scene(path),
             Command::ImportFocusMap(path) => self.import_focus_map(path),
-            Command::RenderTruth { samples_per_pixel } => self.render_truth(samples_per_pixel),
+            Command::MakeReference { kind, samples_per_pixel } => {
+                self.make_reference(kind, samples_per_pixel)
+            }
         }
     }
 
@@ -357,12 +346,12 @@ impl Session {
         self.document.as_mut().ok_or(SessionError::NothingOpen)
     }
 
-    /// Starts background work.
+    /// Starts background work; its id.
     fn start(
         &mut self,
         label: String,
         work: impl FnOnce(&JobProgress) -> Result<Outcome, SessionError> + Send + 'static,
-    ) -> Result<(), SessionError> {
+    ) -> Result<JobId, SessionError> {
         self.last_job += 1;
         let (sender, waker) = (self.sender.clone(), self.options.waker.clone());
         let job = Job::start(JobId(self.last_job), label, work, move |id, outcome| {
@@ -371,7 +360,7 @@ impl Session {
             waker();
         })?;
         self.jobs.push(job);
-        Ok(())
+        Ok(JobId(self.last_job))
     }
 
     fn step_back(&mut self) -> Result<(), SessionError> {

@@ -1,34 +1,30 @@
 //! The picture view: the latest refocused picture, as the shot camera sees it, painted on directly.
 
+mod shown;
 mod tone;
+mod wipe;
+
+pub use shown::Shown;
 
 use super::brush_ring;
 use super::paint_view::hint;
 use super::pointer::{Hand, StrokeInput};
 use super::{Action, controls, theme};
-use egui::{
-    ColorImage, PointerButton, Pos2, Rect, Response, Sense, TextureHandle, TextureOptions, Ui, Vec2, pos2,
-    vec2,
-};
+use egui::{PointerButton, Pos2, Rect, Response, Sense, Ui, Vec2, pos2, vec2};
 use glam::{DVec2, DVec3};
 use lens::Camera;
-use session::{PreviewActivity, PreviewKind, Session, SurfaceHit};
-use tone::{Tone, to_screen};
+use session::{Command, PreviewActivity, PreviewKind, ReferenceKind, Session, SurfaceHit};
+use shown::Textures;
+use tone::Tone;
+use wipe::Wipe;
 
 /// Wheel points that double the picture.
 const POINTS_PER_DOUBLING: f32 = 240.0;
 /// Screen pixels of a picture pixel beyond which pixels are shown as squares.
 const SQUARES_FROM: f32 = 3.0;
 
-/// Which picture is shown.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub enum Shown {
-    /// The live picture.
-    #[default]
-    Painted,
-    /// The ray-traced picture.
-    Truth,
-}
+/// Rays a pixel of the ray-traced picture.
+pub const TRUTH_SAMPLES: u32 = 64;
 
 /// Scale and place of the picture in its view.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -41,12 +37,11 @@ enum Zoom {
 
 /// The view of the picture.
 pub struct PictureView {
-    texture: Option<TextureHandle>,
-    /// What the texture holds: which picture, its id, and how it was put on screen.
-    holds: Option<(Shown, u64, Tone)>,
-    truths: u64,
+    textures: Textures,
     /// Which picture is shown.
     pub shown: Shown,
+    /// The line across it, and what is on its left.
+    pub wipe: Wipe,
     zoom: Zoom,
     stroke: StrokeInput,
     hover: Option<SurfaceHit>,
@@ -57,10 +52,9 @@ pub struct PictureView {
 impl Default for PictureView {
     fn default() -> Self {
         Self {
-            texture: None,
-            holds: None,
-            truths: 0,
+            textures: Textures::default(),
             shown: Shown::Painted,
+            wipe: Wipe::default(),
             zoom: Zoom::Fit,
             stroke: StrokeInput::default(),
             hover: None,
@@ -73,13 +67,19 @@ impl Default for PictureView {
 impl PictureView {
     /// Another document: the old picture goes, and one sees the whole of the new.
     pub fn opened(&mut self) {
-        *self = Self { truths: self.truths, ..Self::default() };
+        *self = Self::default();
     }
 
-    /// A ray-traced picture is there: show it.
-    pub fn truth_ready(&mut self) {
-        self.truths += 1;
-        self.shown = Shown::Truth;
+    /// Shows a picture, on whatever side of the line it is not yet.
+    pub fn show(&mut self, shown: Shown) {
+        if !(self.wipe.is_on && self.wipe.against == shown) {
+            self.shown = shown;
+        }
+    }
+
+    /// Compares with another picture, or does so no longer.
+    pub fn toggle_wipe(&mut self) {
+        self.wipe.is_on = !self.wipe.is_on;
     }
 
     /// As large as fits.
@@ -120,31 +120,31 @@ impl PictureView {
         controls::named(&response, "Picture");
         ui.painter().rect_filled(rect, 0.0, theme::SURROUNDINGS);
         let Some(document) = session.document() else { return };
-        if session.truth().is_none() {
-            self.shown = Shown::Painted;
-        }
-        self.refresh(ui, session, Tone { exposure: document.exposure, stops });
         let size = vec2(document.camera.width as f32, document.camera.height as f32);
         self.navigate(ui, &response, size);
         self.image = self.place(size);
+        let tone = Tone { exposure: document.exposure, stops };
+        self.paint_picture(ui, session, tone, self.shown, rect);
         let painter = ui.painter_at(rect);
-        match &self.texture {
-            Some(texture) => {
-                let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
-                painter.image(texture.id(), self.image, whole, egui::Color32::WHITE);
-            }
-            None => hint(ui, rect, "Drawing the first picture…"),
+        let mut is_wiping = false;
+        if self.wipe.is_on {
+            let left = self.wipe.left_of(self.image).intersect(rect);
+            self.paint_picture(ui, session, tone, self.wipe.against, left);
+            is_wiping = self.wipe.handle(ui, self.image, rect, self.shown);
         }
+        self.ask_for_pictures(session, actions);
         let image = self.image;
         let ray = |at: Pos2| session.picture_ray(picture_position(image, at));
-        actions.extend(self.stroke.update(ui, &response, session, hand.tool, ray));
+        if !is_wiping || session.is_painting() {
+            actions.extend(self.stroke.update(ui, &response, session, hand.tool, ray));
+        }
         let pointer = response.hover_pos().or_else(|| response.interact_pointer_pos());
-        let pointer = pointer.filter(|at| image.contains(*at));
+        let pointer = pointer.filter(|at| image.contains(*at) && !is_wiping);
         self.hover = pointer.and_then(|at| session.pick(&session.picture_ray(picture_position(image, at))?));
         if let (Some(hit), Some(ring)) = (self.hover, hand.ring) {
             brush_ring::paint(&painter, &hit, ring, |point| self.screen_from_world(&document.camera, point));
         }
-        if response.hovered() {
+        if response.hovered() && !is_wiping {
             ui.set_cursor_icon(egui::CursorIcon::Crosshair);
         }
         self.notice(ui, session);
@@ -158,30 +158,50 @@ impl PictureView {
         (seen.z > 0.0).then(|| self.image.min + share * self.image.size())
     }
 
-    /// Brings the texture up to date.
-    fn refresh(&mut self, ui: &Ui, session: &Session, tone: Tone) {
-        let (id, picture) = match self.shown {
-            Shown::Painted => session.preview().map(|preview| (preview.id, &preview.picture)),
-            Shown::Truth => session.truth().map(|truth| (self.truths, &truth.picture)),
+    /// Draws what of a picture lies in `part` of the view.
+    fn paint_picture(&mut self, ui: &Ui, session: &Session, tone: Tone, shown: Shown, part: Rect) {
+        let painter = ui.painter_at(part);
+        let width = session.preview().map_or(1, |preview| preview.picture.width);
+        let squares = self.image.width() > SQUARES_FROM * width as f32;
+        match self.textures.of(ui, session, shown, tone, squares) {
+            Some(texture) => {
+                let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
+                painter.image(texture.id(), self.image, whole, egui::Color32::WHITE);
+            }
+            None => {
+                painter.rect_filled(self.image, 0.0, egui::Color32::from_gray(28));
+                let text = match shown {
+                    Shown::Painted => "Drawing the first picture…",
+                    Shown::Standard => "Drawing the ordinary lens…",
+                    Shown::Pinhole => "Drawing the pinhole…",
+                    Shown::Truth => "Tracing rays…",
+                };
+                hint(ui, part.intersect(self.image), text);
+            }
         }
-        .unzip();
-        let (Some(id), Some(picture)) = (id, picture) else { return };
-        let holds = Some((self.shown, id, tone));
-        if self.holds == holds {
-            return;
+    }
+
+    /// Asks for the pictures that are shown and not there, or no longer true. A ray-traced one takes long: it is
+    /// made once, and again when asked for.
+    fn ask_for_pictures(&self, session: &Session, actions: &mut Vec<Action>) {
+        let against = self.wipe.is_on.then_some(self.wipe.against);
+        for kind in [Some(self.shown), against].into_iter().flatten().filter_map(Shown::kind) {
+            let wanted = match kind {
+                ReferenceKind::Truth => session.reference(kind).is_none(),
+                _ => !session.is_reference_current(kind),
+            };
+            if wanted && !session.is_making_reference(kind) && session.is_idle() {
+                actions.push(Command::MakeReference { kind, samples_per_pixel: TRUTH_SAMPLES }.into());
+                return;
+            }
         }
-        let size = [picture.width as usize, picture.height as usize];
-        let image = ColorImage::new(size, to_screen(picture, tone));
-        let squares = self.image.width() > SQUARES_FROM * picture.width as f32;
-        let options = TextureOptions {
-            magnification: if squares { egui::TextureFilter::Nearest } else { egui::TextureFilter::Linear },
-            ..TextureOptions::LINEAR
-        };
-        match &mut self.texture {
-            Some(texture) => texture.set(image, options),
-            None => self.texture = Some(ui.ctx().load_texture("picture", image, options)),
-        }
-        self.holds = holds;
+    }
+
+    /// Whether the ray-traced picture is shown although paint or lens have changed since.
+    fn shows_old_truth(&self, session: &Session) -> bool {
+        let kind = ReferenceKind::Truth;
+        let is_shown = self.shown == Shown::Truth || (self.wipe.is_on && self.wipe.against == Shown::Truth);
+        is_shown && session.reference(kind).is_some() && !session.is_reference_current(kind)
     }
 
     /// Middle drag (or Alt+drag) slides, the wheel comes nearer to what is under the pointer, a double click with the
@@ -245,6 +265,7 @@ impl PictureView {
             PreviewActivity::Idle if pinhole => {
                 "shown without blur: the light field was not built (F5 builds it)"
             }
+            _ if self.shows_old_truth(session) => "ray traced before the last change (F12 traces it anew)",
             _ => return,
         };
         let at = self.rect.left_bottom() + vec2(8.0, -6.0);

@@ -3,13 +3,14 @@
 use super::Shell;
 use crate::window::file_dialog::Purpose;
 use crate::window::paint_view::PaintView;
+use crate::window::picture_view::TRUTH_SAMPLES;
 use crate::window::tool_bar::{largest_radius, signed_circle_px};
 use crate::window::unsaved_question::Next;
 use crate::window::{Tool, ViewSettings, layout};
 use egui::Context;
 use focus::{Brush, BrushMode};
 use lens::{Exposure, FocusOffset};
-use session::{CameraEdit, Command, CommandId, FillRegion, LayerEdit};
+use session::{CameraEdit, Command, CommandId, FillRegion, LayerEdit, ReferenceKind};
 
 /// What a key changes of the brush's size.
 const SIZE_STEP: f64 = 1.15;
@@ -19,8 +20,6 @@ const THIRD_STOP: f64 = 1.122_462_048_309_373;
 const DISTANCE_STEP: f64 = 1.05;
 /// What a key moves the brush's blur on the map from near to far.
 const BLUR_STEP: f64 = 0.05;
-/// Rays a pixel of the ray-traced comparison.
-const TRUTH_SAMPLES: u32 = 64;
 
 impl Shell {
     /// Does what a command of the table says; it is possible now.
@@ -118,7 +117,11 @@ impl Shell {
                 }
             }
             CommandId::Bake => self.apply(Command::Bake),
-            CommandId::RenderTruth => self.apply(Command::RenderTruth { samples_per_pixel: TRUTH_SAMPLES }),
+            CommandId::Wipe => self.picture.toggle_wipe(),
+            CommandId::RenderTruth => {
+                let kind = ReferenceKind::Truth;
+                self.apply(Command::MakeReference { kind, samples_per_pixel: TRUTH_SAMPLES });
+            }
             CommandId::Stop => self.apply(Command::CancelAll),
             CommandId::Palette => self.palette.toggle(),
             CommandId::Shortcuts => self.help.shortcuts = !self.help.shortcuts,

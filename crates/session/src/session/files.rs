@@ -1,9 +1,9 @@
 //! Opening, saving, exporting and keeping unsaved work: all in the background.
 
-use super::{Outcome, Session, Truth};
+use super::{Outcome, Session};
 use crate::document::Document;
 use crate::error::file_name;
-use crate::render::{RenderOptions, Renderer, render};
+use crate::render::{RenderOptions, render};
 use crate::steps::JobSteps;
 use crate::{Aov, SessionError, write_unwrapped};
 use focus::Focus;
@@ -28,7 +28,8 @@ impl Session {
         self.start(label, move |progress| {
             let document = Document::open(&path, &unwrap, &JobSteps { progress })?;
             Ok(Outcome::Opened(Box::new(document)))
-        })
+        })?;
+        Ok(())
     }
 
     pub(super) fn open_template(&mut self, path: PathBuf) -> Result<(), SessionError> {
@@ -37,7 +38,8 @@ impl Session {
         self.start(label, move |progress| {
             let document = Document::open_template(&path, &unwrap, &JobSteps { progress })?;
             Ok(Outcome::Opened(Box::new(document)))
-        })
+        })?;
+        Ok(())
     }
 
     pub(super) fn save(&mut self, to: Option<PathBuf>) -> Result<(), SessionError> {
@@ -52,7 +54,8 @@ impl Session {
         self.start(format!("{SAVING} {}", file_name(&path)), move |_| {
             project.save(&path)?;
             Ok(Outcome::Saved { path, revision, generation })
-        })
+        })?;
+        Ok(())
     }
 
     /// Writes unsaved work to its recovery file when it has waited long enough. Called at every poll.
@@ -115,7 +118,8 @@ impl Session {
             let layers = if is_exr { rendered.layers } else { Vec::new() };
             write_picture(&path, &rendered.picture, &layers, written)?;
             Ok(Outcome::Written(path, Vec::new()))
-        })
+        })?;
+        Ok(())
     }
 
     pub(super) fn export_focus_map(&mut self, path: PathBuf) -> Result<(), SessionError> {
@@ -125,7 +129,8 @@ impl Session {
             let lost = write_focus_map(&path, &FocusMapFile::of_atlas(&map, &atlas))?;
             let lost = lost.iter().map(|what| format!("{}: {what}", path.display())).collect();
             Ok(Outcome::Written(path, lost))
-        })
+        })?;
+        Ok(())
     }
 
     pub(super) fn export_scene(&mut self, path: PathBuf) -> Result<(), SessionError> {
@@ -133,7 +138,8 @@ impl Session {
         self.start(format!("writing {}", file_name(&path)), move |progress| {
             write_unwrapped(&path, &stage.scene, &stage.atlas, &JobSteps { progress })?;
             Ok(Outcome::Written(path, Vec::new()))
-        })
+        })?;
+        Ok(())
     }
 
     /// Replaces the painted focus by a map or a recipe. Quick enough to wait for: a file is read, texels are set.
@@ -142,26 +148,6 @@ impl Session {
         let document = self.opened()?;
         let map = document.imported_focus(&path)?;
         self.import_map(map)
-    }
-
-    pub(super) fn render_truth(&mut self, samples_per_pixel: u32) -> Result<(), SessionError> {
-        let document = self.opened()?;
-        let stage = document.stage.clone();
-        let focus = Focus::painted(stage.scene.clone(), stage.atlas.clone(), Arc::new(document.map.clone()));
-        let shot = document.camera.clone();
-        let camera = self.scaled_camera(&shot);
-        self.start("tracing the ground truth".into(), move |progress| {
-            let start = Instant::now();
-            let options =
-                RenderOptions { renderer: Renderer::Truth, samples_per_pixel, ..Default::default() };
-            let rendered = render(&stage.tracer, &camera, &focus, &options, &JobSteps { progress })?;
-            Ok(Outcome::Truth(Box::new(Truth {
-                picture: Arc::new(rendered.picture),
-                camera,
-                samples_per_pixel,
-                seconds: start.elapsed().as_secs_f64(),
-            })))
-        })
     }
 }
 

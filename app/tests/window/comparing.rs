@@ -1,0 +1,94 @@
+//! The picture beside others: the wipe, the ordinary lens, the pinhole, the ray-traced picture.
+
+use crate::acting::{Person, at, color_at};
+use crate::small_scene;
+use egui::{Key, Modifiers};
+use egui_kittest::kittest::Queryable;
+use session::{Command, FillRegion, ReferenceKind};
+
+#[test]
+fn a_wipe_shows_the_ordinary_lens_on_the_left_of_a_line_that_can_be_dragged() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("wall.glb");
+    small_scene::write(&file);
+    let mut person = Person::opens(&file);
+    // All painted with strong blur: beside it the ordinary lens, focused on the wall, is sharp.
+    let blur = lens::FocusOffset::new(1.2, 1.0);
+    person.window.state_mut().apply(Command::Fill(FillRegion::All, blur));
+    person.waits();
+    let map = person.document().map.clone();
+    person.presses(Modifiers::NONE, Key::W);
+    person.wait_until("the ordinary lens is drawn", |shell| {
+        shell.session().reference(ReferenceKind::Standard).is_some()
+    });
+    person.waits();
+    person.window.remove_cursor();
+    person.window.run_steps(2);
+    let reference = person.shell().session().reference(ReferenceKind::Standard).unwrap().clone();
+    let image = person.picture_rect();
+    // Contrast of the chequers along a row.
+    let contrast = |person: &mut Person, from: f32, to: f32| {
+        let screen = person.window.render().unwrap();
+        let greys = (0..200).map(|k| {
+            let x = from + (to - from) * k as f32 / 199.0;
+            color_at(&screen, at(image, x, 0.85))[1]
+        });
+        let (low, high) = greys.fold((255.0f32, 0.0f32), |(low, high), g| (low.min(g), high.max(g)));
+        high - low
+    };
+    let (left, right) = (contrast(&mut person, 0.05, 0.45), contrast(&mut person, 0.55, 0.95));
+    assert!(left > 2.0 * right, "sharp on the left, blurred on the right: {left} {right}");
+
+    let line = person.window.get_by_label("Wipe line").rect().center();
+    assert!((line.x - image.center().x).abs() < 1.0);
+    let path: Vec<_> = (0..=8).map(|k| line + egui::vec2(image.width() * 0.045 * k as f32, 0.0)).collect();
+    person.paints(&path);
+    person.window.remove_cursor();
+    person.window.run_steps(2);
+    assert_eq!(person.document().map, map, "dragging the line paints nothing");
+    let right = contrast(&mut person, 0.55, 0.8);
+    assert!(right > 0.8 * left, "now the ordinary lens reaches further: {right} {left}");
+
+    // Paint does not touch what it is compared with; the lens does.
+    person.presses(Modifiers::COMMAND, Key::Z);
+    person.waits();
+    let same = person.shell().session().reference(ReferenceKind::Standard).unwrap();
+    assert!(std::sync::Arc::ptr_eq(&same.picture, &reference.picture));
+    person.presses(Modifiers::NONE, Key::Plus);
+    person.wait_until("the ordinary lens is drawn anew", |shell| {
+        let session = shell.session();
+        session.is_reference_current(ReferenceKind::Standard)
+            && session.reference(ReferenceKind::Standard).unwrap().camera != reference.camera
+    });
+    person.waits();
+    person.presses(Modifiers::NONE, Key::W);
+    assert!(person.window.query_by_label("Wipe line").is_none());
+    assert!(person.complaints().is_empty(), "{:?}", person.complaints());
+}
+
+#[test]
+fn the_ray_traced_picture_is_shown_and_says_when_it_is_old() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("wall.glb");
+    small_scene::write(&file);
+    let mut person = Person::opens(&file);
+    person.presses(Modifiers::NONE, Key::F12);
+    person.wait_until("it is traced", |shell| shell.session().is_reference_current(ReferenceKind::Truth));
+    person.waits();
+    assert_eq!(person.shell().picture_view().shown, focus_brush::window::Shown::Truth);
+    person.window.state_mut().apply(Command::Fill(FillRegion::All, lens::FocusOffset::SHARP));
+    person.waits();
+    assert!(!person.shell().session().is_reference_current(ReferenceKind::Truth));
+    person.window.get_by_label("Shown picture").click();
+    person.window.run_steps(3);
+    person.window.get_by_label("Pinhole").click();
+    person.window.run_steps(2);
+    person.wait_until("the pinhole is drawn", |shell| {
+        shell.session().is_reference_current(ReferenceKind::Pinhole)
+    });
+    person.waits();
+    let session = person.shell().session();
+    let pinhole = &session.reference(ReferenceKind::Pinhole).unwrap().picture;
+    assert!(pinhole.coverage.iter().all(|c| *c == 1.0));
+    assert!(person.complaints().is_empty(), "{:?}", person.complaints());
+}

@@ -1,0 +1,102 @@
+//! Pictures to compare with, made in the background.
+
+use super::{Outcome, Session};
+use crate::first_hits::FirstHits;
+use crate::render::{RenderOptions, Renderer, light, render};
+use crate::steps::{JobSteps, Steps};
+use crate::{Event, PreviewActivity, Reference, ReferenceKind, SessionError};
+use focus::Focus;
+use lens::FocusOffset;
+use std::sync::Arc;
+use std::time::Instant;
+
+impl Session {
+    /// The picture of a kind that was made last of this document.
+    pub fn reference(&self, kind: ReferenceKind) -> Option<&Reference> {
+        self.references.iter().find(|reference| reference.kind == kind)
+    }
+
+    /// Whether the picture of a kind shows the document as it is.
+    pub fn is_reference_current(&self, kind: ReferenceKind) -> bool {
+        let (Some(document), Some(reference)) = (&self.document, self.reference(kind)) else { return false };
+        let painting = kind == ReferenceKind::Truth && self.is_painting();
+        !painting && reference.shows(&self.scaled_camera(&document.camera), document.revision)
+    }
+
+    /// Whether the picture of a kind is being made.
+    pub fn is_making_reference(&self, kind: ReferenceKind) -> bool {
+        self.reference_jobs.iter().any(|(_, of)| *of == kind)
+    }
+
+    /// Whether there is time for a picture to compare with: nothing else is going on.
+    pub fn is_idle(&self) -> bool {
+        self.jobs.is_empty() && !self.is_painting() && self.preview_activity() == PreviewActivity::Idle
+    }
+
+    /// Starts making a picture; an older wish for the same kind is given up.
+    pub(super) fn make_reference(
+        &mut self,
+        kind: ReferenceKind,
+        samples_per_pixel: u32,
+    ) -> Result<(), SessionError> {
+        let document = self.opened()?;
+        let (stage, revision) = (document.stage.clone(), document.revision);
+        let focus = match kind {
+            ReferenceKind::Truth => {
+                let map = Arc::new(document.map.clone());
+                Focus::painted(stage.scene.clone(), stage.atlas.clone(), map)
+            }
+            _ => Focus::constant(stage.scene.clone(), FocusOffset::STANDARD),
+        };
+        let shot = document.camera.clone();
+        let (camera, generation) = (self.scaled_camera(&shot), self.generation);
+        for (id, _) in self.reference_jobs.iter().filter(|(_, of)| *of == kind) {
+            self.jobs.iter().filter(|job| job.id == *id).for_each(|job| job.progress.cancel());
+        }
+        let label = match kind {
+            ReferenceKind::Pinhole => "drawing the pinhole picture",
+            ReferenceKind::Standard => "drawing the ordinary lens",
+            ReferenceKind::Truth => "tracing the ground truth",
+        };
+        let id = self.start(label.into(), move |progress| {
+            let start = Instant::now();
+            let steps = JobSteps { progress };
+            let made = |renderer| {
+                let options = RenderOptions { renderer, samples_per_pixel, ..RenderOptions::default() };
+                Ok::<_, SessionError>(render(&stage.tracer, &camera, &focus, &options, &steps)?.picture)
+            };
+            let picture = match kind {
+                ReferenceKind::Pinhole => {
+                    let radiance = light(&stage.tracer, &camera);
+                    let progress = steps.begin("first hits");
+                    FirstHits::trace(&stage.tracer, &radiance, &focus, &camera, &*progress)?.picture()
+                }
+                ReferenceKind::Standard => made(Renderer::Splat)?,
+                ReferenceKind::Truth => made(Renderer::Truth)?,
+            };
+            let samples_per_pixel = if kind == ReferenceKind::Truth { samples_per_pixel } else { 0 };
+            let (picture, seconds) = (Arc::new(picture), start.elapsed().as_secs_f64());
+            Ok(Outcome::Reference(Box::new(Reference {
+                kind,
+                picture,
+                camera,
+                samples_per_pixel,
+                seconds,
+                revision,
+                generation,
+            })))
+        })?;
+        self.reference_jobs.push((id, kind));
+        Ok(())
+    }
+
+    /// Takes up a picture that was made.
+    pub(super) fn take_reference(&mut self, reference: Reference) {
+        if reference.generation == self.generation {
+            let kind = reference.kind;
+            self.references.retain(|old| old.kind != kind);
+            self.references.push(reference);
+            self.events.push(Event::ReferenceReady(kind));
+        }
+    }
+}
