@@ -150,8 +150,15 @@ pub struct RenderArguments {
     /// Rays a pixel of the ground truth
     #[arg(long, value_name = "N", default_value_t = 64, value_parser = clap::value_parser!(u32).range(1..=1 << 20))]
     pub spp: u32,
+    /// Where rays of the ground truth start: at the sensor, or at the surfaces (an independent check, and slower)
+    #[arg(long, value_enum, default_value_t = EstimatorName::Sensor)]
+    pub estimator: EstimatorName,
+    /// What the ground truth's samples are drawn from: Owen-scrambled Sobol' points, or independent numbers
+    #[arg(long, value_enum, default_value_t = SamplerName::LowDiscrepancy)]
+    pub sampler: SamplerName,
     /// Pictures that come along: coverage (the sum for a scene of radiance 1), coc (signed diameter of the circle of
-    /// confusion in px, negative when nearer than the focus), depth (axial; inf for the background), t (and anchor)
+    /// confusion in px, negative when nearer than the focus), depth (axial; inf for the background), t (and anchor),
+    /// stderr (the ground truth's standard error: of radiance and coverage, and of their ratio)
     #[arg(long, value_name = "NAMES", value_delimiter = ',', value_parser = aov)]
     pub aov: Vec<Aov>,
     /// normalise keeps a white scene white; conserve is the model's energy as it is (default: the project's, or
@@ -211,6 +218,24 @@ pub enum RendererName {
     Truth,
     /// A blur by depth.
     Blur,
+}
+
+/// Where rays of the ground truth start.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum EstimatorName {
+    /// At the sensor.
+    Sensor,
+    /// At the surfaces.
+    Surface,
+}
+
+/// What the ground truth's samples are drawn from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum SamplerName {
+    /// Owen-scrambled Sobol' points.
+    LowDiscrepancy,
+    /// Independent random numbers.
+    Independent,
 }
 
 /// Where the splat runs.

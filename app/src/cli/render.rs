@@ -1,14 +1,17 @@
 //! `focus-brush render`.
 
-use super::arguments::{BackendName, ExposureName, RenderArguments, RendererName};
+use super::arguments::{
+    BackendName, EstimatorName, ExposureName, RenderArguments, RendererName, SamplerName,
+};
 use super::console::{Console, say_json};
 use super::failure::Failure;
 use super::shot::shot;
 use lens::Exposure;
 use project::{PictureOptions, write_picture};
 use serde_json::json;
-use session::{Input, RenderOptions, Rendered, Renderer, SessionError, render_input};
+use session::{Aov, Input, RenderOptions, Rendered, Renderer, SessionError, render_input};
 use std::time::Instant;
+use trace::truth::{Estimator, Sampler, TruthOptions};
 
 /// Renders a picture and writes it.
 pub fn run(arguments: &RenderArguments, console: &Console) -> Result<(), Failure> {
@@ -37,8 +40,7 @@ pub fn run(arguments: &RenderArguments, console: &Console) -> Result<(), Failure
     let options = RenderOptions {
         tolerance_px: arguments.tolerance,
         renderer,
-        samples_per_pixel: arguments.spp,
-        seed: arguments.seed,
+        truth: truth_options(arguments),
         aovs: arguments.aov.clone(),
     };
     let Rendered { picture, layers, cost, warnings } =
@@ -89,8 +91,28 @@ pub fn run(arguments: &RenderArguments, console: &Console) -> Result<(), Failure
     Ok(())
 }
 
+fn truth_options(arguments: &RenderArguments) -> TruthOptions {
+    TruthOptions {
+        samples_per_pixel: arguments.spp,
+        seed: arguments.seed,
+        estimator: match arguments.estimator {
+            EstimatorName::Sensor => Estimator::Sensor,
+            EstimatorName::Surface => Estimator::Surface,
+        },
+        sampler: match arguments.sampler {
+            SamplerName::LowDiscrepancy => Sampler::LowDiscrepancy,
+            SamplerName::Independent => Sampler::Independent,
+        },
+        ..TruthOptions::default()
+    }
+}
+
 /// What would only be noticed after the work.
 fn check_output(arguments: &RenderArguments) -> Result<(), Failure> {
+    if arguments.aov.contains(&Aov::StandardError) && arguments.renderer != RendererName::Truth {
+        let what = "--aov stderr: only the ground truth knows its standard error (use --renderer truth)";
+        return Err(Failure::usage(what));
+    }
     let output = &arguments.output;
     let extension = output.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
     if !["exr", "png"].contains(&extension.as_str()) {

@@ -1,6 +1,6 @@
 //! A focus map in a mesh's own texture coordinates.
 
-use crate::focus_map::bilinear;
+use crate::focus_map::{bilinear, bounds};
 use glam::{DVec2, Vec2};
 use lens::FocusOffset;
 use scene::Wrap;
@@ -26,6 +26,22 @@ impl FocusImage {
         let [y0, y1] = [low.y, low.y + 1.0].map(|y| wrapped(y, self.height, wrap[1]));
         let texel = |x: usize, y: usize| self.texels[y * self.width as usize + x];
         bilinear([texel(x0, y0), texel(x1, y0), texel(x0, y1), texel(x1, y1)], p - low)
+    }
+
+    /// The least and the greatest t and anchor of the texels of a box: the first and the last column and row,
+    /// whole numbers on a picture that goes on as `wrap` says.
+    pub fn bounds(&self, box_texels: [DVec2; 2], wrap: [Wrap; 2]) -> [FocusOffset; 2] {
+        let indices = |axis: usize, count: u32| {
+            let [first, last] = box_texels.map(|corner| corner[axis]);
+            // Two rounds show every texel, however the picture goes on; what is not a number may be any.
+            let all = !(last - first < 2.0 * f64::from(count));
+            let steps = if all { 2 * count } else { (last - first) as u32 + 1 };
+            let start = if first.is_finite() { first } else { 0.0 };
+            (0..steps).map(move |k| wrapped(start + f64::from(k), count, wrap[axis]))
+        };
+        let columns: Vec<usize> = indices(0, self.width).collect();
+        let rows = indices(1, self.height);
+        bounds(rows.flat_map(|y| columns.iter().map(move |x| self.texels[y * self.width as usize + x])))
     }
 
     /// The smallest and largest t.
@@ -83,6 +99,22 @@ mod tests {
         assert_eq!(ramp().sample(DVec2::new(u, v), [Wrap::Mirror, Wrap::Repeat]).t, 3.0);
         assert_eq!(ramp().sample(DVec2::new(u, v), [Wrap::Clamp, Wrap::Repeat]).t, 3.0);
         assert_eq!(ramp().sample(DVec2::new(-0.5 / 4.0, v), [Wrap::Mirror, Wrap::Repeat]).t, 0.0);
+    }
+
+    #[test]
+    fn bounds_hold_what_is_sampled() {
+        let at = |x: f64, y: f64| DVec2::new(x, y);
+        let [low, high] = ramp().bounds([at(1.0, 0.0), at(2.0, 0.0)], [Wrap::Repeat; 2]);
+        assert_eq!((low, high), (FocusOffset::new(1.0, 0.0), FocusOffset::new(2.0, 0.0)));
+        // Over the border: the last column and the first, and what clamping makes of it.
+        let [low, high] = ramp().bounds([at(3.0, 0.0), at(4.0, 0.0)], [Wrap::Repeat; 2]);
+        assert_eq!((low.t, high.t), (0.0, 3.0));
+        let [low, high] = ramp().bounds([at(3.0, 0.0), at(4.0, 0.0)], [Wrap::Clamp; 2]);
+        assert_eq!((low.t, high.t), (3.0, 3.0));
+        for far in [1e300, f64::NAN, f64::INFINITY] {
+            let [low, high] = ramp().bounds([at(-far, -1.0), at(far, 1e9)], [Wrap::Mirror; 2]);
+            assert_eq!((low, high), (FocusOffset::new(0.0, 0.0), FocusOffset::new(13.0, 1.0)), "{far}");
+        }
     }
 
     #[test]

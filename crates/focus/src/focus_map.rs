@@ -144,6 +144,21 @@ impl FocusMap {
         bilinear(corners, f)
     }
 
+    /// The least and the greatest t and anchor of the texels of a box, the first and the last column and row;
+    /// outside the map its border goes on.
+    pub fn bounds(&self, box_texels: [DVec2; 2]) -> [FocusOffset; 2] {
+        let within = |axis: usize, count: u32| {
+            let [first, last] = box_texels.map(|corner| corner[axis]);
+            let greatest = f64::from(count - 1);
+            // Not `clamp`, which keeps what is not a number: that may be anywhere.
+            let first = if first > 0.0 { first.min(greatest) } else { 0.0 };
+            let last = if last < greatest { last.max(0.0) } else { greatest };
+            first as u32..=last as u32
+        };
+        let columns = within(0, self.width);
+        bounds(within(1, self.height).flat_map(|y| columns.clone().map(move |x| self.texel(x, y))))
+    }
+
     /// Whether all numbers are usable: t finite, anchor and mask in [0, 1].
     pub fn is_valid(&self) -> bool {
         let unit = 0.0..=1.0;
@@ -153,6 +168,15 @@ impl FocusMap {
             && self.texels.tiles().iter().all(|tile| tile.iter().all(usable))
             && self.mask.iter().flat_map(TileGrid::tiles).all(|tile| tile.iter().all(|m| unit.contains(m)))
     }
+}
+
+/// The least and the greatest t and anchor of some texels, at least one.
+pub(crate) fn bounds(texels: impl Iterator<Item = [f32; 2]>) -> [FocusOffset; 2] {
+    let none = ([f32::INFINITY; 2], [f32::NEG_INFINITY; 2]);
+    let (least, greatest) = texels.fold(none, |(least, greatest), texel| {
+        (std::array::from_fn(|c| least[c].min(texel[c])), std::array::from_fn(|c| greatest[c].max(texel[c])))
+    });
+    [least, greatest].map(|[t, anchor]| FocusOffset::new(f64::from(t), f64::from(anchor)))
 }
 
 /// [t, anchor] of a value, as the map holds it.
@@ -192,6 +216,20 @@ mod tests {
         let shared =
             map.texels.tiles().iter().zip(snapshot.texels.tiles()).filter(|(a, b)| Arc::ptr_eq(a, b));
         assert_eq!(shared.count(), 3 * 2 - 1);
+    }
+
+    #[test]
+    fn bounds_hold_the_texels_of_a_box() {
+        let mut map = FocusMap::new(100, 80, FocusOffset::STANDARD);
+        map.set(70, 40, [3.0, 0.5]);
+        let bounds =
+            |x0: f64, y0: f64, x1: f64, y1: f64| map.bounds([DVec2::new(x0, y0), DVec2::new(x1, y1)]);
+        assert_eq!(bounds(0.0, 0.0, 69.0, 79.0), [FocusOffset::STANDARD; 2]);
+        assert_eq!(bounds(70.0, 40.0, 70.0, 40.0), [FocusOffset::new(3.0, 0.5); 2]);
+        let all = [FocusOffset::new(1.0, 0.0), FocusOffset::new(3.0, 0.5)];
+        assert_eq!(bounds(-5.0, -1e300, 1e9, f64::INFINITY), all);
+        assert_eq!(bounds(f64::NAN, f64::NAN, f64::NAN, f64::NAN), all);
+        assert_eq!(bounds(200.0, 40.0, 300.0, 40.0), [FocusOffset::STANDARD; 2]);
     }
 
     #[test]

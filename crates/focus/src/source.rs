@@ -3,6 +3,7 @@
 use crate::focus_image::interpolate;
 use crate::{FocusImage, FocusMap};
 use atlas::Atlas;
+use glam::DVec2;
 use lens::FocusOffset;
 use scene::{Scene, SurfaceField, SurfacePoint, Wrap};
 use std::sync::Arc;
@@ -70,5 +71,28 @@ impl SurfaceField<FocusOffset> for Focus {
 
     fn at_infinity(&self) -> FocusOffset {
         self.background
+    }
+
+    /// Those of all texels that any point of the triangle may be interpolated from.
+    fn bounds(&self, triangle: u32) -> Option<[FocusOffset; 2]> {
+        let part = self.scene.triangles[triangle as usize].part;
+        let texels = |corners: [DVec2; 3]| {
+            let (low, high) =
+                (corners[0].min(corners[1]).min(corners[2]), corners[0].max(corners[1]).max(corners[2]));
+            // The texels around a position are centred up to one texel from it.
+            [(low - 0.5).floor(), (high - 0.5).floor() + 1.0]
+        };
+        match &self.parts[part as usize] {
+            FocusSource::Constant(value) => Some([*value; 2]),
+            FocusSource::Uv { image, wrap } => {
+                let size = DVec2::new(f64::from(image.width), f64::from(image.height));
+                let corners = self.scene.corner_uv(triangle, 0).map(|uv| uv.as_dvec2() * size);
+                Some(image.bounds(texels(corners), *wrap))
+            }
+            FocusSource::Atlas { atlas, map } => {
+                let corners = atlas.corners[triangle as usize].map(|corner| corner.as_dvec2());
+                Some(map.bounds(texels(corners)))
+            }
+        }
     }
 }

@@ -47,6 +47,41 @@ impl Optics {
         (t - 1.0) / self.image_distance + t * (1.0 - a) * (self.inverse_focus_distance - inverse_depth)
     }
 
+    /// The defocus κ of a single ray of its own focal length f and transmission distance T: the general model
+    /// F = T(t)∘R(f)∘T(z), of which [`Self::kappa`] is the case f = const, T = t·lerp(d, z', a).
+    ///
+    /// The ray from (x, z) through U leaves the lens with the slope (U − x)/z − U/f, is at
+    /// −x·T/z + U·(1 + T/z − T/f) after T, and is projected along its chief ray onto the sensor at d:
+    ///
+    /// ```text
+    /// κ = (T/d)·(1/f − 1/z) − 1/d
+    /// ```
+    ///
+    /// `inverse_focal_length` 1/f in 1/length, `transmission_distance` T in length; both may be any finite
+    /// number.
+    pub fn kappa_of_ray(
+        &self,
+        inverse_depth: f64,
+        inverse_focal_length: f64,
+        transmission_distance: f64,
+    ) -> f64 {
+        let (inverse_d, t) = (1.0 / self.image_distance, transmission_distance / self.image_distance);
+        t * (inverse_focal_length - inverse_depth) - inverse_d
+    }
+
+    /// How much of the picture a unit of surface area takes for the aperture point `u`, in px²:
+    ///
+    /// ```text
+    /// w(P, U) = |n·(P − U)| / z³ · (H/2)²/tan²θ
+    /// ```
+    ///
+    /// `normal` n is the surface's unit normal and `point` P a point of it with z > 0, both in camera space.
+    /// The same for every focus: rays are as dense in the picture as an unpainted camera's.
+    pub fn pixels_by_area(&self, normal: DVec3, point: DVec3, u: DVec2) -> f64 {
+        let half_heights = normal.dot(point - u.extend(0.0)).abs() / point.z.powi(3);
+        half_heights * (self.half_height_px / self.tan_half_yfov).powi(2)
+    }
+
     /// κ of the unpainted point: the ordinary thin lens, 1/s − 1/z.
     pub fn standard_kappa(&self, inverse_depth: f64) -> f64 {
         self.inverse_focus_distance - inverse_depth
@@ -171,6 +206,36 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn a_ray_of_the_common_lens_has_the_common_kappa() {
+        let o = optics();
+        let inverse_f = 1.0 / o.focal_length();
+        for z in [0.5, 2.0, 3.0, 40.0] {
+            let conjugate = 1.0 / (inverse_f - 1.0 / z);
+            for t in [0.0, 0.5, 0.9, 1.0, 1.5] {
+                for (anchor, distance) in [(0.0, t * o.image_distance), (1.0, t * conjugate)] {
+                    let expected = o.kappa(1.0 / z, FocusOffset::new(t, anchor));
+                    let found = o.kappa_of_ray(1.0 / z, inverse_f, distance);
+                    assert!((found - expected).abs() < 1e-11, "{z} {t} {anchor}: {found}, {expected}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_wall_across_the_axis_takes_its_projected_area() {
+        let o = optics();
+        // One unit of a wall at z = 2, square on: (1/2)² half-heights·tanθ.
+        let px = o.half_height_px / o.tan_half_yfov / 2.0;
+        for u in [DVec2::ZERO, DVec2::new(0.3, -0.2)] {
+            let found = o.pixels_by_area(DVec3::Z, DVec3::new(0.7, -0.4, 2.0), u);
+            assert!((found / (px * px) - 1.0).abs() < 1e-12);
+        }
+        // Edge-on to the middle of the aperture it still sends light to the rest of it.
+        assert_eq!(o.pixels_by_area(DVec3::X, DVec3::new(0.0, 0.1, 2.0), DVec2::ZERO), 0.0);
+        assert!(o.pixels_by_area(DVec3::X, DVec3::new(0.0, 0.1, 2.0), DVec2::X) > 0.0);
     }
 
     #[test]

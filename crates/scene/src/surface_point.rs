@@ -33,4 +33,9 @@ pub trait SurfaceField<T>: Sync {
     fn at(&self, point: SurfacePoint) -> T;
     /// The value of the background.
     fn at_infinity(&self) -> T;
+    /// The least and the greatest value over a triangle, each number by itself: bounds that no point of it
+    /// passes. `None` if the field does not know; who needs them then has to look.
+    fn bounds(&self, _triangle: u32) -> Option<[T; 2]> {
+        None
+    }
 }

@@ -3,6 +3,7 @@
 use crate::FirstHits;
 use lens::{Camera, Picture};
 use project::Layer;
+use trace::truth::Estimate;
 
 /// An extra channel of a rendered picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -16,15 +17,27 @@ pub enum Aov {
     Depth,
     /// The focus offset t, and with it the anchor a.
     Focus,
+    /// The standard error of conserved radiance and coverage, and of their ratio. Only the ground truth knows
+    /// it; other renderers leave the layers out.
+    StandardError,
+}
+
+/// What layers are made of.
+pub(crate) struct Known<'a> {
+    pub picture: &'a Picture,
+    pub hits: Option<&'a FirstHits>,
+    pub estimate: Option<&'a Estimate>,
+    pub camera: &'a Camera,
 }
 
 impl Aov {
     /// All of them, by the names that the command line knows.
-    pub const ALL: [(&'static str, Aov); 4] = [
+    pub const ALL: [(&'static str, Aov); 5] = [
         ("coverage", Aov::Coverage),
         ("coc", Aov::CircleOfConfusion),
         ("depth", Aov::Depth),
         ("t", Aov::Focus),
+        ("stderr", Aov::StandardError),
     ];
 
     /// The one of this name.
@@ -34,21 +47,38 @@ impl Aov {
 
     /// Whether it is made of first hits.
     pub(crate) fn needs_first_hits(self) -> bool {
-        self != Self::Coverage
+        !matches!(self, Self::Coverage | Self::StandardError)
     }
 
-    /// Its layers. `hits` may be missing only if the AOV needs none.
-    pub(crate) fn layers(self, picture: &Picture, hits: Option<&FirstHits>, camera: &Camera) -> Vec<Layer> {
+    /// Its layers; none if what they are made of is missing.
+    pub(crate) fn layers(self, known: &Known) -> Vec<Layer> {
         let layer = |name: &str, values| Layer { name: name.into(), values };
-        match (self, hits) {
-            (Self::Coverage, _) => vec![Layer::coverage(picture)],
-            (Self::CircleOfConfusion, Some(hits)) => vec![layer("coc", hits.circle_of_confusion_px(camera))],
-            (Self::Depth, Some(hits)) => vec![layer("depth", hits.depth.clone())],
-            (Self::Focus, Some(hits)) => vec![
+        match (self, known.hits, known.estimate) {
+            (Self::Coverage, ..) => vec![Layer::coverage(known.picture)],
+            (Self::CircleOfConfusion, Some(hits), _) => {
+                vec![layer("coc", hits.circle_of_confusion_px(known.camera))]
+            }
+            (Self::Depth, Some(hits), _) => vec![layer("depth", hits.depth.clone())],
+            (Self::Focus, Some(hits), _) => vec![
                 layer("t", hits.focus.iter().map(|focus| focus.t as f32).collect()),
                 layer("anchor", hits.focus.iter().map(|focus| focus.anchor as f32).collect()),
             ],
-            (_, None) => Vec::new(),
+            (Self::StandardError, _, Some(estimate)) => {
+                let rgb = |group: &str, errors: &[[f32; 3]]| {
+                    ["R", "G", "B"]
+                        .into_iter()
+                        .enumerate()
+                        .map(|(c, channel)| {
+                            layer(&format!("{group}.{channel}"), errors.iter().map(|rgb| rgb[c]).collect())
+                        })
+                        .collect::<Vec<_>>()
+                };
+                let mut layers = rgb("stderr", &estimate.standard_error.radiance);
+                layers.push(layer("stderr.coverage", estimate.standard_error.coverage.clone()));
+                layers.extend(rgb("stderr.normalised", &estimate.normalised_error));
+                layers
+            }
+            _ => Vec::new(),
         }
     }
 }

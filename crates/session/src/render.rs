@@ -1,5 +1,6 @@
 //! A picture without a window: what the command line and the export of the window do.
 
+use crate::aov::Known;
 use crate::depth_blur::depth_blur;
 use crate::first_hits::FirstHits;
 use crate::light_field::serves;
@@ -15,7 +16,7 @@ use splat::Splatter;
 use std::sync::Arc;
 use std::time::Instant;
 use trace::Tracer;
-use trace::truth::TruthOptions;
+use trace::truth::{Estimate, TruthOptions};
 
 /// What draws the picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -34,10 +35,8 @@ pub enum Renderer {
 pub struct RenderOptions {
     /// What draws it.
     pub renderer: Renderer,
-    /// Rays a pixel of the ray tracer.
-    pub samples_per_pixel: u32,
-    /// Seed of the ray tracer's scramble.
-    pub seed: u32,
+    /// How the ray tracer samples. Its region must be the frame.
+    pub truth: TruthOptions,
     /// How coarse the light field may be, px (see [`BakeOptions::tolerance_px`]).
     pub tolerance_px: f64,
     /// The pictures that come along.
@@ -48,8 +47,7 @@ impl Default for RenderOptions {
     fn default() -> Self {
         Self {
             renderer: Renderer::Splat,
-            samples_per_pixel: 64,
-            seed: 0,
+            truth: TruthOptions { samples_per_pixel: 64, ..TruthOptions::default() },
             tolerance_px: BakeOptions::TOLERANCE_PX,
             aovs: Vec::new(),
         }
@@ -132,6 +130,7 @@ pub fn render(
 ) -> Result<Rendered, SessionError> {
     let start = Instant::now();
     let mut cost = RenderCost::default();
+    let mut estimate = None;
     let picture = match options.renderer {
         Renderer::Splat => {
             let salf = bake(tracer, camera, focus, options.tolerance_px, steps)?;
@@ -141,17 +140,10 @@ pub fn render(
             return Ok(rendered);
         }
         Renderer::Truth => {
-            let samples_per_pixel = options.samples_per_pixel;
-            let truth = TruthOptions { samples_per_pixel, seed: options.seed };
+            let light = light_for_many_points(tracer, camera);
             let progress = steps.begin("tracing");
-            trace::truth::render(
-                tracer,
-                &light_for_many_points(tracer, camera),
-                focus,
-                camera,
-                &truth,
-                &*progress,
-            )?
+            let found = trace::truth::render(tracer, &light, focus, camera, &options.truth, &*progress)?;
+            estimate.insert(found).picture.clone()
         }
         Renderer::Blur => {
             let hits = first_hits(tracer, camera, focus, steps)?;
@@ -159,7 +151,8 @@ pub fn render(
         }
     };
     cost.picture_seconds = start.elapsed().as_secs_f64();
-    finish(picture, tracer, camera, focus, options, cost, steps)
+    let shot = Shot { tracer, camera, focus };
+    finish(shot, options, Drawn { picture, estimate, cost }, steps)
 }
 
 /// Renders what was opened: a scene, a project, or (with the splat) a light field.
@@ -227,26 +220,36 @@ fn splat(
     splatter.render(camera, focus, &*steps.begin("splatting"))?;
     let picture = splatter.picture().clone();
     cost.picture_seconds = start.elapsed().as_secs_f64();
-    finish(picture, tracer, camera, focus, options, cost, steps)
+    let shot = Shot { tracer, camera, focus };
+    finish(shot, options, Drawn { picture, estimate: None, cost }, steps)
+}
+
+/// What is rendered.
+struct Shot<'a> {
+    tracer: &'a Arc<Tracer>,
+    camera: &'a Camera,
+    focus: &'a Focus,
+}
+
+/// A picture, before what comes along.
+struct Drawn {
+    picture: Picture,
+    /// What the ground truth knows of its error.
+    estimate: Option<Estimate>,
+    cost: RenderCost,
 }
 
 fn finish(
-    picture: Picture,
-    tracer: &Arc<Tracer>,
-    camera: &Camera,
-    focus: &Focus,
+    Shot { tracer, camera, focus }: Shot,
     options: &RenderOptions,
-    cost: RenderCost,
+    Drawn { picture, estimate, cost }: Drawn,
     steps: &dyn Steps,
 ) -> Result<Rendered, SessionError> {
     let asks = options.aovs.iter().any(|aov| aov.needs_first_hits());
     let hits = asks.then(|| first_hits(tracer, camera, focus, steps)).transpose()?;
-    let layers = layers(&options.aovs, &picture, hits.as_ref(), camera);
+    let known = Known { picture: &picture, hits: hits.as_ref(), estimate: estimate.as_ref(), camera };
+    let layers = options.aovs.iter().flat_map(|aov| aov.layers(&known)).collect();
     Ok(Rendered { picture, layers, cost, warnings: Vec::new() })
-}
-
-fn layers(aovs: &[Aov], picture: &Picture, hits: Option<&FirstHits>, camera: &Camera) -> Vec<Layer> {
-    aovs.iter().flat_map(|aov| aov.layers(picture, hits, camera)).collect()
 }
 
 fn first_hits(

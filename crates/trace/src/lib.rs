@@ -7,6 +7,7 @@
 mod hierarchy;
 mod local_space;
 mod presence;
+mod random;
 mod ray;
 #[cfg(test)]
 mod test_scene;

@@ -1,62 +1,68 @@
-//! The ground truth: distributed ray tracing of the focus model.
+//! The ground truth: the focus model, ray by ray.
 //!
-//! Every pixel of the frame and of a guard band around it sends rays through the aperture toward the focus
-//! plane, as any thin-lens camera does (Cook, Porter and Carpenter 1984). What a ray hits is then sent on to
-//! the sensor with the hit's own defocus κ: it lands not where it came from but
+//! Two independent estimators of the same integral ([`Estimator`]), which must agree: rays that start at the
+//! sensor and are sent back to it by what they hit (`from_sensor`), and rays that start at the surfaces
+//! (`from_surfaces`). They share the optics, the tracer and the radiance, with each other and with the splat,
+//! and nothing else.
 //!
-//! ```text
-//! p + (κ − κ_standard)·U/tanθ
-//! ```
-//!
-//! away, p the position it left the picture at (half-heights), U its aperture point, and adds its radiance to
-//! the pixel it lands in, 1/spp of it. The change of variables has no Jacobian of its own (p at fixed U moves
-//! with the surface), so energy is conserved, and a standard hit keeps its pixel exactly.
-//!
-//! It shares the optics with the splat and nothing else. Sums are integers, so that any order and any number
-//! of threads gives the same bits (`sensor`); samples are the same low-discrepancy points in every pixel
-//! (`pixel_samples`); the guard band is as wide as probing rays say (`guard_band`). Small bright surfaces
-//! also send rays of their own (`bright_surfaces`).
+//! A render is a row of passes ([`Truth::pass`]), each a picture of its own of a few samples a pixel. Within a
+//! pass sums are integers, so that any order and any number of threads gives the same bits (`sensor`); from
+//! pass to pass means and scatter are kept, and the scatter gives the standard error of every pixel
+//! ([`Estimate`]). Samples are low-discrepancy points that go on from pass to pass (`samples`). Which surfaces
+//! may send light into the picture at all, and from how far outside the frame, follows from bounds on κ over
+//! pieces of surface (`kappa_bounds`, `patches`, `reach`).
 
 mod bright_surfaces;
-mod guard_band;
-mod pixel_samples;
-mod sample_ray;
+mod estimate;
+mod filter;
+mod from_sensor;
+mod from_surfaces;
+mod kappa_bounds;
+mod options;
+mod patches;
+mod ray_focus;
+mod reach;
+mod samples;
 mod sensor;
+mod view;
+
+pub use estimate::Estimate;
+pub use filter::ReconstructionFilter;
+pub use options::{Estimator, Region, Sampler, TruthOptions};
+pub use ray_focus::{RayFocus, RayOptics};
 
 use crate::{Radiance, Tracer};
-use bright_surfaces::BrightSurfaces;
-use glam::{DVec2, Vec3};
-use lens::{Camera, FocusOffset, Picture};
-use pixel_samples::PixelSample;
+use estimate::Statistics;
+use from_sensor::FromSensor;
+use from_surfaces::FromSurfaces;
+use lens::{Camera, FocusOffset};
 use progress::{Cancelled, Progress, Stage};
-use rayon::prelude::*;
-use sample_ray::SampleRays;
 use scene::SurfaceField;
-use sensor::{Quantiser, Sensor};
-use std::sync::atomic::{AtomicUsize, Ordering};
+use sensor::Sensor;
+use view::View;
 
-/// How the ground truth is sampled.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct TruthOptions {
-    /// Rays a pixel of the frame and of its guard band; 0 counts as 1.
-    pub samples_per_pixel: u32,
-    /// Seed of the scramble.
-    pub seed: u32,
+/// A render in progress.
+pub struct Truth<'a> {
+    view: View<'a>,
+    radiance: &'a dyn Radiance,
+    options: TruthOptions,
+    region: Region,
+    sensor: Sensor,
+    statistics: Statistics,
+    /// Made by the first pass.
+    rays: Option<Rays>,
 }
 
-impl Default for TruthOptions {
-    fn default() -> Self {
-        Self { samples_per_pixel: 256, seed: 0 }
-    }
+/// Where rays start.
+enum Rays {
+    Sensor(FromSensor),
+    Surfaces(FromSurfaces),
 }
 
-/// The side of a tile, px: the unit of work.
-const TILE_PX: i64 = 16;
-
-/// Renders `camera`'s picture of the scene in `tracer`, focused by `focus`.
+/// Renders `camera`'s picture of the scene in `tracer`, focused by `focus`: all passes.
 ///
-/// The camera must be valid. The picture is conserved radiance with its coverage; both are exact sums of the
-/// samples, the same for any number of threads.
+/// The camera must be valid. The picture is conserved radiance with its coverage, of the options' region; the
+/// same bits for any number of threads.
 pub fn render(
     tracer: &Tracer,
     radiance: &dyn Radiance,
@@ -64,93 +70,99 @@ pub fn render(
     camera: &Camera,
     options: &TruthOptions,
     progress: &dyn Progress,
-) -> Result<Picture, Cancelled> {
-    let rays = SampleRays::new(tracer, focus, camera);
-    let guard_px = guard_band::width_px(&rays, progress)?;
-    let samples = options.samples_per_pixel.max(1);
-    let bright = BrightSurfaces::find(&rays, radiance, samples, guard_px);
-    let mut quantiser = Quantiser::for_samples(samples);
-    loop {
-        let sensor = Sensor::new(camera, quantiser);
-        let batches = pixel_samples::batches(camera, samples, options.seed);
-        let own_rays = if bright.is_empty() { 0.0 } else { 0.1 };
-        bright.shine(&rays, radiance, &sensor, options.seed, &Stage::new(progress, 0.0, own_rays))?;
-        let share = (1.0 - own_rays) / batches.len() as f32;
-        for (k, batch) in batches.enumerate() {
-            let start = own_rays + share * k as f32;
-            let exposure =
-                Exposure { rays: &rays, radiance, bright: &bright, sensor: &sensor, samples: &batch };
-            exposure.expose(guard_px, &Stage::new(progress, start, start + share))?;
+) -> Result<Estimate, Cancelled> {
+    let mut truth = Truth::new(tracer, radiance, focus, camera, options);
+    while !truth.is_done() {
+        let done = |samples: u32| samples as f32 / options.samples_per_pixel.max(1) as f32;
+        let [before, after] = [truth.samples_per_pixel(), truth.next_pass().end].map(done);
+        truth.pass(&Stage::new(progress, before, after))?;
+    }
+    Ok(truth.estimate())
+}
+
+impl<'a> Truth<'a> {
+    /// Prepares to render; see [`render`].
+    pub fn new(
+        tracer: &'a Tracer,
+        radiance: &'a dyn Radiance,
+        focus: &'a dyn SurfaceField<FocusOffset>,
+        camera: &'a Camera,
+        options: &TruthOptions,
+    ) -> Self {
+        let region = options.region.unwrap_or_else(|| Region::frame(camera)).within(camera);
+        let view = View { tracer, focus, ray_focus: None, camera, optics: camera.optics() };
+        Self {
+            view,
+            radiance,
+            options: *options,
+            region,
+            sensor: Sensor::new(region, options.filter, options.samples_of_pass()),
+            statistics: Statistics::new(region.width, region.height),
+            rays: None,
         }
-        match sensor.develop(samples) {
-            Some(picture) => return Ok(picture),
+    }
+
+    /// Focuses ray by ray in place of the painted focus. Before the first pass.
+    pub fn with_ray_focus(self, ray_focus: &'a dyn RayFocus) -> Self {
+        Self { view: View { ray_focus: Some(ray_focus), ..self.view }, ..self }
+    }
+
+    /// The pixels that it renders: the options' region, as far as it lies in the frame.
+    pub fn region(&self) -> Region {
+        self.region
+    }
+
+    /// Samples a pixel so far.
+    pub fn samples_per_pixel(&self) -> u32 {
+        self.statistics.samples
+    }
+
+    /// Whether it has as many samples as the options ask for. It may go on nevertheless.
+    pub fn is_done(&self) -> bool {
+        self.samples_per_pixel() >= self.options.samples_per_pixel.max(1)
+    }
+
+    /// Which samples of a pixel the next pass takes.
+    fn next_pass(&self) -> std::ops::Range<u32> {
+        let (first, pass) = (self.samples_per_pixel(), self.options.samples_of_pass());
+        let wanted = self.options.samples_per_pixel.max(1);
+        let last = first.saturating_add(pass);
+        first..if first < wanted { last.min(wanted) } else { last }
+    }
+
+    /// Adds a pass of [`TruthOptions::samples_of_pass`] samples a pixel (or as few as are left to do). If it is
+    /// cancelled, the estimate stays as it was before.
+    pub fn pass(&mut self, progress: &dyn Progress) -> Result<(), Cancelled> {
+        progress.check()?;
+        let known = self.rays.take();
+        let Self { view, radiance, options, sensor, .. } = &*self;
+        let rays = known.unwrap_or_else(|| match options.estimator {
+            Estimator::Sensor => Rays::Sensor(FromSensor::new(view, *radiance, sensor, options)),
+            Estimator::Surface => Rays::Surfaces(FromSurfaces::new(view, *radiance, sensor, options)),
+        });
+        let passed = self.next_pass();
+        let samples = passed.end - passed.start;
+        let exposed = loop {
+            self.sensor.clear();
+            let (view, sensor, passed) = (&self.view, &self.sensor, passed.clone());
+            let exposed = match &rays {
+                Rays::Sensor(rays) => rays.expose(view, self.radiance, sensor, passed, progress),
+                Rays::Surfaces(rays) => rays.expose(view, self.radiance, sensor, passed, progress),
+            };
             // Brighter than the integers were made for: once more with coarser ones.
-            None => quantiser = quantiser.coarser(),
-        }
-    }
-}
-
-/// One exposure of a sensor to a batch of samples of each pixel.
-struct Exposure<'a> {
-    rays: &'a SampleRays<'a>,
-    radiance: &'a dyn Radiance,
-    bright: &'a BrightSurfaces,
-    sensor: &'a Sensor,
-    samples: &'a [PixelSample],
-}
-
-impl Exposure<'_> {
-    /// Sends the rays of the frame and of `guard_px` pixels around it.
-    fn expose(&self, guard_px: i64, progress: &dyn Progress) -> Result<(), Cancelled> {
-        let (width, height) = self.sensor.size();
-        let tiles_of = |length: i64| (length + 2 * guard_px + TILE_PX - 1) / TILE_PX;
-        let (columns, rows) = (tiles_of(width), tiles_of(height));
-        let done = AtomicUsize::new(0);
-        (0..columns * rows).into_par_iter().try_for_each(|tile| {
-            let (left, top) = (tile % columns * TILE_PX - guard_px, tile / columns * TILE_PX - guard_px);
-            for y in top..(top + TILE_PX).min(height + guard_px) {
-                progress.check()?;
-                for x in left..(left + TILE_PX).min(width + guard_px) {
-                    self.expose_pixel(x, y);
-                }
+            if exposed.is_err() || !self.sensor.coarsen_if_overflowed() {
+                break exposed;
             }
-            let done = done.fetch_add(1, Ordering::Relaxed) + 1;
-            progress.report(done as f32 / (columns * rows) as f32);
-            Ok(())
-        })
+        };
+        self.rays = Some(rays);
+        exposed?;
+        self.statistics.add(samples, self.sensor.means(samples));
+        Ok(())
     }
 
-    /// Sends the rays of one pixel; (0, 0) is the frame's upper left one.
-    fn expose_pixel(&self, x: i64, y: i64) {
-        let corner = DVec2::new(x as f64, y as f64);
-        let own = self.sensor.pixel(corner);
-        // What stays in this pixel is summed here first.
-        let mut stays = sensor::Sum::default();
-        for sample in self.samples {
-            let from = corner + sample.within_px;
-            let found = self.rays.trace(from, sample.u);
-            let Some(pixel) = self.sensor.pixel(from + found.displacement_px) else { continue };
-            let light = self.sensor.quantise(self.light(&found, sample.u));
-            if Some(pixel) == own {
-                stays.add(light);
-            } else {
-                self.sensor.add(pixel, sensor::Sum::of(light));
-            }
-        }
-        if let Some(pixel) = own {
-            self.sensor.add(pixel, stays);
-        }
-    }
-
-    /// The radiance that a sample through the aperture point `u` carries.
-    fn light(&self, sample: &sample_ray::Sample, u: DVec2) -> Vec3 {
-        match sample.point {
-            Some(point) => {
-                let share = self.bright.camera_share(self.rays, point, u);
-                self.radiance.toward(point, sample.eye) * share as f32
-            }
-            None => self.radiance.from_infinity(sample.direction),
-        }
+    /// What is known so far.
+    pub fn estimate(&self) -> Estimate {
+        self.statistics.estimate()
     }
 }
 

@@ -8,23 +8,27 @@
 //!
 //! ```text
 //! either ray brings   L · c/(c + s)
-//! c = spp·w           camera's rays a unit of the triangle's area, s = n/A its own
-//! w(P, U) = |n·(P − U)| / (z³ tan²θ)   the picture's area for it (times (H/2)² in px)
+//! c = w(P, U)         camera's rays a unit of the triangle's area, s = n/A its own, both by sample of a pixel
 //! ```
 //!
-//! which adds up to L·c, what the camera's rays alone would bring on average. (Beyond the guard band the camera
-//! sends no rays; there the surface's ray brings it all, L·c/s.) Coverage counts the camera's rays alone.
+//! which adds up to L·c, what the camera's rays alone would bring on average. (Out of reach the camera sends no
+//! rays; there the surface's ray brings it all, L·c/s.) Coverage counts the camera's rays alone.
 
-use super::pixel_samples::{self, LONGEST_SEQUENCE};
-use super::sample_ray::SampleRays;
-use super::sensor::{Sensor, Sum};
+use super::kappa_bounds::uniform_barycentric;
+use super::options::{Sampler, TruthOptions};
+use super::reach::Reach;
+use super::samples;
+use super::sensor::Sensor;
+use super::view::View;
 use crate::Radiance;
-use glam::{DVec2, DVec3};
+use crate::random::{hash, unit};
+use glam::DVec2;
 use lens::ApertureSampler;
 use progress::{Cancelled, Progress};
 use rayon::prelude::*;
 use scene::SurfacePoint;
 use std::f64::consts::PI;
+use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Only triangles brighter than white send rays.
@@ -36,155 +40,137 @@ const SHARE_OF_FRAME: f64 = 0.25;
 
 /// The triangles that send rays.
 pub(super) struct BrightSurfaces {
-    /// Rays that each triangle of the scene sends; empty if none does.
-    rays_of: Vec<u32>,
-    samples_per_pixel: f64,
-    guard_px: f64,
+    /// Rays that each triangle of the scene sends for each sample of a pixel; empty if none does.
+    rates: Vec<f64>,
+    /// Those that do.
+    senders: Vec<u32>,
+    reach: Reach,
+    sampler: Sampler,
+    seed: u64,
 }
 
 impl BrightSurfaces {
-    /// Finds them.
-    pub fn find(rays: &SampleRays, radiance: &dyn Radiance, samples: u32, guard_px: i64) -> Self {
-        let count = rays.tracer.scene().triangles.len() as u32;
-        let found =
-            Self { rays_of: Vec::new(), samples_per_pixel: f64::from(samples), guard_px: guard_px as f64 };
-        let wanted: Vec<f64> =
-            (0..count).into_par_iter().map(|triangle| found.rays_wanted(rays, radiance, triangle)).collect();
+    /// Finds them. `window` is where light counts, px.
+    pub fn find(
+        view: &View,
+        radiance: &dyn Radiance,
+        reach: Reach,
+        window: [DVec2; 2],
+        options: &TruthOptions,
+    ) -> Self {
+        let triangles = 0..view.tracer.scene().triangles.len() as u32;
+        let wanted: Vec<f64> = triangles
+            .into_par_iter()
+            .map(|triangle| rate_wanted(view, radiance, reach, window, triangle))
+            .collect();
         let total: f64 = wanted.iter().sum();
-        if total == 0.0 {
-            return found;
-        }
-        let frame = f64::from(rays.camera.width) * f64::from(rays.camera.height) * f64::from(samples);
-        let share = (SHARE_OF_FRAME * frame / total).min(1.0);
-        Self { rays_of: wanted.into_iter().map(|n| (n * share).ceil() as u32).collect(), ..found }
+        let senders: Vec<u32> = (0..wanted.len() as u32).filter(|&k| wanted[k as usize] > 0.0).collect();
+        let pixels = (window[1] - window[0]).element_product();
+        let share = (SHARE_OF_FRAME * pixels / total).min(1.0);
+        let rates = if senders.is_empty() { Vec::new() } else { wanted.iter().map(|n| n * share).collect() };
+        Self { rates, senders, reach, sampler: options.sampler, seed: u64::from(options.seed) }
     }
 
     /// Whether there are none.
     pub fn is_empty(&self) -> bool {
-        self.rays_of.is_empty()
-    }
-
-    /// How many rays a triangle should send: so many that each brings little, but not more than spp a pixel
-    /// of the circle of confusion.
-    fn rays_wanted(&self, rays: &SampleRays, radiance: &dyn Radiance, triangle: u32) -> f64 {
-        let scene = rays.tracer.scene();
-        let material = scene.material_of(triangle);
-        if !material.emits() || material.may_be_transparent() {
-            return 0.0;
-        }
-        let corners = scene.corners(triangle).map(|corner| rays.camera.camera_from_world(corner));
-        if corners.iter().any(|corner| corner.z <= 0.0) {
-            return 0.0;
-        }
-        let eye = rays.camera.position();
-        // Looked at in its middle and toward each corner.
-        let places =
-            [(1.0, 1.0), (0.5, 0.5), (2.0, 0.5), (0.5, 2.0)].map(|(b1, b2)| DVec2::new(b1, b2) / 3.0);
-        let look = |barycentric| radiance.toward(SurfacePoint { triangle, barycentric }, eye).max_element();
-        let brightest = places.into_iter().map(look).fold(0.0, f32::max);
-        if brightest <= WHITE {
-            return 0.0;
-        }
-        let middle = SurfacePoint { triangle, barycentric: DVec2::splat(1.0 / 3.0) };
-        let position = (corners[0] + corners[1] + corners[2]) / 3.0;
-        let radius = |kappa: f64| rays.optics.splat_radius_px(kappa).abs();
-        let kappa = rays.optics.kappa(1.0 / position.z, rays.focus.at(middle));
-        let circle = PI * radius(kappa).powi(2) + 1.0;
-        // Out of view if the whole triangle, with its widest blur, lies beyond one side of the frame.
-        let blur = radius(kappa).max(radius(rays.optics.standard_kappa(1.0 / position.z))) + self.guard_px;
-        let pixels = corners.map(|corner| rays.camera.pixel_from_q(rays.optics.chief(corner)));
-        let (low, high) = pixels.iter().fold((pixels[0], pixels[0]), |(l, h), p| (l.min(*p), h.max(*p)));
-        let size = DVec2::new(f64::from(rays.camera.width), f64::from(rays.camera.height));
-        if (low - blur).cmpgt(size).any() || (high + blur).cmplt(DVec2::ZERO).any() {
-            return 0.0;
-        }
-        let doubled_area = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
-        let footprint =
-            pixels_by_area(rays, doubled_area, position, DVec2::ZERO) * doubled_area.length() / 2.0;
-        (f64::from(brightest) / SHARE_OF_WHITE * footprint).min(circle) * self.samples_per_pixel
+        self.senders.is_empty()
     }
 
     /// The share of a path from a point of a triangle to the aperture point `u` that the camera's ray takes.
-    pub fn camera_share(&self, rays: &SampleRays, point: SurfacePoint, u: DVec2) -> f64 {
-        let count = self.rays_of.get(point.triangle as usize).copied().unwrap_or(0);
-        if count == 0 {
+    pub fn camera_share(&self, view: &View, point: SurfacePoint, u: DVec2) -> f64 {
+        let rate = self.rates.get(point.triangle as usize).copied().unwrap_or(0.0);
+        if rate == 0.0 {
             return 1.0;
         }
-        let scene = rays.tracer.scene();
-        let normal = rays.camera.camera_direction(scene.area_normal(point.triangle));
-        let position = rays.camera.camera_from_world(point.position(scene));
-        let camera = self.samples_per_pixel * pixels_by_area(rays, normal, position, u);
-        camera / (camera + f64::from(count) / (normal.length() / 2.0))
+        let scene = view.tracer.scene();
+        let normal = view.camera.camera_direction(scene.area_normal(point.triangle));
+        let position = view.camera.camera_from_world(point.position(scene));
+        let camera = view.optics.pixels_by_area(normal.normalize_or_zero(), position, u);
+        camera / (camera + rate / (normal.length() / 2.0))
     }
 
-    /// Sends all rays.
+    /// Sends the rays of one pass.
     pub fn shine(
         &self,
-        rays: &SampleRays,
+        view: &View,
         radiance: &dyn Radiance,
         sensor: &Sensor,
-        seed: u32,
+        passed: &Range<u32>,
         progress: &dyn Progress,
     ) -> Result<(), Cancelled> {
-        let senders = (0..self.rays_of.len() as u32).filter(|&triangle| self.rays_of[triangle as usize] > 0);
-        let batches: Vec<(u32, u32)> = senders
-            .flat_map(|triangle| {
-                let count = self.rays_of[triangle as usize];
-                (0..count.div_ceil(LONGEST_SEQUENCE)).map(move |batch| (triangle, batch))
-            })
-            .collect();
-        let aperture = ApertureSampler::new(&rays.camera.aperture);
+        let aperture = ApertureSampler::new(&view.camera.aperture);
         let done = AtomicUsize::new(0);
-        batches.par_iter().try_for_each(|&(triangle, batch)| {
+        self.senders.par_iter().try_for_each(|&triangle| {
             progress.check()?;
-            let rest = self.rays_of[triangle as usize] - batch * LONGEST_SEQUENCE;
-            for [a, b, c, d] in pixel_samples::points(rest.min(LONGEST_SEQUENCE), [seed, triangle, batch]) {
+            let seed = hash([self.seed, u64::from(triangle)]);
+            let indices = samples::indices(self.rates[triangle as usize], unit(seed), passed);
+            for [a, b, c, d] in samples::points(self.sampler, seed, indices) {
                 let point = SurfacePoint { triangle, barycentric: uniform_barycentric(DVec2::new(c, d)) };
-                self.send(rays, radiance, sensor, point, aperture.sample(a, b) * rays.camera.aperture_radius);
+                let u = aperture.sample(a, b) * view.camera.aperture_radius;
+                self.send(view, radiance, sensor, point, u);
             }
-            progress.report((done.fetch_add(1, Ordering::Relaxed) + 1) as f32 / batches.len() as f32);
+            progress.report((done.fetch_add(1, Ordering::Relaxed) + 1) as f32 / self.senders.len() as f32);
             Ok(())
         })
     }
 
     /// Sends one ray.
-    fn send(
-        &self,
-        rays: &SampleRays,
-        radiance: &dyn Radiance,
-        sensor: &Sensor,
-        point: SurfacePoint,
-        u: DVec2,
-    ) {
-        let (camera, optics, scene) = (rays.camera, &rays.optics, rays.tracer.scene());
+    fn send(&self, view: &View, radiance: &dyn Radiance, sensor: &Sensor, point: SurfacePoint, u: DVec2) {
+        let (camera, optics, scene) = (view.camera, &view.optics, view.tracer.scene());
         let position = camera.camera_from_world(point.position(scene));
         let inverse_depth = 1.0 / position.z;
-        let land = |kappa| camera.pixel_from_q(optics.landing(position, u, kappa));
-        let Some(pixel) = sensor.pixel(land(optics.kappa(inverse_depth, rays.focus.at(point)))) else {
+        let to = view.landing_px(position, u, view.blur(Some(point), inverse_depth, u).kappa);
+        if !sensor.sees(to) {
             return;
-        };
+        }
         let eye = camera.world_from_camera(u.extend(0.0));
-        if rays.tracer.occluded(point, eye) {
+        if view.tracer.occluded(point, eye) {
             return;
         }
         let normal = camera.camera_direction(scene.area_normal(point.triangle));
-        let w = self.samples_per_pixel * pixels_by_area(rays, normal, position, u);
-        let sent = f64::from(self.rays_of[point.triangle as usize]) / (normal.length() / 2.0);
-        let found_by_camera = sensor.is_within(land(optics.standard_kappa(inverse_depth)), self.guard_px);
-        let weight = w / if found_by_camera { w + sent } else { sent };
-        sensor.add(pixel, Sum::of_light(sensor.quantise(radiance.toward(point, eye) * weight as f32)));
+        let w = optics.pixels_by_area(normal.normalize_or_zero(), position, u);
+        let sent = self.rates[point.triangle as usize] / (normal.length() / 2.0);
+        let from = view.landing_px(position, u, optics.standard_kappa(inverse_depth));
+        let weight = w / if self.reach.contains(from) { w + sent } else { sent };
+        sensor.expose(to, radiance.toward(point, eye), weight, 0.0);
     }
 }
 
-/// w(P, U): pixels of the picture a unit of area of a surface, for the aperture point `u`. `normal` of any
-/// length; camera space.
-fn pixels_by_area(rays: &SampleRays, normal: DVec3, position: DVec3, u: DVec2) -> f64 {
-    let toward_surface = position - u.extend(0.0);
-    let half_height_px = rays.optics.half_height_px / rays.optics.tan_half_yfov;
-    normal.normalize_or_zero().dot(toward_surface).abs() / position.z.powi(3) * half_height_px.powi(2)
-}
-
-/// The unit square onto the triangle, area for area (Heitz 2019).
-fn uniform_barycentric(u: DVec2) -> DVec2 {
-    if u.y > u.x { DVec2::new(0.5 * u.x, u.y - 0.5 * u.x) } else { DVec2::new(u.x - 0.5 * u.y, 0.5 * u.y) }
+/// How many rays a triangle should send for each sample of a pixel: so many that each brings little, but not
+/// more than one a pixel of the circle of confusion.
+fn rate_wanted(view: &View, radiance: &dyn Radiance, reach: Reach, window: [DVec2; 2], triangle: u32) -> f64 {
+    let scene = view.tracer.scene();
+    let material = scene.material_of(triangle);
+    if !material.emits() || material.may_be_transparent() {
+        return 0.0;
+    }
+    let corners = scene.corners(triangle).map(|corner| view.camera.camera_from_world(corner));
+    if corners.iter().any(|corner| corner.z <= 0.0) {
+        return 0.0;
+    }
+    let eye = view.camera.position();
+    // Looked at in its middle and toward each corner.
+    let places = [(1.0, 1.0), (0.5, 0.5), (2.0, 0.5), (0.5, 2.0)].map(|(b1, b2)| DVec2::new(b1, b2) / 3.0);
+    let look = |barycentric| radiance.toward(SurfacePoint { triangle, barycentric }, eye).max_element();
+    let brightest = places.into_iter().map(look).fold(0.0, f32::max);
+    if brightest <= WHITE {
+        return 0.0;
+    }
+    let middle = SurfacePoint { triangle, barycentric: DVec2::splat(1.0 / 3.0) };
+    let position = (corners[0] + corners[1] + corners[2]) / 3.0;
+    let inverse_depth = 1.0 / position.z;
+    let radius = view.radius_px(view.blur(Some(middle), inverse_depth, DVec2::ZERO).kappa);
+    let circle = PI * radius.powi(2) + 1.0;
+    // Out of view if the whole triangle, with its widest blur, lies beyond one side of the window.
+    let band = (window[0] - reach.low).max(reach.high - window[1]).max_element();
+    let blur = radius.max(view.radius_px(view.optics.standard_kappa(inverse_depth))) + band;
+    let pixels = corners.map(|corner| view.camera.pixel_from_q(view.optics.chief(corner)));
+    let (low, high) = pixels.iter().fold((pixels[0], pixels[0]), |(l, h), p| (l.min(*p), h.max(*p)));
+    if (low - blur).cmpgt(window[1]).any() || (high + blur).cmplt(window[0]).any() {
+        return 0.0;
+    }
+    let doubled_area = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+    let normal = doubled_area.normalize_or_zero();
+    let footprint = view.optics.pixels_by_area(normal, position, DVec2::ZERO) * doubled_area.length() / 2.0;
+    (f64::from(brightest) / SHARE_OF_WHITE * footprint).min(circle)
 }

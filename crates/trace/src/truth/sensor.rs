@@ -1,119 +1,135 @@
 //! The sensor: integer sums a pixel, so that their order does not matter.
 
+use super::filter::ReconstructionFilter;
+use super::options::Region;
 use glam::{DVec2, Vec3};
-use lens::{Camera, Picture};
+use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, AtomicI64, Ordering};
 
-/// Radiance to integers: round(L·2ᵉ).
+/// Numbers to integers: round(x·2ᵉ).
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Quantiser {
-    exponent: i32,
+struct Quantiser {
+    /// e of radiance.
+    light: i32,
+    /// e of coverage.
+    coverage: i32,
 }
 
 /// Bits of an i64 that a sum may fill.
 const SUM_BITS: i32 = 62;
 /// A pixel's mean radiance is at first expected to stay below 2 to this.
 const RADIANCE_BITS: i32 = 24;
+/// And its mean coverage.
+const COVERAGE_BITS: i32 = 16;
 /// How many bits are given up when it does not.
 const COARSER_BITS: i32 = 24;
 
 impl Quantiser {
-    /// For `samples` samples a pixel of mean radiance up to 2²⁴: the step is 2⁻²⁸ at 1024 samples, and every
-    /// further bit of radiance that turns up costs a bit (see [`Self::coarser`]).
-    pub fn for_samples(samples: u32) -> Self {
+    /// For passes of `samples` samples a pixel with mean radiance up to 2²⁴: the step is 2⁻³³ at 32 samples,
+    /// and every further bit of radiance that turns up costs a bit (see [`Self::coarser`]).
+    fn for_samples(samples: u32) -> Self {
         let sample_bits = (u32::BITS - samples.leading_zeros()) as i32;
-        Self { exponent: SUM_BITS - RADIANCE_BITS - sample_bits }
+        let rest = SUM_BITS - sample_bits;
+        Self { light: rest - RADIANCE_BITS, coverage: rest - COVERAGE_BITS }
     }
 
-    /// For radiance 2²⁴ times as large. Sums of any f32 radiances fit after a few of these.
-    pub fn coarser(self) -> Self {
-        Self { exponent: self.exponent - COARSER_BITS }
-    }
-
-    fn scale(self) -> f64 {
-        f64::from(self.exponent).exp2()
+    /// For sums 2²⁴ times as large. Sums of any f32 radiances fit after a few of these.
+    fn coarser(self) -> Self {
+        Self { light: self.light - COARSER_BITS, coverage: self.coverage - COARSER_BITS }
     }
 }
 
-/// A sum of quantised samples.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Sum {
-    light: [i64; 3],
-    count: i64,
-}
+/// A sum of quantised samples: red, green, blue, coverage.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Sum([i64; 4]);
 
 impl Sum {
-    /// One sample.
-    pub fn of(light: [i64; 3]) -> Self {
-        Self { light, count: 1 }
-    }
-
-    /// Light that comes without a sample of the camera.
-    pub fn of_light(light: [i64; 3]) -> Self {
-        Self { light, count: 0 }
-    }
-
-    /// Adds one sample. Saturates, which [`Sensor::add`] then sees as overflow.
-    pub fn add(&mut self, light: [i64; 3]) {
-        (0..3).for_each(|c| self.light[c] = self.light[c].saturating_add(light[c]));
-        self.count += 1;
+    /// Adds another sum. Saturates, which [`Sensor::add`] then sees as overflow.
+    pub fn add(&mut self, other: Sum) {
+        (0..4).for_each(|c| self.0[c] = self.0[c].saturating_add(other.0[c]));
     }
 }
 
-/// The frame's pixels, written from all threads.
+/// The region's pixels, written from all threads.
 pub(super) struct Sensor {
-    width: u32,
-    height: u32,
+    region: Region,
+    filter: ReconstructionFilter,
     quantiser: Quantiser,
-    /// Red, green, blue and count a pixel.
+    /// Red, green, blue and coverage a pixel.
     pixels: Vec<[AtomicI64; 4]>,
     overflowed: AtomicBool,
 }
 
 impl Sensor {
-    pub fn new(camera: &Camera, quantiser: Quantiser) -> Self {
+    /// A black sensor for passes of at most `samples` samples a pixel.
+    pub fn new(region: Region, filter: ReconstructionFilter, samples: u32) -> Self {
         let mut pixels = Vec::new();
-        pixels.resize_with(camera.width as usize * camera.height as usize, Default::default);
-        Self {
-            width: camera.width,
-            height: camera.height,
-            quantiser,
-            pixels,
-            overflowed: AtomicBool::new(false),
-        }
+        pixels.resize_with(region.pixels(), Default::default);
+        let quantiser = Quantiser::for_samples(samples);
+        Self { region, filter, quantiser, pixels, overflowed: AtomicBool::new(false) }
     }
 
-    /// Width and height, px.
-    pub fn size(&self) -> (i64, i64) {
-        (i64::from(self.width), i64::from(self.height))
+    /// The positions of the frame where light counts, px: the region and as far around it as the filter reaches.
+    pub fn window(&self) -> [DVec2; 2] {
+        let Region { x, y, width, height } = self.region;
+        let low = DVec2::new(f64::from(x), f64::from(y));
+        let beyond = self.filter.radius() - 0.5;
+        [low - beyond, low + DVec2::new(f64::from(width), f64::from(height)) + beyond]
     }
 
-    /// The pixel at a position of the frame; `None` outside of it.
+    /// Whether every sample belongs to the pixel that it lands in and to no other.
+    pub fn is_own_pixel(&self) -> bool {
+        self.filter.is_own_pixel()
+    }
+
+    /// The pixel at a position of the frame; `None` outside of the region, and for what is not a number.
     pub fn pixel(&self, position: DVec2) -> Option<usize> {
-        let inside = position.x >= 0.0
-            && position.y >= 0.0
-            && position.x < f64::from(self.width)
-            && position.y < f64::from(self.height);
-        inside.then(|| position.y as usize * self.width as usize + position.x as usize)
+        let whole = position.floor();
+        if whole.is_nan() { None } else { self.pixel_at(whole.x as i64, whole.y as i64) }
     }
 
-    /// Whether a position is in the frame or at most `band` px outside of it.
-    pub fn is_within(&self, position: DVec2, band: f64) -> bool {
-        let size = DVec2::new(f64::from(self.width), f64::from(self.height));
-        position.cmpge(DVec2::splat(-band)).all() && position.cmplt(size + band).all()
+    /// Whether light that lands at a position counts for any pixel.
+    pub fn sees(&self, position: DVec2) -> bool {
+        let [low, high] = self.window();
+        position.cmpge(low).all() && position.cmplt(high).all()
     }
 
-    /// The integers of a radiance. Negative or undefined channels are 0, infinite ones the largest f32.
-    pub fn quantise(&self, radiance: Vec3) -> [i64; 3] {
-        let scale = self.quantiser.scale();
-        radiance.to_array().map(|c| (f64::from(c.clamp(0.0, f32::MAX)) * scale).round() as i64)
+    fn pixel_at(&self, column: i64, row: i64) -> Option<usize> {
+        let Region { x, y, width, height } = self.region;
+        let (column, row) = (column - i64::from(x), row - i64::from(y));
+        let inside = (0..i64::from(width)).contains(&column) && (0..i64::from(height)).contains(&row);
+        inside.then(|| row as usize * width as usize + column as usize)
+    }
+
+    /// The integers of a sample. Negative or undefined channels of `radiance` are 0, infinite ones the largest
+    /// f32; `weight` ≥ 0 is what it weighs, in samples, and `coverage` is 1 or 0.
+    pub fn quantise(&self, radiance: Vec3, weight: f64, coverage: f64) -> Sum {
+        let light = weight * f64::from(self.quantiser.light).exp2();
+        let [r, g, b] =
+            radiance.to_array().map(|c| (f64::from(c.clamp(0.0, f32::MAX)) * light).round() as i64);
+        let coverage = coverage * weight * f64::from(self.quantiser.coverage).exp2();
+        Sum([r, g, b, coverage.round() as i64])
+    }
+
+    /// Adds a sample that lands at `position`, through the filter.
+    pub fn expose(&self, position: DVec2, radiance: Vec3, weight: f64, coverage: f64) {
+        if self.is_own_pixel() {
+            if let Some(pixel) = self.pixel(position) {
+                self.add(pixel, self.quantise(radiance, weight, coverage));
+            }
+            return;
+        }
+        for (column, row, share) in self.filter.weights(position) {
+            if let Some(pixel) = self.pixel_at(column, row) {
+                self.add(pixel, self.quantise(radiance, weight * share, coverage));
+            }
+        }
     }
 
     /// Adds a sum to a pixel. All terms are 0 or more, so whether the total overflows does not depend on
     /// their order.
     pub fn add(&self, pixel: usize, sum: Sum) {
-        let terms = [sum.light[0], sum.light[1], sum.light[2], sum.count];
-        for (total, term) in self.pixels[pixel].iter().zip(terms) {
+        for (total, term) in self.pixels[pixel].iter().zip(sum.0) {
             let before = total.fetch_add(term, Ordering::Relaxed);
             if before.checked_add(term).is_none_or(|after| after == i64::MAX) {
                 self.overflowed.store(true, Ordering::Relaxed);
@@ -121,18 +137,28 @@ impl Sensor {
         }
     }
 
-    /// The picture of `samples` samples a pixel; `None` if a sum overflowed.
-    pub fn develop(&self, samples: u32) -> Option<Picture> {
-        if self.overflowed.load(Ordering::Relaxed) {
-            return None;
+    /// Makes it black again.
+    pub fn clear(&mut self) {
+        self.pixels.par_iter_mut().for_each(|sums| *sums = Default::default());
+        self.overflowed = AtomicBool::new(false);
+    }
+
+    /// If a sum has overflowed since it was black, counts in coarser steps from now on.
+    pub fn coarsen_if_overflowed(&mut self) -> bool {
+        let overflowed = *self.overflowed.get_mut();
+        if overflowed {
+            self.quantiser = self.quantiser.coarser();
         }
-        let mut picture = Picture::black(self.width, self.height);
-        let light = 1.0 / (self.quantiser.scale() * f64::from(samples));
-        for (k, sums) in self.pixels.iter().enumerate() {
-            let [r, g, b, count] = sums.each_ref().map(|sum| sum.load(Ordering::Relaxed) as f64);
-            picture.radiance[k] = [r, g, b].map(|sum| (sum * light) as f32);
-            picture.coverage[k] = (count / f64::from(samples)) as f32;
-        }
-        Some(picture)
+        overflowed
+    }
+
+    /// The mean of `samples` samples in every pixel: red, green, blue, coverage.
+    pub fn means(&self, samples: u32) -> impl IndexedParallelIterator<Item = [f64; 4]> + '_ {
+        let step = |exponent: i32| f64::from(-exponent).exp2() / f64::from(samples);
+        let (light, coverage) = (step(self.quantiser.light), step(self.quantiser.coverage));
+        self.pixels.par_iter().map(move |sums| {
+            let [r, g, b, covered] = sums.each_ref().map(|sum| sum.load(Ordering::Relaxed) as f64);
+            [r * light, g * light, b * light, covered * coverage]
+        })
     }
 }

@@ -1,0 +1,205 @@
+//! What a render knows so far: the picture, and how far off it may be.
+
+use lens::{Exposure, Picture};
+use rayon::prelude::*;
+
+/// A picture with the standard error of every number in it.
+///
+/// The error is estimated from the scatter of the passes, each of which is a picture of its own (Student's
+/// t with `passes` − 1 degrees of freedom; at least 31 for 32 samples a pixel and more). Independent passes'
+/// scatter gives the standard error without bias. Passes of low discrepancy are more evenly spread together
+/// than each alone, so that their scatter gives too large an error, never too small a one on average.
+///
+/// A pixel in which every pass is the same has the error 0, whether it is exact or what it lacks is so rare
+/// that no sample has found it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Estimate {
+    /// Radiance and coverage, conserved: the mean of all samples.
+    pub picture: Picture,
+    /// The standard error of each radiance and coverage in `picture`; infinite after fewer than two passes.
+    pub standard_error: Picture,
+    /// The standard error of radiance over coverage, which err together; infinite like `standard_error`.
+    pub normalised_error: Vec<[f32; 3]>,
+    /// Samples a pixel so far.
+    pub samples_per_pixel: u32,
+    /// Passes so far.
+    pub passes: u32,
+}
+
+impl Estimate {
+    /// The standard error of each channel of `picture.exposed(exposure)`.
+    pub fn error_of(&self, exposure: Exposure) -> &[[f32; 3]] {
+        match exposure {
+            Exposure::Conserve => &self.standard_error.radiance,
+            Exposure::Normalise => &self.normalised_error,
+        }
+    }
+
+    /// The root of the mean squared standard error over all pixels and channels: the RMSE to expect of
+    /// `picture.exposed(exposure)` against an exact one. 0 for a picture without pixels.
+    pub fn expected_rmse(&self, exposure: Exposure) -> f64 {
+        let errors = self.error_of(exposure);
+        let squares = errors.iter().flatten().map(|&error| f64::from(error).powi(2));
+        (squares.sum::<f64>() / (3 * errors.len()).max(1) as f64).sqrt()
+    }
+}
+
+/// Means and scatter of passes in one pixel, by Welford's updates with weights (West 1979): passes that are
+/// all the same have exactly no scatter.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Moments {
+    /// Red, green, blue, coverage.
+    mean: [f64; 4],
+    /// Σ w·(x − mean)².
+    squares: [f64; 4],
+    /// Σ w·(x − mean)·(coverage − its mean).
+    with_coverage: [f64; 3],
+}
+
+impl Moments {
+    /// Adds a pass of mean `x`; `share` is what part of all samples so far it has.
+    fn add(&mut self, x: [f64; 4], weight: f64, share: f64) {
+        let before: [f64; 4] = std::array::from_fn(|c| x[c] - self.mean[c]);
+        for c in 0..4 {
+            self.mean[c] += before[c] * share;
+            self.squares[c] += weight * before[c] * (x[c] - self.mean[c]);
+        }
+        for c in 0..3 {
+            self.with_coverage[c] += weight * before[c] * (x[3] - self.mean[3]);
+        }
+    }
+
+    /// The variances of radiance over coverage where the sums vary by `scale` times the scatter: to first
+    /// order (var L − 2r·cov(L, C) + r²·var C)/C² for r = L/C. 0 where nothing is covered.
+    fn ratio_variances(&self, scale: f64) -> [f64; 3] {
+        let coverage = self.mean[3];
+        if coverage <= 0.0 {
+            return [0.0; 3];
+        }
+        std::array::from_fn(|c| {
+            let ratio = self.mean[c] / coverage;
+            let scatter =
+                self.squares[c] - 2.0 * ratio * self.with_coverage[c] + ratio.powi(2) * self.squares[3];
+            (scatter.max(0.0) * scale) / coverage.powi(2)
+        })
+    }
+}
+
+/// All pixels' moments.
+pub(super) struct Statistics {
+    width: u32,
+    height: u32,
+    pixels: Vec<Moments>,
+    pub samples: u32,
+    pub passes: u32,
+}
+
+impl Statistics {
+    pub fn new(width: u32, height: u32) -> Self {
+        let pixels = vec![Moments::default(); width as usize * height as usize];
+        Self { width, height, pixels, samples: 0, passes: 0 }
+    }
+
+    /// Adds a pass of `samples` samples a pixel; `means` holds every pixel's.
+    pub fn add(&mut self, samples: u32, means: impl IndexedParallelIterator<Item = [f64; 4]>) {
+        self.samples += samples;
+        self.passes += 1;
+        let weight = f64::from(samples);
+        let share = weight / f64::from(self.samples);
+        self.pixels.par_iter_mut().zip(means).for_each(|(moments, x)| moments.add(x, weight, share));
+    }
+
+    pub fn estimate(&self) -> Estimate {
+        let mut picture = Picture::black(self.width, self.height);
+        let mut standard_error = picture.clone();
+        let mut normalised_error = vec![[f32::INFINITY; 3]; self.pixels.len()];
+        // The variance of the mean: Σw(x − mean)²/((passes − 1)·Σw).
+        let freedom = f64::from(self.passes.saturating_sub(1)) * f64::from(self.samples);
+        let is_known = freedom > 0.0;
+        let error = |variance: f64| if is_known { variance.sqrt() as f32 } else { f32::INFINITY };
+        for (k, moments) in self.pixels.iter().enumerate() {
+            let [r, g, b, coverage] = moments.mean.map(|x| x as f32);
+            (picture.radiance[k], picture.coverage[k]) = ([r, g, b], coverage);
+            let [r, g, b, coverage] = moments.squares.map(|squares| error(squares / freedom));
+            (standard_error.radiance[k], standard_error.coverage[k]) = ([r, g, b], coverage);
+            if is_known {
+                normalised_error[k] = moments.ratio_variances(1.0 / freedom).map(error);
+            }
+        }
+        Estimate {
+            picture,
+            standard_error,
+            normalised_error,
+            samples_per_pixel: self.samples,
+            passes: self.passes,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::{hash, unit};
+
+    fn statistics(passes: &[(u32, [f64; 4])]) -> Estimate {
+        let mut statistics = Statistics::new(1, 1);
+        for &(samples, x) in passes {
+            statistics.add(samples, vec![x].into_par_iter());
+        }
+        statistics.estimate()
+    }
+
+    #[test]
+    fn errors_are_those_of_the_textbook() {
+        let estimate =
+            statistics(&[(2, [1.0, 0.0, 7.0, 1.0]), (2, [2.0, 0.0, 7.0, 1.0]), (2, [6.0, 0.0, 7.0, 1.0])]);
+        assert_eq!(estimate.picture.radiance, [[3.0, 0.0, 7.0]]);
+        // s² = (4 + 1 + 9)/2 = 7, over 3 passes.
+        let expected = (7.0f64 / 3.0).sqrt() as f32;
+        assert_eq!(estimate.standard_error.radiance, [[expected, 0.0, 0.0]]);
+        assert_eq!(estimate.standard_error.coverage, [0.0]);
+        assert_eq!(estimate.normalised_error, [[expected, 0.0, 0.0]]);
+        assert_eq!((estimate.passes, estimate.samples_per_pixel), (3, 6));
+        let rmse = estimate.expected_rmse(Exposure::Conserve);
+        assert!((rmse - (7.0f64 / 9.0).sqrt()).abs() < 1e-6, "{rmse}");
+    }
+
+    #[test]
+    fn one_pass_knows_no_error() {
+        let estimate = statistics(&[(5, [1.0, 2.0, 3.0, 1.0])]);
+        assert_eq!(estimate.standard_error.radiance, [[f32::INFINITY; 3]]);
+        assert_eq!(estimate.normalised_error, [[f32::INFINITY; 3]]);
+    }
+
+    #[test]
+    fn radiance_that_follows_coverage_has_a_sure_ratio() {
+        let passes: Vec<_> = (1..9).map(|k| (4, [2.0, 3.0, 0.5, 1.0].map(|c| c * f64::from(k)))).collect();
+        let estimate = statistics(&passes);
+        assert!(estimate.standard_error.radiance[0][0] > 0.5);
+        assert!(estimate.normalised_error[0].iter().all(|error| *error < 1e-6), "{estimate:?}");
+    }
+
+    #[test]
+    fn errors_tell_the_scatter_of_whole_renders() {
+        // Unequal passes of uniform numbers: the mean estimated variance against the variance of estimates.
+        let (mut variance, mut scatter) = (0.0, 0.0);
+        const RENDERS: u64 = 4000;
+        for render in 0..RENDERS {
+            let passes: Vec<_> = [4u32, 4, 4, 1]
+                .iter()
+                .enumerate()
+                .map(|(pass, &samples)| {
+                    let x = |k: u32| unit(hash([render, pass as u64, u64::from(k)]));
+                    let mean = (0..samples).map(x).sum::<f64>() / f64::from(samples);
+                    (samples, [mean, 0.0, 0.0, 1.0])
+                })
+                .collect();
+            let estimate = statistics(&passes);
+            variance += f64::from(estimate.standard_error.radiance[0][0]).powi(2);
+            scatter += (f64::from(estimate.picture.radiance[0][0]) - 0.5).powi(2);
+        }
+        assert!((variance / scatter - 1.0).abs() < 0.1, "{variance} {scatter}");
+        let expected = 1.0 / 12.0 / 13.0;
+        assert!((variance / RENDERS as f64 / expected - 1.0).abs() < 0.05, "{variance}");
+    }
+}

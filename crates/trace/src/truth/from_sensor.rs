@@ -1,0 +1,189 @@
+//! Rays that start at the sensor, and what they find is sent back to it.
+//!
+//! Every pixel of the reach ([`super::reach`]) sends rays through the aperture toward the focus plane, as any
+//! thin-lens camera does (Cook, Porter and Carpenter 1984). What a ray hits is then sent on to the sensor
+//! with the hit's own defocus κ: it lands not where it came from but
+//!
+//! ```text
+//! p + (κ − κ_standard)·U/tanθ
+//! ```
+//!
+//! away, p the position it left the picture at (half-heights), U its aperture point, and adds its radiance to
+//! the pixel it lands in, 1/spp of it. The change of variables has no Jacobian of its own (p at fixed U moves
+//! with the surface), so energy is conserved, and a standard hit keeps its pixel exactly.
+//!
+//! Small bright surfaces also send rays of their own ([`super::bright_surfaces`]).
+
+use super::bright_surfaces::BrightSurfaces;
+use super::options::{Sampler, TruthOptions};
+use super::reach::Reach;
+use super::samples;
+use super::sensor::{self, Sensor};
+use super::view::View;
+use crate::random::hash;
+use crate::{Radiance, Ray};
+use glam::{DVec2, DVec3, Vec3};
+use lens::ApertureSampler;
+use progress::{Cancelled, Progress, Stage};
+use rayon::prelude::*;
+use scene::SurfacePoint;
+use std::ops::Range;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// The side of a tile, px: the unit of work.
+const TILE_PX: i64 = 16;
+
+/// The estimator.
+pub(super) struct FromSensor {
+    reach: Reach,
+    bright: BrightSurfaces,
+    aperture: ApertureSampler,
+    sampler: Sampler,
+    seed: u64,
+}
+
+/// One sample of a pixel.
+#[derive(Clone, Copy)]
+struct PixelSample {
+    /// From the pixel's upper left corner, px.
+    within_px: DVec2,
+    /// The aperture point U, scene units.
+    u: DVec2,
+}
+
+/// What a ray found.
+struct Found {
+    /// The surface point, `None` for the background.
+    point: Option<SurfacePoint>,
+    /// The aperture point in the world.
+    eye: DVec3,
+    /// The direction from there, in the world.
+    direction: DVec3,
+    /// Where it lands, less where it left: px.
+    displacement_px: DVec2,
+}
+
+impl FromSensor {
+    pub fn new(view: &View, radiance: &dyn Radiance, sensor: &Sensor, options: &TruthOptions) -> Self {
+        let reach = Reach::of(view, sensor.window());
+        let bright = BrightSurfaces::find(view, radiance, reach, sensor.window(), options);
+        let aperture = ApertureSampler::new(&view.camera.aperture);
+        Self { reach, bright, aperture, sampler: options.sampler, seed: u64::from(options.seed) }
+    }
+
+    /// Sends the rays of one pass, the samples `passed` of each pixel.
+    pub fn expose(
+        &self,
+        view: &View,
+        radiance: &dyn Radiance,
+        sensor: &Sensor,
+        passed: Range<u32>,
+        progress: &dyn Progress,
+    ) -> Result<(), Cancelled> {
+        let own_rays = if self.bright.is_empty() { 0.0 } else { 0.1 };
+        self.bright.shine(view, radiance, sensor, &passed, &Stage::new(progress, 0.0, own_rays))?;
+        let shared = match self.sampler {
+            Sampler::LowDiscrepancy => self.pixel_samples(view, self.seed, &passed),
+            Sampler::Independent => Vec::new(),
+        };
+        let exposure = Exposure { estimator: self, view, radiance, sensor, shared, passed };
+        exposure.expose(&Stage::new(progress, own_rays, 1.0))
+    }
+
+    fn pixel_samples(&self, view: &View, seed: u64, passed: &Range<u32>) -> Vec<PixelSample> {
+        let indices = u64::from(passed.start)..u64::from(passed.end);
+        let sample = |[x, y, a, b]: [f64; 4]| PixelSample {
+            within_px: DVec2::new(x, y),
+            u: self.aperture.sample(a, b) * view.camera.aperture_radius,
+        };
+        samples::points(self.sampler, seed, indices).map(sample).collect()
+    }
+}
+
+/// One pass.
+struct Exposure<'a> {
+    estimator: &'a FromSensor,
+    view: &'a View<'a>,
+    radiance: &'a dyn Radiance,
+    sensor: &'a Sensor,
+    /// The samples of every pixel, where all have the same.
+    shared: Vec<PixelSample>,
+    passed: Range<u32>,
+}
+
+impl Exposure<'_> {
+    /// Sends the rays of all pixels in reach.
+    fn expose(&self, progress: &dyn Progress) -> Result<(), Cancelled> {
+        let (low, high) = (self.estimator.reach.low, self.estimator.reach.high);
+        let [left, top, right, bottom] = [low.x, low.y, high.x, high.y].map(|edge| edge as i64);
+        let tiles = |length: i64| (length.max(0) + TILE_PX - 1) / TILE_PX;
+        let (columns, rows) = (tiles(right - left), tiles(bottom - top));
+        let done = AtomicUsize::new(0);
+        (0..columns * rows).into_par_iter().try_for_each(|tile| {
+            let (x0, y0) = (left + tile % columns * TILE_PX, top + tile / columns * TILE_PX);
+            for y in y0..(y0 + TILE_PX).min(bottom) {
+                progress.check()?;
+                for x in x0..(x0 + TILE_PX).min(right) {
+                    self.expose_pixel(x, y);
+                }
+            }
+            let done = done.fetch_add(1, Ordering::Relaxed) + 1;
+            progress.report(done as f32 / (columns * rows) as f32);
+            Ok(())
+        })
+    }
+
+    /// Sends the rays of one pixel; (0, 0) is the frame's upper left one.
+    fn expose_pixel(&self, x: i64, y: i64) {
+        let corner = DVec2::new(x as f64, y as f64);
+        let own = self.sensor.pixel(corner).filter(|_| self.sensor.is_own_pixel());
+        // What stays in this pixel is summed here first.
+        let mut stays = sensor::Sum::default();
+        let mut expose = |sample: &PixelSample| {
+            let from = corner + sample.within_px;
+            let found = self.trace(from, sample.u);
+            let to = from + found.displacement_px;
+            if own.is_some() && self.sensor.pixel(to) == own {
+                stays.add(self.sensor.quantise(self.light(&found, sample.u), 1.0, 1.0));
+            } else if self.sensor.sees(to) {
+                self.sensor.expose(to, self.light(&found, sample.u), 1.0, 1.0);
+            }
+        };
+        if self.estimator.sampler == Sampler::Independent {
+            let seed = hash([self.estimator.seed, x as u64, y as u64]);
+            self.estimator.pixel_samples(self.view, seed, &self.passed).iter().for_each(&mut expose);
+        } else {
+            self.shared.iter().for_each(&mut expose);
+        }
+        if let Some(pixel) = own {
+            self.sensor.add(pixel, stays);
+        }
+    }
+
+    /// Traces the ray that passes the picture at `pixel` and the aperture at `u`.
+    fn trace(&self, pixel: DVec2, u: DVec2) -> Found {
+        let (view, optics) = (self.view, &self.view.optics);
+        let p = view.camera.q_from_pixel(pixel);
+        // Toward the point that p shows on the focus plane; of depth 1, so that t is the depth z.
+        let slope = p * optics.tan_half_yfov - u * optics.inverse_focus_distance;
+        let eye = view.camera.world_from_camera(u.extend(0.0));
+        let direction = view.camera.world_direction(slope.extend(1.0));
+        let ray = Ray { origin: eye, direction, t_min: 0.0, t_max: f64::INFINITY, skip: None };
+        let hit = view.tracer.first_hit(&ray);
+        let point = hit.as_ref().map(|hit| hit.point);
+        let inverse_depth = hit.map_or(0.0, |hit| 1.0 / hit.t);
+        let blur = view.blur(point, inverse_depth, u);
+        Found { point, eye, direction, displacement_px: view.displacement_px(blur, inverse_depth, u) }
+    }
+
+    /// The radiance that a sample through the aperture point `u` carries.
+    fn light(&self, found: &Found, u: DVec2) -> Vec3 {
+        match found.point {
+            Some(point) => {
+                let share = self.estimator.bright.camera_share(self.view, point, u);
+                self.radiance.toward(point, found.eye) * share as f32
+            }
+            None => self.radiance.from_infinity(found.direction),
+        }
+    }
+}

@@ -1,0 +1,114 @@
+//! Between which bounds κ lies, for all points of a piece of surface.
+
+use super::options::Sampler;
+use super::samples::point;
+use super::view::View;
+use glam::DVec2;
+use lens::FocusOffset;
+use scene::{SurfaceField, SurfacePoint};
+
+/// The corners of a box of values of whatever decides focus: t and anchor, or 1/f and T. κ, κ·z and κ − κ of
+/// the unpainted lens are linear in each of these numbers and in 1/z (or z) by itself, so that their extremes
+/// over a box and a range of depths lie at corners: bounds that are reached.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum FocusBox {
+    /// Of a painted focus: the least and the greatest t and anchor.
+    Painted([FocusOffset; 2]),
+    /// Of a focus by rays.
+    ByRay([super::ray_focus::RayOptics; 2]),
+}
+
+impl FocusBox {
+    /// Of a triangle.
+    pub fn of_triangle(view: &View, triangle: u32) -> Self {
+        match view.ray_focus {
+            Some(rays) => Self::ByRay(rays.bounds()),
+            None => Self::Painted(view.focus.bounds(triangle).unwrap_or_else(|| look(view.focus, triangle))),
+        }
+    }
+
+    /// Of the background.
+    pub fn of_background(view: &View) -> Self {
+        match view.ray_focus {
+            Some(rays) => Self::ByRay(rays.bounds()),
+            None => Self::Painted([view.focus.at_infinity(); 2]),
+        }
+    }
+
+    /// κ at its corners.
+    fn corners(&self, view: &View, inverse_depth: f64) -> [f64; 4] {
+        const CORNERS: [(usize, usize); 4] = [(0, 0), (0, 1), (1, 0), (1, 1)];
+        match self {
+            Self::Painted(bounds) => CORNERS.map(|(i, j)| {
+                view.optics.kappa(inverse_depth, FocusOffset::new(bounds[i].t, bounds[j].anchor))
+            }),
+            Self::ByRay(bounds) => CORNERS.map(|(i, j)| {
+                let (inverse_f, distance) = (bounds[i].inverse_focal_length, bounds[j].transmission_distance);
+                view.optics.kappa_of_ray(inverse_depth, inverse_f, distance)
+            }),
+        }
+    }
+
+    /// The largest |κ| for depths with the reciprocals `inverse_depths`.
+    pub fn largest_kappa(&self, view: &View, inverse_depths: [f64; 2]) -> f64 {
+        largest(inverse_depths.into_iter().flat_map(|inverse_depth| self.corners(view, inverse_depth)))
+    }
+
+    /// The largest |κ − κ_standard| for such depths; exactly 0 if nothing is painted.
+    pub fn largest_displacement(&self, view: &View, inverse_depths: [f64; 2]) -> f64 {
+        if let Self::Painted(bounds) = self
+            && bounds.iter().all(|focus| focus.is_standard())
+        {
+            return 0.0;
+        }
+        largest(inverse_depths.into_iter().flat_map(|inverse_depth| {
+            let standard = view.optics.standard_kappa(inverse_depth);
+            self.corners(view, inverse_depth).map(|kappa| kappa - standard)
+        }))
+    }
+
+    /// The largest |κ·z| for depths in (0, `depth`]: finite although κ is not.
+    pub fn largest_kappa_times_depth(&self, view: &View, depth: f64) -> f64 {
+        let [at_depth, at_half] = [depth, depth / 2.0].map(|z| self.corners(view, 1.0 / z).map(|k| k * z));
+        // A straight line in z, whose value at 0 follows from two others.
+        let at_zero = (0..4).map(|k| 2.0 * at_half[k] - at_depth[k]);
+        largest(at_depth.into_iter().chain(at_zero))
+    }
+}
+
+fn largest(values: impl Iterator<Item = f64>) -> f64 {
+    values.fold(0.0, |largest, value| largest.max(value.abs()))
+}
+
+/// Bounds of a field that does not know its own: from looking at the corners and within, and a share of the
+/// range that was seen beyond.
+fn look(focus: &dyn SurfaceField<FocusOffset>, triangle: u32) -> [FocusOffset; 2] {
+    const LOOKS: u64 = 29;
+    const BEYOND: f64 = 0.25;
+    let within = (0..LOOKS).map(|k| {
+        let [x, y, ..] = point(Sampler::LowDiscrepancy, 0, k);
+        uniform_barycentric(DVec2::new(x, y))
+    });
+    let at = |barycentric| focus.at(SurfacePoint { triangle, barycentric });
+    let seen = [DVec2::ZERO, DVec2::X, DVec2::Y].into_iter().chain(within).map(at);
+    let none = [
+        FocusOffset::new(f64::INFINITY, f64::INFINITY),
+        FocusOffset::new(f64::NEG_INFINITY, f64::NEG_INFINITY),
+    ];
+    let [least, greatest] = seen.fold(none, |[least, greatest], focus| {
+        [
+            FocusOffset::new(least.t.min(focus.t), least.anchor.min(focus.anchor)),
+            FocusOffset::new(greatest.t.max(focus.t), greatest.anchor.max(focus.anchor)),
+        ]
+    });
+    let (t, anchor) = ((greatest.t - least.t) * BEYOND, (greatest.anchor - least.anchor) * BEYOND);
+    [
+        FocusOffset::new(least.t - t, (least.anchor - anchor).max(0.0)),
+        FocusOffset::new(greatest.t + t, (greatest.anchor + anchor).min(1.0)),
+    ]
+}
+
+/// The unit square onto the triangle, area for area (Heitz 2019).
+pub(super) fn uniform_barycentric(u: DVec2) -> DVec2 {
+    if u.y > u.x { DVec2::new(0.5 * u.x, u.y - 0.5 * u.x) } else { DVec2::new(u.x - 0.5 * u.y, 0.5 * u.y) }
+}

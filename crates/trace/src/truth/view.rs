@@ -1,0 +1,63 @@
+//! What a render looks at: the scene, its focus, the camera. The one place where focus becomes κ.
+
+use super::ray_focus::RayFocus;
+use crate::Tracer;
+use glam::{DVec2, DVec3};
+use lens::{Camera, FocusOffset, Optics};
+use scene::{SurfaceField, SurfacePoint};
+
+/// Scene, focus and camera.
+pub(super) struct View<'a> {
+    pub tracer: &'a Tracer,
+    pub focus: &'a dyn SurfaceField<FocusOffset>,
+    /// In place of `focus`.
+    pub ray_focus: Option<&'a dyn RayFocus>,
+    pub camera: &'a Camera,
+    pub optics: Optics,
+}
+
+/// How a ray is focused.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Blur {
+    /// κ.
+    pub kappa: f64,
+    /// Whether κ is exactly the unpainted lens's.
+    pub is_standard: bool,
+}
+
+impl View<'_> {
+    /// κ of the ray from `point` (`None`: the background) of depth 1/`inverse_depth` through the aperture
+    /// point `u`, scene units.
+    pub fn blur(&self, point: Option<SurfacePoint>, inverse_depth: f64, u: DVec2) -> Blur {
+        if let Some(ray_focus) = self.ray_focus {
+            let radius = self.optics.aperture_radius;
+            let within = if radius > 0.0 { u / radius } else { DVec2::ZERO };
+            let ray = ray_focus.optics(point, within);
+            let (inverse_f, distance) = (ray.inverse_focal_length, ray.transmission_distance);
+            let kappa = self.optics.kappa_of_ray(inverse_depth, inverse_f, distance);
+            return Blur { kappa, is_standard: false };
+        }
+        let focus = point.map_or_else(|| self.focus.at_infinity(), |point| self.focus.at(point));
+        Blur { kappa: self.optics.kappa(inverse_depth, focus), is_standard: focus.is_standard() }
+    }
+
+    /// How far from its standard place a ray of this blur lands, px, x right, y down.
+    pub fn displacement_px(&self, blur: Blur, inverse_depth: f64, u: DVec2) -> DVec2 {
+        if blur.is_standard {
+            return DVec2::ZERO;
+        }
+        let kappa = blur.kappa - self.optics.standard_kappa(inverse_depth);
+        let q = kappa * u / self.optics.tan_half_yfov;
+        DVec2::new(q.x, -q.y) * self.optics.half_height_px
+    }
+
+    /// Where the ray from `position` (camera space, z > 0) through `u` lands, px.
+    pub fn landing_px(&self, position: DVec3, u: DVec2, kappa: f64) -> DVec2 {
+        self.camera.pixel_from_q(self.optics.landing(position, u, kappa))
+    }
+
+    /// The radius of the circle of confusion of a |κ|, px.
+    pub fn radius_px(&self, kappa: f64) -> f64 {
+        self.optics.splat_radius_px(kappa).abs()
+    }
+}
