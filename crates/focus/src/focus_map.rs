@@ -155,8 +155,9 @@ impl FocusMap {
             let last = if last < greatest { last.max(0.0) } else { greatest };
             first as u32..=last as u32
         };
-        let columns = within(0, self.width);
-        bounds(within(1, self.height).flat_map(|y| columns.clone().map(move |x| self.texel(x, y))))
+        let [width, height] = self.size();
+        let columns = within(0, width);
+        bounds(within(1, height).flat_map(|y| columns.clone().map(move |x| self.texel(x, y))))
     }
 
     /// Whether all numbers are usable: t finite, anchor and mask in [0, 1].
