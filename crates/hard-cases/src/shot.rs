@@ -65,8 +65,10 @@ impl Shot {
         seed: u32,
         progress: &dyn Progress,
     ) -> Result<Picture, Cancelled> {
-        let options = TruthOptions { samples_per_pixel: samples, seed };
-        truth::render(&self.tracer, &*self.radiance, &self.focus(offset), &self.camera, &options, progress)
+        let options = TruthOptions { samples_per_pixel: samples, seed, ..TruthOptions::default() };
+        let focus = self.focus(offset);
+        let found = truth::render(&self.tracer, &*self.radiance, &focus, &self.camera, &options, progress)?;
+        Ok(found.picture)
     }
 }
 

@@ -9,6 +9,7 @@ use focus::Focus;
 use lens::FocusOffset;
 use std::sync::Arc;
 use std::time::Instant;
+use trace::truth::TruthOptions;
 
 impl Session {
     /// The picture of a kind that was made last of this document.
@@ -62,7 +63,8 @@ impl Session {
             let start = Instant::now();
             let steps = JobSteps { progress };
             let made = |renderer| {
-                let options = RenderOptions { renderer, samples_per_pixel, ..RenderOptions::default() };
+                let truth = TruthOptions { samples_per_pixel, ..TruthOptions::default() };
+                let options = RenderOptions { renderer, truth, ..RenderOptions::default() };
                 Ok::<_, SessionError>(render(&stage.tracer, &camera, &focus, &options, &steps)?.picture)
             };
             let picture = match kind {
