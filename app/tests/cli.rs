@@ -112,6 +112,74 @@ fn splat_and_truth_agree_and_the_blur_by_depth_does_not() {
 }
 
 #[test]
+fn baselines_draw_and_fall_short() {
+    let place = Workplace::new();
+    place.done(&format!("render quads.glb {SHOT} --renderer truth --spp 256 -o truth.exr"));
+    place.done(&format!("render quads.glb {SHOT} -o splat.exr"));
+    let splat = place.psnr("splat.exr", "truth.exr");
+    for (baseline, knob) in [
+        ("layers --layers 16", "layers"),
+        ("views --views 3", "views_a_side"),
+        ("scatter --rays 8", "rays_a_sample"),
+    ] {
+        let report = place.json(&format!("render quads.glb {SHOT} --renderer {baseline} -o base.exr --json"));
+        let name = baseline.split(' ').next();
+        assert_eq!(report["renderer"].as_str(), name);
+        assert!(report[knob].as_u64().unwrap() >= 3, "{report}");
+        let found = place.psnr("base.exr", "truth.exr");
+        assert!((12.0..splat - 1.0).contains(&found), "{baseline}: {found} dB, the splat {splat} dB");
+    }
+    // More of it is better: ghosts vanish, noise goes.
+    for (few, many) in [("views --views 3", "views --views 16"), ("scatter --rays 8", "scatter --rays 256")] {
+        let [few, many] = [few, many].map(|baseline| {
+            place.done(&format!("render quads.glb {SHOT} --renderer {baseline} -o base.exr"));
+            place.psnr("base.exr", "truth.exr")
+        });
+        assert!(many > few + 2.0, "{few} dB, {many} dB");
+    }
+    // A baked light field can be scattered as it can be splatted.
+    place.done(&format!("bake quads.glb {SHOT} -o quads.salf"));
+    place.done("render quads.salf --focus recipe.json --renderer scatter --rays 8 -o baked.exr");
+    place.done(&format!("render quads.glb {SHOT} --renderer scatter --rays 8 -o direct.exr"));
+    assert_eq!(place.psnr("baked.exr", "direct.exr"), 200.0);
+    place.fails("render quads.glb --renderer layers --layers 0 -o x.exr", 2, &["--layers"]);
+    place.fails("render quads.glb --renderer views --views 65 -o x.exr", 2, &["--views"]);
+}
+
+#[test]
+fn comparisons_are_stable_and_show_where() {
+    let place = Workplace::new();
+    place.done("render quads.glb --camera camera.json --renderer blur -o a.exr");
+    place.done(&format!("render quads.glb {SHOT} --renderer blur -o b.exr"));
+    let found = place.json("compare a.exr b.exr --error-map map.png --json");
+    // What scripts read: these keys, and no others.
+    let keys: std::collections::BTreeSet<_> = found.as_object().unwrap().keys().map(String::as_str).collect();
+    let expected = [
+        "flip",
+        "height",
+        "largest_difference",
+        "psnr",
+        "rel_mse",
+        "rmse",
+        "rmse_unclipped",
+        "signed_mean_error",
+        "signed_mean_error_clipped",
+        "width",
+    ];
+    assert_eq!(keys, expected.into());
+    assert!(expected.iter().all(|key| found[key].is_number()), "{found}");
+    assert_eq!(place.done("compare a.exr b.exr --json"), place.done("compare a.exr b.exr --json"));
+    let map = read_picture(&place.path("map.png")).unwrap();
+    assert_eq!((map.width, map.height), (96, 64));
+    place.done("compare a.exr b.exr --error-map map.exr");
+    let map = read_picture(&place.path("map.exr")).unwrap();
+    let mean = map.layers["flip"].iter().map(|&f| f64::from(f)).sum::<f64>() / (96.0 * 64.0);
+    assert!((mean - found["flip"].as_f64().unwrap()).abs() < 1e-3 && mean > 0.01, "{mean}");
+    place.fails("compare a.exr b.exr --error-map map.bmp", 2, &["map.bmp"]);
+    place.fails("compare a.exr b.exr --error-map none/map.png", 3, &["none/map.png"]);
+}
+
+#[test]
 fn pictures_come_along() {
     let place = Workplace::new();
     place.done(&format!("render quads.glb {SHOT} --aov coverage,coc,depth,t --exposure conserve -o all.exr"));

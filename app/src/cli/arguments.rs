@@ -1,7 +1,8 @@
 //! What can be typed.
 
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, ValueEnum};
-use session::{Aov, CameraChoice};
+use session::{Aov, CameraChoice, Renderer};
 use std::path::PathBuf;
 
 /// Paint onto a 3D scene how it is focused.
@@ -136,10 +137,10 @@ pub struct RenderArguments {
     pub output: PathBuf,
     #[command(flatten)]
     pub shot: ShotArguments,
-    /// What draws it: the splatted light field, the ray-traced ground truth, or a blur of the pinhole picture by
-    /// depth (a baseline that cannot see behind occluders)
-    #[arg(long, value_enum, default_value_t = RendererName::Splat)]
-    pub renderer: RendererName,
+    /// What draws it: the splatted light field or the ray-traced ground truth; or, to compare with: a blur of the pinhole
+    /// picture by depth, the same in layers, shifted pinhole views, or every ray of the light field thrown at one pixel
+    #[arg(long, value_name = "NAME", default_value = "splat", value_parser = renderer_parser())]
+    pub renderer: Renderer,
     /// Where the splat runs; there is no GPU backend yet, so auto is cpu
     #[arg(long, value_enum, default_value_t = BackendName::Auto)]
     pub backend: BackendName,
@@ -156,6 +157,15 @@ pub struct RenderArguments {
     /// What the ground truth's samples are drawn from: Owen-scrambled Sobol' points, or independent numbers
     #[arg(long, value_enum, default_value_t = SamplerName::LowDiscrepancy)]
     pub sampler: SamplerName,
+    /// Slices of depth that `--renderer layers` cuts the pinhole picture to
+    #[arg(long, value_name = "N", default_value_t = 32, value_parser = clap::value_parser!(u32).range(1..=256))]
+    pub layers: u32,
+    /// Views a side of the aperture's square that `--renderer views` shifts and adds
+    #[arg(long, value_name = "M", default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..=64))]
+    pub views: u32,
+    /// Rays that `--renderer scatter` throws for each sample of the light field
+    #[arg(long, value_name = "N", default_value_t = 256, value_parser = clap::value_parser!(u32).range(1..=1 << 16))]
+    pub rays: u32,
     /// Pictures that come along: coverage (the sum for a scene of radiance 1), coc (signed diameter of the circle of
     /// confusion in px, negative when nearer than the focus), depth (axial; inf for the background), t (and anchor),
     /// stderr (the ground truth's standard error: of radiance and coverage, and of their ratio)
@@ -165,7 +175,7 @@ pub struct RenderArguments {
     /// normalise)
     #[arg(long, value_enum)]
     pub exposure: Option<ExposureName>,
-    /// Seed of the ground truth's rays
+    /// Seed of the ground truth's rays, and of scattered ones
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub seed: u32,
     /// Write timings and counts as JSON to stdout
@@ -180,6 +190,9 @@ pub struct CompareArguments {
     pub a: PathBuf,
     /// The reference, of the same size
     pub b: PathBuf,
+    /// Write where they differ: FLIP in false colours (.png), or difference and FLIP as layers (.exr)
+    #[arg(long, value_name = "OUT.png|exr")]
+    pub error_map: Option<PathBuf>,
     /// Write JSON to stdout
     #[arg(long)]
     pub json: bool,
@@ -207,17 +220,6 @@ pub struct DoctorArguments {
     /// Write JSON to stdout
     #[arg(long)]
     pub json: bool,
-}
-
-/// What draws a picture.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum RendererName {
-    /// The splatted light field.
-    Splat,
-    /// The ray-traced ground truth.
-    Truth,
-    /// A blur by depth.
-    Blur,
 }
 
 /// Where rays of the ground truth start.
@@ -271,6 +273,11 @@ fn size(text: &str) -> Result<[u32; 2], String> {
     sides
         .and_then(|(width, height)| Some([side(width)?, side(height)?]))
         .ok_or_else(|| format!("WIDTHxHEIGHT in pixels, each 1 to {}", lens::Camera::LARGEST_SIDE_PX))
+}
+
+fn renderer_parser() -> impl TypedValueParser<Value = Renderer> {
+    let names = PossibleValuesParser::new(Renderer::ALL.map(|(name, _)| name));
+    names.try_map(|name| Renderer::named(&name).ok_or("not a renderer"))
 }
 
 fn aov(name: &str) -> Result<Aov, String> {

@@ -3,11 +3,15 @@
 use super::arguments::CompareArguments;
 use super::console::{say, say_json};
 use super::failure::Failure;
-use project::{compare, read_picture};
+use super::shot::check_picture_output;
+use project::{compare, read_picture, write_error_map};
 use serde_json::json;
 
-/// Tells how far a picture is from a reference.
+/// Tells how far a picture is from a reference, and writes where.
 pub fn run(arguments: &CompareArguments) -> Result<(), Failure> {
+    if let Some(file) = &arguments.error_map {
+        check_picture_output(file)?;
+    }
     let (a, b) = (read_picture(&arguments.a)?, read_picture(&arguments.b)?);
     if (a.width, a.height) != (b.width, b.height) {
         let sizes = format!("{} × {}, the reference {} × {}", a.width, a.height, b.width, b.height);
@@ -15,6 +19,9 @@ pub fn run(arguments: &CompareArguments) -> Result<(), Failure> {
         return Err(Failure::bad(format!("{files}: the picture is {sizes} (compare pictures of one size)")));
     }
     let found = compare(&a, &b)?;
+    if let Some(file) = &arguments.error_map {
+        write_error_map(file, &a, &b)?;
+    }
     if arguments.json {
         say_json(&json!(found));
         return Ok(());

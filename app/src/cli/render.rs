@@ -1,32 +1,25 @@
 //! `focus-brush render`.
 
-use super::arguments::{
-    BackendName, EstimatorName, ExposureName, RenderArguments, RendererName, SamplerName,
-};
+use super::arguments::{BackendName, EstimatorName, ExposureName, RenderArguments, SamplerName};
 use super::console::{Console, say_json};
 use super::failure::Failure;
-use super::shot::shot;
+use super::shot::{check_picture_output, shot};
 use lens::Exposure;
 use project::{PictureOptions, write_picture};
 use serde_json::json;
-use session::{Aov, Input, RenderOptions, Rendered, Renderer, SessionError, render_input};
+use session::{
+    Aov, Input, LayeredOptions, RenderOptions, Rendered, Renderer, ScatterOptions, SessionError,
+    ViewsOptions, render_input,
+};
 use std::time::Instant;
 use trace::truth::{Estimator, Sampler, TruthOptions};
 
 /// Renders a picture and writes it.
 pub fn run(arguments: &RenderArguments, console: &Console) -> Result<(), Failure> {
-    let renderer = match arguments.renderer {
-        RendererName::Splat => Renderer::Splat,
-        RendererName::Truth => Renderer::Truth,
-        RendererName::Blur => Renderer::Blur,
-    };
+    let renderer = arguments.renderer;
     if arguments.backend == BackendName::Gpu {
-        let what = match renderer {
-            Renderer::Splat => "the splat",
-            Renderer::Truth => "the ray tracer",
-            Renderer::Blur => "the blur",
-        };
-        let message = format!("{what} has no GPU backend yet (use --backend cpu or auto)");
+        let what = renderer.name();
+        let message = format!("--renderer {what} has no GPU backend yet (use --backend cpu or auto)");
         return Err(SessionError::GpuAbsent(message).into());
     }
     check_output(arguments)?;
@@ -41,6 +34,9 @@ pub fn run(arguments: &RenderArguments, console: &Console) -> Result<(), Failure
         tolerance_px: arguments.tolerance,
         renderer,
         truth: truth_options(arguments),
+        layered: LayeredOptions { layers: arguments.layers },
+        views: ViewsOptions { views_a_side: arguments.views, ..ViewsOptions::default() },
+        scatter: ScatterOptions { rays_a_sample: arguments.rays, seed: arguments.seed },
         aovs: arguments.aov.clone(),
     };
     let Rendered { picture, layers, cost, warnings } =
@@ -60,7 +56,7 @@ pub fn run(arguments: &RenderArguments, console: &Console) -> Result<(), Failure
         say_json(&json!({
             "input": arguments.file,
             "files": files,
-            "renderer": format!("{:?}", arguments.renderer).to_lowercase(),
+            "renderer": renderer.name(),
             "backend": "cpu",
             "width": camera.width,
             "height": camera.height,
@@ -68,6 +64,9 @@ pub fn run(arguments: &RenderArguments, console: &Console) -> Result<(), Failure
             "threads": rayon::current_num_threads(),
             "triangles": input.scene.triangles.len(),
             "samples_per_pixel": (renderer == Renderer::Truth).then_some(arguments.spp),
+            "layers": (renderer == Renderer::Layers).then_some(arguments.layers),
+            "views_a_side": (renderer == Renderer::Views).then_some(arguments.views),
+            "rays_a_sample": (renderer == Renderer::Scatter).then_some(arguments.rays),
             "seconds": {
                 "open": open_seconds,
                 "prepare": cost.prepare_seconds,
@@ -109,15 +108,9 @@ fn truth_options(arguments: &RenderArguments) -> TruthOptions {
 
 /// What would only be noticed after the work.
 fn check_output(arguments: &RenderArguments) -> Result<(), Failure> {
-    if arguments.aov.contains(&Aov::StandardError) && arguments.renderer != RendererName::Truth {
+    if arguments.aov.contains(&Aov::StandardError) && arguments.renderer != Renderer::Truth {
         let what = "--aov stderr: only the ground truth knows its standard error (use --renderer truth)";
         return Err(Failure::usage(what));
     }
-    let output = &arguments.output;
-    let extension = output.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
-    if !["exr", "png"].contains(&extension.as_str()) {
-        let what = "pictures are written as .exr or .png (name one of them)";
-        return Err(Failure::usage(format!("{}: {what}", output.display())));
-    }
-    super::shot::check_folder(output)
+    check_picture_output(&arguments.output)
 }

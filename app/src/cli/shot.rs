@@ -44,3 +44,13 @@ pub fn check_folder(output: &Path) -> Result<(), Failure> {
         _ => Ok(()),
     }
 }
+
+/// An error if a picture cannot be written to `output`: better before the work than after it.
+pub fn check_picture_output(output: &Path) -> Result<(), Failure> {
+    let extension = output.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
+    if !["exr", "png"].contains(&extension.as_str()) {
+        let what = "pictures are written as .exr or .png (name one of them)";
+        return Err(Failure::usage(format!("{}: {what}", output.display())));
+    }
+    check_folder(output)
+}

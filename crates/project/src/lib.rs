@@ -4,7 +4,7 @@
 //! * [`read_recipe`]: focus by name, as JSON; [`read_focus`]: a recipe or a map, whichever the file is.
 //! * [`FocusMapFile`]: focus maps as EXR or 16-bit PNG.
 //! * [`write_picture`], [`read_picture`]: pictures as EXR, PNG and (reading only) HDR, with layers beside the colour.
-//! * [`compare`]: how far two pictures are apart.
+//! * [`compare`]: how far two pictures are apart; [`write_error_map`]: where.
 //! * [`ProjectFile`]: the saved document.
 //!
 //! Everything is written atomically: the old file stays until the new one is complete.
@@ -14,6 +14,7 @@ mod compare;
 mod container;
 mod disk;
 mod error;
+mod error_map_file;
 mod exr_file;
 mod focus_map_file;
 mod json;
@@ -29,6 +30,7 @@ mod texel_bytes;
 pub use camera::{camera_from_json, camera_to_json, read_aperture_mask, read_camera, write_camera};
 pub use compare::{Comparison, ErrorMaps, compare, error_maps};
 pub use error::ProjectError;
+pub use error_map_file::write_error_map;
 pub use focus_map_file::{FocusMapFile, write_focus_map};
 pub use picture_file::{Layer, LinearPicture, PictureOptions, read_picture, write_picture, write_rgb};
 pub use project_file::{NamedCamera, ProjectFile, SceneState};

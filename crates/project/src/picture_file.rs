@@ -111,7 +111,7 @@ fn write_png(
     write_bytes(file, &bytes)
 }
 
-fn color_channels(rgb: &[[f32; 3]]) -> [(String, Vec<f32>); 3] {
+pub(crate) fn color_channels(rgb: &[[f32; 3]]) -> [(String, Vec<f32>); 3] {
     [("R", 0), ("G", 1), ("B", 2)].map(|(name, k)| (name.to_string(), rgb.iter().map(|c| c[k]).collect()))
 }
 

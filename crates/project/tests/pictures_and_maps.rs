@@ -7,8 +7,8 @@ use damage::{damage, is_one_line};
 use focus::{FocusImage, FocusMap};
 use lens::{Exposure, FocusOffset, Picture};
 use project::{
-    FocusMapFile, Layer, LinearPicture, PictureOptions, compare, error_maps, read_picture, write_focus_map,
-    write_picture, write_rgb,
+    FocusMapFile, Layer, LinearPicture, PictureOptions, compare, error_maps, read_picture, write_error_map,
+    write_focus_map, write_picture, write_rgb,
 };
 use shared_data::shared;
 use tempfile::TempDir;
@@ -225,6 +225,30 @@ fn a_shift_by_one_pixel_shows() {
     assert_eq!(differing, 64 * 64 / 4);
     let mean = maps.flip.iter().sum::<f32>() / maps.flip.len() as f32;
     assert!((mean as f64 - found.flip).abs() < 1e-3);
+}
+
+#[test]
+fn error_maps_are_written() {
+    let folder = tempfile::tempdir().unwrap();
+    let [exr, png, bmp] = ["map.exr", "map.png", "map.bmp"].map(|name| folder.path().join(name));
+    // The right half differs, the left is equal.
+    let halves =
+        |right: f32| linear((0..64 * 64).map(|i| [if i % 64 < 32 { 0.5 } else { right }; 3]).collect(), 64);
+    let (a, b) = (halves(1.0), halves(0.0));
+    write_error_map(&exr, &a, &b).unwrap();
+    let read = read_picture(&exr).unwrap();
+    let maps = error_maps(&a, &b).unwrap();
+    assert_eq!((read.rgb, &read.layers["flip"]), (maps.difference, &maps.flip));
+
+    write_error_map(&png, &a, &b).unwrap();
+    let read = read_picture(&png).unwrap();
+    let (alike, apart) = (read.rgb[32 * 64 + 4], read.rgb[32 * 64 + 60]);
+    assert!(alike.iter().all(|c| *c < 0.01), "magma begins black: {alike:?}");
+    // Near its end magma is pale yellow.
+    assert!(apart[0] > 0.8 && apart[1] > 0.5 && apart[2] < apart[1], "{apart:?}");
+
+    assert!(write_error_map(&bmp, &a, &b).is_err() && !bmp.exists());
+    assert!(write_error_map(&png, &a, &linear(vec![[0.5; 3]; 64 * 63], 64)).is_err());
 }
 
 #[test]

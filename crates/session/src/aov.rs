@@ -1,6 +1,6 @@
 //! Pictures beside the picture: what compositing and measuring ask for.
 
-use crate::FirstHits;
+use baselines::FirstHits;
 use lens::{Camera, Picture};
 use project::Layer;
 use trace::truth::Estimate;

@@ -34,15 +34,8 @@ pub fn pick(tracer: &Tracer, ray: &Ray) -> Option<SurfaceHit> {
 /// The chief ray of a picture position: (0, 0) the upper left corner, (1, 1) the lower right, whatever the
 /// resolution. Its direction has depth 1, so that t along it is axial depth.
 pub fn chief_ray(camera: &Camera, position: DVec2) -> Ray {
-    let q = camera.q_from_pixel(position * DVec2::new(camera.width as f64, camera.height as f64));
-    let direction = (q * (camera.yfov / 2.0).tan()).extend(1.0);
-    Ray {
-        origin: camera.position(),
-        direction: camera.world_direction(direction),
-        t_min: 0.0,
-        t_max: f64::INFINITY,
-        skip: None,
-    }
+    let size = DVec2::new(camera.width as f64, camera.height as f64);
+    Ray::of_pinhole(camera, DVec2::ZERO, position * size)
 }
 
 #[cfg(test)]

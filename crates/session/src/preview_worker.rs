@@ -1,11 +1,11 @@
 //! What the preview thread does with its wishes.
 
-use crate::first_hits::FirstHits;
 use crate::job::guarded;
 use crate::light_field::{Brought, Changes, LightField};
 use crate::preview::{Delivery, Shared, Wishes};
 use crate::render::light;
 use crate::{Preview, PreviewActivity, PreviewKind, SessionError, Stage};
+use baselines::FirstHits;
 use focus::{Focus, FocusMap};
 use lens::{Camera, Picture};
 use progress::Stage as Share;

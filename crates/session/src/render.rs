@@ -1,10 +1,9 @@
 //! A picture without a window: what the command line and the export of the window do.
 
 use crate::aov::Known;
-use crate::depth_blur::depth_blur;
-use crate::first_hits::FirstHits;
 use crate::light_field::serves;
 use crate::{Aov, Input, SessionError, Steps};
+use baselines::{BaselineError, FirstHits, LayeredOptions, ScatterOptions, ViewsOptions};
 use focus::Focus;
 use glam::DVec3;
 use lens::{Camera, Picture};
@@ -26,8 +25,50 @@ pub enum Renderer {
     Splat,
     /// Distributed ray tracing.
     Truth,
-    /// A blur of the pinhole picture by depth: the baseline.
+    /// A baseline: a blur of the pinhole picture by each pixel's own circle of confusion.
     Blur,
+    /// A baseline: the pinhole picture cut to layers by depth, each blurred, composited.
+    Layers,
+    /// A baseline: pinhole views over the aperture, shifted and added.
+    Views,
+    /// A baseline: every ray of the light field, thrown at one pixel.
+    Scatter,
+}
+
+impl Renderer {
+    /// All of them, by the names that the command line knows.
+    pub const ALL: [(&'static str, Renderer); 6] = [
+        ("splat", Renderer::Splat),
+        ("truth", Renderer::Truth),
+        ("blur", Renderer::Blur),
+        ("layers", Renderer::Layers),
+        ("views", Renderer::Views),
+        ("scatter", Renderer::Scatter),
+    ];
+
+    /// The one of this name.
+    pub fn named(name: &str) -> Option<Self> {
+        Self::ALL.iter().find(|(known, _)| *known == name).map(|(_, renderer)| *renderer)
+    }
+
+    /// Its name on the command line.
+    pub fn name(self) -> &'static str {
+        Self::ALL.iter().find(|(_, known)| *known == self).map_or("", |(name, _)| name)
+    }
+
+    /// Whether it draws from a light field.
+    pub fn draws_light_field(self) -> bool {
+        matches!(self, Self::Splat | Self::Scatter)
+    }
+}
+
+impl From<BaselineError> for SessionError {
+    fn from(error: BaselineError) -> Self {
+        match error {
+            BaselineError::Cancelled => Self::Cancelled,
+            other => Self::BadInput(other.to_string()),
+        }
+    }
 }
 
 /// How to render.
@@ -39,6 +80,12 @@ pub struct RenderOptions {
     pub truth: TruthOptions,
     /// How coarse the light field may be, px (see [`BakeOptions::tolerance_px`]).
     pub tolerance_px: f64,
+    /// How [`Renderer::Layers`] cuts the picture.
+    pub layered: LayeredOptions,
+    /// What [`Renderer::Views`] captures.
+    pub views: ViewsOptions,
+    /// What [`Renderer::Scatter`] throws.
+    pub scatter: ScatterOptions,
     /// The pictures that come along.
     pub aovs: Vec<Aov>,
 }
@@ -49,6 +96,9 @@ impl Default for RenderOptions {
             renderer: Renderer::Splat,
             truth: TruthOptions { samples_per_pixel: 64, ..TruthOptions::default() },
             tolerance_px: BakeOptions::TOLERANCE_PX,
+            layered: LayeredOptions::default(),
+            views: ViewsOptions::default(),
+            scatter: ScatterOptions::default(),
             aovs: Vec::new(),
         }
     }
@@ -132,10 +182,10 @@ pub fn render(
     let mut cost = RenderCost::default();
     let mut estimate = None;
     let picture = match options.renderer {
-        Renderer::Splat => {
+        Renderer::Splat | Renderer::Scatter => {
             let salf = bake(tracer, camera, focus, options.tolerance_px, steps)?;
             let bake_seconds = start.elapsed().as_secs_f64();
-            let mut rendered = splat(Arc::new(salf), tracer, camera, focus, options, steps)?;
+            let mut rendered = sum_light_field(Arc::new(salf), tracer, camera, focus, options, steps)?;
             rendered.cost.bake_seconds = bake_seconds;
             return Ok(rendered);
         }
@@ -147,7 +197,16 @@ pub fn render(
         }
         Renderer::Blur => {
             let hits = first_hits(tracer, camera, focus, steps)?;
-            depth_blur(&hits, camera, &*steps.begin("blurring"))?
+            baselines::gather(&hits, camera, &*steps.begin("blurring"))?
+        }
+        Renderer::Layers => {
+            let hits = first_hits(tracer, camera, focus, steps)?;
+            baselines::layered(&hits, camera, &options.layered, &*steps.begin("blurring"))?
+        }
+        Renderer::Views => {
+            let radiance = light(tracer, camera);
+            let progress = steps.begin("views");
+            baselines::shift_and_add(tracer, &radiance, focus, camera, &options.views, &*progress)?
         }
     };
     cost.picture_seconds = start.elapsed().as_secs_f64();
@@ -155,7 +214,7 @@ pub fn render(
     finish(shot, options, Drawn { picture, estimate, cost }, steps)
 }
 
-/// Renders what was opened: a scene, a project, or (with the splat) a light field.
+/// Renders what was opened: a scene, a project, or (where the renderer draws one) a light field.
 pub fn render_input(
     input: &Input,
     camera: &Camera,
@@ -167,14 +226,14 @@ pub fn render_input(
     let start = Instant::now();
     let tracer = Arc::new(Tracer::new(input.scene.clone()));
     let prepare_seconds = start.elapsed().as_secs_f64();
-    let mut rendered = match input.salf.as_ref().filter(|_| options.renderer == Renderer::Splat) {
+    let mut rendered = match input.salf.as_ref().filter(|_| options.renderer.draws_light_field()) {
         None => render(&tracer, camera, focus, options, steps)?,
         Some(salf) => {
             if let Some(difference) = unlike(&salf.camera, camera) {
                 let what = format!("it was baked {difference} (bake it again for this camera)");
                 return Err(SessionError::bad(&input.path, what));
             }
-            let mut rendered = splat(salf.clone(), &tracer, camera, focus, options, steps)?;
+            let mut rendered = sum_light_field(salf.clone(), &tracer, camera, focus, options, steps)?;
             let needed = BakeOptions::for_focus(&tracer, camera, focus).margin_px;
             if needed > salf.margin_px as f64 {
                 rendered.warnings.push(format!(
@@ -205,7 +264,7 @@ fn unlike(baked: &Camera, camera: &Camera) -> Option<String> {
 }
 
 /// Renders a light field.
-fn splat(
+fn sum_light_field(
     salf: Arc<Salf>,
     tracer: &Arc<Tracer>,
     camera: &Camera,
@@ -216,9 +275,13 @@ fn splat(
     let mut cost = RenderCost::default();
     cost.count(&salf);
     let start = Instant::now();
-    let mut splatter = Splatter::new(salf);
-    splatter.render(camera, focus, &*steps.begin("splatting"))?;
-    let picture = splatter.picture().clone();
+    let picture = if options.renderer == Renderer::Scatter {
+        baselines::scatter(&salf, camera, focus, &options.scatter, &*steps.begin("scattering"))?
+    } else {
+        let mut splatter = Splatter::new(salf);
+        splatter.render(camera, focus, &*steps.begin("splatting"))?;
+        splatter.picture().clone()
+    };
     cost.picture_seconds = start.elapsed().as_secs_f64();
     let shot = Shot { tracer, camera, focus };
     finish(shot, options, Drawn { picture, estimate: None, cost }, steps)

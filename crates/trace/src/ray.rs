@@ -1,6 +1,7 @@
 //! A ray and what it hits.
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
+use lens::Camera;
 use scene::SurfacePoint;
 
 /// The points origin + t·direction for t in (t_min, t_max). World space; `direction` need not be unit.
@@ -16,6 +17,24 @@ pub struct Ray {
     pub t_max: f64,
     /// A triangle that is not seen (the one the ray starts on).
     pub skip: Option<u32>,
+}
+
+impl Ray {
+    /// The ray on which a pinhole at the aperture point `u` (scene units; zero gives the chief ray) sees the picture
+    /// position `pixel` (px, the frame's upper left corner at zero).
+    ///
+    /// Every aperture point sees the same directions: what is infinitely far away has the same `pixel` for all of them. The
+    /// direction has depth 1, so that t along the ray is axial depth.
+    pub fn of_pinhole(camera: &Camera, u: DVec2, pixel: DVec2) -> Self {
+        let direction = camera.q_from_pixel(pixel) * (camera.yfov / 2.0).tan();
+        Self {
+            origin: camera.world_from_camera(u.extend(0.0)),
+            direction: camera.world_direction(direction.extend(1.0)),
+            t_min: 0.0,
+            t_max: f64::INFINITY,
+            skip: None,
+        }
+    }
 }
 
 /// Where a ray meets a surface.

@@ -1,7 +1,7 @@
 //! Pictures to compare with, made in the background.
 
 use super::{Outcome, Session};
-use crate::first_hits::FirstHits;
+use crate::FirstHits;
 use crate::render::{RenderOptions, Renderer, light, render};
 use crate::steps::{JobSteps, Steps};
 use crate::{Event, PreviewActivity, Reference, ReferenceKind, SessionError};

@@ -1,13 +1,12 @@
 //! What the pinhole sees: first hits along the chief rays of the pixel centres, and the pictures they give.
 
-use crate::picking::chief_ray;
 use glam::DVec2;
 use lens::{Camera, FocusOffset, Picture};
 use progress::{Cancelled, Progress};
 use rayon::prelude::*;
 use scene::SurfaceField;
 use std::sync::atomic::{AtomicU32, Ordering};
-use trace::{Radiance, Tracer};
+use trace::{Radiance, Ray, Tracer};
 
 /// One value a pixel, row 0 on top, of what the chief ray of the pixel's centre meets first.
 #[derive(Clone, Debug, PartialEq)]
@@ -36,7 +35,6 @@ impl FirstHits {
         progress: &dyn Progress,
     ) -> Result<Self, Cancelled> {
         let optics = camera.optics();
-        let size = DVec2::new(camera.width as f64, camera.height as f64);
         let done = AtomicU32::new(0);
         let mut hits = Self::background(camera.width, camera.height);
         let row_length = camera.width as usize;
@@ -49,13 +47,14 @@ impl FirstHits {
         rows.enumerate().try_for_each(|(y, (((radiances, depths), offsets), kappas))| {
             progress.check()?;
             for x in 0..row_length {
-                let ray = chief_ray(camera, DVec2::new(x as f64 + 0.5, y as f64 + 0.5) / size);
+                let ray = Ray::of_pinhole(camera, DVec2::ZERO, DVec2::new(x as f64 + 0.5, y as f64 + 0.5));
                 let (rgb, depth, offset) = match tracer.first_hit(&ray) {
                     Some(hit) => (radiance.toward(hit.point, ray.origin), hit.t, focus.at(hit.point)),
                     None => (radiance.from_infinity(ray.direction), f64::INFINITY, focus.at_infinity()),
                 };
                 radiances[x] = rgb.to_array();
                 depths[x] = depth as f32;
+                let offset = offset.or_standard();
                 offsets[x] = offset;
                 kappas[x] = optics.kappa(1.0 / depth, offset);
             }

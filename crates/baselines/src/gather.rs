@@ -1,10 +1,11 @@
-//! The baseline that the light field is compared with: a blur of the pinhole picture by depth.
+//! Blur by depth, gathered: the plainest blur of the pinhole picture.
 //!
 //! Every pixel takes the mean of the pinhole picture over its *own* circle of confusion (a gather, as image
 //! editors do it). It knows one surface a pixel, so it cannot see behind an occluder, cannot make a near
 //! occluder transparent, bleeds sharp edges into blurred surfaces and ends light at the frame.
 
-use crate::first_hits::FirstHits;
+use crate::error::check_hits;
+use crate::{BaselineError, FirstHits};
 use lens::{Camera, Picture};
 use progress::{Cancelled, Progress};
 use rayon::prelude::*;
@@ -13,12 +14,9 @@ use std::sync::atomic::{AtomicU32, Ordering};
 /// Most points a side of the grid over the aperture's square that a pixel gathers from: bounds the time.
 const MOST_TAPS_A_SIDE: f64 = 64.0;
 
-/// Blurs the pinhole picture `hits` by each pixel's circle of confusion.
-pub(crate) fn depth_blur(
-    hits: &FirstHits,
-    camera: &Camera,
-    progress: &dyn Progress,
-) -> Result<Picture, Cancelled> {
+/// Blurs the pinhole picture `hits` by each pixel's circle of confusion, painted or not. Coverage is 1.
+pub fn gather(hits: &FirstHits, camera: &Camera, progress: &dyn Progress) -> Result<Picture, BaselineError> {
+    check_hits(hits, camera)?;
     let (width, height) = (camera.width as usize, camera.height as usize);
     let optics = camera.optics();
     let widest = hits.kappa.iter().map(|&kappa| optics.splat_radius_px(kappa).abs()).fold(0.0, f64::max);
@@ -83,15 +81,39 @@ mod tests {
         let kappa = camera.optics().kappa_for_circle_px(10.0).unwrap();
         let mut hits = FirstHits::background(41, 41);
         hits.radiance[20 * 41 + 20] = [1.0; 3];
-        let sharp = depth_blur(&hits, &camera, &Unwatched).unwrap();
+        let sharp = gather(&hits, &camera, &Unwatched).unwrap();
         assert_eq!(sharp.radiance, hits.radiance);
 
         hits.kappa.fill(kappa);
-        let blurred = depth_blur(&hits, &camera, &Unwatched).unwrap();
+        let blurred = gather(&hits, &camera, &Unwatched).unwrap();
         let lit = blurred.radiance.iter().filter(|rgb| rgb[0] > 0.0).count() as f64;
         let disc = std::f64::consts::PI * 25.0;
         assert!((lit / disc - 1.0).abs() < 0.15, "{lit} pixels are lit, a disc has {disc}");
         let sum: f32 = blurred.radiance.iter().map(|rgb| rgb[0]).sum();
         assert!((sum - 1.0).abs() < 0.05, "a uniform blur keeps the sum: {sum}");
+    }
+
+    #[test]
+    fn a_defocused_wall_stays_uniform() {
+        let camera = Camera { width: 20, height: 20, ..Camera::default() };
+        let mut hits = FirstHits::background(20, 20);
+        hits.radiance.fill([0.5, 0.25, 2.0]);
+        hits.kappa.fill(camera.optics().kappa_for_circle_px(-9.0).unwrap());
+        let found = gather(&hits, &camera, &Unwatched).unwrap();
+        for rgb in found.radiance {
+            (0..3).for_each(|c| assert!((rgb[c] - [0.5, 0.25, 2.0][c]).abs() < 1e-5, "{rgb:?}"));
+        }
+    }
+
+    #[test]
+    fn what_cannot_be_is_refused_and_what_is_unwanted_stops() {
+        let camera = Camera { width: 8, height: 8, ..Camera::default() };
+        let hits = FirstHits::background(8, 9);
+        let found = gather(&hits, &camera, &Unwatched);
+        assert_eq!(found, Err(BaselineError::OtherCamera { found: [8, 9], camera: [8, 8] }));
+        let incomplete = FirstHits { kappa: vec![0.0; 3], ..FirstHits::background(8, 8) };
+        assert!(matches!(gather(&incomplete, &camera, &Unwatched), Err(BaselineError::Option { .. })));
+        let hits = FirstHits::background(8, 8);
+        assert_eq!(gather(&hits, &camera, &crate::test_light::Unwanted), Err(BaselineError::Cancelled));
     }
 }

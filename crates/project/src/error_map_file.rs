@@ -1,0 +1,43 @@
+//! Where two pictures differ, as a file.
+//!
+//! **PNG**: FLIP in false colours (magma: black where the pictures look alike, through purple and orange to pale yellow
+//! where they are as far apart as can be). **EXR**: |a − b| as linear `R`, `G`, `B`, and `flip` in [0, 1].
+
+use crate::compare::{ErrorMaps, error_maps};
+use crate::disk::{extension, write_bytes};
+use crate::exr_file::{ExrImage, ExrSamples, write_exr};
+use crate::picture_file::color_channels;
+use crate::png_file::encode_rgb8;
+use crate::{LinearPicture, ProjectError};
+use nv_flip::FlipImageFloat;
+use std::collections::BTreeMap;
+use std::path::Path;
+
+/// Writes where `a` differs from the reference `b`, as PNG or EXR by extension. An error unless they have the same size.
+pub fn write_error_map(file: &Path, a: &LinearPicture, b: &LinearPicture) -> Result<(), ProjectError> {
+    let maps = error_maps(a, b)?;
+    let (width, height) = (a.width, a.height);
+    match extension(file).as_str() {
+        "png" => {
+            let bytes =
+                encode_rgb8(width, height, &false_colours(width, height, &maps), &[]).map_err(|error| {
+                    ProjectError::Write { file: file.to_owned(), source: std::io::Error::other(error) }
+                })?;
+            write_bytes(file, &bytes)
+        }
+        "exr" => {
+            let mut channels: BTreeMap<_, _> = color_channels(&maps.difference).into();
+            channels.insert("flip".to_string(), maps.flip);
+            let image = ExrImage { width, height, channels, ..ExrImage::default() };
+            write_exr(file, &image, ExrSamples::Float)
+        }
+        _ => {
+            Err(ProjectError::content(file, "error maps are not written in this form", "name a .png or .exr"))
+        }
+    }
+}
+
+/// FLIP in the colours that its authors use, 8-bit sRGB, interleaved.
+fn false_colours(width: u32, height: u32, maps: &ErrorMaps) -> Vec<u8> {
+    FlipImageFloat::with_data(width, height, &maps.flip).apply_color_lut(&nv_flip::magma_lut()).to_vec()
+}
