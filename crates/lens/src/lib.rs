@@ -14,6 +14,7 @@
 
 mod aperture;
 mod camera;
+mod coarse_mask;
 mod focus_offset;
 mod optics;
 mod picture;

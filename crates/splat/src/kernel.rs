@@ -92,6 +92,8 @@ impl Kernel {
 
     /// Cuts `aperture`, whose radius is `stop` ≤ 1 of the baked one.
     pub fn new(aperture: &Aperture, stop: f64) -> Self {
+        // Every level looks at every texel: of a mask, only as many as the finest can tell apart.
+        let aperture = &*aperture.coarsened(2 << Self::FINEST);
         let mut levels: Vec<_> = (0..=Self::FINEST).map(|level| Level::new(aperture, 1 << level)).collect();
         let (mean, deviation) = levels[Self::FINEST].moments();
         levels.iter_mut().for_each(|level| level.match_moments(mean, deviation));
