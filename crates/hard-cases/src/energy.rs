@@ -128,7 +128,8 @@ fn invariant_to_paint(effort: Effort, progress: &dyn Progress) -> Result<Finding
     // The traced sum's own uncertainty, from other random numbers.
     let mut others = Vec::new();
     for seed in 2..effort.pick(10, 6) {
-        others.push(energy(&shot.seeded_truth(FocusOffset::STANDARD, 16, seed, progress)?));
+        let unpainted = shot.focus(FocusOffset::STANDARD);
+        others.push(energy(&shot.truth_with(&unpainted, 16, seed, progress)?));
     }
     let mean = others.iter().sum::<f64>() / others.len() as f64;
     let variance = others.iter().map(|sum| (sum - mean).powi(2)).sum::<f64>() / (others.len() - 1) as f64;

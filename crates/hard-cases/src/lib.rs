@@ -40,7 +40,7 @@ mod triangles;
 
 pub use case::{Case, Effort, Outcome};
 
-use progress::{Cancelled, Progress, Stage};
+use progress::{Cancelled, Progress};
 
 /// All cases, in the order of the table.
 pub fn suite() -> Vec<Case> {
@@ -63,16 +63,25 @@ pub fn suite() -> Vec<Case> {
 
 /// Runs the cases whose names contain `filter` (all if it is empty).
 ///
-/// A case is the unit of progress and of cancelling; the longest takes some seconds at [`Effort::Full`].
+/// Progress goes by cases, the longest of which take some seconds at [`Effort::Full`].
 pub fn run(filter: &str, effort: Effort, progress: &dyn Progress) -> Result<Vec<Outcome>, Cancelled> {
     let chosen: Vec<_> = suite().into_iter().filter(|case| case.name.contains(filter)).collect();
     let count = chosen.len() as f32;
     let outcomes = chosen.iter().enumerate().map(|(index, case)| {
         progress.check()?;
-        let outcome =
-            case.run(effort, &Stage::new(progress, index as f32 / count, (index + 1) as f32 / count))?;
+        let outcome = case.run(effort, &Unreported(progress))?;
         progress.report((index + 1) as f32 / count);
         Ok(outcome)
     });
     outcomes.collect()
+}
+
+/// Lets a case be cancelled, but not tell how far each of its pictures is.
+struct Unreported<'a>(&'a dyn Progress);
+
+impl Progress for Unreported<'_> {
+    fn report(&self, _fraction: f32) {}
+    fn cancelled(&self) -> bool {
+        self.0.cancelled()
+    }
 }

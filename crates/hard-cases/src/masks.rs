@@ -2,7 +2,7 @@
 
 use crate::case::{Case, Effort, Finding, UNTRIED};
 use crate::light_field::{offset_of, picture_of_stars, star};
-use crate::measure::{energy, worst};
+use crate::measure::{energy, largest_difference, worst};
 use crate::sampling::mask;
 use glam::DVec2;
 use lens::{Aperture, ApertureShape, Camera, Picture};
@@ -17,8 +17,8 @@ pub const CASES: &[Case] = &[
     },
     Case {
         name: "aperture mask of one texel",
-        reason: "Its splat is the sharp one, moved by κ·R times the place of the texel, up in the mask being up on the \
-                 picture in far defocus.",
+        reason: "The splat of one open texel is the sharp one, moved by κ·R times the texel's place, up in the mask being up \
+                 on the picture in far defocus; a mask of 1 × 1 is the square.",
         control: "the mask read from the bottom row up",
         check: one_texel,
     },
@@ -100,15 +100,25 @@ fn one_texel(effort: Effort, progress: &dyn Progress) -> Result<Finding, Cancell
         "mass 1 ± 1e-6, centre at κRu to half of one of the 128² cells that masks are cut to, radii \
                            −40 … 40 px, one of {side}² texels"
     );
-    let limits = [("mass", 1e-6), ("centre, half cells", 1.0)];
-    Ok(Finding::of(expected, limits, error(upright)?, error(turned)?))
+    // 1 × 1.
+    let picture_with = |shape: ApertureShape| {
+        let camera = camera_with(shape.into());
+        let samples = vec![star(DVec2::splat(f64::from(FRAME_PX) / 2.0), 0.5, 1.0)];
+        let kappa = 11.0 / camera.optics().splat_radius_px(1.0);
+        picture_of_stars(&camera, samples, offset_of(kappa, &camera), progress)
+    };
+    let all_open = picture_with(mask(1, |_| 1.0))?;
+    let to_square = largest_difference(&all_open, &picture_with(ApertureShape::Square)?);
+    let limits = [("mass", 1e-6), ("centre, half cells", 1.0), ("1 × 1 − square", 1e-8)];
+    let ([mass, place], [_, turned]) = (error(upright)?, error(turned)?);
+    Ok(Finding::of(expected, limits, [mass, place, to_square], [UNTRIED, turned, UNTRIED]))
 }
 
 fn many_texels(effort: Effort, progress: &dyn Progress) -> Result<Finding, Cancelled> {
     let side = effort.pick(4096, 512);
     let texel = |u: f64| ((u + 1.0) / 2.0 * f64::from(side)) as u32;
     let aperture = Aperture::from(mask(side, |u| f32::from((texel(u.x) + texel(u.y)).is_multiple_of(2))));
-    let areas = [1, 8, 16, 128].map(|rows| aperture.rows(rows).open_area() / 2.0 - 1.0);
+    let areas = [8, 128].map(|rows| aperture.rows(rows).open_area() / 2.0 - 1.0);
     progress.check()?;
     let camera = camera_with(aperture.clone());
     let samples = vec![star(DVec2::splat(f64::from(FRAME_PX) / 2.0), 0.5, 1.0)];

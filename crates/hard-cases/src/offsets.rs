@@ -4,7 +4,7 @@ use crate::case::{Case, Effort, Finding, UNTRIED};
 use crate::measure::{largest_difference, senseless, worst};
 use crate::scenery::{Mesh, scene_of};
 use crate::shot::Shot;
-use focus::{FocusRecipe, RecipeEntry};
+use focus::{Brush, FocusMap, FocusRecipe, RecipeEntry};
 use glam::DVec3;
 use lens::{Camera, FocusOffset};
 use progress::{Cancelled, Progress};
@@ -18,7 +18,7 @@ pub const CASES: &[Case] = &[
     },
     Case {
         name: "t = NaN, ±∞, anchor outside [0, 1]",
-        reason: "Recipes refuse what is not a number; where it gets into a field all the same it counts as unpainted.",
+        reason: "Recipes, brushes and maps refuse what is no offset; where one gets into a field all the same it counts as unpainted.",
         control: "κ of the number as it is",
         check: not_a_number,
     },
@@ -74,12 +74,15 @@ fn not_a_number(effort: Effort, progress: &dyn Progress) -> Result<Finding, Canc
     for offset in effort.pick(&offsets[..], &offsets[..3]) {
         let recipe = FocusRecipe { default: RecipeEntry::Value(*offset), ..FocusRecipe::default() };
         accepted += f64::from(recipe.evaluate(shot.tracer.scene()).is_ok());
+        accepted += f64::from(Brush { target: *offset, ..Brush::default() }.problem().is_none());
+        accepted += f64::from(FocusMap::new(4, 4, *offset).is_valid());
         differences.push(largest_difference(&shot.splat(*offset, progress)?, &standard[0]));
         differences.push(largest_difference(&shot.truth(*offset, 4, progress)?, &standard[1]));
         let optics = shot.camera.optics();
         raw.push(raw_kappa(&shot.camera, *offset) - optics.standard_kappa(0.5));
     }
-    let expected = "recipes refuse it; given to the renderers, the unpainted picture bit for bit";
+    let expected =
+        "recipes, brushes and maps refuse it; given to the renderers, the unpainted picture bit for bit";
     let limits = [("accepted", 0.0), ("difference", 0.0)];
     Ok(Finding::of(expected, limits, [accepted, worst(differences)], [UNTRIED, worst(raw)]))
 }

@@ -38,13 +38,17 @@ impl Shot {
 
     /// The light field, sampled as far outside the frame as `offset` needs.
     pub fn salf(&self, offset: FocusOffset, progress: &dyn Progress) -> Result<Salf, Cancelled> {
-        let options = BakeOptions::for_focus(&self.tracer, &self.camera, &self.focus(offset));
-        bake(&self.tracer, &*self.radiance, &self.camera, &options, progress)
+        self.salf_for(&self.focus(offset), progress)
     }
 
     /// The splatted picture.
     pub fn splat(&self, offset: FocusOffset, progress: &dyn Progress) -> Result<Picture, Cancelled> {
-        picture_of(self.salf(offset, progress)?, &self.focus(offset), progress)
+        self.splat_with(&self.focus(offset), progress)
+    }
+
+    /// The same with a focus of its own for every point.
+    pub fn splat_with(&self, focus: &Focus, progress: &dyn Progress) -> Result<Picture, Cancelled> {
+        picture_of(self.salf_for(focus, progress)?, focus, progress)
     }
 
     /// The ray-traced picture, of `samples` rays a pixel.
@@ -54,21 +58,25 @@ impl Shot {
         samples: u32,
         progress: &dyn Progress,
     ) -> Result<Picture, Cancelled> {
-        self.seeded_truth(offset, samples, 1, progress)
+        self.truth_with(&self.focus(offset), samples, 1, progress)
     }
 
-    /// The same with other random numbers.
-    pub fn seeded_truth(
+    /// The same with a focus of its own for every point, and chosen random numbers.
+    pub fn truth_with(
         &self,
-        offset: FocusOffset,
+        focus: &Focus,
         samples: u32,
         seed: u32,
         progress: &dyn Progress,
     ) -> Result<Picture, Cancelled> {
         let options = TruthOptions { samples_per_pixel: samples, seed, ..TruthOptions::default() };
-        let focus = self.focus(offset);
-        let found = truth::render(&self.tracer, &*self.radiance, &focus, &self.camera, &options, progress)?;
+        let found = truth::render(&self.tracer, &*self.radiance, focus, &self.camera, &options, progress)?;
         Ok(found.picture)
+    }
+
+    fn salf_for(&self, focus: &Focus, progress: &dyn Progress) -> Result<Salf, Cancelled> {
+        let options = BakeOptions::for_focus(&self.tracer, &self.camera, focus);
+        bake(&self.tracer, &*self.radiance, &self.camera, &options, progress)
     }
 }
 
