@@ -36,7 +36,7 @@ impl FocusImage {
             // Two rounds show every texel, however the picture goes on; what is not a number may be any.
             let all = !(last - first < 2.0 * f64::from(count));
             let steps = if all { 2 * count } else { (last - first) as u32 + 1 };
-            let start = if first.is_finite() { first } else { 0.0 };
+            let start = if all { 0.0 } else { first };
             (0..steps).map(move |k| wrapped(start + f64::from(k), count, wrap[axis]))
         };
         let columns: Vec<usize> = indices(0, self.width).collect();
