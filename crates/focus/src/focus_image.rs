@@ -34,9 +34,8 @@ impl FocusImage {
         let indices = |axis: usize, count: u32| {
             let [first, last] = box_texels.map(|corner| corner[axis]);
             // Two rounds show every texel, however the picture goes on; what is not a number may be any.
-            let all = !(last - first < 2.0 * f64::from(count));
-            let steps = if all { 2 * count } else { (last - first) as u32 + 1 };
-            let start = if all { 0.0 } else { first };
+            let some = last - first < 2.0 * f64::from(count);
+            let (start, steps) = if some { (first, (last - first) as u32 + 1) } else { (0.0, 2 * count) };
             (0..steps).map(move |k| wrapped(start + f64::from(k), count, wrap[axis]))
         };
         let columns: Vec<usize> = indices(0, self.width).collect();

@@ -64,8 +64,9 @@ impl Moments {
             self.mean[c] += before[c] * share;
             self.squares[c] += weight * before[c] * (x[c] - self.mean[c]);
         }
-        for c in 0..3 {
-            self.with_coverage[c] += weight * before[c] * (x[3] - self.mean[3]);
+        let coverage = x[3] - self.mean[3];
+        for (sum, before) in self.with_coverage.iter_mut().zip(before) {
+            *sum += weight * before * coverage;
         }
     }
 

@@ -6,6 +6,9 @@ use progress::Unwatched;
 use scene::SurfacePoint;
 use std::sync::Arc;
 
+mod agreement;
+mod convergence;
+
 /// Every surface sends its material's base colour; the background is black.
 struct BaseColor(Arc<scene::Scene>);
 
