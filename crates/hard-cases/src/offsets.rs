@@ -6,7 +6,7 @@ use crate::scenery::{Mesh, scene_of};
 use crate::shot::Shot;
 use focus::{Brush, FocusMap, FocusRecipe, RecipeEntry};
 use glam::DVec3;
-use lens::{Camera, FocusOffset};
+use lens::{Camera, FocusOffset, Picture};
 use progress::{Cancelled, Progress};
 
 pub const CASES: &[Case] = &[
@@ -46,6 +46,7 @@ fn any_finite_offset(effort: Effort, progress: &dyn Progress) -> Result<Finding,
         // Wide blur is slow to trace.
         if index % effort.pick(1, 4) == 0 {
             in_pictures += senseless(&shot.truth(FocusOffset::new(t, 0.5), 1, progress)?);
+            in_pictures += senseless(&shot.truth_from_surfaces(FocusOffset::new(t, 0.5), 1, progress)?);
         }
     }
     let expected = "no number of any picture is NaN, infinite or negative";
@@ -68,21 +69,24 @@ fn not_a_number(effort: Effort, progress: &dyn Progress) -> Result<Finding, Canc
         FocusOffset::new(1.1, 1.5),
         FocusOffset::new(1.1, -0.1),
     ];
-    let standard =
-        [shot.splat(FocusOffset::STANDARD, progress)?, shot.truth(FocusOffset::STANDARD, 4, progress)?];
+    let pictures = |offset: FocusOffset| -> Result<[Picture; 3], Cancelled> {
+        let splatted = shot.splat(offset, progress)?;
+        let traced = shot.truth(offset, 4, progress)?;
+        Ok([splatted, traced, shot.truth_from_surfaces(offset, 4, progress)?])
+    };
+    let standard = pictures(FocusOffset::STANDARD)?;
     let (mut accepted, mut differences, mut raw) = (0.0, Vec::new(), Vec::new());
     for offset in effort.pick(&offsets[..], &offsets[..3]) {
         let recipe = FocusRecipe { default: RecipeEntry::Value(*offset), ..FocusRecipe::default() };
         accepted += f64::from(recipe.evaluate(shot.tracer.scene()).is_ok());
         accepted += f64::from(Brush { target: *offset, ..Brush::default() }.problem().is_none());
         accepted += f64::from(FocusMap::new(4, 4, *offset).is_valid());
-        differences.push(largest_difference(&shot.splat(*offset, progress)?, &standard[0]));
-        differences.push(largest_difference(&shot.truth(*offset, 4, progress)?, &standard[1]));
+        let found = pictures(*offset)?;
+        differences.extend((0..3).map(|k| largest_difference(&found[k], &standard[k])));
         let optics = shot.camera.optics();
         raw.push(raw_kappa(&shot.camera, *offset) - optics.standard_kappa(0.5));
     }
-    let expected =
-        "recipes, brushes and maps refuse it; given to the renderers, the unpainted picture bit for bit";
+    let expected = "recipes, brushes and maps refuse it; given to the renderers (splat, rays from the sensor, rays from the surfaces), the unpainted picture bit for bit";
     let limits = [("accepted", 0.0), ("difference", 0.0)];
     Ok(Finding::of(expected, limits, [accepted, worst(differences)], [UNTRIED, worst(raw)]))
 }

@@ -9,7 +9,7 @@ use slf::DirectLight;
 use splat::{SplatError, Splatter};
 use std::sync::Arc;
 use trace::Tracer;
-use trace::truth::{self, TruthOptions};
+use trace::truth::{self, Estimator, TruthOptions};
 
 /// A scene and a camera.
 pub struct Shot {
@@ -61,7 +61,21 @@ impl Shot {
         self.truth_with(&self.focus(offset), samples, 1, progress)
     }
 
-    /// The same with a focus of its own for every point, and chosen random numbers.
+    /// The same by rays that start at the surfaces.
+    pub fn truth_from_surfaces(
+        &self,
+        offset: FocusOffset,
+        samples: u32,
+        progress: &dyn Progress,
+    ) -> Result<Picture, Cancelled> {
+        let estimator = Estimator::Surface;
+        let options = TruthOptions { samples_per_pixel: samples, estimator, ..TruthOptions::default() };
+        let focus = self.focus(offset);
+        let found = truth::render(&self.tracer, &*self.radiance, &focus, &self.camera, &options, progress)?;
+        Ok(found.picture)
+    }
+
+    /// The ray-traced picture with a focus of its own for every point, and chosen random numbers.
     pub fn truth_with(
         &self,
         focus: &Focus,
