@@ -211,6 +211,16 @@ fn a_light_field_renders_as_its_scene_does() {
     assert_eq!(place.psnr("direct.exr", "baked.exr"), 200.0);
     let info = place.json("info quads.salf --json");
     assert_eq!(info["kind"], "light field");
+    let kinds = |info: &Value| info["modelled"]["kinds"].as_array().unwrap().clone();
+    let of = |kinds: &[Value], kind: &str| kinds.iter().find(|row| row["kind"] == kind).unwrap().clone();
+    let visible = of(&kinds(&info), "visible");
+    assert_eq!(visible["samples"], info["salf"]["samples"]);
+    assert!(visible["texels"].is_null(), "a scene is not unwrapped unasked: {visible}");
+    let baked = kinds(&place.json("info quads.glb --bake --json"));
+    let texels = |kind| of(&baked, kind)["texels"].as_u64().unwrap();
+    assert!(texels("exist") > texels("visible") && texels("partly occluded") > 0, "{baked:?}");
+    assert_eq!(texels("open") + texels("partly occluded"), texels("visible"));
+    assert!(place.done("info quads.glb --bake").contains("dense form"));
     place.fails("render quads.salf --size 10x10 -o x.exr", 3, &["quads.salf", "96 × 64"]);
     let mut bytes = std::fs::read(place.path("quads.salf")).unwrap();
     let middle = bytes.len() / 2;
@@ -312,4 +322,73 @@ fn the_same_seed_gives_the_same_bits_and_standard_coverage_is_one() {
     let coverage = &read_picture(&place.path("standard.exr")).unwrap().layers["coverage"];
     let off = coverage.iter().filter(|c| (*c - 1.0).abs() > 0.005).count();
     assert!(off * 100 <= coverage.len(), "coverage is off in {off} of {} pixels", coverage.len());
+}
+
+#[test]
+fn a_report_is_complete_and_goes_on_where_it_was() {
+    const KEYS: [&str; 13] = [
+        "scene",
+        "focus",
+        "renderer",
+        "knob",
+        "value",
+        "seconds",
+        "bytes",
+        "rmse",
+        "relmse",
+        "psnr",
+        "flip",
+        "mean_error",
+        "reference_psnr",
+    ];
+    let place = Workplace::new();
+    let command = format!("report quads.glb {SHOT} --size 64x36 --quick --spp 64 -o out --json");
+    let first = place.json(&command);
+    let read = |name: &str| std::fs::read_to_string(place.path("out").join(name)).unwrap();
+    let records: Vec<Value> = serde_json::from_str(&read("report.json")).unwrap();
+    assert_eq!(first["measurements"].as_u64(), Some(records.len() as u64));
+    assert!(first["new"].as_u64().unwrap() > 10, "{first}");
+    for record in &records {
+        assert!(KEYS.iter().all(|key| !record[key].is_null()), "{record}");
+        assert!(
+            record["seconds"].as_f64().unwrap() > 0.0 && record["bytes"].as_u64().unwrap() > 0,
+            "{record}"
+        );
+    }
+    let psnr = |focus: &str, renderer: &str, value: f64| {
+        let is_it = |r: &&Value| r["focus"] == focus && r["renderer"] == renderer && r["value"] == value;
+        records.iter().find(is_it).unwrap()["psnr"].as_f64().unwrap()
+    };
+    for focus in ["standard", "painted"] {
+        assert!(psnr(focus, "truth", 64.0) > psnr(focus, "truth", 4.0), "more rays, less error");
+        assert!(psnr(focus, "splat", 2.0) > psnr(focus, "blur", 0.0), "the baseline is worse");
+    }
+
+    let csv = read("report.csv");
+    assert_eq!(csv.lines().count(), records.len() + 1);
+    assert!(csv.starts_with(&KEYS.join(",")), "{csv}");
+    let page = read("report.html");
+    assert!(page.contains("<svg") && page.contains("data:image/png;base64,") && page.contains("dense form"));
+    for outside in ["http:", "https:", "<script", "<link", "@import", "src=\"/", "url("] {
+        assert!(!page.contains(outside), "the page stands alone: {outside}");
+    }
+    assert!(!page.contains("NaN"), "no number is missing");
+    assert!(read("report.md").contains("## At equal error"));
+    let about: Value = serde_json::from_str(&read("about.json")).unwrap();
+    assert!(about["machine"]["cores"].as_u64().unwrap() >= 1, "{about}");
+
+    // A second run measures nothing again; a lost measurement alone is made anew.
+    let again = place.json(&command);
+    assert_eq!((&again["new"], &again["measurements"]), (&Value::from(0), &first["measurements"]));
+    assert_eq!(serde_json::from_str::<Vec<Value>>(&read("report.json")).unwrap(), records);
+    let kept = std::fs::read_dir(place.path("out/measurements")).unwrap().map(|entry| entry.unwrap().path());
+    let lost = kept
+        .into_iter()
+        .find(|file| file.to_string_lossy().contains("blur") && file.extension() == Some("json".as_ref()));
+    std::fs::remove_file(lost.unwrap()).unwrap();
+    assert!((1..=2).contains(&place.json(&command)["new"].as_u64().unwrap()));
+    // Another size is another picture.
+    let other = place.json(&command.replace("64x36", "48x27"));
+    assert_eq!(other["new"], first["new"]);
+    place.fails("report none.glb -o out2", 3, &["none.glb"]);
 }

@@ -34,6 +34,12 @@ const ALLOWED: &[(&str, &[&str])] = &[
         ],
     ),
     (
+        "report",
+        &[
+            "lens", "progress", "scene", "atlas", "trace", "salf", "focus", "splat", "project", "session",
+        ],
+    ),
+    (
         "focus-brush",
         &[
             "lens",
@@ -48,6 +54,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "baselines",
             "project",
             "session",
+            "report",
         ],
     ),
     ("xtask", &[]),

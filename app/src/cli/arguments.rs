@@ -36,6 +36,8 @@ pub enum Subcommand {
     Render(RenderArguments),
     /// How far picture A is from the reference B: RMSE, relMSE, PSNR, FLIP, signed mean error
     Compare(CompareArguments),
+    /// Measure every renderer against the ground truth: speed, error, memory, as tables, plots and a page
+    Report(ReportArguments),
     /// Write parts of a project: its focus map, its unwrapped scene, its picture in layers
     Export(ExportArguments),
     /// Adapters, libraries, what is missing and how to get it
@@ -47,6 +49,9 @@ pub enum Subcommand {
 pub struct InfoArguments {
     /// A scene (.glb, .gltf), project (.fbrush) or light field (.salf)
     pub file: PathBuf,
+    /// Bake a small picture's light field and count what of the scene is modelled
+    #[arg(long)]
+    pub bake: bool,
     /// Write JSON to stdout
     #[arg(long)]
     pub json: bool,
@@ -194,6 +199,27 @@ pub struct CompareArguments {
     #[arg(long, value_name = "OUT.png|exr")]
     pub error_map: Option<PathBuf>,
     /// Write JSON to stdout
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// `report`.
+#[derive(Debug, Args)]
+pub struct ReportArguments {
+    /// Scenes (.glb, .gltf) or projects (.fbrush); without any, the demo
+    pub scenes: Vec<PathBuf>,
+    /// The folder of the report; a run that was stopped goes on there
+    #[arg(short, long, value_name = "DIR")]
+    pub output: PathBuf,
+    #[command(flatten)]
+    pub shot: ShotArguments,
+    /// Rays a pixel of the reference pictures (default: 4096, with --quick 512)
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=1 << 20))]
+    pub spp: Option<u32>,
+    /// Measure only a few points of every sweep
+    #[arg(long)]
+    pub quick: bool,
+    /// Write what was done as JSON to stdout
     #[arg(long)]
     pub json: bool,
 }

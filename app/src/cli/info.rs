@@ -3,12 +3,15 @@
 use super::arguments::InfoArguments;
 use super::console::{Console, say, say_json};
 use super::failure::Failure;
+use super::shot::unwrap_options;
 use lens::Camera;
 use progress::Unwatched;
 use project::{ProjectFile, camera_to_json};
 use scene::{Inspection, MeshHealth, Scene};
 use serde_json::{Value, json};
-use session::{Input, InputKind};
+use session::{Input, InputKind, Modelled, RenderOptions};
+use std::sync::Arc;
+use trace::Tracer;
 
 /// Tells what is in a file.
 pub fn run(arguments: &InfoArguments, console: &Console) -> Result<(), Failure> {
@@ -25,6 +28,7 @@ pub fn run(arguments: &InfoArguments, console: &Console) -> Result<(), Failure> 
     let input = Input::open(file, &Unwatched)?;
     console.warn(&input.warnings);
     let health = MeshHealth::of(&input.scene);
+    let modelled = modelled(&input, arguments.bake, console)?;
     if arguments.json {
         say_json(&json!({
             "file": file,
@@ -43,6 +47,7 @@ pub fn run(arguments: &InfoArguments, console: &Console) -> Result<(), Failure> 
                 "bytes": salf.statistics().bytes,
                 "margin_px": salf.margin_px,
             })),
+            "modelled": modelled.as_ref().map(modelled_json),
             "would_bake": { "width": input.camera.width, "height": input.camera.height },
             "warnings": input.warnings,
         }));
@@ -56,13 +61,8 @@ pub fn run(arguments: &InfoArguments, console: &Console) -> Result<(), Failure> 
         project_lines(project);
     }
     scene_lines(&input.scene, &health);
-    if let Some(salf) = &input.salf {
-        let statistics = salf.statistics();
-        let mib = statistics.bytes as f64 / (1 << 20) as f64;
-        say(format!(
-            "  light field  {} samples open, {} partly occluded, {mib:.1} MiB",
-            statistics.open, statistics.partial
-        ));
+    if let Some(modelled) = &modelled {
+        modelled_lines(modelled);
     }
     bake_lines(&input.camera, &input.scene);
     Ok(())
@@ -152,6 +152,65 @@ fn mesh_sentence(health: &MeshHealth) -> String {
     let odd: Vec<_> =
         counts.iter().filter(|(count, _)| *count > 0).map(|(n, what)| format!("{n} {what}")).collect();
     if odd.is_empty() { "closed, nothing odd".into() } else { odd.join(", ") }
+}
+
+/// What is modelled: by the light field that the file is, or by one that is baked for a small picture, if that is wanted.
+fn modelled(input: &Input, bake: bool, console: &Console) -> Result<Option<BakedField>, Failure> {
+    // Unwrapping takes long: without being asked, only an atlas that is stored counts.
+    let is_stored = input.project.as_ref().is_some_and(|project| project.atlas.is_some());
+    if !bake && input.salf.is_none() {
+        return Ok(None);
+    }
+    let atlas = if bake || is_stored { Some(input.atlas(&unwrap_options(None), console)?) } else { None };
+    let tracer = Arc::new(Tracer::new(input.scene.clone()));
+    let salf = match &input.salf {
+        Some(salf) => salf.clone(),
+        None => {
+            let camera = small(&input.camera);
+            let focus = input.focus(None, &unwrap_options(None), console)?;
+            let tolerance_px = RenderOptions::default().tolerance_px;
+            Arc::new(session::bake(&tracer, &camera, &focus, tolerance_px, console)?)
+        }
+    };
+    let size = [salf.camera.width, salf.camera.height];
+    Ok(Some(BakedField { modelled: Modelled::of(&salf, &tracer, atlas.as_deref()), size }))
+}
+
+/// What a light field of a picture of this size holds.
+struct BakedField {
+    modelled: Modelled,
+    size: [u32; 2],
+}
+
+/// Height of the picture that `--bake` bakes, px.
+const SMALL_HEIGHT: u32 = 180;
+
+/// The camera with a small picture.
+fn small(camera: &Camera) -> Camera {
+    let height = camera.height.min(SMALL_HEIGHT);
+    let width = (f64::from(height) * camera.aspect()).round().max(1.0) as u32;
+    Camera { width, height, ..camera.clone() }
+}
+
+fn modelled_json(field: &BakedField) -> Value {
+    json!({
+        "width": field.size[0],
+        "height": field.size[1],
+        "kinds": field.modelled.rows(),
+        "texels_asked": field.modelled.texels.map(|texels| texels.asked),
+        "bytes_a_sample": field.modelled.bytes_a_sample(),
+    })
+}
+
+fn modelled_lines(BakedField { modelled, size }: &BakedField) {
+    let [width, height] = size;
+    say(format!("  modelled     for {width} × {height} px    texels     samples        bytes"));
+    let text = |value: Option<usize>| value.map_or_else(|| "–".into(), |n| n.to_string());
+    for row in modelled.rows() {
+        let [texels, samples, bytes] = [row.texels, row.samples, row.bytes].map(text);
+        say(format!("    {:<22} {texels:>13} {samples:>11} {bytes:>12}", row.kind));
+    }
+    say(format!("    {:.1} bytes a visible sample", modelled.bytes_a_sample()));
 }
 
 fn scene_json(scene: &Scene) -> Value {

@@ -1,7 +1,7 @@
 //! The command line: a thin layer over the `session` crate.
 //!
 //! * `arguments`: what can be typed. One file a subcommand does it: `info`, `new`, `unwrap`, `bake`, `render`,
-//!   `compare`, `export`, `doctor`.
+//!   `compare`, `report`, `export`, `doctor`.
 //! * `console`: progress on stderr, results on stdout. `failure`: errors and exit codes.
 
 mod arguments;
@@ -14,6 +14,7 @@ mod failure;
 mod info;
 mod new;
 mod render;
+mod report;
 mod shot;
 mod unwrap;
 
@@ -67,6 +68,7 @@ fn dispatch(command: Subcommand) -> Result<(), Failure> {
         Subcommand::Bake(arguments) => bake::run(&arguments, &console),
         Subcommand::Render(arguments) => render::run(&arguments, &console),
         Subcommand::Compare(arguments) => compare::run(&arguments),
+        Subcommand::Report(arguments) => report::run(&arguments, &console),
         Subcommand::Export(arguments) => export::run(&arguments, &console),
         Subcommand::Doctor(arguments) => doctor::run(&arguments),
     }

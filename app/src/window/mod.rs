@@ -10,7 +10,7 @@
 mod action;
 mod brush_ring;
 mod controls;
-mod demo;
+pub(crate) mod demo;
 mod false_colour;
 mod file_dialog;
 mod focus_slider;

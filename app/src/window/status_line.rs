@@ -41,8 +41,7 @@ pub fn status_line(ui: &mut Ui, session: &Session, notes: StatusNotes<'_>, actio
                 "How long the last picture took to draw, and whether all or only the painted part was drawn.",
             );
             ui.separator();
-            let samples =
-                preview.statistics.open + preview.statistics.partial + preview.statistics.background;
+            let samples = preview.modelled.sample_count();
             if samples > 0 {
                 ui.label(format!("{} samples", controls::count(samples)))
                     .on_hover_text("Samples of the light field that the picture is summed from.");

@@ -3,6 +3,7 @@
 use glam::{Vec2, Vec3};
 use lens::Camera;
 use scene::SurfacePoint;
+use serde::{Deserialize, Serialize};
 
 /// The surface-aperture light field of one camera.
 #[derive(Clone, Debug)]
@@ -72,33 +73,40 @@ impl Visibility {
 }
 
 /// How many samples there are of each kind, and what they take.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct SalfStatistics {
     /// Samples that see the whole aperture.
     pub open: usize,
     /// Samples that see part of it.
     pub partial: usize,
-    /// Samples of the background.
+    /// Samples of the background, which are among the others.
     pub background: usize,
     /// Bytes of all samples.
     pub bytes: usize,
+    /// Of these, what the open samples take.
+    pub open_bytes: usize,
+    /// Of these, what the partly occluded samples take, masks included.
+    pub partial_bytes: usize,
 }
 
 impl Salf {
     /// Counts the samples by kind.
     pub fn statistics(&self) -> SalfStatistics {
-        let mut statistics =
-            SalfStatistics { bytes: size_of_val(self.samples.as_slice()), ..Default::default() };
+        let mut statistics = SalfStatistics::default();
         for sample in &self.samples {
             match &sample.visibility {
-                Visibility::Open => statistics.open += 1,
+                Visibility::Open => {
+                    statistics.open += 1;
+                    statistics.open_bytes += size_of::<Sample>();
+                }
                 Visibility::Cells(words) => {
                     statistics.partial += 1;
-                    statistics.bytes += size_of_val(&**words);
+                    statistics.partial_bytes += size_of::<Sample>() + size_of_val(&**words);
                 }
             }
             statistics.background += usize::from(sample.surface.is_none());
         }
+        statistics.bytes = statistics.open_bytes + statistics.partial_bytes;
         statistics
     }
 }

@@ -2,11 +2,11 @@
 
 use crate::render::light;
 use crate::sample_index::SampleIndex;
-use crate::{SessionError, Stage};
+use crate::{Modelled, SessionError, Stage};
 use focus::Focus;
 use lens::{Camera, Picture};
 use progress::Progress;
-use salf::{BakeOptions, SalfStatistics};
+use salf::BakeOptions;
 use splat::{SplatError, Splatter};
 use std::sync::Arc;
 use std::time::Instant;
@@ -62,7 +62,7 @@ pub(crate) enum Brought {
 pub(crate) struct LightField {
     splatter: Splatter,
     index: SampleIndex,
-    statistics: SalfStatistics,
+    modelled: Modelled,
     /// The lens of the sum; none while there is no valid sum.
     summed: Option<Camera>,
     /// What the sum has not seen.
@@ -95,7 +95,7 @@ impl LightField {
         let salf = Arc::new(salf::bake(&stage.tracer, &radiance, camera, &options, progress)?);
         Ok(Self {
             index: SampleIndex::new(&salf, &stage.atlas),
-            statistics: salf.statistics(),
+            modelled: Modelled::with_texels(&salf, &stage.tracer, Some(&stage.texels.texels)),
             splatter: Splatter::new(salf),
             summed: None,
             unseen: Changes::default(),
@@ -175,9 +175,9 @@ impl LightField {
         self.splatter.picture().clone()
     }
 
-    /// Its samples, counted.
-    pub fn statistics(&self) -> SalfStatistics {
-        self.statistics
+    /// What it holds, counted.
+    pub fn modelled(&self) -> Modelled {
+        self.modelled
     }
 }
 

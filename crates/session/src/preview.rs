@@ -18,11 +18,10 @@
 use crate::job::{JobProgress, Waker};
 use crate::light_field::{Changes, LightField};
 use crate::preview_worker::Worker;
-use crate::{SessionError, Stage};
+use crate::{Modelled, SessionError, Stage};
 use focus::FocusMap;
 use lens::{Camera, Picture};
 use progress::{Cancelled, Progress};
-use salf::SalfStatistics;
 use std::sync::atomic::{AtomicU8, Ordering};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 
@@ -41,8 +40,8 @@ pub struct Preview {
     pub camera: Camera,
     /// Seconds that making it took.
     pub seconds: f64,
-    /// Samples of the light field; none for a pinhole picture.
-    pub statistics: SalfStatistics,
+    /// What the light field holds; nothing for a pinhole picture.
+    pub modelled: Modelled,
     /// Which of the session's documents it shows.
     pub(crate) generation: u64,
 }

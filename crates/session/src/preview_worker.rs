@@ -4,12 +4,11 @@ use crate::job::guarded;
 use crate::light_field::{Brought, Changes, LightField};
 use crate::preview::{Delivery, Shared, Wishes};
 use crate::render::light;
-use crate::{Preview, PreviewActivity, PreviewKind, SessionError, Stage};
+use crate::{Modelled, Preview, PreviewActivity, PreviewKind, SessionError, Stage};
 use baselines::FirstHits;
 use focus::{Focus, FocusMap};
 use lens::{Camera, Picture};
 use progress::Stage as Share;
-use salf::SalfStatistics;
 use std::sync::Arc;
 use std::thread::JoinHandle;
 use std::time::Instant;
@@ -115,12 +114,12 @@ impl Worker {
             let start = Instant::now();
             let brought = fine.bring_up(&camera, &focus, &self.shared.quick)?;
             if brought != Brought::Nothing || self.is_new {
-                let (picture, statistics) = (fine.picture(), fine.statistics());
+                let (picture, modelled) = (fine.picture(), fine.modelled());
                 // The helper's sum took its time elsewhere.
                 let elsewhere = if self.is_new { fine.whole_seconds() } else { 0.0 };
                 self.is_new = false;
                 let seconds = start.elapsed().as_secs_f64() + elsewhere;
-                self.publish(picture, brought.into(), &camera, seconds, statistics);
+                self.publish(picture, brought.into(), &camera, seconds, modelled);
             }
             let may_refine = self.is_settled && self.helper.is_none() && !self.is_held;
             let fine = self.fine.as_ref().filter(|_| may_refine);
@@ -190,7 +189,7 @@ impl Worker {
             let radiance = light(&stage.tracer, camera);
             let hits = FirstHits::trace(&stage.tracer, &radiance, focus, camera, &self.shared.quick)?;
             let seconds = start.elapsed().as_secs_f64();
-            self.publish(hits.picture(), PreviewKind::Pinhole, camera, seconds, SalfStatistics::default());
+            self.publish(hits.picture(), PreviewKind::Pinhole, camera, seconds, Modelled::default());
         }
         let Some(small) = small else { return Ok(()) };
         self.coarse.take_if(|coarse| !coarse.serves(&small));
@@ -205,8 +204,8 @@ impl Worker {
         let start = Instant::now();
         let brought = coarse.bring_up(&small, focus, &self.shared.quick)?;
         if brought != Brought::Nothing || self.shown.as_ref() != Some(&small) {
-            let (picture, statistics) = (coarse.picture(), coarse.statistics());
-            self.publish(picture, brought.into(), &small, start.elapsed().as_secs_f64(), statistics);
+            let (picture, modelled) = (coarse.picture(), coarse.modelled());
+            self.publish(picture, brought.into(), &small, start.elapsed().as_secs_f64(), modelled);
         }
         Ok(())
     }
@@ -254,7 +253,7 @@ impl Worker {
         kind: PreviewKind,
         camera: &Camera,
         seconds: f64,
-        statistics: SalfStatistics,
+        modelled: Modelled,
     ) {
         self.last_id += 1;
         self.shown = Some(camera.clone());
@@ -266,7 +265,7 @@ impl Worker {
             kind,
             camera: camera.clone(),
             seconds,
-            statistics,
+            modelled,
             generation: self.generation,
         });
     }

@@ -58,6 +58,11 @@ impl Hierarchy {
         (Self { nodes, stack_size: 3 * depth + 4 }, order)
     }
 
+    /// Bytes of all nodes.
+    pub fn bytes(&self) -> usize {
+        size_of_val(self.nodes.as_slice())
+    }
+
     /// Calls `visit` for the items of every leaf that the ray meets before local t `far`, nearer leaves first
     /// (by and large); `visit` returns the new `far`, or `None` to end the walk.
     #[inline(always)]

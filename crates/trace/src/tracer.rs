@@ -67,6 +67,11 @@ impl Tracer {
         &self.scene
     }
 
+    /// Bytes that the hierarchy and its triangles take, the scene itself not counted.
+    pub fn bytes(&self) -> usize {
+        self.hierarchy.bytes() + size_of_val(self.triangles.as_slice())
+    }
+
     /// The first surface that the ray meets.
     pub fn first_hit(&self, ray: &Ray) -> Option<Hit> {
         let local = self.space.ray(ray)?;

@@ -1,34 +1,50 @@
-//! What the light field holds: only what the scene needs.
+//! What the light field holds: only what the scene needs. The table is that of `info` and `report`.
 
 use crate::window::controls::{bytes, count, row, rows, seconds};
-use egui::Ui;
-use session::{Document, Session};
+use egui::{RichText, Ui};
+use session::{Document, Modelled, Session};
 
-/// Samples, memory and time of the light field.
+/// Texels, samples and memory of the light field, kind by kind, and the time of the last picture.
 pub fn modelled_panel(ui: &mut Ui, session: &Session, document: &Document) {
     let Some(preview) = session.preview() else {
         ui.weak("Nothing yet.");
         return;
     };
-    let statistics = preview.statistics;
-    let total = statistics.open + statistics.partial + statistics.background;
-    let share = |n: usize| if total > 0 { 100.0 * n as f64 / total as f64 } else { 0.0 };
+    kinds(ui, &preview.modelled);
+    ui.add_space(4.0);
     rows(ui, "modelled", |ui| {
         let mut line = |label: &str, tip: &str, value: String| {
             row(ui, label, tip, |ui| ui.label(value));
         };
-        let samples = format!("{}, {}", count(total), bytes(statistics.bytes));
-        line("Samples", "Pieces of surface that some point of the aperture sees, and their memory.", samples);
-        let open = format!("{:.0} %", share(statistics.open));
-        line("Open", "Samples that see the whole aperture: one colour is enough.", open);
-        let partial = format!("{:.0} %", share(statistics.partial));
-        line("At edges", "Samples that something hides from part of the aperture.", partial);
-        let background = format!("{:.0} %", share(statistics.background));
-        line("Background", "Samples at infinity.", background);
+        let each = format!("{:.0} B", preview.modelled.bytes_a_sample());
+        line("A sample", "Mean memory of a sample; in dense form each would take 384 B.", each);
         let size = format!("{} × {} px", preview.camera.width, preview.camera.height);
         line("Drawn at", "Size of the live picture.", size);
         line("Drawn in", "How long the last picture took.", seconds(preview.seconds));
         let map = format!("{} × {}", document.map.width(), document.map.height());
         line("Focus map", "Texels of the painted map.", map);
+    });
+}
+
+/// The table of kinds.
+fn kinds(ui: &mut Ui, modelled: &Modelled) {
+    egui::Grid::new("kinds").num_columns(4).spacing([10.0, 4.0]).striped(true).show(ui, |ui| {
+        for (title, tip) in [
+            ("", "What is counted."),
+            ("texels", "Texels of the atlas; of a large atlas an estimate."),
+            ("samples", "Pieces of surface that the picture is summed from."),
+            ("memory", "What these samples take."),
+        ] {
+            ui.label(RichText::new(title).weak()).on_hover_text(tip);
+        }
+        ui.end_row();
+        for row in modelled.rows() {
+            ui.label(row.kind).on_hover_text(row.what);
+            let cell = |value: Option<String>| value.unwrap_or_else(|| "–".into());
+            ui.label(cell(row.texels.map(count)));
+            ui.label(cell(row.samples.map(count)));
+            ui.label(cell(row.bytes.map(bytes)));
+            ui.end_row();
+        }
     });
 }

@@ -1,0 +1,80 @@
+//! `focus-brush report`.
+
+use super::arguments::ReportArguments;
+use super::console::{Console, say_json};
+use super::failure::Failure;
+use super::shot::unwrap_options;
+use crate::window::demo;
+use report::{ReportOptions, SceneRequest};
+use serde_json::json;
+use session::{CameraChoice, Command};
+use sha2::{Digest, Sha256};
+use std::io::Read;
+
+/// Measures, and writes the report.
+pub fn run(arguments: &ReportArguments, console: &Console) -> Result<(), Failure> {
+    let usual_spp =
+        if arguments.quick { ReportOptions::QUICK_REFERENCE_SPP } else { ReportOptions::REFERENCE_SPP };
+    let options = ReportOptions {
+        size: arguments.shot.size,
+        reference_spp: arguments.spp.unwrap_or(usual_spp),
+        is_quick: arguments.quick,
+        build: build()?,
+        unwrap: unwrap_options(None),
+    };
+    let note = |line: &str| console.note(line);
+    let report = report::run(&requests(arguments)?, &options, &arguments.output, console, &note)?;
+    if arguments.json {
+        say_json(&json!({
+            "files": report.files,
+            "measurements": report.measured.len(),
+            "new": report.new,
+            "machine": report.machine,
+            "seconds": report.seconds,
+        }));
+    } else {
+        let (all, new) = (report.measured.len(), report.new);
+        console.note(&format!("{all} measurements, {new} of them new, in {:.0} s", report.seconds));
+        report.files.iter().for_each(|file| console.note(&format!("wrote {}", file.display())));
+    }
+    Ok(())
+}
+
+/// The scenes that were named, or the demo as its makers shot and focused it.
+fn requests(arguments: &ReportArguments) -> Result<Vec<SceneRequest>, Failure> {
+    let shot = &arguments.shot;
+    if !arguments.scenes.is_empty() {
+        let (camera, focus) = (&shot.camera, &shot.focus);
+        let request = |file: &std::path::PathBuf| SceneRequest {
+            file: file.clone(),
+            camera: camera.clone(),
+            focus: focus.clone(),
+        };
+        return Ok(arguments.scenes.iter().map(request).collect());
+    }
+    match demo::open() {
+        Some(Command::OpenShot { scene, camera, focus }) => Ok(vec![SceneRequest {
+            file: scene,
+            camera: Some(shot.camera.clone().unwrap_or(CameraChoice::File(camera))),
+            focus: Some(shot.focus.clone().unwrap_or(focus)),
+        }]),
+        _ => Err(Failure::bad("assets/demo: the demo is not installed (name a scene)")),
+    }
+}
+
+/// What tells this build of the program from another: the checksum of the program itself.
+fn build() -> Result<String, Failure> {
+    let unread = |error: std::io::Error| {
+        Failure::try_again(format!("the running program cannot be read: {error} (start it by another path)"))
+    };
+    let mut program = std::fs::File::open(std::env::current_exe().map_err(unread)?).map_err(unread)?;
+    let mut sum = Sha256::new();
+    let mut block = vec![0; 1 << 20];
+    loop {
+        let length = program.read(&mut block).map_err(unread)?;
+        if length == 0 {
+            return Ok(sum.finalize().iter().map(|byte| format!("{byte:02x}")).collect());
+        }
+        sum.update(&block[..length]);
+    }
+}

@@ -1,0 +1,67 @@
+//! A lens for scenes that come without one.
+
+use lens::Camera;
+use session::FirstHits;
+
+/// The circle of confusion that most pixels of an unfamiliar scene stay below, in picture heights: blurred enough to
+/// compare blurs, with something left to see.
+const TYPICAL_CIRCLE: f64 = 0.05;
+
+/// The share of pixels that stay below it.
+const MOST: f64 = 0.9;
+
+/// Opens the aperture of `camera` as far as its scene (`hits` are those of the standard lens) calls for; the focus distance
+/// stays. Returns what was done, a sentence. Without any depth to blur by, the camera stays as it is.
+pub fn opened_lens(camera: &mut Camera, hits: &FirstHits) -> String {
+    let optics = camera.optics();
+    // Pixels of a circle, for each unit of aperture radius.
+    let a_unit = |&kappa: &f64| 2.0 * kappa.abs() / optics.tan_half_yfov * optics.half_height_px;
+    let surfaces = hits.kappa.iter().zip(&hits.depth).filter(|(_, depth)| depth.is_finite());
+    let mut circles: Vec<f64> = surfaces.map(|(kappa, _)| a_unit(kappa)).collect();
+    let wide = quantile(&mut circles, MOST);
+    let radius = TYPICAL_CIRCLE * camera.height as f64 / wide;
+    if !(radius.is_finite() && radius > 0.0) {
+        return "the file has no lens, and nothing in sight to choose one by".into();
+    }
+    camera.aperture_radius = radius;
+    let (share, circle) = (MOST * 100.0, TYPICAL_CIRCLE * 100.0);
+    format!(
+        "chosen (the file has none): circles of confusion of at most {circle:.0} % of the picture's height in {share:.0} % of the picture"
+    )
+}
+
+/// The value that a share `at` of all values stay below; NaN for none. Sorts the values.
+pub fn quantile(values: &mut [f64], at: f64) -> f64 {
+    values.sort_by(f64::total_cmp);
+    let last = values.len().saturating_sub(1);
+    values.get((at * last as f64).round() as usize).copied().unwrap_or(f64::NAN)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_aperture_opens_until_the_circles_are_as_wide_as_wanted() {
+        let mut camera = Camera { width: 20, height: 10, ..Camera::default() };
+        let mut hits = FirstHits::background(20, 10);
+        let optics = camera.optics();
+        for (k, depth) in hits.depth.iter_mut().enumerate() {
+            *depth = 1.0 + k as f32 / 10.0;
+            hits.kappa[k] = optics.standard_kappa(1.0 / *depth as f64);
+        }
+        let told = opened_lens(&mut camera, &hits);
+        assert!(told.contains("chosen"), "{told}");
+        let optics = camera.optics();
+        let mut circles: Vec<f64> = hits.kappa.iter().map(|&k| optics.circle_of_confusion_px(k)).collect();
+        assert!((quantile(&mut circles, 0.9) - 0.5).abs() < 1e-9);
+    }
+
+    #[test]
+    fn nothing_in_sight_changes_nothing() {
+        let mut camera = Camera::default();
+        let told = opened_lens(&mut camera, &FirstHits::background(4, 4));
+        assert_eq!(camera, Camera::default());
+        assert!(told.contains("nothing in sight"));
+    }
+}

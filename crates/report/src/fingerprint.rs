@@ -1,0 +1,146 @@
+//! What tells one input from another, as SHA-256: measurements of changed inputs do not count.
+
+use focus::{Focus, FocusSource};
+use lens::{ApertureShape, Camera};
+use scene::{ImageLevel, Scene};
+use sha2::{Digest, Sha256};
+use std::sync::Arc;
+
+/// Takes up values and gives one short name for all of them.
+pub struct Fingerprint(Sha256);
+
+impl Fingerprint {
+    /// Of nothing yet.
+    pub fn new() -> Self {
+        Self(Sha256::new())
+    }
+
+    /// Takes up bytes. Their number is taken up too, so that what follows cannot be mistaken for them.
+    pub fn add(mut self, bytes: &[u8]) -> Self {
+        self.0.update((bytes.len() as u64).to_le_bytes());
+        self.0.update(bytes);
+        self
+    }
+
+    /// Takes up what a value looks like.
+    pub fn add_debug(self, value: &dyn std::fmt::Debug) -> Self {
+        self.add(format!("{value:?}").as_bytes())
+    }
+
+    /// The name: 24 hexadecimal digits, 96 bits.
+    pub fn name(self) -> String {
+        self.0.finalize().iter().take(12).map(|byte| format!("{byte:02x}")).collect()
+    }
+}
+
+/// Of all that a scene shows, wherever its files lie.
+pub fn of_scene(scene: &Scene) -> String {
+    let numbers = |values: &[u32]| bytemuck::cast_slice::<u32, u8>(values).to_vec();
+    let triangles: Vec<u32> =
+        scene.triangles.iter().flat_map(|t| [&t.vertices[..], &[t.part]].concat()).collect();
+    let mut fingerprint = Fingerprint::new()
+        .add(bytemuck::cast_slice(&scene.positions))
+        .add(bytemuck::cast_slice(&scene.normals))
+        .add(bytemuck::cast_slice(&scene.uv[0]))
+        .add(bytemuck::cast_slice(&scene.uv[1]))
+        .add(bytemuck::cast_slice(&scene.colors))
+        .add(&numbers(&triangles))
+        .add_debug(&scene.parts)
+        .add_debug(&scene.nodes)
+        .add_debug(&scene.materials)
+        .add_debug(&scene.lights);
+    for image in &scene.images {
+        let texels = match &image.texels {
+            ImageLevel::Bits8(texels) => texels.as_slice(),
+            ImageLevel::Bits16(texels) => bytemuck::cast_slice(texels),
+        };
+        fingerprint = fingerprint.add_debug(&[image.width, image.height]).add(texels);
+    }
+    fingerprint.name()
+}
+
+/// Of a camera with its lens, aperture picture and size.
+pub fn of_camera(camera: &Camera) -> String {
+    let fingerprint = Fingerprint::new();
+    match &camera.aperture.shape {
+        // The texels of a mask run into millions: as bytes, not as text.
+        ApertureShape::Mask(mask) => {
+            let aperture = lens::Aperture { shape: ApertureShape::Disc, ..camera.aperture.clone() };
+            let rest = Camera { aperture, ..camera.clone() };
+            fingerprint
+                .add_debug(&rest)
+                .add_debug(&[mask.width, mask.height])
+                .add(bytemuck::cast_slice(&mask.transmission))
+        }
+        _ => fingerprint.add_debug(camera),
+    }
+    .name()
+}
+
+/// Of a focus. It counts in parts, so it means something only together with its scene.
+pub fn of_focus(focus: &Focus) -> String {
+    let mut fingerprint = Fingerprint::new().add_debug(&focus.background);
+    // Painted parts share one map: it is taken up once.
+    let mut last_map = None;
+    for part in &focus.parts {
+        fingerprint = match part {
+            FocusSource::Constant(value) => fingerprint.add_debug(value),
+            FocusSource::Uv { image, wrap } => fingerprint
+                .add_debug(wrap)
+                .add_debug(&[image.width, image.height])
+                .add(bytemuck::cast_slice(&image.texels)),
+            FocusSource::Atlas { atlas, map } if last_map == Some(Arc::as_ptr(map)) => {
+                fingerprint.add(atlas.hash.as_bytes())
+            }
+            FocusSource::Atlas { atlas, map } => {
+                last_map = Some(Arc::as_ptr(map));
+                fingerprint.add(atlas.hash.as_bytes()).add(bytemuck::cast_slice(&map.to_rows()))
+            }
+        };
+    }
+    fingerprint.name()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use lens::{ApertureMask, FocusOffset};
+
+    #[test]
+    fn any_change_of_a_scene_shows() {
+        let scene = Scene { positions: vec![glam::DVec3::ONE; 3], ..Scene::default() };
+        let moved = Scene { positions: vec![glam::DVec3::splat(1.0 + 1e-15); 3], ..scene.clone() };
+        let elsewhere = Scene { path: "other.glb".into(), ..scene.clone() };
+        assert_ne!(of_scene(&scene), of_scene(&moved));
+        assert_eq!(of_scene(&scene), of_scene(&elsewhere), "where it lies does not matter");
+    }
+
+    #[test]
+    fn any_change_of_a_camera_shows() {
+        let camera = Camera::default();
+        assert_ne!(of_camera(&camera), of_camera(&Camera { width: 961, ..camera.clone() }));
+        let masked = |value: f32| {
+            let mask =
+                ApertureMask { width: 2, height: 1, transmission: vec![value, 1.0], file: String::new() };
+            let shape = ApertureShape::Mask(Arc::new(mask));
+            Camera { aperture: lens::Aperture { shape, ..Default::default() }, ..Camera::default() }
+        };
+        assert_ne!(of_camera(&masked(0.0)), of_camera(&masked(1.0)));
+        assert_eq!(of_camera(&masked(1.0)), of_camera(&masked(1.0)));
+    }
+
+    #[test]
+    fn any_change_of_a_focus_shows() {
+        let scene = Arc::new(Scene::default());
+        let standard = Focus::constant(scene.clone(), FocusOffset::STANDARD);
+        let painted = Focus::constant(scene, FocusOffset::new(1.0, 1.0));
+        assert_ne!(of_focus(&standard), of_focus(&painted));
+    }
+
+    #[test]
+    fn what_is_taken_up_keeps_its_bounds() {
+        let name = |a: &str, b: &str| Fingerprint::new().add(a.as_bytes()).add(b.as_bytes()).name();
+        assert_ne!(name("ab", "c"), name("a", "bc"));
+        assert_eq!(name("ab", "c").len(), 24);
+    }
+}

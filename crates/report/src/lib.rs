@@ -1,0 +1,48 @@
+//! Speed against error: every renderer measured against the ground truth.
+//!
+//! [`run`] takes scenes and a folder and leaves there a page that can be published, and all its figures:
+//!
+//! ```text
+//! report.html   one page, nothing loaded from elsewhere: plots, pictures, error maps, tables
+//! report.md     the tables
+//! report.json   a record a measurement; report.csv the same
+//! about.json    machine, version, scenes, what was modelled
+//! hard.json     the hard cases, if they were asked for
+//! ```
+//!
+//! The road of the data: `subject` opens a scene with its camera and focuses, `plan` lists what to measure, `reference`
+//! makes the ground truth of each picture with its own error, `contender` draws and is timed, `store` keeps every finished
+//! measurement at once (so that a run that was stopped goes on where it was), `findings` draws conclusions, `page` and
+//! `tables` write them down with `plot`.
+
+mod contender;
+mod default_lens;
+mod findings;
+mod fingerprint;
+mod generic_focus;
+mod machine;
+mod markup;
+mod measure;
+mod memory;
+mod options;
+mod page;
+mod plan;
+mod plot;
+mod record;
+mod reference;
+mod run;
+mod stopwatch;
+mod store;
+mod subdivision;
+mod subject;
+mod summary;
+mod table;
+mod tables;
+mod write;
+
+pub use contender::Contender;
+pub use machine::Machine;
+pub use options::{ReportOptions, SceneRequest};
+pub use record::{Record, Series};
+pub use run::{Report, run};
+pub use summary::{FocusSummary, SceneSummary};

@@ -1,0 +1,174 @@
+//! The page: everything in one HTML file, with nothing to load from elsewhere.
+
+mod pictures;
+mod plots;
+
+use crate::findings::equal_errors;
+use crate::machine::Machine;
+use crate::markup::escaped;
+use crate::plot::{Chart, bytes, significant};
+use crate::record::{Record, Series};
+use crate::run::{Measured, Report};
+use crate::summary::{ModelledScene, SceneSummary};
+use crate::tables;
+use session::{DENSE_SAMPLE_BYTES, SessionError};
+
+const STYLE: &str = include_str!("style.css");
+
+/// How to read the comparison at equal error.
+pub const EQUAL_ERROR_NOTE: &str = "The splat at its usual tolerance, and the time after which the ray tracer has the same root mean \
+square error, read off its measured curve (*: beyond the measurements, by the law of all of them). What of an error is the \
+reference's own is taken out first. “Refocus” is all that another focus, focus distance or f-stop takes once the light field \
+is baked.";
+
+/// The page.
+pub fn html(report: &Report) -> Result<String, SessionError> {
+    let records: Vec<&Record> = report.measured.iter().map(|measured| &measured.record).collect();
+    let equal = equal_errors(records.iter().copied());
+    let mut body = format!(
+        "<h1>Focus Brush: speed against error</h1>\n<p class=\"byline\">{}</p>\n{}",
+        escaped(&machine_sentence(&report.machine)),
+        method(report)
+    );
+    body += &format!(
+        "<h2>At equal error</h2>\n{}<p class=\"caption\">{EQUAL_ERROR_NOTE}</p>\n",
+        tables::equal_errors(&equal).to_html()
+    );
+    for scene in &report.scenes {
+        body += &scene_section(scene, &report.measured)?;
+    }
+    body += "<h2>All measurements</h2>\n";
+    for series in Series::ALL {
+        let table = tables::records(records.iter().copied().filter(|record| record.series == series));
+        if !table.rows.is_empty() {
+            body += &format!("<h3>{}</h3>\n{}\n", series_title(series), table.to_html());
+        }
+    }
+    Ok(format!(
+        "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n<meta name=\"viewport\" \
+         content=\"width=device-width, initial-scale=1\">\n<title>Focus Brush: speed against error</title>\n\
+         <style>\n{STYLE}</style></head>\n<body>\n{body}</body></html>\n"
+    ))
+}
+
+/// What was measured, and how.
+fn method(report: &Report) -> String {
+    format!(
+        "<h2>What was measured</h2>\n\
+         <p>Every renderer draws the same pictures, which are compared with references by ray tracing of the same model. \
+         Errors are those of the conserved radiance (the exposure “conserve”), linear: RMSE, PSNR and FLIP of values clipped to \
+         [0, 1], relMSE = mean of (a − b)²/(b² + 0.01) and the signed mean error (a − b)/b of unclipped ones. FLIP is that of \
+         Andersson et al. 2020 at 67 pixels a degree. Times are wall-clock times from a scene whose ray hierarchy stands; those \
+         under a quarter of a second are medians of up to five. “Memory” is what a renderer keeps for the next picture: the \
+         light field's samples, the hierarchy over the triangles, or a pinhole picture with its defocus; “peak” is how much more the process held at \
+         most. A reference is the mean of two pictures of independent scrambles; their difference gives its own error.</p>\n\
+         {}<p class=\"caption\">Circles of confusion: the diameters that half / 90 % / 99 % of the pixels stay below. PSNR of a \
+         reference: its own, estimated; a measured PSNR near it or above says only that the picture is at least as good.</p>\n",
+        tables::scenes(&report.scenes).to_html()
+    )
+}
+
+fn scene_section(scene: &SceneSummary, measured: &[Measured]) -> Result<String, SessionError> {
+    let own: Vec<&Measured> = measured.iter().filter(|m| m.record.scene == scene.name).collect();
+    let of_series = |series| own.iter().filter(move |m| m.record.series == series).copied();
+    let distance = scene.focus_distance.map_or_else(|| "infinity".into(), significant);
+    let mut html = format!(
+        "<h2>{}</h2>\n<p>{} triangles in {} parts, {} lights; f/{}, focused at {distance}. Lens: {}. Hierarchy: {}.</p>\n",
+        escaped(&scene.name),
+        scene.triangles,
+        scene.parts,
+        scene.lights,
+        significant(scene.f_number),
+        escaped(&scene.lens),
+        bytes(scene.hierarchy_bytes as f64),
+    );
+    let mut charts = Vec::new();
+    for focus in &scene.focuses {
+        let sweep: Vec<&Record> =
+            of_series(Series::Knob).map(|m| &m.record).filter(|r| r.focus == focus.name).collect();
+        charts.push(plots::time_against_error(&sweep));
+        charts.push(plots::memory_against_error(&sweep));
+    }
+    for series in Series::ALL {
+        let records: Vec<&Record> = of_series(series).map(|m| &m.record).collect();
+        charts.extend(plots::cost(series, &records));
+    }
+    html += "<div class=\"charts\">\n";
+    charts.iter().for_each(|chart| html += &figure(chart));
+    html += "</div>\n";
+    for focus in &scene.focuses {
+        let shown: Vec<&Measured> =
+            of_series(Series::Knob).filter(|m| m.record.focus == focus.name).collect();
+        html += &format!(
+            "<h3>{}, {}</h3>\n<p>{}.</p>\n{}<p class=\"caption\">Below each picture its FLIP error: 0 <span \
+             class=\"ramp\"></span> 1.</p>\n",
+            escaped(&scene.name),
+            escaped(&focus.name),
+            escaped(&sentence(&focus.what)),
+            pictures::figures(focus, &shown)?
+        );
+    }
+    html += &format!(
+        "<h3>What was modelled</h3>\n{}<p class=\"caption\">{}</p>\n",
+        tables::modelled(&scene.modelled).to_html(),
+        escaped(&saving_sentence(&scene.modelled))
+    );
+    Ok(html)
+}
+
+fn figure(chart: &Chart) -> String {
+    let caption = match chart.left_out() {
+        0 => String::new(),
+        n => format!("<figcaption>{n} marks at 0 have no place on a logarithmic axis.</figcaption>"),
+    };
+    format!("<figure>{}{caption}</figure>\n", chart.to_svg())
+}
+
+/// The title of a series' table.
+pub fn series_title(series: Series) -> &'static str {
+    match series {
+        Series::Knob => "Knobs",
+        Series::Aperture => "Apertures",
+        Series::PictureSize => "Picture sizes",
+        Series::SceneSize => "Scene sizes",
+    }
+}
+
+/// Version, machine and date in one sentence.
+pub fn machine_sentence(machine: &Machine) -> String {
+    let memory = machine.memory_bytes.map_or_else(String::new, |count| format!(", {}", bytes(count as f64)));
+    format!(
+        "Version {}, {}. {}, {} cores, {} threads{memory}, {}.",
+        machine.version, machine.date, machine.processor, machine.cores, machine.threads, machine.system
+    )
+}
+
+/// What the saving came to, and what it cost.
+pub fn saving_sentence(scene: &ModelledScene) -> String {
+    let ModelledScene { modelled, tolerance_px, saving_psnr, saving_flip, finest_bytes } = scene;
+    let dense = modelled.dense_bytes() as f64;
+    let texels = match modelled.texels {
+        Some(texels) if texels.asked < texels.exist => {
+            format!(" Texels are estimated from {} of them.", texels.asked)
+        }
+        _ => String::new(),
+    };
+    format!(
+        "Under the standard lens. {} B a visible sample, {} of what the dense form takes ({DENSE_SAMPLE_BYTES} B). At a tolerance of {} px \
+         the picture is {saving_psnr:.1} dB (FLIP {saving_flip:.4}) from that of the finest light field, which takes {}.{texels}",
+        significant(modelled.bytes_a_sample()),
+        if dense > 0.0 {
+            format!("{} %", significant(100.0 * modelled.samples.bytes as f64 / dense))
+        } else {
+            "none".into()
+        },
+        significant(*tolerance_px),
+        bytes(*finest_bytes as f64),
+    )
+}
+
+/// With a capital letter.
+fn sentence(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+}

@@ -1,0 +1,81 @@
+//! Pictures beside their reference, as data in the page.
+
+use crate::contender::Contender;
+use crate::markup::escaped;
+use crate::plot::{seconds, significant};
+use crate::record::Record;
+use crate::run::Measured;
+use crate::summary::FocusSummary;
+use base64::Engine;
+use base64::prelude::BASE64_STANDARD;
+use session::SessionError;
+use std::path::Path;
+
+/// The reference and, of every renderer, one picture with its error map.
+pub fn figures(focus: &FocusSummary, measured: &[&Measured]) -> Result<String, SessionError> {
+    let reference = focus.reference.error;
+    let caption = format!(
+        "<b>reference</b>: {} rays a pixel, {}; its own error {:.1} dB",
+        reference.spp,
+        seconds(reference.seconds),
+        reference.psnr
+    );
+    let mut html = format!(
+        "<div class=\"pictures\"><figure>{}<figcaption>{caption}</figcaption></figure>\n",
+        image(&focus.picture, "reference")?
+    );
+    for shown in shown(measured) {
+        let Some([picture, flip]) = &shown.pictures else { continue };
+        let Record { renderer, psnr, flip: mean_flip, seconds: took, .. } = &shown.record;
+        let knob = match shown.record.knob.as_str() {
+            "" => String::new(),
+            "tolerance_px" => format!(", tolerance {} px", significant(shown.record.value)),
+            knob => format!(", {} {knob}", significant(shown.record.value)),
+        };
+        let again = match shown.record.bake_seconds {
+            Some(_) => format!(", refocus {}", seconds(shown.record.picture_seconds)),
+            None => String::new(),
+        };
+        let caption = format!(
+            "<b>{renderer}</b>{}: {psnr:.1} dB, FLIP {mean_flip:.4}, {}{again}",
+            escaped(&knob),
+            seconds(*took)
+        );
+        html += &format!(
+            "<figure>{}{}<figcaption>{caption}</figcaption></figure>\n",
+            image(picture, &format!("{renderer}{knob}"))?,
+            image(flip, &format!("FLIP error of {renderer}{knob}"))?
+        );
+    }
+    Ok(html + "</div>")
+}
+
+/// The splat at its usual tolerance, the ray tracer at the number of rays that takes the most similar time, and every other
+/// renderer where it comes closest.
+fn shown<'a>(measured: &[&'a Measured]) -> Vec<&'a Measured> {
+    let usual = Contender::usual_splat();
+    let splat = measured
+        .iter()
+        .find(|m| m.record.renderer == usual.renderer() && m.record.value == usual.value())
+        .copied();
+    let target = splat.map_or(1.0, |splat| splat.record.seconds);
+    let away = |m: &Measured| (m.record.seconds / target).ln().abs();
+    let truths = measured.iter().filter(|m| m.record.renderer == "truth").copied();
+    let truth = truths.min_by(|a, b| away(a).total_cmp(&away(b)));
+    let mut shown: Vec<_> = splat.into_iter().chain(truth).collect();
+    for m in measured.iter().filter(|m| !["splat", "truth"].contains(&m.record.renderer.as_str())) {
+        match shown.iter_mut().find(|known| known.record.renderer == m.record.renderer) {
+            Some(known) if known.record.rmse > m.record.rmse => *known = m,
+            Some(_) => {}
+            None => shown.push(m),
+        }
+    }
+    shown
+}
+
+/// A picture as an element that needs no other file.
+fn image(file: &Path, what: &str) -> Result<String, SessionError> {
+    let bytes = std::fs::read(file).map_err(|error| SessionError::io(file, &error))?;
+    let data = BASE64_STANDARD.encode(bytes);
+    Ok(format!(r#"<img alt="{}" src="data:image/png;base64,{data}">"#, escaped(what)))
+}

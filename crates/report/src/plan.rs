@@ -1,0 +1,93 @@
+//! What is measured: for every scene a list of settings, each with the contenders that draw it.
+
+use crate::contender::Contender;
+use crate::options::ReportOptions;
+use crate::record::Series;
+use crate::subject::Subject;
+use lens::Camera;
+
+/// A picture to draw: the contenders' pictures of it are compared with one reference.
+pub struct Setting {
+    /// What it is part of.
+    pub series: Series,
+    /// Index of the subject's focus.
+    pub focus: usize,
+    /// The camera with its size and aperture.
+    pub camera: Camera,
+    /// How often every triangle is cut in four.
+    pub cuts: u32,
+    /// Rays a pixel of the reference.
+    pub reference_spp: u32,
+    /// Who draws it.
+    pub contenders: Vec<Contender>,
+}
+
+/// A scene is not cut into more triangles than this.
+const MOST_TRIANGLES: usize = 2_000_000;
+
+/// References of what is measured for its cost are traced with this many times fewer rays.
+const COST_REFERENCE_SHARE: u32 = 8;
+
+/// Rays a pixel of the ray tracer where cost is measured.
+const COST_SPP: u32 = 64;
+
+/// The standard focus is the subject's first.
+const STANDARD: usize = 0;
+
+/// All settings of a subject.
+pub fn settings(subject: &Subject, options: &ReportOptions) -> Vec<Setting> {
+    let base = |series, focus, camera| Setting {
+        series,
+        focus,
+        camera,
+        cuts: 0,
+        reference_spp: options.reference_spp,
+        contenders: Vec::new(),
+    };
+    let mut settings: Vec<Setting> = (0..subject.focuses.len())
+        .map(|focus| Setting {
+            contenders: sweep(options.is_quick),
+            ..base(Series::Knob, focus, subject.camera.clone())
+        })
+        .collect();
+
+    let cost = |series, camera| Setting {
+        reference_spp: (options.reference_spp / COST_REFERENCE_SHARE)
+            .max(ReportOptions::FEWEST_REFERENCE_SPP),
+        contenders: vec![
+            Contender::usual_splat(),
+            Contender::Truth { samples_per_pixel: COST_SPP },
+            Contender::Blur,
+        ],
+        ..base(series, STANDARD, camera)
+    };
+    let factors: &[f64] = if options.is_quick { &[0.5, 1.0] } else { &[0.25, 0.5, 1.0, 2.0] };
+    settings.extend(factors.iter().map(|factor| {
+        let aperture_radius = subject.camera.aperture_radius * factor;
+        cost(Series::Aperture, Camera { aperture_radius, ..subject.camera.clone() })
+    }));
+    let factors: &[f64] = if options.is_quick { &[0.5, 1.0] } else { &[0.5, 0.7071, 1.0, 1.4142] };
+    settings.extend(factors.iter().map(|factor| {
+        let scaled =
+            |side: u32| ((f64::from(side) * factor).round() as u32).clamp(1, Camera::LARGEST_SIDE_PX);
+        let (width, height) = (scaled(subject.camera.width), scaled(subject.camera.height));
+        cost(Series::PictureSize, Camera { width, height, ..subject.camera.clone() })
+    }));
+    let most_cuts = if options.is_quick { 1 } else { 2 };
+    let fits = |cuts: &u32| subject.scene.triangles.len() << (2 * cuts) <= MOST_TRIANGLES;
+    settings.extend(
+        (0..=most_cuts)
+            .filter(|cuts| *cuts == 0 || fits(cuts))
+            .map(|cuts| Setting { cuts, ..cost(Series::SceneSize, subject.camera.clone()) }),
+    );
+    settings
+}
+
+/// Every contender with its knob at several places.
+fn sweep(is_quick: bool) -> Vec<Contender> {
+    let tolerances: &[f64] = if is_quick { &[2.0] } else { &[8.0, 4.0, 2.0, 1.0, 0.5] };
+    let spps: &[u32] = if is_quick { &[4, 16, 64] } else { &[4, 8, 16, 32, 64, 128, 256] };
+    let splats = tolerances.iter().map(|&tolerance_px| Contender::Splat { tolerance_px });
+    let truths = spps.iter().map(|&samples_per_pixel| Contender::Truth { samples_per_pixel });
+    splats.chain(truths).chain([Contender::Blur]).collect()
+}

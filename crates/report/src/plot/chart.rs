@@ -1,0 +1,339 @@
+//! A plot of some series over two axes, drawn as SVG.
+//!
+//! Series differ by colour *and* by the shape of their marks. The colours are those of Okabe and Ito (2008), which people
+//! with any of the usual kinds of colour blindness can tell apart.
+
+use super::scale::{Kind, Scale};
+use crate::markup::escaped;
+use std::fmt::Write;
+
+/// Okabe and Ito's palette without black and yellow, which print badly as thin lines.
+const COLOURS: [&str; 7] = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#555555"];
+
+const WIDTH: f64 = 560.0;
+/// Height of the axes' box.
+const PLOT_HEIGHT: f64 = 300.0;
+const LEFT: f64 = 74.0;
+const RIGHT: f64 = 22.0;
+const TOP: f64 = 34.0;
+/// Room below the box for numbers and the axis' name.
+const BOTTOM: f64 = 46.0;
+const LEGEND_LINE: f64 = 18.0;
+/// Mean width of a letter at the legend's 12 px.
+const LETTER: f64 = 6.4;
+
+/// An axis.
+#[derive(Clone, Debug)]
+pub struct Axis {
+    /// What it shows, with the unit.
+    pub label: String,
+    /// How it runs.
+    pub kind: Kind,
+    /// Writes its numbers.
+    pub number: fn(f64) -> String,
+}
+
+/// A mark.
+#[derive(Clone, Debug)]
+pub struct Point {
+    /// Where on the horizontal axis.
+    pub x: f64,
+    /// Where on the vertical axis.
+    pub y: f64,
+    /// What it is: written beside the first and last mark of a series, and shown under the mouse on each.
+    pub label: String,
+}
+
+/// Marks that belong together.
+#[derive(Clone, Debug)]
+pub struct Series {
+    /// Its name in the legend.
+    pub name: String,
+    /// Its place in the palette: the same renderer has the same one in every plot.
+    pub style: usize,
+    /// Whether it is drawn with broken lines.
+    pub is_dashed: bool,
+    /// Its marks, joined by lines in this order.
+    pub points: Vec<Point>,
+}
+
+/// A level that is drawn right across.
+#[derive(Clone, Debug)]
+pub struct Rule {
+    /// Where on the vertical axis.
+    pub y: f64,
+    /// What it is.
+    pub label: String,
+}
+
+/// A plot.
+#[derive(Clone, Debug)]
+pub struct Chart {
+    /// Its title.
+    pub title: String,
+    /// The horizontal axis.
+    pub x: Axis,
+    /// The vertical axis.
+    pub y: Axis,
+    /// What is drawn.
+    pub series: Vec<Series>,
+    /// Levels.
+    pub rules: Vec<Rule>,
+}
+
+/// The scales of a chart, and the way from values to pixels.
+struct Frame {
+    x: Scale,
+    y: Scale,
+}
+
+impl Frame {
+    fn px(&self, x: f64) -> Option<f64> {
+        self.x.place(x).map(|place| LEFT + place * (WIDTH - LEFT - RIGHT))
+    }
+    fn py(&self, y: f64) -> Option<f64> {
+        self.y.place(y).map(|place| TOP + (1.0 - place) * PLOT_HEIGHT)
+    }
+    fn at(&self, point: &Point) -> Option<(f64, f64)> {
+        Some((self.px(point.x)?, self.py(point.y)?))
+    }
+}
+
+impl Chart {
+    /// How many marks have no place: on a logarithmic axis, those at 0.
+    pub fn left_out(&self) -> usize {
+        let frame = self.frame();
+        let points = self.series.iter().flat_map(|series| &series.points);
+        points.filter(|point| frame.at(point).is_none()).count()
+    }
+
+    fn frame(&self) -> Frame {
+        let points = || self.series.iter().flat_map(|series| &series.points);
+        let levels = self.rules.iter().map(|rule| rule.y);
+        Frame {
+            x: Scale::around(self.x.kind, points().map(|point| point.x)),
+            y: Scale::around(self.y.kind, points().map(|point| point.y).chain(levels)),
+        }
+    }
+
+    /// The plot as an SVG element.
+    pub fn to_svg(&self) -> String {
+        let frame = self.frame();
+        let legend = self.legend();
+        let legend_lines = legend.iter().map(|entry| entry.line + 1).max().unwrap_or(0);
+        let height = TOP + PLOT_HEIGHT + BOTTOM + LEGEND_LINE * legend_lines as f64 + 6.0;
+        let mut svg = format!(
+            r#"<svg viewBox="0 0 {WIDTH} {height}" role="img" aria-label="{}" font-size="12">"#,
+            escaped(&self.title)
+        );
+        let title = escaped(&self.title);
+        add(&mut svg, format_args!(r#"<text x="{LEFT}" y="20" class="title">{title}</text>"#));
+        self.grid(&mut svg, &frame);
+        for rule in &self.rules {
+            let Some(y) = frame.py(rule.y) else { continue };
+            let (right, label) = (WIDTH - RIGHT, escaped(&rule.label));
+            add(&mut svg, format_args!(r#"<path class="rule" d="M{LEFT} {y:.1}H{right}"/>"#));
+            add(
+                &mut svg,
+                format_args!(
+                    r#"<text class="note" x="{:.1}" y="{:.1}" text-anchor="end">{label}</text>"#,
+                    right - 4.0,
+                    y - 4.0
+                ),
+            );
+        }
+        self.series.iter().for_each(|series| draw_series(&mut svg, &frame, series));
+        for Entry { series, x, line } in legend {
+            let y = TOP + PLOT_HEIGHT + BOTTOM + LEGEND_LINE * line as f64 + 10.0;
+            let name = escaped(&series.name);
+            add(&mut svg, format_args!(r#"<path {} d="M{x:.1} {y:.1}h22"/>"#, stroke(series)));
+            mark(&mut svg, series.style, x + 11.0, y);
+            add(&mut svg, format_args!(r#"<text x="{:.1}" y="{:.1}">{name}</text>"#, x + 28.0, y + 4.0));
+        }
+        svg.push_str("</svg>");
+        svg
+    }
+
+    /// Grid, numbers and names of the axes.
+    fn grid(&self, svg: &mut String, frame: &Frame) {
+        let (right, bottom) = (WIDTH - RIGHT, TOP + PLOT_HEIGHT);
+        for tick in frame.x.ticks() {
+            let Some(x) = frame.px(tick.value) else { continue };
+            let class = if tick.has_label { "grid" } else { "fine" };
+            add(svg, format_args!(r#"<path class="{class}" d="M{x:.1} {TOP}V{bottom}"/>"#));
+            if tick.has_label {
+                let (y, number) = (bottom + 16.0, escaped(&(self.x.number)(tick.value)));
+                add(svg, format_args!(r#"<text x="{x:.1}" y="{y}" text-anchor="middle">{number}</text>"#));
+            }
+        }
+        for tick in frame.y.ticks() {
+            let Some(y) = frame.py(tick.value) else { continue };
+            let class = if tick.has_label { "grid" } else { "fine" };
+            add(svg, format_args!(r#"<path class="{class}" d="M{LEFT} {y:.1}H{right}"/>"#));
+            if tick.has_label {
+                let (x, y, number) = (LEFT - 7.0, y + 4.0, escaped(&(self.y.number)(tick.value)));
+                add(svg, format_args!(r#"<text x="{x}" y="{y:.1}" text-anchor="end">{number}</text>"#));
+            }
+        }
+        add(svg, format_args!(r#"<path class="axis" d="M{LEFT} {TOP}V{bottom}H{right}"/>"#));
+        let (x, y) = ((LEFT + right) / 2.0, bottom + 36.0);
+        let label = escaped(&self.x.label);
+        add(svg, format_args!(r#"<text class="label" x="{x}" y="{y}" text-anchor="middle">{label}</text>"#));
+        let (y, label) = (TOP + PLOT_HEIGHT / 2.0, escaped(&self.y.label));
+        add(
+            svg,
+            format_args!(
+                r#"<text class="label" x="15" y="{y}" text-anchor="middle" transform="rotate(-90 15 {y})">{label}</text>"#
+            ),
+        );
+    }
+
+    /// Where the names of the series go: in lines below the plot.
+    fn legend(&self) -> Vec<Entry<'_>> {
+        let (mut x, mut line) = (LEFT, 0);
+        let mut entries = Vec::new();
+        for series in &self.series {
+            let width = 28.0 + series.name.chars().count() as f64 * LETTER + 16.0;
+            if x > LEFT && x + width > WIDTH - RIGHT + 16.0 {
+                (x, line) = (LEFT, line + 1);
+            }
+            entries.push(Entry { series, x, line });
+            x += width;
+        }
+        entries
+    }
+}
+
+struct Entry<'a> {
+    series: &'a Series,
+    x: f64,
+    line: usize,
+}
+
+fn draw_series(svg: &mut String, frame: &Frame, series: &Series) {
+    let placed: Vec<(f64, f64, &str)> = series
+        .points
+        .iter()
+        .filter_map(|point| frame.at(point).map(|(x, y)| (x, y, point.label.as_str())))
+        .collect();
+    if placed.len() > 1 {
+        let mut d = String::new();
+        for (k, (x, y, _)) in placed.iter().enumerate() {
+            add(&mut d, format_args!("{}{x:.1} {y:.1}", if k == 0 { 'M' } else { 'L' }));
+        }
+        add(svg, format_args!(r#"<path {} d="{d}"/>"#, stroke(series)));
+    }
+    for (k, &(x, y, label)) in placed.iter().enumerate() {
+        let text = escaped(label);
+        add(svg, format_args!("<g><title>{}: {text}</title>", escaped(&series.name)));
+        mark(svg, series.style, x, y);
+        svg.push_str("</g>");
+        let is_end = k == 0 || k + 1 == placed.len();
+        if is_end && !label.is_empty() {
+            // To the left of marks near the right side.
+            let (anchor, step) = if x > WIDTH - RIGHT - 70.0 { ("end", -7.0) } else { ("start", 7.0) };
+            let (x, y, colour) = (x + step, y - 6.0, colour(series.style));
+            add(
+                svg,
+                format_args!(
+                    r#"<text class="note" fill="{colour}" x="{x:.1}" y="{y:.1}" text-anchor="{anchor}">{text}</text>"#
+                ),
+            );
+        }
+    }
+}
+
+fn colour(style: usize) -> &'static str {
+    COLOURS[style % COLOURS.len()]
+}
+
+fn stroke(series: &Series) -> String {
+    let dashes = if series.is_dashed { r#" stroke-dasharray="5 3""# } else { "" };
+    format!(r#"fill="none" stroke="{}" stroke-width="1.6"{dashes}"#, colour(series.style))
+}
+
+/// A mark of a series: the shape goes with the colour.
+fn mark(svg: &mut String, style: usize, x: f64, y: f64) {
+    let colour = colour(style);
+    let shape = match style % COLOURS.len() {
+        0 => format!(r#"<circle cx="{x:.1}" cy="{y:.1}" r="4""#),
+        1 => format!(r#"<rect x="{:.1}" y="{:.1}" width="7" height="7""#, x - 3.5, y - 3.5),
+        2 => format!(r#"<path d="M{x:.1} {:.1}l4.6 8h-9.2z""#, y - 5.0),
+        3 => format!(r#"<path d="M{x:.1} {:.1}l5 5l-5 5l-5-5z""#, y - 5.0),
+        4 => format!(r#"<path d="M{x:.1} {:.1}l-4.6-8h9.2z""#, y + 5.0),
+        5 => format!(r#"<path d="M{:.1} {:.1}h3v3h3v3h-3v3h-3v-3h-3v-3h3z""#, x - 1.5, y - 4.5),
+        _ => format!(r#"<rect x="{:.1}" y="{:.1}" width="10" height="4""#, x - 5.0, y - 2.0),
+    };
+    add(svg, format_args!(r##"{shape} fill="{colour}" stroke="#fff" stroke-width="0.8"/>"##));
+}
+
+/// Appends; a String takes everything.
+fn add(to: &mut String, text: std::fmt::Arguments<'_>) {
+    let _ = to.write_fmt(text);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::plot::{plain, seconds};
+
+    fn chart() -> Chart {
+        let points = [(0.1, 0.02), (1.0, 0.01), (10.0, 0.005)].map(|(x, y)| Point {
+            x,
+            y,
+            label: format!("{x} <px>"),
+        });
+        let axis = |label: &str, number| Axis { label: label.into(), kind: Kind::Log, number };
+        let series = |name: &str, style| Series {
+            name: name.into(),
+            style,
+            is_dashed: style > 0,
+            points: points.to_vec(),
+        };
+        Chart {
+            title: "Time & error".into(),
+            x: axis("time, s", seconds),
+            y: axis("RMSE", plain),
+            series: vec![series("splat", 0), series("truth", 1)],
+            rules: vec![Rule { y: 0.001, label: "reference".into() }],
+        }
+    }
+
+    #[test]
+    fn everything_is_drawn_within_the_picture() {
+        let svg = chart().to_svg();
+        assert_eq!(svg.matches("<circle").count(), 3 + 1, "a mark a point, one in the legend");
+        assert_eq!(svg.matches("<g><title>").count(), 6);
+        assert!(svg.contains("Time &amp; error") && svg.contains("&lt;px&gt;"), "text is escaped");
+        assert!(svg.contains("100 ms") && svg.contains("10 s"), "numbers have units");
+        assert!(svg.contains("reference"));
+        let height: f64 =
+            svg.split(r#"viewBox="0 0 560 "#).nth(1).unwrap().split('"').next().unwrap().parse().unwrap();
+        for attribute in [" cx=\"", " x=\"", " y=\""] {
+            for value in svg.split(attribute).skip(1) {
+                let value: f64 = value.split('"').next().unwrap().parse().unwrap();
+                assert!((0.0..=height.max(560.0)).contains(&value), "{attribute}{value}");
+            }
+        }
+    }
+
+    #[test]
+    fn lower_error_is_drawn_lower_and_zero_is_left_out_and_counted() {
+        let mut chart = chart();
+        let frame = chart.frame();
+        assert!(frame.py(0.02) < frame.py(0.005), "SVG counts from the top");
+        assert!(frame.px(0.1) < frame.px(10.0));
+        assert_eq!(chart.left_out(), 0);
+        chart.series[0].points[1].y = 0.0;
+        assert_eq!(chart.left_out(), 1);
+        assert_eq!(chart.to_svg().matches("<g><title>").count(), 5);
+    }
+
+    #[test]
+    fn an_empty_chart_is_still_a_chart() {
+        let mut chart = chart();
+        chart.series.clear();
+        chart.rules.clear();
+        assert!(chart.to_svg().ends_with("</svg>"));
+    }
+}

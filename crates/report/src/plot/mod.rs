@@ -1,0 +1,9 @@
+//! Plots as inline SVG: `scale` maps numbers to places and finds ticks, `number` writes them, `chart` draws.
+
+mod chart;
+mod number;
+mod scale;
+
+pub use chart::{Axis, Chart, Point, Rule, Series};
+pub use number::{bytes, plain, seconds, significant};
+pub use scale::Kind;

@@ -1,0 +1,69 @@
+//! The ground truth of a picture, with its own error.
+//!
+//! Half of the rays are traced with one scramble, half with another. The mean of the two pictures is the reference; their
+//! difference says how far off it is. If A and B are independent estimates of the same mean with the variance σ² each,
+//!
+//! ```text
+//! E[(A − B)²] = 2σ²        Var[(A + B)/2] = σ²/2 = E[(A − B)²]/4
+//! ```
+//!
+//! whatever the samples are like within each half, which a variance over the samples of a low-discrepancy sequence would
+//! not say.
+
+use crate::contender::Shot;
+use lens::{Exposure, Picture};
+use project::{LinearPicture, compare};
+use serde::{Deserialize, Serialize};
+use session::{RenderOptions, Renderer, SessionError, Steps, render};
+
+/// Scrambles of the two halves.
+const SEEDS: [u32; 2] = [0x5eed_0001, 0x5eed_0002];
+
+/// How far off a reference is expected to be.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ReferenceError {
+    /// Rays a pixel.
+    pub spp: u32,
+    /// Seconds that it took.
+    pub seconds: f64,
+    /// Its expected root mean square error on values clipped to [0, 1].
+    pub rmse: f64,
+    /// The same as PSNR, dB; 200 where no error was seen.
+    pub psnr: f64,
+}
+
+/// Traces the reference of a picture.
+pub fn trace_reference(
+    shot: Shot<'_>,
+    spp: u32,
+    steps: &dyn Steps,
+) -> Result<(LinearPicture, ReferenceError), SessionError> {
+    let start = std::time::Instant::now();
+    let half_spp = (spp / 2).max(1);
+    let half = |seed| {
+        let options = RenderOptions {
+            renderer: Renderer::Truth,
+            samples_per_pixel: half_spp,
+            seed,
+            ..RenderOptions::default()
+        };
+        Ok::<_, SessionError>(render(shot.tracer, shot.camera, shot.focus, &options, steps)?.picture)
+    };
+    let [a, b] = [half(SEEDS[0])?, half(SEEDS[1])?].map(|half| conserved(&half));
+    let rmse = compare(&a, &b)?.rmse / 2.0;
+    let mean = |(a, b): (&[f32; 3], &[f32; 3])| [0, 1, 2].map(|k| (a[k] + b[k]) / 2.0);
+    let rgb = a.rgb.iter().zip(&b.rgb).map(mean).collect();
+    let error =
+        ReferenceError { spp: 2 * half_spp, seconds: start.elapsed().as_secs_f64(), rmse, psnr: psnr(rmse) };
+    Ok((LinearPicture { width: a.width, height: a.height, rgb, ..LinearPicture::default() }, error))
+}
+
+/// A picture under the exposure that errors are measured with.
+pub fn conserved(picture: &Picture) -> LinearPicture {
+    LinearPicture::of(picture, Exposure::Conserve)
+}
+
+/// The PSNR of a root mean square error for a peak of 1, dB; at most 200, as `compare` has it.
+fn psnr(rmse: f64) -> f64 {
+    (-20.0 * rmse.log10()).min(200.0)
+}

@@ -1,0 +1,371 @@
+//! The run: from scenes to measurements, each kept as soon as it is done.
+
+use crate::contender::{Contender, Shot};
+use crate::default_lens::quantile;
+use crate::fingerprint::{self, Fingerprint};
+use crate::machine::Machine;
+use crate::measure::{Against, Named, measure};
+use crate::options::{ReportOptions, SceneRequest};
+use crate::plan::{Setting, settings};
+use crate::record::{Record, Series};
+use crate::reference::{conserved, trace_reference};
+use crate::store::{Store, file_part};
+use crate::subdivision::subdivided;
+use crate::subject::{Subject, first_hits};
+use crate::summary::{FocusSummary, ModelledScene, Reference, SceneSummary};
+use crate::write::write_report;
+use focus::Focus;
+use progress::Progress;
+use project::{LinearPicture, compare, error_maps, read_picture, write_rgb};
+use session::{Modelled, RenderOptions, SessionError, Steps, bake};
+use splat::Splatter;
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex};
+use std::time::Instant;
+use trace::Tracer;
+
+/// Results of other forms than this do not count.
+const FORM: &str = "1";
+
+/// The tolerance of the finest light field, px.
+const FINEST_TOLERANCE_PX: f64 = 0.0;
+
+/// A measurement, and the pictures of it.
+#[derive(Clone, Debug)]
+pub struct Measured {
+    /// The figures.
+    pub record: Record,
+    /// The picture and its FLIP error map; only where the knob was turned.
+    pub pictures: Option<[PathBuf; 2]>,
+}
+
+/// Everything that a report tells.
+pub struct Report {
+    /// The machine.
+    pub machine: Machine,
+    /// The scenes.
+    pub scenes: Vec<SceneSummary>,
+    /// The measurements, in the order of the plan.
+    pub measured: Vec<Measured>,
+    /// How many of them were made in this run.
+    pub new: usize,
+    /// Files that were written for people and programs.
+    pub files: Vec<PathBuf>,
+    /// Seconds of this run.
+    pub seconds: f64,
+}
+
+/// Measures and writes the report to `folder`, which is made if it is not there. `note` is told of every measurement.
+///
+/// Stopped at any time, it leaves every finished measurement in `folder/measurements`; the same call goes on from there.
+/// A measurement counts as finished only for the same scene, camera, focus, size, reference and build of the program.
+pub fn run(
+    requests: &[SceneRequest],
+    options: &ReportOptions,
+    folder: &Path,
+    steps: &dyn Steps,
+    note: &dyn Fn(&str),
+) -> Result<Report, SessionError> {
+    let start = Instant::now();
+    let store = Store::open(&folder.join("measurements"))?;
+    let runner = Runner { options, store: &store, steps, note };
+    let mut report = Report {
+        machine: Machine::here(),
+        scenes: Vec::new(),
+        measured: Vec::new(),
+        new: 0,
+        files: Vec::new(),
+        seconds: 0.0,
+    };
+    for request in requests {
+        runner.scene(request, &mut report)?;
+    }
+    report.files = write_report(&report, folder)?;
+    report.seconds = start.elapsed().as_secs_f64();
+    Ok(report)
+}
+
+struct Runner<'a> {
+    options: &'a ReportOptions,
+    store: &'a Store,
+    steps: &'a dyn Steps,
+    note: &'a dyn Fn(&str),
+}
+
+/// A setting, with what names its results.
+struct Place<'a> {
+    subject: &'a Subject,
+    setting: &'a Setting,
+    scene_print: &'a str,
+    focus_print: &'a str,
+}
+
+impl Runner<'_> {
+    fn scene(&self, request: &SceneRequest, report: &mut Report) -> Result<(), SessionError> {
+        let mut subject = Subject::open(request, self.options, self.steps)?;
+        let same_name = report.scenes.iter().filter(|scene| scene.name == subject.name).count();
+        if same_name > 0 {
+            subject.name = format!("{} ({})", subject.name, same_name + 1);
+        }
+        subject.warnings.iter().for_each(|warning| (self.note)(&format!("warning: {warning}")));
+        let scene_print = fingerprint::of_scene(&subject.scene);
+        let focus_prints: Vec<_> =
+            subject.focuses.iter().map(|named| fingerprint::of_focus(&named.focus)).collect();
+        let settings = settings(&subject, self.options);
+        let total: usize = settings.iter().map(|setting| setting.contenders.len()).sum();
+        let mut done = 0;
+        let mut focuses = Vec::new();
+        // The scene in finer and finer triangles, made when it is needed.
+        let mut cut: Option<(u32, Arc<Tracer>)> = None;
+        for setting in &settings {
+            let place = Place {
+                subject: &subject,
+                setting,
+                scene_print: &scene_print,
+                focus_print: &focus_prints[setting.focus],
+            };
+            let mut reference = None;
+            for &contender in &setting.contenders {
+                done += 1;
+                let name = self.measurement_name(&place, contender);
+                let kept = self.kept(&name, setting.series);
+                let measured = match kept {
+                    Some(measured) => measured,
+                    None => {
+                        let (picture, about) = match &mut reference {
+                            Some(reference) => reference,
+                            None => reference.insert(self.reference(&place)?),
+                        };
+                        let against = Against { picture, error: about.error, coc_px: about.circles_px[2] };
+                        let tracer = self.cut_tracer(&place, &mut cut)?;
+                        report.new += 1;
+                        let count = [done, total];
+                        self.measure(&place, contender, &tracer, &against, &name, count)?
+                    }
+                };
+                report.measured.push(measured);
+            }
+            if setting.series == Series::Knob {
+                let about = match reference {
+                    Some((_, about)) => about,
+                    None => self.reference(&place)?.1,
+                };
+                let named = &subject.focuses[setting.focus];
+                focuses.push(FocusSummary {
+                    name: named.name.into(),
+                    what: named.what.clone(),
+                    reference: about,
+                    picture: self.store.file(&self.reference_name(&place), "png"),
+                });
+            }
+        }
+        let modelled = self.modelled(&subject, &scene_print)?;
+        let Subject { camera, .. } = &subject;
+        report.scenes.push(SceneSummary {
+            name: subject.name.clone(),
+            file: subject.file.file_name().unwrap_or_default().to_string_lossy().into(),
+            triangles: subject.scene.triangles.len(),
+            parts: subject.scene.parts.len(),
+            lights: subject.scene.lights.len(),
+            size: [camera.width, camera.height],
+            aperture_radius: camera.aperture_radius,
+            f_number: camera.f_number(),
+            focus_distance: camera.focus_distance.is_finite().then_some(camera.focus_distance),
+            lens: subject.lens.clone(),
+            prepare_seconds: subject.prepare_seconds,
+            hierarchy_bytes: subject.tracer.bytes(),
+            focuses,
+            modelled,
+            warnings: subject.warnings.clone(),
+        });
+        Ok(())
+    }
+
+    /// A measurement of an earlier run, if its figures and pictures are all there.
+    fn kept(&self, name: &str, series: Series) -> Option<Measured> {
+        let record = Record { series, ..self.store.get(name)? };
+        let pictures = (series == Series::Knob).then(|| self.picture_files(name));
+        let complete = pictures.iter().flatten().all(|file| file.is_file());
+        complete.then_some(Measured { record, pictures })
+    }
+
+    fn picture_files(&self, name: &str) -> [PathBuf; 2] {
+        [self.store.file(name, "png"), self.store.file(name, "flip.png")]
+    }
+
+    fn measure(
+        &self,
+        place: &Place<'_>,
+        contender: Contender,
+        tracer: &Arc<Tracer>,
+        against: &Against<'_>,
+        name: &str,
+        [done, total]: [usize; 2],
+    ) -> Result<Measured, SessionError> {
+        let Place { subject, setting, .. } = place;
+        let focus = &subject.focuses[setting.focus];
+        let label = format!("{}, {}: {} [{done}/{total}]", subject.name, focus.name, contender.renderer());
+        let bar = self.steps.begin(&label);
+        let one = OneBar { bar: &*bar, furthest: Mutex::new(0.0) };
+        // Only the standard focus is measured on a cut scene, whose parts are the same.
+        let cut_focus = Focus { scene: tracer.scene().clone(), ..focus.focus.clone() };
+        let shot = Shot { tracer, camera: &setting.camera, focus: &cut_focus };
+        let named = Named { scene: &subject.name, focus: focus.name, series: setting.series };
+        let (record, picture) = measure(contender, shot, against, &named, &one)?;
+        let pictures = if setting.series == Series::Knob {
+            let [png, flip] = self.picture_files(name);
+            let [width, height] = [picture.width, picture.height];
+            write_rgb(&png, width, height, &picture.rgb)?;
+            let maps = error_maps(&picture, against.picture)?;
+            write_rgb(&flip, width, height, &maps.flip_in_colour())?;
+            Some([png, flip])
+        } else {
+            None
+        };
+        self.store.put(name, &record)?;
+        drop(bar);
+        let Record { seconds, psnr, value, .. } = record;
+        let knob = match record.knob.as_str() {
+            "" => String::new(),
+            knob => format!(" {knob} {value}"),
+        };
+        (self.note)(&format!("{label}{knob}: {seconds:.3} s, {psnr:.2} dB"));
+        Ok(Measured { record, pictures })
+    }
+
+    /// The tracer of a setting's scene.
+    fn cut_tracer(
+        &self,
+        place: &Place<'_>,
+        cut: &mut Option<(u32, Arc<Tracer>)>,
+    ) -> Result<Arc<Tracer>, SessionError> {
+        let cuts = place.setting.cuts;
+        if cuts == 0 {
+            return Ok(place.subject.tracer.clone());
+        }
+        if let Some((_, tracer)) = cut.as_ref().filter(|(have, _)| *have == cuts) {
+            return Ok(tracer.clone());
+        }
+        let mut scene = place.subject.scene.as_ref().clone();
+        for _ in 0..cuts {
+            let too_many =
+                || SessionError::bad(&place.subject.file, "too many vertices to cut its triangles");
+            scene = subdivided(&scene).ok_or_else(too_many)?;
+        }
+        let tracer = Arc::new(Tracer::new(Arc::new(scene)));
+        *cut = Some((cuts, tracer.clone()));
+        Ok(tracer)
+    }
+
+    /// The reference of a setting, traced or as an earlier run left it.
+    fn reference(&self, place: &Place<'_>) -> Result<(LinearPicture, Reference), SessionError> {
+        let name = self.reference_name(place);
+        let file = self.store.file(&name, "exr");
+        if let (Some(about), Ok(picture)) = (self.store.get::<Reference>(&name), read_picture(&file)) {
+            return Ok((picture, about));
+        }
+        let Place { subject, setting, .. } = place;
+        let focus = &subject.focuses[setting.focus];
+        let bar = self.steps.begin(&format!("{}, {}: reference", subject.name, focus.name));
+        let one = OneBar { bar: &*bar, furthest: Mutex::new(0.0) };
+        let shot = Shot { tracer: &subject.tracer, camera: &setting.camera, focus: &focus.focus };
+        let (picture, error) = trace_reference(shot, setting.reference_spp, &one)?;
+        let hits = first_hits(shot.tracer, shot.focus, shot.camera, &one)?;
+        let circles = hits.circle_of_confusion_px(shot.camera);
+        let mut circles: Vec<f64> = circles.iter().map(|&circle| f64::from(circle.abs())).collect();
+        let about = Reference { error, circles_px: [0.5, 0.9, 0.99].map(|at| quantile(&mut circles, at)) };
+        let [width, height] = [picture.width, picture.height];
+        write_rgb(&file, width, height, &picture.rgb)?;
+        write_rgb(&self.store.file(&name, "png"), width, height, &picture.rgb)?;
+        self.store.put(&name, &about)?;
+        Ok((picture, about))
+    }
+
+    /// What was modelled under the standard lens, and what the saving cost.
+    fn modelled(&self, subject: &Subject, scene_print: &str) -> Result<ModelledScene, SessionError> {
+        let standard = &subject.focuses[0].focus;
+        let print = Fingerprint::new()
+            .add(FORM.as_bytes())
+            .add(self.options.build.as_bytes())
+            .add(scene_print.as_bytes())
+            .add(fingerprint::of_camera(&subject.camera).as_bytes())
+            .name();
+        let name = format!("{}-modelled-{print}", file_part(&subject.name));
+        if let Some(kept) = self.store.get(&name) {
+            return Ok(kept);
+        }
+        let bar = self.steps.begin(&format!("{}: what was modelled", subject.name));
+        let one = OneBar { bar: &*bar, furthest: Mutex::new(0.0) };
+        let atlas = subject.input.atlas(&self.options.unwrap, &one)?;
+        let tolerance_px = RenderOptions::default().tolerance_px;
+        let drawn = |tolerance_px| {
+            let salf = Arc::new(bake(&subject.tracer, &subject.camera, standard, tolerance_px, &one)?);
+            let mut splatter = Splatter::new(salf.clone());
+            splatter.render(&subject.camera, standard, &*one.begin("splatting"))?;
+            Ok::<_, SessionError>((salf, conserved(splatter.picture())))
+        };
+        let (salf, picture) = drawn(tolerance_px)?;
+        let (finest, finest_picture) = drawn(FINEST_TOLERANCE_PX)?;
+        let cost = compare(&picture, &finest_picture)?;
+        let scene = ModelledScene {
+            modelled: Modelled::of(&salf, &subject.tracer, Some(&atlas)),
+            tolerance_px,
+            saving_psnr: cost.psnr,
+            saving_flip: cost.flip,
+            finest_bytes: finest.statistics().bytes,
+        };
+        self.store.put(&name, &scene)?;
+        Ok(scene)
+    }
+
+    fn reference_name(&self, place: &Place<'_>) -> String {
+        let Place { subject, setting, .. } = place;
+        let print = self.print(place).add(&setting.reference_spp.to_le_bytes()).name();
+        let focus = subject.focuses[setting.focus].name;
+        format!("{}-{focus}-reference-{print}", file_part(&subject.name))
+    }
+
+    fn measurement_name(&self, place: &Place<'_>, contender: Contender) -> String {
+        let Place { subject, setting, .. } = place;
+        let (renderer, value) = (contender.renderer(), contender.value());
+        let print = self
+            .print(place)
+            .add(&setting.reference_spp.to_le_bytes())
+            .add(&setting.cuts.to_le_bytes())
+            .add(renderer.as_bytes())
+            .add(contender.knob().as_bytes())
+            .add(&value.to_le_bytes())
+            .add(&(rayon::current_num_threads() as u64).to_le_bytes())
+            .name();
+        let focus = subject.focuses[setting.focus].name;
+        file_part(&format!("{}-{focus}-{renderer}-{value}-{print}", subject.name))
+    }
+
+    /// Of the picture that is drawn.
+    fn print(&self, place: &Place<'_>) -> Fingerprint {
+        Fingerprint::new()
+            .add(FORM.as_bytes())
+            .add(self.options.build.as_bytes())
+            .add(place.scene_print.as_bytes())
+            .add(fingerprint::of_camera(&place.setting.camera).as_bytes())
+            .add(place.focus_print.as_bytes())
+    }
+}
+
+/// Steps that share one bar, each an equal share of what those before it left.
+struct OneBar<'a> {
+    bar: &'a dyn Progress,
+    furthest: Mutex<f32>,
+}
+
+/// The share of what is left that a step gets.
+const STEP_SHARE: f32 = 0.6;
+
+impl Steps for OneBar<'_> {
+    fn begin(&self, _label: &str) -> Box<dyn Progress + '_> {
+        let mut furthest = self.furthest.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+        let start = *furthest;
+        *furthest += (1.0 - start) * STEP_SHARE;
+        Box::new(progress::Stage::new(self.bar, start, *furthest))
+    }
+}

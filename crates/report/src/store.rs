@@ -1,0 +1,76 @@
+//! Finished work on disk: every result is written at once, so that a run that was stopped goes on where it was.
+
+use atomic_write_file::AtomicWriteFile;
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+use session::SessionError;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+/// A folder of results, each a JSON file named by all that it depends on.
+pub struct Store {
+    folder: PathBuf,
+}
+
+impl Store {
+    /// The store in `folder`, which is made if it is not there.
+    pub fn open(folder: &Path) -> Result<Self, SessionError> {
+        std::fs::create_dir_all(folder).map_err(|error| SessionError::io(folder, &error))?;
+        Ok(Self { folder: folder.to_owned() })
+    }
+
+    /// The file of a result, or beside it.
+    pub fn file(&self, name: &str, extension: &str) -> PathBuf {
+        self.folder.join(format!("{name}.{extension}"))
+    }
+
+    /// A result, if it is there and can be read; else it is to be made anew.
+    pub fn get<T: DeserializeOwned>(&self, name: &str) -> Option<T> {
+        let bytes = std::fs::read(self.file(name, "json")).ok()?;
+        serde_json::from_slice(&bytes).ok()
+    }
+
+    /// Keeps a result.
+    pub fn put<T: Serialize>(&self, name: &str, result: &T) -> Result<(), SessionError> {
+        write_whole(&self.file(name, "json"), &to_json(result)?)
+    }
+}
+
+/// A value as JSON for people and programs.
+pub fn to_json<T: Serialize>(value: &T) -> Result<Vec<u8>, SessionError> {
+    let mut text = serde_json::to_vec_pretty(value)
+        .map_err(|error| SessionError::Internal(format!("a result cannot be written as JSON: {error}")))?;
+    text.push(b'\n');
+    Ok(text)
+}
+
+/// Writes a file: it holds either all of `bytes` or what it held before.
+pub fn write_whole(file: &Path, bytes: &[u8]) -> Result<(), SessionError> {
+    let written = AtomicWriteFile::open(file).and_then(|mut new| {
+        new.write_all(bytes)?;
+        new.commit()
+    });
+    written.map_err(|error| SessionError::io(file, &error))
+}
+
+/// `text` as part of a file's name: letters, digits, dots and dashes.
+pub fn file_part(text: &str) -> String {
+    text.chars().map(|c| if c.is_alphanumeric() || c == '.' { c } else { '-' }).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_put_is_got_and_what_is_broken_is_not() {
+        let folder = tempfile::tempdir().unwrap();
+        let store = Store::open(&folder.path().join("new/store")).unwrap();
+        assert_eq!(store.get::<Vec<f64>>("a"), None);
+        store.put("a", &vec![0.1, 1e-17]).unwrap();
+        assert_eq!(store.get::<Vec<f64>>("a"), Some(vec![0.1, 1e-17]));
+        std::fs::write(store.file("a", "json"), "[0.1, 1e").unwrap();
+        assert_eq!(store.get::<Vec<f64>>("a"), None);
+        assert_eq!(file_part("my scene/2"), "my-scene-2");
+    }
+}

@@ -1,0 +1,132 @@
+//! The tables of the report, the same in Markdown and on the page.
+
+use crate::findings::EqualError;
+use crate::plot::{bytes, seconds, significant};
+use crate::record::Record;
+use crate::summary::{ModelledScene, SceneSummary};
+use crate::table::Table;
+
+/// The scenes and their references.
+pub fn scenes(scenes: &[SceneSummary]) -> Table {
+    let mut table = Table::new(&[
+        "scene",
+        "#triangles",
+        "#size, px",
+        "#f-number",
+        "focus",
+        "#circles of confusion, px",
+        "#reference, spp",
+        "#its PSNR, dB",
+        "#its time",
+    ]);
+    for scene in scenes {
+        for focus in &scene.focuses {
+            let [half, most, all] = focus.reference.circles_px.map(significant);
+            let error = focus.reference.error;
+            table.push([
+                scene.name.clone(),
+                scene.triangles.to_string(),
+                format!("{} × {}", scene.size[0], scene.size[1]),
+                significant(scene.f_number),
+                focus.name.clone(),
+                format!("{half} / {most} / {all}"),
+                error.spp.to_string(),
+                format!("{:.1}", error.psnr),
+                seconds(error.seconds),
+            ]);
+        }
+    }
+    table
+}
+
+/// Time at equal error.
+pub fn equal_errors(found: &[EqualError]) -> Table {
+    let mut table = Table::new(&[
+        "scene",
+        "focus",
+        "#splat, PSNR dB",
+        "#bake + picture",
+        "#refocus",
+        "#ray tracing, equal error",
+        "#bake + picture: faster by",
+        "#refocus: faster by",
+        "#slope of ray tracing",
+    ]);
+    for found in found {
+        let splat = &found.splat;
+        let mark = if found.is_extrapolated { " *" } else { "" };
+        let factor = |seconds: f64| format!("{} ×", significant(found.truth_seconds / seconds));
+        table.push([
+            found.scene.clone(),
+            found.focus.clone(),
+            format!("{:.1}", splat.psnr),
+            seconds(splat.seconds),
+            seconds(splat.picture_seconds),
+            format!("{}{mark}", seconds(found.truth_seconds)),
+            factor(splat.seconds),
+            factor(splat.picture_seconds),
+            format!("{:.2}", found.truth_slope),
+        ]);
+    }
+    table
+}
+
+/// What was modelled of a scene.
+pub fn modelled(scene: &ModelledScene) -> Table {
+    let mut table = Table::new(&["kind", "#texels", "#samples", "#bytes", "#bytes a sample", "what"]);
+    let text = |value: Option<usize>| value.map_or_else(|| "–".into(), |n| n.to_string());
+    for row in scene.modelled.rows() {
+        let each = match (row.bytes, row.samples) {
+            (Some(bytes), Some(samples)) if samples > 0 => significant(bytes as f64 / samples as f64),
+            _ => "–".into(),
+        };
+        let size = row.bytes.map_or_else(|| "–".into(), |count| bytes(count as f64));
+        table.push([row.kind.into(), text(row.texels), text(row.samples), size, each, row.what.into()]);
+    }
+    table
+}
+
+/// Measurements, one a row.
+pub fn records<'a>(records: impl Iterator<Item = &'a Record>) -> Table {
+    let mut table = Table::new(&[
+        "scene",
+        "focus",
+        "renderer",
+        "knob",
+        "#px",
+        "#CoC, px",
+        "#triangles",
+        "#time",
+        "#of it bake",
+        "#memory",
+        "#peak",
+        "#RMSE",
+        "#relMSE",
+        "#PSNR, dB",
+        "#FLIP",
+        "#mean error",
+    ]);
+    for r in records {
+        let knob =
+            if r.knob.is_empty() { "–".into() } else { format!("{} {}", r.knob, significant(r.value)) };
+        table.push([
+            r.scene.clone(),
+            r.focus.clone(),
+            r.renderer.clone(),
+            knob,
+            format!("{} × {}", r.width, r.height),
+            significant(r.coc_px),
+            r.triangles.to_string(),
+            seconds(r.seconds),
+            r.bake_seconds.map_or_else(|| "–".into(), seconds),
+            bytes(r.bytes as f64),
+            r.peak_bytes.map_or_else(|| "–".into(), |count| bytes(count as f64)),
+            significant(r.rmse),
+            significant(r.relmse),
+            format!("{:.2}", r.psnr),
+            format!("{:.4}", r.flip),
+            format!("{:+.3} %", r.mean_error * 100.0),
+        ]);
+    }
+    table
+}

@@ -1,0 +1,295 @@
+//! What of a scene is modelled: only what its picture needs.
+//!
+//! Texels are counted by asking: a few rays from a texel's centroid tell whether it sees all of the aperture (open), part
+//! of it (partly occluded) or nothing. They are asked at regular steps through the atlas, so the counts of a large atlas
+//! are estimates; those of the samples and their bytes are exact.
+
+use atlas::{Atlas, AtlasTexel};
+use glam::DVec2;
+use lens::Camera;
+use rayon::prelude::*;
+use salf::{Salf, SalfStatistics};
+use serde::{Deserialize, Serialize};
+use trace::Tracer;
+
+/// Bytes of a sample in dense form: a microimage of 8 × 8 aperture cells, each red, green and blue as half floats.
+pub const DENSE_SAMPLE_BYTES: usize = 8 * 8 * 3 * 2;
+
+/// Texels that are asked at most: their share of any kind is then known to 0.4 % of all texels (one standard error).
+const ASKED_TEXELS: usize = 1 << 14;
+
+/// Aperture points a side that an asked texel looks at.
+const LOOKS_A_SIDE: usize = 3;
+
+/// How many texels of an atlas there are of each kind, for one camera.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct TexelStatistics {
+    /// Texels that cover surface.
+    pub exist: usize,
+    /// Texels in the picture or its margin that some point of the aperture sees.
+    pub visible: usize,
+    /// Visible texels that see the whole aperture.
+    pub open: usize,
+    /// Visible texels that something hides from part of it.
+    pub partial: usize,
+    /// How many were asked; the counts are estimates unless all were.
+    pub asked: usize,
+}
+
+/// What a texel sees of the aperture.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Seen {
+    Nothing,
+    Part,
+    All,
+}
+
+impl TexelStatistics {
+    /// Asks the covered `texels` of an atlas what they see of `camera`'s aperture. A texel counts as in the picture if the
+    /// aperture's centre sees it at most `margin_px` outside the frame.
+    pub fn ask(tracer: &Tracer, camera: &Camera, margin_px: f64, texels: &[AtlasTexel]) -> Self {
+        let step = texels.len().div_ceil(ASKED_TEXELS).max(1);
+        let asked: Vec<&AtlasTexel> = texels.iter().skip(step / 2).step_by(step).collect();
+        let seen: Vec<Seen> = asked.par_iter().map(|texel| seen(tracer, camera, margin_px, texel)).collect();
+        let count = |kind: Seen| {
+            let found = seen.iter().filter(|&&seen| seen == kind).count();
+            let of_all = found as f64 * texels.len() as f64 / asked.len().max(1) as f64;
+            of_all.round() as usize
+        };
+        let (open, partial) = (count(Seen::All), count(Seen::Part));
+        Self { exist: texels.len(), visible: open + partial, open, partial, asked: asked.len() }
+    }
+}
+
+fn seen(tracer: &Tracer, camera: &Camera, margin_px: f64, texel: &AtlasTexel) -> Seen {
+    let optics = camera.optics();
+    let point = camera.camera_from_world(texel.centroid.position(tracer.scene()));
+    let reach = 1.0 + margin_px / optics.half_height_px;
+    let position = optics.chief(point);
+    let is_inside = position.x.abs() <= camera.aspect() + reach - 1.0 && position.y.abs() <= reach;
+    if !(point.z > 0.0 && is_inside) {
+        return Seen::Nothing;
+    }
+    let sees = |look: usize| {
+        let at = |k: usize| (2 * k + 1) as f64 / LOOKS_A_SIDE as f64 - 1.0;
+        let u = DVec2::new(at(look % LOOKS_A_SIDE), at(look / LOOKS_A_SIDE)) * camera.aperture_radius;
+        !tracer.occluded(texel.centroid, camera.world_from_camera(u.extend(0.0)))
+    };
+    let looks = LOOKS_A_SIDE * LOOKS_A_SIDE;
+    match (0..looks).filter(|&look| sees(look)).count() {
+        0 => Seen::Nothing,
+        all if all == looks => Seen::All,
+        _ => Seen::Part,
+    }
+}
+
+/// What a light field holds of a scene.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Modelled {
+    /// Its samples and their bytes.
+    pub samples: SalfStatistics,
+    /// The texels of the atlas, where there is one.
+    pub texels: Option<TexelStatistics>,
+}
+
+/// One kind of what is modelled.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct ModelledRow {
+    /// The kind's name.
+    pub kind: &'static str,
+    /// What it is, in a sentence.
+    pub what: &'static str,
+    /// Texels of this kind, where there is an atlas and the kind lies on it.
+    pub texels: Option<usize>,
+    /// Samples of this kind.
+    pub samples: Option<usize>,
+    /// Bytes of these samples.
+    pub bytes: Option<usize>,
+}
+
+impl Modelled {
+    /// Counts what `salf` holds of the scene in `tracer`; with the texels of its atlas, if it has been unwrapped.
+    pub fn of(salf: &Salf, tracer: &Tracer, atlas: Option<&Atlas>) -> Self {
+        let texels = atlas.map(|atlas| atlas.texels(tracer.scene()));
+        Self::with_texels(salf, tracer, texels.as_deref())
+    }
+
+    /// The same with the covered texels of the atlas, if they are known already.
+    pub fn with_texels(salf: &Salf, tracer: &Tracer, texels: Option<&[AtlasTexel]>) -> Self {
+        let ask = |texels| TexelStatistics::ask(tracer, &salf.camera, salf.margin_px as f64, texels);
+        Self { samples: salf.statistics(), texels: texels.map(ask) }
+    }
+
+    /// All samples.
+    pub fn sample_count(&self) -> usize {
+        self.samples.open + self.samples.partial
+    }
+
+    /// What the samples would take in dense form, a microimage each.
+    pub fn dense_bytes(&self) -> usize {
+        self.sample_count() * DENSE_SAMPLE_BYTES
+    }
+
+    /// Mean bytes of a sample; 0 where there is none.
+    pub fn bytes_a_sample(&self) -> f64 {
+        self.samples.bytes as f64 / self.sample_count().max(1) as f64
+    }
+
+    /// The table of what was modelled, kind by kind, and what the dense form would take.
+    pub fn rows(&self) -> Vec<ModelledRow> {
+        let row = |kind, what| ModelledRow { kind, what, texels: None, samples: None, bytes: None };
+        let (samples, texels) = (&self.samples, self.texels);
+        vec![
+            ModelledRow {
+                texels: texels.map(|texels| texels.exist),
+                ..row("exist", "texels that cover surface, seen or not")
+            },
+            ModelledRow {
+                texels: texels.map(|texels| texels.visible),
+                samples: Some(self.sample_count()),
+                bytes: Some(samples.bytes),
+                ..row("visible", "some point of the aperture sees it; only this is stored")
+            },
+            ModelledRow {
+                texels: texels.map(|texels| texels.open),
+                samples: Some(samples.open),
+                bytes: Some(samples.open_bytes),
+                ..row("open", "sees the whole aperture: one colour is enough")
+            },
+            ModelledRow {
+                texels: texels.map(|texels| texels.partial),
+                samples: Some(samples.partial),
+                bytes: Some(samples.partial_bytes),
+                ..row("partly occluded", "something hides it from part of the aperture: a mask of cells")
+            },
+            ModelledRow {
+                samples: Some(0),
+                bytes: Some(0),
+                ..row(
+                    "glossy",
+                    "sends different colours across the aperture; surfaces are diffuse in this version",
+                )
+            },
+            ModelledRow {
+                samples: Some(samples.background),
+                ..row("of it background", "samples at infinity, counted above as open or partly occluded")
+            },
+            ModelledRow {
+                samples: Some(self.sample_count()),
+                bytes: Some(self.dense_bytes()),
+                ..row("dense form", "a microimage of 8 × 8 RGB half floats for every visible sample")
+            },
+        ]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use scene::{Scene, SurfacePoint, Triangle};
+    use std::sync::Arc;
+
+    fn statistics() -> SalfStatistics {
+        SalfStatistics {
+            open: 30,
+            partial: 10,
+            background: 5,
+            bytes: 3000,
+            open_bytes: 2000,
+            partial_bytes: 1000,
+        }
+    }
+
+    #[test]
+    fn the_table_adds_up() {
+        let texels = TexelStatistics { exist: 100, visible: 40, open: 25, partial: 15, asked: 100 };
+        let modelled = Modelled { samples: statistics(), texels: Some(texels) };
+        let rows = modelled.rows();
+        let row = |kind: &str| rows.iter().find(|row| row.kind == kind).copied().unwrap();
+        assert_eq!(row("visible").samples, Some(40));
+        let (open, partial) = (row("open"), row("partly occluded"));
+        assert_eq!(open.bytes.unwrap() + partial.bytes.unwrap(), row("visible").bytes.unwrap());
+        assert_eq!(open.texels.unwrap() + partial.texels.unwrap(), row("visible").texels.unwrap());
+        assert_eq!(row("dense form").bytes, Some(40 * 384));
+        assert_eq!(modelled.bytes_a_sample(), 75.0);
+        assert_eq!(Modelled::default().bytes_a_sample(), 0.0);
+        assert!(Modelled::default().rows().iter().all(|row| row.texels.is_none()));
+    }
+
+    /// A wall at depth 4 before the default camera, the card before its left half.
+    fn wall_and_card() -> Arc<Scene> {
+        let quad = |x: [f64; 2], y: f64, z: f64| {
+            [(0, -y), (1, -y), (1, y), (0, y)].map(|(k, y)| glam::DVec3::new(x[k], y, -z))
+        };
+        let positions = [quad([-0.5, 0.5], 0.3, 4.0), quad([-0.25, 0.0], 0.3, 3.9)].concat();
+        let corners = |first: u32, part| {
+            [[0, 1, 2], [0, 2, 3]].map(|k| Triangle { vertices: k.map(|k| first + k), part })
+        };
+        let part = |part: u32| scene::Part {
+            node: 0,
+            material: 0,
+            triangles: 2 * part..2 * part + 2,
+            has_uv: [false; 2],
+            mirrored: false,
+        };
+        let material = scene::Material {
+            name: "white".into(),
+            base_color: glam::Vec4::ONE,
+            base_color_texture: None,
+            emissive: glam::Vec3::ZERO,
+            emissive_texture: None,
+            metallic: 0.0,
+            roughness: 1.0,
+            specular: 1.0,
+            unlit: true,
+            alpha: scene::AlphaMode::Opaque,
+            double_sided: true,
+        };
+        Arc::new(Scene {
+            normals: vec![glam::Vec3::ZERO; positions.len()],
+            positions,
+            triangles: [corners(0, 0), corners(4, 1)].concat(),
+            parts: vec![part(0), part(1)],
+            nodes: vec![scene::Node { name: "all".into(), index: 0 }],
+            materials: vec![material],
+            ..Scene::default()
+        })
+    }
+
+    #[test]
+    fn texels_behind_the_card_are_not_seen() {
+        let scene = wall_and_card();
+        let tracer = Tracer::new(scene.clone());
+        let texel = |x: f64| {
+            // On the wall's lower triangle: x runs with the second corner's weight, y near the lower edge.
+            let point = SurfacePoint { triangle: 0, barycentric: DVec2::new(x + 0.5 - 0.1, 0.1) };
+            AtlasTexel { x: 0, y: 0, area: 1.0, centroid: point }
+        };
+        let camera = Camera { aperture_radius: 0.5, ..Camera::default() };
+        let found = |x: f64, camera: &Camera| TexelStatistics::ask(&tracer, camera, 0.0, &[texel(x)]);
+        assert_eq!(found(-0.12, &camera).visible, 0, "behind the card's middle");
+        assert_eq!(found(-0.004, &camera).partial, 1, "behind the card's edge");
+        assert_eq!(found(0.3, &camera).open, 1, "beside the card");
+        let behind =
+            Camera { camera_to_world: glam::DMat4::from_translation(glam::DVec3::Z * -8.0), ..camera };
+        assert_eq!(found(0.3, &behind).visible, 0, "behind the camera");
+    }
+
+    #[test]
+    fn a_large_atlas_is_estimated() {
+        let scene = wall_and_card();
+        let tracer = Tracer::new(scene.clone());
+        let texel = |k: usize| {
+            let weight = (k % 1000) as f64 / 1000.0;
+            let point = SurfacePoint { triangle: 0, barycentric: DVec2::new(weight * 0.9, 0.05) };
+            AtlasTexel { x: 0, y: 0, area: 1.0, centroid: point }
+        };
+        let texels: Vec<_> = (0..50_000).map(texel).collect();
+        let found = TexelStatistics::ask(&tracer, &Camera::default(), 0.0, &texels);
+        assert!(found.asked <= ASKED_TEXELS && found.exist == 50_000, "{found:?}");
+        // x from −0.45 to 0.45, of which −0.25 to 0 (as seen on the wall: 4/3.9 of it) is hidden.
+        let hidden = 0.25 * 4.0 / 3.9 / 0.9;
+        let share = 1.0 - found.visible as f64 / found.exist as f64;
+        assert!((share - hidden).abs() < 0.02, "{share} against {hidden}");
+    }
+}
