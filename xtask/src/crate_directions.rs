@@ -37,6 +37,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
         "report",
         &[
             "lens", "progress", "scene", "atlas", "trace", "salf", "focus", "splat", "project", "session",
+            "hard-cases",
         ],
     ),
     (

@@ -206,7 +206,7 @@ pub struct CompareArguments {
 /// `report`.
 #[derive(Debug, Args)]
 pub struct ReportArguments {
-    /// Scenes (.glb, .gltf) or projects (.fbrush); without any, the demo
+    /// Scenes (.glb, .gltf) or projects (.fbrush); without any the demo, or nothing but the hard cases with --hard
     pub scenes: Vec<PathBuf>,
     /// The folder of the report; a run that was stopped goes on there
     #[arg(short, long, value_name = "DIR")]
@@ -219,6 +219,9 @@ pub struct ReportArguments {
     /// Measure only a few points of every sweep
     #[arg(long)]
     pub quick: bool,
+    /// Run the numerically hard cases as well: hard.json, and a table on the page
+    #[arg(long)]
+    pub hard: bool,
     /// Write what was done as JSON to stdout
     #[arg(long)]
     pub json: bool,

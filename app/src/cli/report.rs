@@ -7,9 +7,9 @@ use super::shot::unwrap_options;
 use crate::window::demo;
 use report::{ReportOptions, SceneRequest};
 use serde_json::json;
-use session::{CameraChoice, Command};
 use sha2::{Digest, Sha256};
 use std::io::Read;
+use std::path::PathBuf;
 
 /// Measures, and writes the report.
 pub fn run(arguments: &ReportArguments, console: &Console) -> Result<(), Failure> {
@@ -19,16 +19,21 @@ pub fn run(arguments: &ReportArguments, console: &Console) -> Result<(), Failure
         size: arguments.shot.size,
         reference_spp: arguments.spp.unwrap_or(usual_spp),
         is_quick: arguments.quick,
+        with_hard_cases: arguments.hard,
         build: build()?,
         unwrap: unwrap_options(None),
     };
     let note = |line: &str| console.note(line);
     let report = report::run(&requests(arguments)?, &options, &arguments.output, console, &note)?;
+    let wrong = report.hard.iter().flatten().filter(|outcome| !(outcome.pass && outcome.control_fails));
+    let failed: Vec<&str> = wrong.map(|outcome| outcome.case.as_str()).collect();
     if arguments.json {
         say_json(&json!({
             "files": report.files,
             "measurements": report.measured.len(),
             "new": report.new,
+            "hard_cases": report.hard.as_ref().map(Vec::len),
+            "hard_cases_failed": failed,
             "machine": report.machine,
             "seconds": report.seconds,
         }));
@@ -37,29 +42,31 @@ pub fn run(arguments: &ReportArguments, console: &Console) -> Result<(), Failure
         console.note(&format!("{all} measurements, {new} of them new, in {:.0} s", report.seconds));
         report.files.iter().for_each(|file| console.note(&format!("wrote {}", file.display())));
     }
+    if !failed.is_empty() {
+        let table = arguments.output.join("hard.json");
+        let what = format!("hard cases that do not come out as they must: {}", failed.join("; "));
+        return Err(Failure::partly(format!("{}: {what} (see its `expected` and `found`)", table.display())));
+    }
     Ok(())
 }
 
-/// The scenes that were named, or the demo as its makers shot and focused it.
+/// The scenes that were named; without any the demo, unless the hard cases were asked for.
 fn requests(arguments: &ReportArguments) -> Result<Vec<SceneRequest>, Failure> {
     let shot = &arguments.shot;
+    let request = |file: &PathBuf| SceneRequest {
+        file: file.clone(),
+        camera: shot.camera.clone(),
+        focus: shot.focus.clone(),
+    };
     if !arguments.scenes.is_empty() {
-        let (camera, focus) = (&shot.camera, &shot.focus);
-        let request = |file: &std::path::PathBuf| SceneRequest {
-            file: file.clone(),
-            camera: camera.clone(),
-            focus: focus.clone(),
-        };
         return Ok(arguments.scenes.iter().map(request).collect());
     }
-    match demo::open() {
-        Some(Command::OpenShot { scene, camera, focus }) => Ok(vec![SceneRequest {
-            file: scene,
-            camera: Some(shot.camera.clone().unwrap_or(CameraChoice::File(camera))),
-            focus: Some(shot.focus.clone().unwrap_or(focus)),
-        }]),
-        _ => Err(Failure::bad("assets/demo: the demo is not installed (name a scene)")),
+    if arguments.hard {
+        return Ok(Vec::new());
     }
+    let demo = demo::project()
+        .ok_or_else(|| Failure::bad("assets/demo: the demo is not installed (name a scene)"))?;
+    Ok(vec![request(&demo)])
 }
 
 /// What tells this build of the program from another: the checksum of the program itself.

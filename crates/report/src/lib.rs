@@ -17,6 +17,7 @@
 
 mod contender;
 mod default_lens;
+mod fields;
 mod findings;
 mod fingerprint;
 mod generic_focus;

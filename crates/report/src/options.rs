@@ -23,6 +23,8 @@ pub struct ReportOptions {
     pub reference_spp: u32,
     /// Whether to measure only a few points of every sweep.
     pub is_quick: bool,
+    /// Whether to run the hard cases.
+    pub with_hard_cases: bool,
     /// What tells one build of the program from another; measurements of another build do not count.
     pub build: String,
     /// How scenes are unwrapped.

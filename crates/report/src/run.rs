@@ -47,7 +47,9 @@ pub struct Report {
     pub scenes: Vec<SceneSummary>,
     /// The measurements, in the order of the plan.
     pub measured: Vec<Measured>,
-    /// How many of them were made in this run.
+    /// The hard cases, if they were asked for.
+    pub hard: Option<Vec<hard_cases::Outcome>>,
+    /// How many of the measurements were made in this run.
     pub new: usize,
     /// Files that were written for people and programs.
     pub files: Vec<PathBuf>,
@@ -73,12 +75,17 @@ pub fn run(
         machine: Machine::here(),
         scenes: Vec::new(),
         measured: Vec::new(),
+        hard: None,
         new: 0,
         files: Vec::new(),
         seconds: 0.0,
     };
     for request in requests {
         runner.scene(request, &mut report)?;
+    }
+    if options.with_hard_cases {
+        let bar = steps.begin("hard cases");
+        report.hard = Some(hard_cases::run("", hard_cases::Effort::Full, &*bar)?);
     }
     report.files = write_report(&report, folder)?;
     report.seconds = start.elapsed().as_secs_f64();

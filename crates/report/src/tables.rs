@@ -5,6 +5,7 @@ use crate::plot::{bytes, seconds, significant};
 use crate::record::Record;
 use crate::summary::{ModelledScene, SceneSummary};
 use crate::table::Table;
+use hard_cases::Outcome;
 
 /// The scenes and their references.
 pub fn scenes(scenes: &[SceneSummary]) -> Table {
@@ -82,6 +83,18 @@ pub fn modelled(scene: &ModelledScene) -> Table {
         };
         let size = row.bytes.map_or_else(|| "–".into(), |count| bytes(count as f64));
         table.push([row.kind.into(), text(row.texels), text(row.samples), size, each, row.what.into()]);
+    }
+    table
+}
+
+/// The hard cases.
+pub fn hard_cases(outcomes: &[Outcome]) -> Table {
+    let mut table = Table::new(&["case", "expected", "found", "pass", "control fails"]);
+    let yes_or_no = |yes: bool| if yes { "yes" } else { "NO" }.to_string();
+    for Outcome { case, expected, found, pass, control_fails } in outcomes {
+        let cells =
+            [case.clone(), expected.clone(), found.clone(), yes_or_no(*pass), yes_or_no(*control_fails)];
+        table.push(cells);
     }
     table
 }

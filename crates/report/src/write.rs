@@ -1,12 +1,13 @@
 //! The report's files.
 
+use crate::fields::Fields;
 use crate::findings::equal_errors;
 use crate::page;
 use crate::record::{Record, Series};
 use crate::run::Report;
 use crate::store::{to_json, write_whole};
 use crate::tables;
-use serde_json::{Map, Value, json};
+use serde_json::{Value, json};
 use session::SessionError;
 use std::path::{Path, PathBuf};
 
@@ -18,13 +19,16 @@ pub fn write_report(report: &Report, folder: &Path) -> Result<Vec<PathBuf>, Sess
         "scenes": report.scenes,
         "measurements": records.len(),
     });
-    let files = [
+    let mut files = vec![
         ("report.html", page::html(report)?.into_bytes()),
         ("report.md", markdown(report).into_bytes()),
         ("report.json", to_json(&records)?),
         ("report.csv", csv(&records)?),
         ("about.json", to_json(&about)?),
     ];
+    if let Some(hard) = &report.hard {
+        files.push(("hard.json", to_json(hard)?));
+    }
     let mut written = Vec::new();
     for (name, bytes) in files {
         let file = folder.join(name);
@@ -34,27 +38,36 @@ pub fn write_report(report: &Report, folder: &Path) -> Result<Vec<PathBuf>, Sess
     Ok(written)
 }
 
-/// The records as comma-separated values: a column a key of the JSON, in its order.
+/// The records as comma-separated values (RFC 4180): a column a key of the JSON, in its order.
 fn csv(records: &[&Record]) -> Result<Vec<u8>, SessionError> {
-    let fault =
-        |what: &dyn std::fmt::Display| SessionError::Internal(format!("the table cannot be written: {what}"));
-    let mut writer = csv::Writer::from_writer(Vec::new());
+    let mut text = String::new();
     for (k, record) in records.iter().enumerate() {
-        let fields: Map<String, Value> = match serde_json::to_value(record).map_err(|e| fault(&e))? {
-            Value::Object(fields) => fields,
-            _ => return Err(fault(&"a record is not an object")),
+        let json = serde_json::to_string(record);
+        let fields: Result<Fields, _> = json.and_then(|json| serde_json::from_str(&json));
+        let Fields(fields) = fields
+            .map_err(|error| SessionError::Internal(format!("a measurement cannot be written: {error}")))?;
+        let mut line = |cells: Vec<String>| {
+            text.push_str(&cells.join(","));
+            text.push_str("\r\n");
         };
         if k == 0 {
-            writer.write_record(fields.keys()).map_err(|e| fault(&e))?;
+            line(fields.iter().map(|(name, _)| name.clone()).collect());
         }
-        let text = |value: &Value| match value {
-            Value::String(text) => text.clone(),
-            Value::Null => String::new(),
-            other => other.to_string(),
-        };
-        writer.write_record(fields.values().map(text)).map_err(|e| fault(&e))?;
+        line(fields.iter().map(|(_, value)| csv_cell(value)).collect());
     }
-    writer.into_inner().map_err(|e| fault(&e))
+    Ok(text.into_bytes())
+}
+
+/// A value as a cell.
+fn csv_cell(value: &Value) -> String {
+    match value {
+        Value::String(text) if text.contains([',', '"', '\n', '\r']) => {
+            format!("\"{}\"", text.replace('"', "\"\""))
+        }
+        Value::String(text) => text.clone(),
+        Value::Null => String::new(),
+        other => other.to_string(),
+    }
 }
 
 /// The tables as Markdown.
@@ -69,6 +82,9 @@ fn markdown(report: &Report) -> String {
         "At equal error",
         format!("{}\n{}\n", tables::equal_errors(&equal).to_markdown(), page::EQUAL_ERROR_NOTE),
     );
+    if let Some(hard) = &report.hard {
+        section("Hard cases", tables::hard_cases(hard).to_markdown());
+    }
     for scene in &report.scenes {
         let modelled = &scene.modelled;
         section(

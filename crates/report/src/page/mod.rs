@@ -11,6 +11,7 @@ use crate::record::{Record, Series};
 use crate::run::{Measured, Report};
 use crate::summary::{ModelledScene, SceneSummary};
 use crate::tables;
+use hard_cases::Outcome;
 use session::{DENSE_SAMPLE_BYTES, SessionError};
 
 const STYLE: &str = include_str!("style.css");
@@ -28,16 +29,21 @@ pub fn html(report: &Report) -> Result<String, SessionError> {
     let mut body = format!(
         "<h1>Focus Brush: speed against error</h1>\n<p class=\"byline\">{}</p>\n{}",
         escaped(&machine_sentence(&report.machine)),
-        method(report)
+        if report.scenes.is_empty() { String::new() } else { method(report) }
     );
-    body += &format!(
-        "<h2>At equal error</h2>\n{}<p class=\"caption\">{EQUAL_ERROR_NOTE}</p>\n",
-        tables::equal_errors(&equal).to_html()
-    );
+    if !equal.is_empty() {
+        let table = tables::equal_errors(&equal).to_html();
+        body += &format!("<h2>At equal error</h2>\n{table}<p class=\"caption\">{EQUAL_ERROR_NOTE}</p>\n");
+    }
     for scene in &report.scenes {
         body += &scene_section(scene, &report.measured)?;
     }
-    body += "<h2>All measurements</h2>\n";
+    if let Some(hard) = &report.hard {
+        body += &hard_section(hard);
+    }
+    if !records.is_empty() {
+        body += "<h2>All measurements</h2>\n";
+    }
     for series in Series::ALL {
         let table = tables::records(records.iter().copied().filter(|record| record.series == series));
         if !table.rows.is_empty() {
@@ -122,6 +128,16 @@ fn figure(chart: &Chart) -> String {
         n => format!("<figcaption>{n} marks at 0 have no place on a logarithmic axis.</figcaption>"),
     };
     format!("<figure>{}{caption}</figure>\n", chart.to_svg())
+}
+
+fn hard_section(outcomes: &[Outcome]) -> String {
+    let right = outcomes.iter().filter(|outcome| outcome.pass && outcome.control_fails).count();
+    format!(
+        "<h2>Hard cases</h2>\n<p>Awkward inputs, each with what must come out and with a deliberately wrong computation that the same \
+         check must refuse: {right} of {} come out as they must.</p>\n{}\n",
+        outcomes.len(),
+        tables::hard_cases(outcomes).to_html()
+    )
 }
 
 /// The title of a series' table.

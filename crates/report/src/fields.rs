@@ -1,0 +1,43 @@
+//! The fields of a record in the order in which it declares them.
+
+use serde::de::{Deserialize, Deserializer, MapAccess, Visitor};
+use serde_json::Value;
+
+/// Names and values of a JSON object, in its own order, which a map of `serde_json` does not keep.
+pub struct Fields(pub Vec<(String, Value)>);
+
+impl<'de> Deserialize<'de> for Fields {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_map(InOrder)
+    }
+}
+
+struct InOrder;
+
+impl<'de> Visitor<'de> for InOrder {
+    type Value = Fields;
+
+    fn expecting(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str("an object")
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Fields, A::Error> {
+        let mut fields = Vec::new();
+        while let Some(field) = map.next_entry()? {
+            fields.push(field);
+        }
+        Ok(Fields(fields))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_order_is_kept() {
+        let Fields(fields) = serde_json::from_str(r#"{"b": 1, "a": "x", "c": null}"#).unwrap();
+        assert_eq!(fields.iter().map(|(name, _)| name.as_str()).collect::<String>(), "bac");
+        assert!(serde_json::from_str::<Fields>("[1]").is_err());
+    }
+}
