@@ -36,7 +36,17 @@ const ALLOWED: &[(&str, &[&str])] = &[
     (
         "report",
         &[
-            "lens", "progress", "scene", "atlas", "trace", "salf", "focus", "splat", "project", "session",
+            "lens",
+            "progress",
+            "scene",
+            "atlas",
+            "trace",
+            "salf",
+            "focus",
+            "splat",
+            "project",
+            "session",
+            "baselines",
             "hard-cases",
         ],
     ),

@@ -1,6 +1,6 @@
 //! How far two pictures are apart.
 
-use crate::picture_file::{linear_from_srgb, srgb_bytes};
+use crate::picture_file::srgb_bytes;
 use crate::{LinearPicture, ProjectError};
 use nv_flip::{FlipImageRgb8, FlipPool};
 use serde::Serialize;
@@ -44,21 +44,6 @@ pub struct ErrorMaps {
     pub difference: Vec<[f32; 3]>,
     /// FLIP in [0, 1].
     pub flip: Vec<f32>,
-}
-
-impl ErrorMaps {
-    /// FLIP as linear RGB in the colours that its authors use: magma, from black (0) by purple to pale yellow (1).
-    pub fn flip_in_colour(&self) -> Vec<[f32; 3]> {
-        let table = nv_flip::magma_lut().to_vec();
-        let last = table.len() / 3 - 1;
-        let colour = |&flip: &f32| {
-            // A value that is not a number is shown as the largest error.
-            let place =
-                if flip.is_nan() { last } else { (flip.clamp(0.0, 1.0) * last as f32).round() as usize };
-            [0, 1, 2].map(|k| linear_from_srgb(table[3 * place + k] as f32 / 255.0))
-        };
-        self.flip.iter().map(colour).collect()
-    }
 }
 
 /// Compares `a` with the reference `b`. An error unless they have the same size. Pixels that are not finite

@@ -126,7 +126,7 @@ fn srgb_from_linear(c: f32) -> f32 {
 }
 
 /// The linear value of an sRGB-encoded one, both in [0, 1]. Inverse of [`srgb_from_linear`].
-pub(crate) fn linear_from_srgb(c: f32) -> f32 {
+fn linear_from_srgb(c: f32) -> f32 {
     if c <= 0.04045 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) }
 }
 

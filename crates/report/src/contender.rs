@@ -1,8 +1,10 @@
 //! The renderers that are measured, each with its knob.
 
 use crate::stopwatch::{Timed, timed};
+use baselines::scatter;
 use focus::Focus;
 use lens::{Camera, Picture};
+use salf::Salf;
 use session::{RenderOptions, Renderer, SessionError, Steps, bake, render};
 use splat::Splatter;
 use std::sync::Arc;
@@ -23,6 +25,21 @@ pub enum Contender {
     },
     /// A blur of the pinhole picture by depth.
     Blur,
+    /// The pinhole picture in layers, each blurred.
+    Layers {
+        /// Slices of depth.
+        layers: u32,
+    },
+    /// Pinhole views over the aperture, shifted and added.
+    Views {
+        /// Views a side.
+        views_a_side: u32,
+    },
+    /// The light field, baked and scattered ray by ray.
+    Scatter {
+        /// Rays a sample.
+        rays_a_sample: u32,
+    },
 }
 
 /// What a contender draws.
@@ -61,21 +78,32 @@ impl Contender {
         Self::Splat { tolerance_px: RenderOptions::default().tolerance_px }
     }
 
+    fn kind(&self) -> Renderer {
+        match self {
+            Self::Splat { .. } => Renderer::Splat,
+            Self::Truth { .. } => Renderer::Truth,
+            Self::Blur => Renderer::Blur,
+            Self::Layers { .. } => Renderer::Layers,
+            Self::Views { .. } => Renderer::Views,
+            Self::Scatter { .. } => Renderer::Scatter,
+        }
+    }
+
     /// Its name.
     pub fn renderer(&self) -> &'static str {
-        match self {
-            Self::Splat { .. } => "splat",
-            Self::Truth { .. } => "truth",
-            Self::Blur => "blur",
-        }
+        self.kind().name()
     }
 
     /// What it is, for the page.
     pub fn what(renderer: &str) -> &'static str {
-        match renderer {
-            "splat" => "the light field, splatted",
-            "truth" => "distributed ray tracing",
-            _ => "blur of the pinhole picture by depth",
+        match Renderer::named(renderer) {
+            Some(Renderer::Splat) => "the light field, splatted",
+            Some(Renderer::Truth) => "ray tracing",
+            Some(Renderer::Blur) => "pinhole picture, blurred by depth",
+            Some(Renderer::Layers) => "pinhole picture in layers",
+            Some(Renderer::Views) => "pinhole views, shifted and added",
+            Some(Renderer::Scatter) => "the light field, ray by ray",
+            None => "",
         }
     }
 
@@ -85,36 +113,64 @@ impl Contender {
             Self::Splat { .. } => "tolerance_px",
             Self::Truth { .. } => "spp",
             Self::Blur => "",
+            Self::Layers { .. } => "layers",
+            Self::Views { .. } => "views_a_side",
+            Self::Scatter { .. } => "rays_a_sample",
         }
     }
 
-    /// Where its knob stands.
+    /// Where its knob stands; 0 where it has none.
     pub fn value(&self) -> f64 {
-        match self {
-            Self::Splat { tolerance_px } => *tolerance_px,
-            Self::Truth { samples_per_pixel } => f64::from(*samples_per_pixel),
+        match *self {
+            Self::Splat { tolerance_px } => tolerance_px,
+            Self::Truth { samples_per_pixel: count }
+            | Self::Layers { layers: count }
+            | Self::Views { views_a_side: count }
+            | Self::Scatter { rays_a_sample: count } => f64::from(count),
             Self::Blur => 0.0,
         }
     }
 
+    fn options(&self) -> RenderOptions {
+        let mut options = RenderOptions { renderer: self.kind(), ..RenderOptions::default() };
+        match *self {
+            Self::Splat { tolerance_px } => options.tolerance_px = tolerance_px,
+            Self::Truth { samples_per_pixel } => {
+                options.truth.samples_per_pixel = samples_per_pixel;
+                options.truth.seed = MEASURED_SEED;
+            }
+            Self::Blur => {}
+            Self::Layers { layers } => options.layered.layers = layers,
+            Self::Views { views_a_side } => options.views.views_a_side = views_a_side,
+            Self::Scatter { rays_a_sample } => options.scatter.rays_a_sample = rays_a_sample,
+        }
+        options
+    }
+
     /// Draws the picture, again if that is quick.
     pub fn draw(&self, shot: Shot<'_>, steps: &dyn Steps) -> Result<Drawn, SessionError> {
-        match self {
-            Self::Splat { tolerance_px } => splat(shot, *tolerance_px, steps),
-            Self::Truth { samples_per_pixel } => {
-                let options = RenderOptions {
-                    renderer: Renderer::Truth,
-                    samples_per_pixel: *samples_per_pixel,
-                    seed: MEASURED_SEED,
-                    ..RenderOptions::default()
-                };
-                whole(shot, &options, shot.tracer.bytes(), steps)
+        let pixels = shot.camera.width as usize * shot.camera.height as usize;
+        let colour = size_of::<[f32; 3]>();
+        let options = self.options();
+        match *self {
+            Self::Splat { .. } => from_light_field(shot, &options, steps, |salf| {
+                let mut splatter = Splatter::new(salf.clone());
+                splatter.render(shot.camera, shot.focus, &*steps.begin("splatting"))?;
+                Ok(splatter.picture().clone())
+            }),
+            Self::Scatter { .. } => from_light_field(shot, &options, steps, |salf| {
+                let progress = steps.begin("scattering");
+                Ok(scatter(salf, shot.camera, shot.focus, &options.scatter, &*progress)?)
+            }),
+            Self::Truth { .. } => whole(shot, &options, shot.tracer.bytes(), steps),
+            // A colour and a defocus a pixel.
+            Self::Blur | Self::Layers { .. } => {
+                whole(shot, &options, pixels * (colour + size_of::<f64>()), steps)
             }
-            Self::Blur => {
-                let options = RenderOptions { renderer: Renderer::Blur, ..RenderOptions::default() };
-                // A colour and a defocus a pixel.
-                let pixels = shot.camera.width as usize * shot.camera.height as usize;
-                whole(shot, &options, pixels * (size_of::<[f32; 3]>() + size_of::<f64>()), steps)
+            // A colour and a depth a pixel of each view.
+            Self::Views { views_a_side } => {
+                let views = (views_a_side as usize).pow(2);
+                whole(shot, &options, views * pixels * (colour + size_of::<f32>()), steps)
             }
         }
     }
@@ -138,15 +194,16 @@ fn whole(
     })
 }
 
-fn splat(shot: Shot<'_>, tolerance_px: f64, steps: &dyn Steps) -> Result<Drawn, SessionError> {
-    let Shot { tracer, camera, focus } = shot;
-    let baked = timed(|| bake(tracer, camera, focus, tolerance_px, steps))?;
+/// A renderer that bakes a light field once and draws every picture from it.
+fn from_light_field(
+    shot: Shot<'_>,
+    options: &RenderOptions,
+    steps: &dyn Steps,
+    draw: impl Fn(&Arc<Salf>) -> Result<Picture, SessionError>,
+) -> Result<Drawn, SessionError> {
+    let baked = timed(|| bake(shot.tracer, shot.camera, shot.focus, options.tolerance_px, steps))?;
     let salf = Arc::new(baked.value);
-    let Timed { value: picture, seconds, repeats } = timed(|| {
-        let mut splatter = Splatter::new(salf.clone());
-        splatter.render(camera, focus, &*steps.begin("splatting"))?;
-        Ok(splatter.picture().clone())
-    })?;
+    let Timed { value: picture, seconds, repeats } = timed(|| draw(&salf))?;
     Ok(Drawn {
         picture,
         bake_seconds: Some(baked.seconds),

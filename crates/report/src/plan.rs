@@ -31,6 +31,9 @@ const COST_REFERENCE_SHARE: u32 = 8;
 /// Rays a pixel of the ray tracer where cost is measured.
 const COST_SPP: u32 = 64;
 
+/// Views a side of the aperture where cost is measured.
+const COST_VIEWS_A_SIDE: u32 = 5;
+
 /// The standard focus is the subject's first.
 const STANDARD: usize = 0;
 
@@ -58,6 +61,7 @@ pub fn settings(subject: &Subject, options: &ReportOptions) -> Vec<Setting> {
             Contender::usual_splat(),
             Contender::Truth { samples_per_pixel: COST_SPP },
             Contender::Blur,
+            Contender::Views { views_a_side: COST_VIEWS_A_SIDE },
         ],
         ..base(series, STANDARD, camera)
     };
@@ -89,5 +93,11 @@ fn sweep(is_quick: bool) -> Vec<Contender> {
     let spps: &[u32] = if is_quick { &[4, 16, 64] } else { &[4, 8, 16, 32, 64, 128, 256] };
     let splats = tolerances.iter().map(|&tolerance_px| Contender::Splat { tolerance_px });
     let truths = spps.iter().map(|&samples_per_pixel| Contender::Truth { samples_per_pixel });
-    splats.chain(truths).chain([Contender::Blur]).collect()
+    let layers: &[u32] = if is_quick { &[32] } else { &[8, 32, 128] };
+    let views: &[u32] = if is_quick { &[5] } else { &[3, 5, 9] };
+    let rays: &[u32] = if is_quick { &[16] } else { &[16, 64, 256] };
+    let layers = layers.iter().map(|&layers| Contender::Layers { layers });
+    let views = views.iter().map(|&views_a_side| Contender::Views { views_a_side });
+    let scatters = rays.iter().map(|&rays_a_sample| Contender::Scatter { rays_a_sample });
+    splats.chain(truths).chain([Contender::Blur]).chain(layers).chain(views).chain(scatters).collect()
 }

@@ -7,14 +7,15 @@
 //! E[(A − B)²] = 2σ²        Var[(A + B)/2] = σ²/2 = E[(A − B)²]/4
 //! ```
 //!
-//! whatever the samples are like within each half, which a variance over the samples of a low-discrepancy sequence would
-//! not say.
+//! whatever the samples are like within each half. (The standard error that the ray tracer tells of itself is too large for
+//! low-discrepancy samples, which are more evenly spread together than pass by pass.)
 
 use crate::contender::Shot;
 use lens::{Exposure, Picture};
 use project::{LinearPicture, compare};
 use serde::{Deserialize, Serialize};
 use session::{RenderOptions, Renderer, SessionError, Steps, render};
+use trace::truth::TruthOptions;
 
 /// Scrambles of the two halves.
 const SEEDS: [u32; 2] = [0x5eed_0001, 0x5eed_0002];
@@ -43,8 +44,7 @@ pub fn trace_reference(
     let half = |seed| {
         let options = RenderOptions {
             renderer: Renderer::Truth,
-            samples_per_pixel: half_spp,
-            seed,
+            truth: TruthOptions { samples_per_pixel: half_spp, seed, ..TruthOptions::default() },
             ..RenderOptions::default()
         };
         Ok::<_, SessionError>(render(shot.tracer, shot.camera, shot.focus, &options, steps)?.picture)

@@ -16,7 +16,7 @@ use crate::summary::{FocusSummary, ModelledScene, Reference, SceneSummary};
 use crate::write::write_report;
 use focus::Focus;
 use progress::Progress;
-use project::{LinearPicture, compare, error_maps, read_picture, write_rgb};
+use project::{LinearPicture, compare, read_picture, write_error_map, write_rgb};
 use session::{Modelled, RenderOptions, SessionError, Steps, bake};
 use splat::Splatter;
 use std::path::{Path, PathBuf};
@@ -223,8 +223,7 @@ impl Runner<'_> {
             let [png, flip] = self.picture_files(name);
             let [width, height] = [picture.width, picture.height];
             write_rgb(&png, width, height, &picture.rgb)?;
-            let maps = error_maps(&picture, against.picture)?;
-            write_rgb(&flip, width, height, &maps.flip_in_colour())?;
+            write_error_map(&flip, &picture, against.picture)?;
             Some([png, flip])
         } else {
             None

@@ -27,10 +27,13 @@ pub fn figures(focus: &FocusSummary, measured: &[&Measured]) -> Result<String, S
     for shown in shown(measured) {
         let Some([picture, flip]) = &shown.pictures else { continue };
         let Record { renderer, psnr, flip: mean_flip, seconds: took, .. } = &shown.record;
+        let value = significant(shown.record.value);
         let knob = match shown.record.knob.as_str() {
             "" => String::new(),
-            "tolerance_px" => format!(", tolerance {} px", significant(shown.record.value)),
-            knob => format!(", {} {knob}", significant(shown.record.value)),
+            "tolerance_px" => format!(", tolerance {value} px"),
+            "views_a_side" => format!(", {value} × {value} views"),
+            "rays_a_sample" => format!(", {value} rays a sample"),
+            knob => format!(", {value} {knob}"),
         };
         let again = match shown.record.bake_seconds {
             Some(_) => format!(", refocus {}", seconds(shown.record.picture_seconds)),

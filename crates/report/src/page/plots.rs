@@ -5,7 +5,7 @@ use crate::plot::{Axis, Chart, Kind, Point, Rule, Series as Line, bytes, plain, 
 use crate::record::{Record, Series};
 
 /// The renderers in the order of their colours: the same in every plot.
-const STYLES: [&str; 3] = ["splat", "truth", "blur"];
+const STYLES: [&str; 6] = ["splat", "truth", "blur", "layers", "views", "scatter"];
 
 /// The renderers that `records` has, in the order of their colours, then by name.
 fn renderers(records: &[&Record]) -> Vec<String> {
@@ -25,6 +25,8 @@ fn knob_text(record: &Record) -> String {
     match record.knob.as_str() {
         "" => String::new(),
         "tolerance_px" => format!("{value} px"),
+        "views_a_side" => format!("{value}²"),
+        "rays_a_sample" => format!("{value} rays"),
         knob => format!("{value} {knob}"),
     }
 }
