@@ -13,7 +13,7 @@ pub struct Against<'a> {
     pub picture: &'a LinearPicture,
     /// How far off it is.
     pub error: ReferenceError,
-    /// The circle of confusion that 99 % of the pixels stay below, px.
+    /// The circle of confusion that 99 % of the pixels with a surface stay below, px.
     pub coc_px: f64,
 }
 

@@ -62,7 +62,7 @@ pub struct Record {
     pub height: u32,
     /// Half the side of the aperture's square, scene units.
     pub aperture_radius: f64,
-    /// The circle of confusion that 99 % of the pixels stay below, px.
+    /// The circle of confusion that 99 % of the pixels with a surface stay below, px.
     pub coc_px: f64,
     /// Triangles of the scene.
     pub triangles: u64,

@@ -25,7 +25,7 @@ use std::time::Instant;
 use trace::Tracer;
 
 /// Results of other forms than this do not count.
-const FORM: &str = "1";
+const FORM: &str = "2";
 
 /// The tolerance of the finest light field, px.
 const FINEST_TOLERANCE_PX: f64 = 0.0;
@@ -277,8 +277,13 @@ impl Runner<'_> {
         let shot = Shot { tracer: &subject.tracer, camera: &setting.camera, focus: &focus.focus };
         let (picture, error) = trace_reference(shot, setting.reference_spp, &one)?;
         let hits = first_hits(shot.tracer, shot.focus, shot.camera, &one)?;
-        let circles = hits.circle_of_confusion_px(shot.camera);
-        let mut circles: Vec<f64> = circles.iter().map(|&circle| f64::from(circle.abs())).collect();
+        // The background is at infinity, and blurred or not it looks the same.
+        let circles = hits.circle_of_confusion_px(shot.camera).into_iter().zip(&hits.depth);
+        let circles = circles.filter(|(_, depth)| depth.is_finite());
+        let mut circles: Vec<f64> = circles.map(|(circle, _)| f64::from(circle.abs())).collect();
+        if circles.is_empty() {
+            circles.push(0.0);
+        }
         let about = Reference { error, circles_px: [0.5, 0.9, 0.99].map(|at| quantile(&mut circles, at)) };
         let [width, height] = [picture.width, picture.height];
         write_rgb(&file, width, height, &picture.rgb)?;

@@ -59,7 +59,7 @@ pub struct FocusSummary {
 pub struct Reference {
     /// How far off it is.
     pub error: ReferenceError,
-    /// The circles of confusion that half, 90 % and 99 % of the pixels stay below, px.
+    /// The circles of confusion that half, 90 % and 99 % of the pixels with a surface stay below, px.
     pub circles_px: [f64; 3],
 }
 

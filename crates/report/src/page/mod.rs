@@ -68,7 +68,7 @@ fn method(report: &Report) -> String {
          under a quarter of a second are medians of up to five. “Memory” is what a renderer keeps for the next picture: the \
          light field's samples, the hierarchy over the triangles, or a pinhole picture with its defocus; “peak” is how much more the process held at \
          most. A reference is the mean of two pictures of independent scrambles; their difference gives its own error.</p>\n\
-         {}<p class=\"caption\">Circles of confusion: the diameters that half / 90 % / 99 % of the pixels stay below. PSNR of a \
+         {}<p class=\"caption\">Circles of confusion: the diameters that half / 90 % / 99 % of the pixels with a surface stay below. PSNR of a \
          reference: its own, estimated; a measured PSNR near it or above says only that the picture is at least as good.</p>\n",
         tables::scenes(&report.scenes).to_html()
     )
@@ -79,12 +79,12 @@ fn scene_section(scene: &SceneSummary, measured: &[Measured]) -> Result<String, 
     let of_series = |series| own.iter().filter(move |m| m.record.series == series).copied();
     let distance = scene.focus_distance.map_or_else(|| "infinity".into(), significant);
     let mut html = format!(
-        "<h2>{}</h2>\n<p>{} triangles in {} parts, {} lights; f/{}, focused at {distance}. Lens: {}. Hierarchy: {}.</p>\n",
+        "<h2>{}</h2>\n<p>{} triangles in {} parts, {} lights; aperture radius {}, focused at {distance} (scene units). Lens: {}. Hierarchy: {}.</p>\n",
         escaped(&scene.name),
         scene.triangles,
         scene.parts,
         scene.lights,
-        significant(scene.f_number),
+        significant(scene.aperture_radius),
         escaped(&scene.lens),
         bytes(scene.hierarchy_bytes as f64),
     );
