@@ -5,6 +5,7 @@ use crate::options::ReportOptions;
 use crate::record::Series;
 use crate::subject::Subject;
 use lens::Camera;
+use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
 
 /// A picture to draw: the contenders' pictures of it are compared with one reference.
 pub struct Setting {
@@ -70,7 +71,7 @@ pub fn settings(subject: &Subject, options: &ReportOptions) -> Vec<Setting> {
         let aperture_radius = subject.camera.aperture_radius * factor;
         cost(Series::Aperture, Camera { aperture_radius, ..subject.camera.clone() })
     }));
-    let factors: &[f64] = if options.is_quick { &[0.5, 1.0] } else { &[0.5, 0.7071, 1.0, 1.4142] };
+    let factors: &[f64] = if options.is_quick { &[0.5, 1.0] } else { &[0.5, FRAC_1_SQRT_2, 1.0, SQRT_2] };
     settings.extend(factors.iter().map(|factor| {
         let scaled =
             |side: u32| ((f64::from(side) * factor).round() as u32).clamp(1, Camera::LARGEST_SIDE_PX);
