@@ -9,7 +9,8 @@ use std::collections::BTreeSet;
 
 /// Checks the workspace as it is.
 pub fn check() -> Result<(), Failure> {
-    let twice = built_twice(&crates("normal,build")?, &crates("normal,build,dev")?);
+    let (program, with_tests) = (crates("normal,build")?, crates("normal,build,dev")?);
+    let twice = built_twice(&program, &with_tests);
     if twice.is_empty() {
         return Ok(());
     }
