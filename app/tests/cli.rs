@@ -392,3 +392,33 @@ fn a_report_is_complete_and_goes_on_where_it_was() {
     assert_eq!(other["new"], first["new"]);
     place.fails("report none.glb -o out2", 3, &["none.glb"]);
 }
+
+#[test]
+fn strokes_are_replayed_onto_a_new_project() {
+    let place = Workplace::new();
+    place.done("new quads.glb --camera camera.json --focus recipe.json -o quads.fbrush");
+    place.fails("new quads.glb -o quads.json", 2, &[".fbrush"]);
+    let project = ProjectFile::load(&place.path("quads.fbrush")).unwrap();
+    assert!(project.focus_map.is_some() && project.cameras[0].camera.width == 96);
+    let camera = &project.cameras[0].camera;
+    let view = project::ViewFrame {
+        camera_to_world: camera.camera_to_world,
+        yfov: camera.yfov,
+        aspect: camera.aspect(),
+    };
+    let brush = focus::Brush { radius: 0.3, target: lens::FocusOffset::new(1.4, 0.5), ..Default::default() };
+    let points = (0..20).map(|k| [0.3 + 0.02 * k as f64, 0.5, 1.0]).collect();
+    let stroke = project::RecordedStroke { layer: "Paint".into(), brush, view, points };
+    project::write_strokes(&place.path("strokes.json"), &[stroke.clone()]).unwrap();
+    let told = place.json("replay quads.fbrush strokes.json -o painted.fbrush --json");
+    assert_eq!((told["painted"].as_u64(), told["points"].as_u64()), (Some(1), Some(20)));
+    let painted = ProjectFile::load(&place.path("painted.fbrush")).unwrap();
+    assert_ne!(painted.focus_map, project.focus_map);
+    place.done("replay quads.fbrush strokes.json -o again.fbrush");
+    let again = ProjectFile::load(&place.path("again.fbrush")).unwrap();
+    assert_eq!(again.focus_map, painted.focus_map);
+    place.fails("replay quads.fbrush strokes.json -o painted.json", 2, &[".fbrush"]);
+    let lost = project::RecordedStroke { layer: "nowhere".into(), ..stroke };
+    project::write_strokes(&place.path("lost.json"), &[lost]).unwrap();
+    place.fails("replay quads.fbrush lost.json -o x.fbrush", 3, &["lost.json", "stroke 1", "nowhere"]);
+}

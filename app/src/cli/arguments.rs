@@ -28,6 +28,8 @@ pub enum Subcommand {
     Info(InfoArguments),
     /// Make a project of a scene, with a camera and a focus to begin with
     New(NewArguments),
+    /// Paint recorded strokes (`Export strokes…` in the window writes them) on a project or a scene
+    Replay(ReplayArguments),
     /// Write a scene with the atlas as its second UV set (TEXCOORD_1)
     Unwrap(UnwrapArguments),
     /// Bake the light field of a scene or project into a file
@@ -71,6 +73,22 @@ pub struct NewArguments {
     /// How it is focused to begin with: a recipe (.json) or a focus map (.exr, .png) (default: the ordinary lens)
     #[arg(long, value_name = "RECIPE.json|MAP.exr|png")]
     pub focus: Option<PathBuf>,
+}
+
+/// `replay`.
+#[derive(Debug, Args)]
+pub struct ReplayArguments {
+    /// A project (.fbrush) or a scene (.glb, .gltf)
+    pub file: PathBuf,
+    /// The strokes
+    #[arg(value_name = "STROKES.json")]
+    pub strokes: PathBuf,
+    /// Where to write the painted project
+    #[arg(short, long, value_name = "OUT.fbrush")]
+    pub output: PathBuf,
+    /// Write counts and timings as JSON to stdout
+    #[arg(long)]
+    pub json: bool,
 }
 
 /// `unwrap`.

@@ -1,6 +1,6 @@
 //! The command line: a thin layer over the `session` crate.
 //!
-//! * `arguments`: what can be typed. One file a subcommand does it: `info`, `new`, `unwrap`, `bake`, `render`,
+//! * `arguments`: what can be typed. One file a subcommand does it: `info`, `new`, `replay`, `unwrap`, `bake`, `render`,
 //!   `compare`, `report`, `export`, `doctor`.
 //! * `console`: progress on stderr, results on stdout. `failure`: errors and exit codes.
 
@@ -14,6 +14,7 @@ mod failure;
 mod info;
 mod new;
 mod render;
+mod replay;
 mod report;
 mod shot;
 mod unwrap;
@@ -64,6 +65,7 @@ fn dispatch(command: Subcommand) -> Result<(), Failure> {
     match command {
         Subcommand::Info(arguments) => info::run(&arguments, &console),
         Subcommand::New(arguments) => new::run(&arguments, &console),
+        Subcommand::Replay(arguments) => replay::run(&arguments, &console),
         Subcommand::Unwrap(arguments) => unwrap::run(&arguments, &console),
         Subcommand::Bake(arguments) => bake::run(&arguments, &console),
         Subcommand::Render(arguments) => render::run(&arguments, &console),

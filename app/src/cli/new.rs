@@ -6,15 +6,12 @@ use super::failure::Failure;
 use super::shot::{check_folder, unwrap_options};
 use project::ProjectFile;
 use session::Document;
+use std::path::Path;
 
 /// Makes a project of a scene.
 pub fn run(arguments: &NewArguments, console: &Console) -> Result<(), Failure> {
     let output = &arguments.output;
-    let is_project = output.extension().is_some_and(|e| e.eq_ignore_ascii_case(ProjectFile::EXTENSION));
-    if !is_project {
-        let what = format!("projects end in .{} (name one)", ProjectFile::EXTENSION);
-        return Err(Failure::usage(format!("{}: {what}", output.display())));
-    }
+    check_project_name(output)?;
     check_folder(output)?;
     let (camera, focus) = (arguments.camera.as_ref(), arguments.focus.as_deref());
     let document = Document::begin(&arguments.scene, camera, focus, &unwrap_options(None), console)?;
@@ -22,4 +19,13 @@ pub fn run(arguments: &NewArguments, console: &Console) -> Result<(), Failure> {
     document.to_project().save(output)?;
     console.note(&format!("wrote {}", output.display()));
     Ok(())
+}
+
+/// An error if an output is not named as a project.
+pub fn check_project_name(output: &Path) -> Result<(), Failure> {
+    if output.extension().is_some_and(|e| e.eq_ignore_ascii_case(ProjectFile::EXTENSION)) {
+        return Ok(());
+    }
+    let what = format!("projects end in .{} (name one)", ProjectFile::EXTENSION);
+    Err(Failure::usage(format!("{}: {what}", output.display())))
 }

@@ -26,6 +26,8 @@ pub enum Purpose {
     ExportFocusMap,
     /// The unwrapped scene.
     ExportScene,
+    /// The strokes of the history.
+    ExportStrokes,
     /// A focus map to read.
     ImportFocusMap,
     /// A picture of an aperture.
@@ -40,6 +42,7 @@ impl Purpose {
             Self::ExportPicture => "Export the picture",
             Self::ExportFocusMap => "Export the focus map",
             Self::ExportScene => "Export the unwrapped scene",
+            Self::ExportStrokes => "Export the strokes",
             Self::ImportFocusMap => "Import a focus map or a recipe",
             Self::ApertureMask => "Choose an aperture mask",
         }
@@ -52,20 +55,28 @@ impl Purpose {
             Self::ExportPicture | Self::ExportFocusMap => &["exr", "png"],
             Self::ImportFocusMap => &["exr", "png", "json"],
             Self::ExportScene => &["glb"],
+            Self::ExportStrokes => &["json"],
             Self::ApertureMask => &["png", "jpg", "jpeg", "exr"],
         }
     }
 
     /// Whether a file is written.
     pub fn writes(self) -> bool {
-        matches!(self, Self::SaveAs | Self::ExportPicture | Self::ExportFocusMap | Self::ExportScene)
+        matches!(
+            self,
+            Self::SaveAs
+                | Self::ExportPicture
+                | Self::ExportFocusMap
+                | Self::ExportScene
+                | Self::ExportStrokes
+        )
     }
 
     fn verb(self) -> &'static str {
         match self {
             Self::Open => "Open",
             Self::SaveAs => "Save",
-            Self::ExportPicture | Self::ExportFocusMap | Self::ExportScene => "Export",
+            Self::ExportPicture | Self::ExportFocusMap | Self::ExportScene | Self::ExportStrokes => "Export",
             Self::ImportFocusMap => "Import",
             Self::ApertureMask => "Choose",
         }

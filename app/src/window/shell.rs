@@ -240,6 +240,7 @@ impl Shell {
             Purpose::ExportPicture => format!("{stem}.png"),
             Purpose::ExportFocusMap => format!("{stem}-focus.exr"),
             Purpose::ExportScene => format!("{stem}-unwrapped.glb"),
+            Purpose::ExportStrokes => format!("{stem}-strokes.json"),
             Purpose::Open | Purpose::ImportFocusMap | Purpose::ApertureMask => String::new(),
         };
         self.dialog.ask(purpose, base.with_file_name("").join(name), context);
@@ -255,6 +256,7 @@ impl Shell {
             Purpose::ExportPicture => self.apply(Command::ExportPicture(path)),
             Purpose::ExportFocusMap => self.apply(Command::ExportFocusMap(path)),
             Purpose::ExportScene => self.apply(Command::ExportScene(path)),
+            Purpose::ExportStrokes => self.apply(Command::ExportStrokes(path)),
             Purpose::ImportFocusMap => self.apply(Command::ImportFocusMap(path)),
             Purpose::ApertureMask => self.use_mask(path),
         }
@@ -448,7 +450,7 @@ impl Shell {
     }
 
     fn views(&mut self, ui: &mut Ui, actions: &mut Vec<Action>) {
-        let hand = Hand { tool: self.tool, ring: self.ring() };
+        let hand = Hand { tool: self.tool, ring: self.ring(), string: self.settings.stabiliser };
         let Self { layout, paint, picture, session, settings, .. } = self;
         let mut panes = Panes {
             pane_ui: |ui: &mut Ui, pane: Pane| {

@@ -81,7 +81,7 @@ impl Tool {
     pub fn tip(self) -> &'static str {
         match self {
             Tool::Brush => {
-                "Drag in either view to paint the chosen focus. [ and ] change the size, Esc takes a stroke back."
+                "Drag in either view to paint the chosen focus. Shift+click draws a straight line, Esc takes a stroke back."
             }
             Tool::Smooth => "Drag in either view to even out the focus.",
             Tool::Sharpen => "Drag in either view to turn soft changes of focus into hard ones.",

@@ -21,6 +21,8 @@ pub struct ViewSettings {
     pub preview_size: u32,
     /// Exposure of the display, stops.
     pub display_stops: f32,
+    /// Length of the string by which the pointer pulls the brush, points: 0 is none, more is steadier.
+    pub stabiliser: f32,
     /// Files opened lately, the latest first.
     pub recent: Vec<PathBuf>,
     /// Whether the hint of the first start was put away.
@@ -36,6 +38,7 @@ impl Default for ViewSettings {
             inspector: true,
             preview_size: 640,
             display_stops: 0.0,
+            stabiliser: 0.0,
             recent: Vec::new(),
             hint_seen: false,
         }

@@ -2,6 +2,7 @@
 
 use egui::{Event, Key, Modifiers, PointerButton, Pos2, Rect, pos2};
 use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
 use focus_brush::window::{Severity, Shell, WindowOptions};
 use lens::Picture;
 use session::Document;
@@ -124,6 +125,13 @@ impl Person {
 
     pub fn clicks(&mut self, at: Pos2) {
         self.paints(&[at]);
+    }
+
+    /// Scrolls until a control is in view, and waits until it stands still.
+    pub fn scrolls_to(&mut self, label: &str) {
+        let found = self.window.get_all_by_label(label).last();
+        found.unwrap_or_else(|| panic!("there is no {label}")).scroll_to_me();
+        self.window.run_steps(60);
     }
 
     pub fn presses(&mut self, modifiers: Modifiers, key: Key) {

@@ -43,6 +43,7 @@ fn a_layer_is_painted_hidden_shown_weakened_and_taken_back() {
     assert_eq!(person.document().layers.layers()[0].map, blank, "beneath, nothing was painted");
     let painted = (person.document().map.clone(), person.picture());
 
+    person.scrolls_to("Show Layer 1");
     person.window.get_by_label("Show Layer 1").click();
     person.waits();
     assert_eq!(person.document().map, blank);
@@ -52,11 +53,13 @@ fn a_layer_is_painted_hidden_shown_weakened_and_taken_back() {
     person.clicks(middle);
     assert!(person.complaints().iter().any(|text| text.contains("hidden")), "{:?}", person.complaints());
     assert_eq!(person.document().map, blank);
+    person.scrolls_to("Show Layer 1");
     person.window.get_by_label("Show Layer 1").click();
     person.waits();
     assert_eq!(person.document().map, painted.0);
     assert_eq!(difference(&person.picture(), &painted.1), 0.0);
 
+    person.scrolls_to("Opacity");
     let slider = person.window.get_all_by_label("Opacity").find(|node| node.rect().width() > 90.0);
     let track = slider.expect("a slider").rect();
     person.clicks(at(track, 0.5, 0.5));
@@ -97,11 +100,11 @@ fn the_reset_brush_uncovers_what_lies_beneath_and_layers_are_saved() {
     // An adjustment layer above: a curve that blurs what is far, multiplied onto what lies beneath.
     let wall = person.focus_at(0.95, 0.9);
     assert_eq!(wall, FocusOffset::STANDARD);
+    person.scrolls_to("+ Depth curve");
     person.window.get_by_label("+ Depth curve").click();
     person.waits();
     assert_eq!(person.focus_at(0.95, 0.9).anchor, 1.0, "sharp at every depth to begin with");
-    person.window.get_by_label("Blur over depth").scroll_to_me();
-    person.window.run_steps(60);
+    person.scrolls_to("Blur over depth");
     let drawing = person.window.get_by_label("Blur over depth").rect();
     let right = person.document().layers.active().curve.clone().unwrap().curve.points().len();
     person.clicks(at(drawing, 0.91, 0.25));
@@ -109,6 +112,7 @@ fn the_reset_brush_uncovers_what_lies_beneath_and_layers_are_saved() {
     assert_eq!(curve.curve.points().len(), right + 1, "a click draws another point");
     assert!(curve.curve.points()[right][1] > 1.0, "far blur is on top");
     assert_eq!(person.document().undo_name(), Some("Depth curve"));
+    person.scrolls_to("Blending");
     person.window.get_by_label("Blending").click();
     person.window.run_steps(3);
     person.window.get_by_label("Multiply blur").click();

@@ -3,6 +3,7 @@
 use crate::acting::{Person, at, color_at, difference};
 use crate::small_scene;
 use egui::{Key, Modifiers, Pos2};
+use egui_kittest::kittest::Queryable;
 use lens::FocusOffset;
 
 fn opened() -> (Person, tempfile::TempDir) {
@@ -157,4 +158,68 @@ fn clicking_tools_fill_focus_and_pick() {
     person.clicks(card);
     assert_eq!(person.document().brush.target, FocusOffset::SHARP, "picked what the fill painted");
     assert!(person.complaints().is_empty(), "{:?}", person.complaints());
+}
+
+#[test]
+fn shift_and_a_click_draw_a_straight_line_from_the_last_stroke() {
+    let (mut person, _folder) = opened();
+    chooses_blur(&mut person);
+    let rect = person.picture_rect();
+    person.clicks(at(rect, 0.6, 0.8));
+    let middle = |person: &Person| {
+        let session = person.shell().session();
+        let hit = session.pick(&session.picture_ray(glam::DVec2::new(0.75, 0.5)).unwrap()).unwrap();
+        session.focus_at(&hit).unwrap()
+    };
+    assert_eq!(middle(&person), FocusOffset::STANDARD);
+    let end = at(rect, 0.9, 0.2);
+    person.window.event(egui::Event::ModifiersChanged(Modifiers::SHIFT));
+    person.window.hover_at(end);
+    person.window.step();
+    for pressed in [true, false] {
+        let (button, modifiers) = (egui::PointerButton::Primary, Modifiers::SHIFT);
+        person.window.event(egui::Event::PointerButton { pos: end, button, pressed, modifiers });
+        person.window.step();
+    }
+    person.window.event(egui::Event::ModifiersChanged(Modifiers::NONE));
+    person.waits();
+    let target = person.document().brush.target;
+    assert!((middle(&person).t - target.t).abs() < 1e-4, "half way between the two clicks");
+    assert_eq!(person.document().undo_names().count(), 2, "the line is a stroke of its own");
+}
+
+#[test]
+fn the_mirror_paints_both_sides_and_blur_can_be_typed_in_other_measures() {
+    let (mut person, _folder) = opened();
+    chooses_blur(&mut person);
+    person.scrolls_to("Mirror X");
+    person.window.get_by_label("Mirror X").click();
+    person.window.run_steps(2);
+    let brush = person.document().brush.clone();
+    assert!(brush.mirror[0] && brush.mirror_center[0].abs() < 1e-5, "about the middle: {brush:?}");
+    let rect = person.picture_rect();
+    person.clicks(at(rect, 0.9, 0.85));
+    let session = person.shell().session();
+    let focus_at = |x: f64| {
+        let hit = session.pick(&session.picture_ray(glam::DVec2::new(x, 0.85)).unwrap()).unwrap();
+        session.focus_at(&hit).unwrap()
+    };
+    assert!(
+        (focus_at(0.9).t - brush.target.t).abs() < 1e-4 && (focus_at(0.1).t - brush.target.t).abs() < 1e-4
+    );
+    assert_eq!(focus_at(0.5), FocusOffset::STANDARD);
+
+    // The depth at which the unpainted lens would blur as much.
+    person.scrolls_to("looks like at");
+    person.window.get_by_label("looks like at").focus();
+    person.window.run_steps(2);
+    person.window.key_press_modifiers(Modifiers::COMMAND, Key::A);
+    person.window.event(egui::Event::Text("2".into()));
+    person.window.run_steps(1);
+    person.presses(Modifiers::NONE, Key::Enter);
+    let document = person.document();
+    let optics = document.camera.optics();
+    let painted = optics.kappa(0.123, document.brush.target);
+    let like = optics.kappa(1.0 / 2.0, FocusOffset::STANDARD);
+    assert!((painted - like).abs() < 1e-9 * like.abs(), "{painted} {like}");
 }

@@ -1,5 +1,6 @@
 //! The brush: what a dab does to the texels under it.
 
+use glam::DVec3;
 use lens::FocusOffset;
 use serde::{Deserialize, Serialize};
 
@@ -29,6 +30,11 @@ pub struct Brush {
     /// The largest angle, in degrees, between the normal under the pen and that of a painted texel: at 90 a
     /// thin wall is not painted through; 180 paints all sides.
     pub normal_limit_degrees: f64,
+    /// Whether every dab is also painted mirrored: left and right (x), up and down (y), front and back (z), about
+    /// `mirror_center`; several at once give all combinations.
+    pub mirror: [bool; 3],
+    /// What is mirrored about, world.
+    pub mirror_center: [f64; 3],
     /// How much a light pen weakens a dab: 0 not at all, 1 down to nothing.
     pub pressure_to_strength: f64,
     /// How much a light pen shrinks a dab: 0 not at all, 1 down to nothing.
@@ -103,6 +109,8 @@ impl Default for Brush {
             channels: Channels::Both,
             offset_limits: [0.0, 2.0],
             normal_limit_degrees: 90.0,
+            mirror: [false; 3],
+            mirror_center: [0.0; 3],
             pressure_to_strength: 1.0,
             pressure_to_radius: 0.0,
         }
@@ -127,6 +135,7 @@ impl Brush {
             _ if !(0.0..=180.0).contains(&self.normal_limit_degrees) => {
                 Some("normal_limit_degrees must be in [0, 180]")
             }
+            _ if !self.mirror_center.iter().all(|x| x.is_finite()) => Some("mirror_center must be finite"),
             _ if !unit.contains(&self.pressure_to_strength) => Some("pressure_to_strength must be in [0, 1]"),
             _ if !unit.contains(&self.pressure_to_radius) => Some("pressure_to_radius must be in [0, 1]"),
             _ => None,
@@ -156,6 +165,16 @@ impl Brush {
             let s = (1.0 - distance) / (1.0 - self.hardness);
             s * s * (3.0 - 2.0 * s)
         }
+    }
+
+    /// A direction turned into each of the mirrored ones: itself first, signs along the axes.
+    pub(crate) fn mirror_signs(&self) -> impl Iterator<Item = DVec3> + use<> {
+        let mirror = self.mirror;
+        (0..8u8).filter_map(move |bits| {
+            let flips = [0, 1, 2].map(|axis| bits >> axis & 1 == 1);
+            let wanted = (0..3).all(|axis| mirror[axis] || !flips[axis]);
+            wanted.then(|| DVec3::from_array(flips.map(|flipped| if flipped { -1.0 } else { 1.0 })))
+        })
     }
 
     /// The radius of a dab at a pen pressure.

@@ -112,14 +112,22 @@ impl Stroke {
     }
 
     fn dab(&mut self, map: &mut FocusMap, hit: SurfaceHit, pen: PenSample, changed: &mut Vec<[u32; 2]>) {
-        let dab = Dab {
-            center: hit.position,
-            normal: hit.normal,
-            radius: self.brush.radius_at(pen),
-            strength: self.brush.strength_at(pen),
-        };
-        let mut wash = Wash { before: &self.before, coverage: &mut self.coverage };
-        dab.paint(&self.brush, &self.canvas, &mut wash, map, changed);
+        let center = DVec3::from_array(self.brush.mirror_center);
+        for signs in self.brush.mirror_signs() {
+            let dab = Dab {
+                // The pen's own place stays what it is, to the bit.
+                center: if signs == DVec3::ONE {
+                    hit.position
+                } else {
+                    center + (hit.position - center) * signs
+                },
+                normal: hit.normal.map(|normal| normal * signs.as_vec3()),
+                radius: self.brush.radius_at(pen),
+                strength: self.brush.strength_at(pen),
+            };
+            let mut wash = Wash { before: &self.before, coverage: &mut self.coverage };
+            dab.paint(&self.brush, &self.canvas, &mut wash, map, changed);
+        }
     }
 }
 

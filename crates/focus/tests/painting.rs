@@ -302,3 +302,42 @@ fn a_thousand_edits_undo_and_redo_to_the_bit() {
         assert!(map == *expected);
     }
 }
+
+#[test]
+fn a_mirrored_stroke_paints_both_sides_alike_across_charts() {
+    let canvas = strip();
+    let mirrored =
+        Brush { mirror: [true, false, false], mirror_center: [2.0, 0.0, 0.0], ..brush(BrushMode::Set) };
+    let mut map = blank();
+    draw(&mut map, &canvas, &mirrored, &[[0.6, 0.5], [1.1, 0.4]]).unwrap();
+    let mut both = blank();
+    draw(&mut both, &canvas, &brush(BrushMode::Set), &[[0.6, 0.5], [1.1, 0.4]]).unwrap();
+    draw(&mut both, &canvas, &brush(BrushMode::Set), &[[3.4, 0.5], [2.9, 0.4]]).unwrap();
+    let mut painted = 0;
+    for texel in canvas.texels() {
+        let [a, b] = [&map, &both].map(|map| map.texel(texel.x, texel.y));
+        assert!(
+            (a[0] - b[0]).abs() < 1e-5 && (a[1] - b[1]).abs() < 1e-5,
+            "{a:?} {b:?} at {}",
+            texel.position
+        );
+        painted += usize::from(a[0] != 1.0 && texel.chart == 1);
+    }
+    assert!(painted > 50, "the other chart is painted: {painted}");
+    // Back of the strip: mirrored in depth as well, where the surface faces the other way.
+    let deep =
+        Brush { mirror: [true, false, true], mirror_center: [2.0, 0.0, -0.025], ..brush(BrushMode::Set) };
+    let mut map = blank();
+    draw(&mut map, &canvas, &deep, &[[0.6, 0.5]]).unwrap();
+    let at = |x: f64, chart: u32| {
+        let nearest = canvas.texels().iter().filter(|t| t.chart == chart).min_by(|a, b| {
+            let distance = |t: &CanvasTexel| (t.position.x - x).abs() + (t.position.y - 0.5).abs();
+            distance(a).total_cmp(&distance(b))
+        });
+        let texel = nearest.unwrap();
+        map.texel(texel.x, texel.y)[0]
+    };
+    for (x, chart) in [(0.6, 0), (3.4, 1), (0.6, 2), (3.4, 2)] {
+        assert!(at(x, chart) > 1.4, "{x} on chart {chart}: {}", at(x, chart));
+    }
+}

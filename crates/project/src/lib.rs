@@ -25,6 +25,7 @@ mod png_file;
 mod project_file;
 mod recipe;
 mod recovery;
+mod strokes_file;
 mod texel_bytes;
 
 pub use camera::{camera_from_json, camera_to_json, read_aperture_mask, read_camera, write_camera};
@@ -36,3 +37,4 @@ pub use picture_file::{Layer, LinearPicture, PictureOptions, read_picture, write
 pub use project_file::{NamedCamera, ProjectFile, SceneState};
 pub use recipe::{FocusFile, read_focus, read_recipe};
 pub use recovery::{find_recovery, recovery_path_for, remove_recovery, unsaved_recovery_path};
+pub use strokes_file::{RecordedStroke, ViewFrame, read_strokes, write_strokes};

@@ -2,7 +2,9 @@
 
 use crate::{CameraEdit, JobId, JobStatus, LayerEdit, ReferenceKind, SurfaceHit};
 use focus::Brush;
+use glam::DVec2;
 use lens::{Exposure, FocusOffset};
+use project::ViewFrame;
 use std::ops::Range;
 use std::path::PathBuf;
 use trace::Ray;
@@ -24,6 +26,8 @@ pub enum Command {
     ExportFocusMap(PathBuf),
     /// Writes the scene as GLB with the atlas as a second UV set.
     ExportScene(PathBuf),
+    /// Writes the strokes that can be undone as data that [`crate::replay`] paints again.
+    ExportStrokes(PathBuf),
     /// Replaces the focus map by one that was exported for this atlas.
     ImportFocusMap(PathBuf),
 
@@ -112,6 +116,8 @@ pub struct StrokePoint {
 pub enum StrokeTarget {
     /// A ray from a view; what it meets is painted. A ray that meets nothing interrupts the stroke.
     Ray(Ray),
+    /// A position in a view ((0, 0) upper left, (1, 1) lower right), as [`Self::Ray`]. Such strokes are recorded.
+    View(ViewFrame, DVec2),
     /// A point that was picked already.
     Surface(SurfaceHit),
 }

@@ -91,6 +91,12 @@ impl Document {
         Ok(document)
     }
 
+    /// Opens a project as it was saved, whatever was left unsaved.
+    pub fn open_saved(path: &Path, unwrap: &UnwrapOptions, steps: &dyn Steps) -> Result<Self, SessionError> {
+        let input = Input::open_project(path, ProjectFile::load(path)?, steps)?;
+        Ok(Self { path: Some(path.into()), ..Self::of(input, unwrap, steps)? })
+    }
+
     /// Begins a document: a scene with a camera and a focus (a recipe or a focus map), where they are given.
     pub fn begin(
         scene: &Path,

@@ -2,6 +2,7 @@
 
 use glam::{DVec2, DVec3};
 use lens::Camera;
+use project::ViewFrame;
 use scene::{Scene, SurfacePoint};
 use trace::{Ray, Tracer};
 
@@ -38,9 +39,26 @@ pub fn chief_ray(camera: &Camera, position: DVec2) -> Ray {
     Ray::of_pinhole(camera, DVec2::ZERO, position * size)
 }
 
+/// The ray of a position in a view: (0, 0) the upper left corner, (1, 1) the lower right. Its direction has depth 1.
+pub fn view_ray(view: &ViewFrame, position: DVec2) -> Ray {
+    let (origin, direction) = view.ray(position);
+    Ray { origin, direction, t_min: 0.0, t_max: f64::INFINITY, skip: None }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_picture_seen_as_a_view_has_the_same_rays() {
+        let camera = Camera { width: 321, height: 200, yfov: 0.9, ..Camera::default() };
+        let (camera_to_world, yfov, aspect) = (camera.camera_to_world, camera.yfov, camera.aspect());
+        let view = ViewFrame { camera_to_world, yfov, aspect };
+        for position in [DVec2::ZERO, DVec2::new(0.3, 0.9), DVec2::ONE] {
+            let (a, b) = (chief_ray(&camera, position), view_ray(&view, position));
+            assert!(a.origin == b.origin && a.direction.distance(b.direction) < 1e-12);
+        }
+    }
 
     #[test]
     fn the_middle_looks_ahead_and_corners_land_where_the_lens_says() {

@@ -7,6 +7,7 @@ mod painting;
 use crate::document::Document;
 use crate::job::{Job, JobProgress, Waker};
 use crate::light_field::{Changes, serves};
+use crate::painter::Painter;
 use crate::picking::{chief_ray, pick};
 use crate::preview::PreviewThread;
 use crate::undo::Undone;
@@ -15,7 +16,7 @@ use crate::{
     SessionError, SurfaceHit,
 };
 use atlas::UnwrapOptions;
-use focus::{Changed, FillTarget, Stroke};
+use focus::{Changed, FillTarget};
 use glam::DVec2;
 use lens::{Camera, FocusOffset};
 use std::path::PathBuf;
@@ -86,7 +87,7 @@ pub struct Session {
     document: Option<Document>,
     /// Counts opened documents.
     generation: u64,
-    stroke: Option<Stroke>,
+    stroke: Option<Painter>,
     preview_thread: PreviewThread,
     preview: Option<Preview>,
     /// The camera that the preview was asked to show last.
@@ -334,6 +335,7 @@ impl Session {
             Command::ExportPicture(path) => self.export_picture(path),
             Command::ExportFocusMap(path) => self.export_focus_map(path),
             Command::ExportScene(path) => self.export_scene(path),
+            Command::ExportStrokes(path) => self.export_strokes(&path),
             Command::ImportFocusMap(path) => self.import_focus_map(path),
             Command::MakeReference { kind, samples_per_pixel } => {
                 self.make_reference(kind, samples_per_pixel)

@@ -2,6 +2,7 @@
 
 use focus::{Edit, LayerStack};
 use lens::Camera;
+use project::RecordedStroke;
 use std::collections::VecDeque;
 
 /// Memory that the steps may keep alive; the oldest are forgotten beyond it.
@@ -10,8 +11,8 @@ const BUDGET_BYTES: usize = 256 << 20;
 /// One step.
 #[derive(Clone, Debug)]
 enum Step {
-    /// Of the map of one layer.
-    Paint { layer: usize, edit: Edit },
+    /// Of the map of one layer; a stroke with what was drawn.
+    Paint { layer: usize, edit: Edit, stroke: Option<Box<RecordedStroke>> },
     /// Of the layers themselves.
     Layers { name: &'static str, before: Box<LayerStack>, after: Box<LayerStack> },
     /// Of the camera.
@@ -28,7 +29,10 @@ impl Step {
 
     fn bytes(&self) -> usize {
         match self {
-            Self::Paint { edit, .. } => size_of::<Step>() + edit.bytes(),
+            Self::Paint { edit, stroke, .. } => {
+                let points = stroke.as_ref().map_or(0, |stroke| size_of_val(&*stroke.points));
+                size_of::<Step>() + edit.bytes() + points
+            }
             Self::Layers { before, after, .. } => {
                 size_of::<Step>() + before.bytes_beside(after) + after.bytes_beside(before)
             }
@@ -60,8 +64,22 @@ pub(crate) struct Undo {
 impl Undo {
     /// Takes up a change of the map of a layer.
     pub fn push_paint(&mut self, layer: usize, edit: Edit) {
-        self.push(Step::Paint { layer, edit });
+        self.push(Step::Paint { layer, edit, stroke: None });
         self.run = false;
+    }
+
+    /// Takes up a stroke on a layer.
+    pub fn push_stroke(&mut self, layer: usize, edit: Edit, stroke: Option<RecordedStroke>) {
+        self.push(Step::Paint { layer, edit, stroke: stroke.map(Box::new) });
+        self.run = false;
+    }
+
+    /// The strokes that can be taken back, oldest first.
+    pub fn strokes(&self) -> impl Iterator<Item = &RecordedStroke> {
+        self.done.iter().filter_map(|step| match step {
+            Step::Paint { stroke, .. } => stroke.as_deref(),
+            Step::Layers { .. } | Step::Camera { .. } => None,
+        })
     }
 
     /// Takes up a change of the layers; edits of one name in a row are one step where `joins` says so.
@@ -111,7 +129,7 @@ impl Undo {
         let step = self.done.pop_back()?;
         self.run = false;
         let undone = match &step {
-            Step::Paint { layer, edit } => {
+            Step::Paint { layer, edit, .. } => {
                 layers.activate(*layer);
                 let texels = edit.revert(&mut layers.active_mut().map).texels;
                 Undone::Paint { texels, background: edit.changes_background() }
@@ -134,7 +152,7 @@ impl Undo {
         let step = self.undone.pop()?;
         self.run = false;
         let done = match &step {
-            Step::Paint { layer, edit } => {
+            Step::Paint { layer, edit, .. } => {
                 layers.activate(*layer);
                 let texels = edit.apply(&mut layers.active_mut().map).texels;
                 Undone::Paint { texels, background: edit.changes_background() }

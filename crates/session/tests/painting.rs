@@ -308,3 +308,132 @@ fn a_failed_open_leaves_the_document_and_says_why() {
     assert!(failed.is_some_and(|why| why.contains("broken.glb")), "{events:?}");
     assert_eq!(session.document().unwrap().name(), "quads.glb");
 }
+
+/// The picture as a view that is painted in.
+fn shot_view(session: &Session) -> project::ViewFrame {
+    let camera = &session.document().unwrap().camera;
+    let (camera_to_world, yfov, aspect) = (camera.camera_to_world, camera.yfov, camera.aspect());
+    project::ViewFrame { camera_to_world, yfov, aspect }
+}
+
+/// A wave across the picture, `bunch` events between two polls.
+fn wave(session: &mut Session, y: f64, bunch: usize) {
+    let view = shot_view(session);
+    let point = |k: usize| {
+        let at = DVec2::new(0.1 + 0.016 * k as f64, y + 0.1 * (k as f64 * 0.3).sin());
+        let pressure = 0.4 + 0.6 * (k as f32 / 50.0);
+        StrokePoint { at: session::StrokeTarget::View(view, at), pressure }
+    };
+    session.apply(Command::BeginStroke(point(0))).unwrap();
+    for k in 1..=50 {
+        session.apply(Command::ExtendStroke(point(k))).unwrap();
+        if k % bunch == 0 {
+            session.poll();
+        }
+    }
+    session.apply(Command::CommitStroke).unwrap();
+}
+
+#[test]
+fn recorded_strokes_paint_the_same_map_again_whatever_the_timing() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = folder.path().join("quads.glb");
+    tiny_glb::write(&scene);
+    let paint = |bunch: usize| {
+        let mut session = opened(&scene);
+        for (k, mode) in
+            [BrushMode::Set, BrushMode::Add, BrushMode::Smooth, BrushMode::Sharpen].iter().enumerate()
+        {
+            let brush = focus::Brush {
+                radius: 0.2,
+                mode: *mode,
+                flow: 0.7,
+                target: FocusOffset::new(1.1 + 0.1 * k as f64, 1.0),
+                mirror: [k == 1, false, false],
+                ..focus::Brush::default()
+            };
+            session.apply(Command::SetBrush(brush)).unwrap();
+            wave(&mut session, 0.4 + 0.02 * k as f64, bunch);
+        }
+        session.apply(Command::Layer(session::LayerEdit::AddPaint)).unwrap();
+        let target = FocusOffset::new(0.8, 1.0);
+        let brush = focus::Brush { radius: 0.2, target, ..focus::Brush::default() };
+        session.apply(Command::SetBrush(brush)).unwrap();
+        wave(&mut session, 0.6, bunch);
+        // Taken back: no part of the recording.
+        wave(&mut session, 0.2, bunch);
+        session.apply(Command::Undo).unwrap();
+        session
+    };
+    let mut live = paint(1);
+    let strokes = folder.path().join("strokes.json");
+    live.apply(Command::ExportStrokes(strokes.clone())).unwrap();
+    settle(&mut live);
+    let document = live.document().unwrap();
+    let other = paint(50);
+    assert!(other.document().unwrap().layers == document.layers, "events in another rhythm");
+
+    let strokes = project::read_strokes(&strokes).unwrap();
+    assert_eq!(strokes.len(), 5);
+    assert_eq!(strokes[4].layer, "Layer 1");
+    assert_eq!(strokes[0].points.len(), 51);
+    let nobody = progress::Unwatched;
+    let mut again = session::Document::begin(&scene, None, None, &Default::default(), &nobody).unwrap();
+    let missing = session::replay(&mut again, &strokes).unwrap_err().to_string();
+    assert!(
+        missing.contains("stroke 5") && missing.contains("Layer 1") && missing.contains("Paint"),
+        "{missing}"
+    );
+
+    // On a project that has the layer: the same bits, saved and opened as well.
+    let mut blank = opened(&scene);
+    blank.apply(Command::Layer(session::LayerEdit::AddPaint)).unwrap();
+    let project = folder.path().join("blank.fbrush");
+    blank.apply(Command::SaveAs(project.clone())).unwrap();
+    settle(&mut blank);
+    let mut again = session::Document::open_saved(&project, &Default::default(), &nobody).unwrap();
+    assert_eq!(session::replay(&mut again, &strokes).unwrap(), 5);
+    assert!(again.map == document.map && again.layers.layers()[0] == document.layers.layers()[0]);
+    assert_eq!(again.undo_names().count(), 5);
+    assert!(live.apply(Command::ExportStrokes(folder.path().join("none/strokes.json"))).is_err());
+}
+
+#[test]
+fn depth_curves_follow_the_camera_and_come_back_with_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = folder.path().join("quads.glb");
+    tiny_glb::write(&scene);
+    let mut session = opened(&scene);
+    let blank = picture(&session);
+    session.apply(Command::Layer(session::LayerEdit::AddCurve)).unwrap();
+    let curve = focus::Curve::new([[2.5f64.ln(), 1.0], [4.0f64.ln(), 1.3]]).unwrap();
+    let curve = focus::DepthCurve { curve, anchor: 1.0 };
+    session.apply(Command::Layer(session::LayerEdit::Curve(1, curve))).unwrap();
+    settle(&mut session);
+    let wall = session.pick(&session.picture_ray(ON_WALL).unwrap()).unwrap();
+    assert!((session.focus_at(&wall).unwrap().t - 1.3).abs() < 1e-5, "the wall stands at 4");
+    let (map, curved) = (session.document().unwrap().map.clone(), picture(&session));
+    assert!(curved != blank);
+
+    let mut pose = session.document().unwrap().camera.camera_to_world;
+    pose.w_axis.z -= 1.5;
+    session.apply(Command::Camera(CameraEdit::Pose(pose))).unwrap();
+    settle(&mut session);
+    assert!((session.focus_at(&wall).unwrap().t - 1.0).abs() < 1e-5, "now at 2.5");
+    session.apply(Command::Undo).unwrap();
+    settle(&mut session);
+    assert!(session.document().unwrap().map == map);
+    for _ in 0..2 {
+        session.apply(Command::Undo).unwrap();
+    }
+    settle(&mut session);
+    assert!(picture(&session) == blank);
+    for _ in 0..3 {
+        session.apply(Command::Redo).unwrap();
+    }
+    settle(&mut session);
+    assert!((session.focus_at(&wall).unwrap().t - 1.0).abs() < 1e-5);
+    session.apply(Command::Undo).unwrap();
+    settle(&mut session);
+    assert!(session.document().unwrap().map == map && picture(&session) == curved);
+}

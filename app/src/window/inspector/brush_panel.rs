@@ -1,14 +1,20 @@
 //! The brush's shape and manner.
 
-use crate::window::Action;
 use crate::window::controls::{self, format_number, proportional, row, rows};
 use crate::window::tool_bar::{HARDNESS_TIP, SIZE_TIP, STRENGTH_TIP, largest_radius, push_brush};
+use crate::window::{Action, ViewSettings};
 use egui::{ComboBox, DragValue, Slider, Ui};
-use focus::{BrushMode, Channels};
+use focus::{Brush, BrushMode, Channels};
 use session::{Document, SurfaceHit};
 
 /// Size, strength, hardness, spacing, mode and limits.
-pub fn brush_panel(ui: &mut Ui, document: &Document, hover: Option<SurfaceHit>, actions: &mut Vec<Action>) {
+pub fn brush_panel(
+    ui: &mut Ui,
+    document: &Document,
+    settings: &mut ViewSettings,
+    hover: Option<SurfaceHit>,
+    actions: &mut Vec<Action>,
+) {
     let mut brush = document.brush.clone();
     rows(ui, "brush", |ui| {
         row(ui, "Size", SIZE_TIP, |ui| {
@@ -79,7 +85,59 @@ pub fn brush_panel(ui: &mut Ui, document: &Document, hover: Option<SurfaceHit>, 
             )
         });
     });
+    rows(ui, "brush manner", |ui| {
+        mirror_row(ui, document, &mut brush);
+        let tip =
+            "The pointer pulls the brush by a string of this length: the longer, the steadier the line.";
+        row(ui, "Stabiliser", tip, |ui| {
+            ui.add(
+                DragValue::new(&mut settings.stabiliser)
+                    .range(0.0..=200.0)
+                    .speed(0.5)
+                    .max_decimals(0)
+                    .suffix(" px"),
+            )
+        });
+        let tip =
+            "How much a light pen weakens the brush: 0 not at all, 1 down to nothing. A mouse presses fully.";
+        row(ui, "Pen: strength", tip, |ui| {
+            ui.add(Slider::new(&mut brush.pressure_to_strength, 0.0..=1.0).max_decimals(2))
+        });
+        let tip =
+            "How much a light pen shrinks the brush: 0 not at all, 1 down to nothing. A mouse presses fully.";
+        row(ui, "Pen: size", tip, |ui| {
+            ui.add(Slider::new(&mut brush.pressure_to_radius, 0.0..=1.0).max_decimals(2))
+        });
+    });
     push_brush(document, brush, actions);
+}
+
+/// Which axes are mirrored, and about what.
+fn mirror_row(ui: &mut Ui, document: &Document, brush: &mut Brush) {
+    let tip = "Paint the mirror image of every stroke as well: X is left and right, Y up and down, Z front and back.";
+    row(ui, "Mirror", tip, |ui| {
+        ui.horizontal(|ui| {
+            let (low, high) = document.scene().bounds();
+            let middle = ((low + high) / 2.0).to_array();
+            let was_off = brush.mirror == [false; 3];
+            for (axis, name) in ["X", "Y", "Z"].into_iter().enumerate() {
+                let response = ui.toggle_value(&mut brush.mirror[axis], name).on_hover_text(tip);
+                controls::named(&response, &format!("Mirror {name}"));
+            }
+            let is_on = brush.mirror != [false; 3];
+            if was_off && is_on && brush.mirror_center == [0.0; 3] {
+                brush.mirror_center = middle;
+            }
+            let mut about = brush.mirror_center == middle;
+            let tip = "Mirror about the scene's middle; else about the world's origin.";
+            let response = ui.add_enabled(is_on, egui::Checkbox::new(&mut about, "about the middle"));
+            if response.on_hover_text(tip).changed() {
+                brush.mirror_center = if about { middle } else { [0.0; 3] };
+            }
+            ui.label("")
+        })
+        .inner
+    });
 }
 
 /// The brush's radius on the full-size picture.

@@ -1,7 +1,7 @@
 //! What is painted: blur first, the raw numbers for who wants them.
 
 use crate::window::Action;
-use crate::window::controls::{self, row, rows};
+use crate::window::controls::{self, format_number, proportional, row, rows};
 use crate::window::tool_bar::{push_brush, signed_circle_px, target_slider};
 use egui::{Button, DragValue, RichText, Ui};
 use lens::FocusOffset;
@@ -32,6 +32,9 @@ pub fn focus_panel(ui: &mut Ui, document: &Document, actions: &mut Vec<Action>) 
             && let Some(t) = optics.offset_for_kappa(kappa, optics.inverse_focus_distance, 1.0)
         {
             brush.target.t = t;
+        }
+        if optics.aperture_radius > 0.0 {
+            exact_rows(ui, document, &mut brush.target);
         }
         let tip = "The raw focus offset: the share of the anchor's distance that rays travel behind the lens. 1 is no offset.";
         row(ui, "t", tip, |ui| ui.add(DragValue::new(&mut brush.target.t).speed(0.0005).fixed_decimals(4)));
@@ -66,6 +69,59 @@ pub fn focus_panel(ui: &mut Ui, document: &Document, actions: &mut Vec<Action>) 
         fill_button(ui, CommandId::ResetMap, "Reset all", actions);
     });
     push_brush(document, brush, actions);
+}
+
+/// The same blur in other measures, each to be typed.
+fn exact_rows(ui: &mut Ui, document: &Document, target: &mut FocusOffset) {
+    let optics = document.camera.optics();
+    let per_px = optics.circle_of_confusion(1.0) / optics.circle_of_confusion_px(1.0);
+    let height = document.camera.height as f64;
+    let px = signed_circle_px(&optics, target.t);
+    let set = |target: &mut FocusOffset, px: f64| {
+        let kappa = optics.kappa_for_circle_px(px);
+        if let Some(t) = kappa.and_then(|k| optics.offset_for_kappa(k, optics.inverse_focus_distance, 1.0)) {
+            target.t = t;
+        }
+    };
+    let mut mm = px * per_px * 1e3;
+    let tip = "The same diameter on the sensor, mm if the scene is in metres.";
+    let response = row(ui, "on the sensor", tip, |ui| {
+        ui.add(DragValue::new(&mut mm).speed(0.002).max_decimals(4).suffix(" mm"))
+    });
+    if response.changed() {
+        set(target, mm / 1e3 / per_px);
+    }
+    let mut percent = px / height * 100.0;
+    let tip = "The same diameter as a share of the picture's height.";
+    let response = row(ui, "of the height", tip, |ui| {
+        ui.add(DragValue::new(&mut percent).speed(0.01).max_decimals(3).suffix(" %"))
+    });
+    if response.changed() {
+        set(target, percent / 100.0 * height);
+    }
+    // κ = 1/s − 1/z: what the unpainted lens does to a thing at z.
+    let kappa = optics.kappa(optics.inverse_focus_distance, FocusOffset::new(target.t, 1.0));
+    let inverse = optics.inverse_focus_distance - kappa;
+    let mut depth = if inverse > 0.0 { 1.0 / inverse } else { f64::INFINITY };
+    let tip = "The depth at which the unpainted lens would blur a thing as much. What is blurred more than infinity looks like nothing that could be.";
+    let response = row(ui, "looks like at", tip, |ui| {
+        let beyond = inverse < 0.0;
+        let value = proportional(&mut depth, 1e-6..=f64::INFINITY).custom_formatter(move |n, d| match n {
+            _ if beyond => "beyond ∞".into(),
+            n if n.is_finite() => format!("{} m", format_number(n, d)),
+            _ => "∞".into(),
+        });
+        ui.add(value.custom_parser(|text| match text.trim().trim_end_matches('m').trim() {
+            "inf" | "∞" | "infinity" => Some(f64::INFINITY),
+            number => number.parse().ok(),
+        }))
+    });
+    if response.changed() && depth > 0.0 {
+        let kappa = optics.inverse_focus_distance - 1.0 / depth;
+        if let Some(t) = optics.offset_for_kappa(kappa, optics.inverse_focus_distance, 1.0) {
+            target.t = t;
+        }
+    }
 }
 
 fn fill_button(ui: &mut Ui, id: CommandId, label: &str, actions: &mut Vec<Action>) {

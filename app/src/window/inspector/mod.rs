@@ -42,7 +42,9 @@ impl Inspector {
             section(ui, "Lens", true, |ui| lens_panel::lens_panel(ui, document, actions));
             section(ui, "Focus", true, |ui| focus_panel::focus_panel(ui, document, actions));
             section(ui, "Layers", true, |ui| layers_panel::layers_panel(ui, document, actions));
-            section(ui, "Brush", true, |ui| brush_panel::brush_panel(ui, document, hover, actions));
+            section(ui, "Brush", true, |ui| {
+                brush_panel::brush_panel(ui, document, settings, hover, actions);
+            });
             section(ui, "Picture", true, |ui| lens_panel::picture_panel(ui, document, settings, actions));
             section(ui, "Scene", false, |ui| self.scene.ui(ui, document, actions));
             section(ui, "What was modelled", false, |ui| {

@@ -97,13 +97,6 @@ impl OrbitCamera {
         self.distance = distance.max(1e-6);
     }
 
-    /// World origin and unit direction of the ray through a view position (x right, y up, both in [−1, 1]).
-    pub fn ray(&self, position: DVec2, aspect: f64) -> (DVec3, DVec3) {
-        let half_height = (self.yfov / 2.0).tan();
-        let direction = DVec3::new(position.x * half_height * aspect, position.y * half_height, -1.0);
-        (self.eye(), (self.orientation * direction).normalize())
-    }
-
     /// The view position (x right, y up, [−1, 1] inside the view) of a world point in front of the eye.
     pub fn project(&self, point: DVec3, aspect: f64) -> Option<DVec2> {
         let view = self.orientation.inverse() * (point - self.eye());
@@ -146,10 +139,11 @@ mod tests {
     #[test]
     fn ray_and_projection_invert() {
         let camera = camera();
-        let at = DVec2::new(0.3, -0.7);
-        let (origin, direction) = camera.ray(at, 1.5);
+        let frame = project::ViewFrame { camera_to_world: camera.pose(), yfov: camera.yfov, aspect: 1.5 };
+        // (0.65, 0.85) of the way from the upper left corner is (0.3, −0.7) from the middle.
+        let (origin, direction) = frame.ray(DVec2::new(0.65, 0.85));
         let found = camera.project(origin + direction * 7.0, 1.5).unwrap();
-        assert!(found.distance(at) < 1e-12, "{found}");
+        assert!(found.distance(DVec2::new(0.3, -0.7)) < 1e-12, "{found}");
         assert_eq!(camera.project(origin - direction, 1.5), None, "behind the eye");
     }
 

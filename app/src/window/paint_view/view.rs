@@ -9,10 +9,10 @@ use crate::window::{Action, false_colour, theme};
 use egui::{Color32, PointerButton, Pos2, Rect, Response, Sense, Stroke, TextureId, Ui, pos2, vec2};
 use glam::{DVec2, DVec3};
 use lens::Camera;
-use session::{Document, Session, SurfaceHit};
+use project::ViewFrame;
+use session::{Document, Session, SurfaceHit, view_ray};
 use std::ops::Range;
 use std::sync::mpsc;
-use trace::Ray;
 
 /// Points of the wheel that make one step.
 const POINTS_PER_STEP: f64 = 40.0;
@@ -205,10 +205,12 @@ impl PaintView {
         self.receive_mesh(actions);
         self.navigate(ui, &response);
         self.draw(ui, document, look, actions);
-        let ray = |at| Some(view_ray(&self.camera, rect, at));
-        actions.extend(self.stroke.update(ui, &response, session, hand.tool, ray));
+        let frame =
+            ViewFrame { camera_to_world: self.camera.pose(), yfov: self.camera.yfov, aspect: aspect(rect) };
+        let position = |at: Pos2| view_position(rect, at);
+        actions.extend(self.stroke.update(ui, &response, session, hand, frame, position));
         let pointer = response.hover_pos().or_else(|| response.interact_pointer_pos());
-        self.hover = pointer.and_then(|at| session.pick(&view_ray(&self.camera, rect, at)));
+        self.hover = pointer.and_then(|at| session.pick(&view_ray(&frame, view_position(rect, at))));
         let painter = ui.painter_at(rect);
         self.paint_shot_camera(&painter, &document.camera, document.scene().bounds());
         if look.focus_share > 0.0 {
@@ -403,12 +405,10 @@ fn stored_viewpoint(view: &serde_json::Value) -> Option<OrbitCamera> {
     camera.is_usable().then_some(camera)
 }
 
-/// The ray of a screen position.
-fn view_ray(camera: &OrbitCamera, rect: Rect, at: Pos2) -> Ray {
-    let x = 2.0 * ((at.x - rect.left()) / rect.width().max(1.0)) as f64 - 1.0;
-    let y = 1.0 - 2.0 * ((at.y - rect.top()) / rect.height().max(1.0)) as f64;
-    let (origin, direction) = camera.ray(DVec2::new(x, y), aspect(rect));
-    Ray { origin, direction, t_min: 0.0, t_max: f64::INFINITY, skip: None }
+/// A screen position in the view: (0, 0) its upper left corner, (1, 1) its lower right.
+fn view_position(rect: Rect, at: Pos2) -> DVec2 {
+    let share = |at: f32, from: f32, length: f32| ((at - from) / length.max(1.0)) as f64;
+    DVec2::new(share(at.x, rect.left(), rect.width()), share(at.y, rect.top(), rect.height()))
 }
 
 fn screen_from_view(rect: Rect, at: DVec2) -> Pos2 {

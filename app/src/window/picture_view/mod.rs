@@ -13,6 +13,7 @@ use super::{Action, controls, theme};
 use egui::{PointerButton, Pos2, Rect, Response, Sense, Ui, Vec2, pos2, vec2};
 use glam::{DVec2, DVec3};
 use lens::Camera;
+use project::ViewFrame;
 use session::{Command, PreviewActivity, PreviewKind, ReferenceKind, Session, SurfaceHit};
 use shown::Textures;
 use tone::Tone;
@@ -134,9 +135,12 @@ impl PictureView {
         }
         self.ask_for_pictures(session, actions);
         let image = self.image;
-        let ray = |at: Pos2| session.picture_ray(picture_position(image, at));
         if !is_wiping || session.is_painting() {
-            actions.extend(self.stroke.update(ui, &response, session, hand.tool, ray));
+            let shot = &document.camera;
+            let frame =
+                ViewFrame { camera_to_world: shot.camera_to_world, yfov: shot.yfov, aspect: shot.aspect() };
+            let position = |at: Pos2| picture_position(image, at);
+            actions.extend(self.stroke.update(ui, &response, session, hand, frame, position));
         }
         let pointer = response.hover_pos().or_else(|| response.interact_pointer_pos());
         let pointer = pointer.filter(|at| image.contains(*at) && !is_wiping);

@@ -32,6 +32,7 @@ impl Shell {
             CommandId::ExportPicture => self.ask_for(Purpose::ExportPicture, context),
             CommandId::ExportFocusMap => self.ask_for(Purpose::ExportFocusMap, context),
             CommandId::ExportScene => self.ask_for(Purpose::ExportScene, context),
+            CommandId::ExportStrokes => self.ask_for(Purpose::ExportStrokes, context),
             CommandId::ImportFocusMap => self.ask_for(Purpose::ImportFocusMap, context),
             CommandId::Quit => self.ask_then(Next::Quit, context),
             CommandId::Undo => self.apply(Command::Undo),

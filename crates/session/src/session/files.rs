@@ -8,7 +8,7 @@ use crate::steps::JobSteps;
 use crate::{Aov, SessionError, write_unwrapped};
 use focus::Focus;
 use project::{FocusMapFile, PictureOptions, write_focus_map, write_picture};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -139,6 +139,19 @@ impl Session {
             write_unwrapped(&path, &stage.scene, &stage.atlas, &JobSteps { progress })?;
             Ok(Outcome::Written(path, Vec::new()))
         })?;
+        Ok(())
+    }
+
+    /// Writes the strokes of the history. Quick enough to wait for.
+    pub(super) fn export_strokes(&mut self, path: &Path) -> Result<(), SessionError> {
+        self.commit_stroke()?;
+        let strokes: Vec<_> = self.opened()?.undo.strokes().cloned().collect();
+        if strokes.is_empty() {
+            let what = "no strokes since the document was opened (paint first)";
+            return Err(SessionError::bad(path, what));
+        }
+        project::write_strokes(path, &strokes)?;
+        self.events.push(crate::Event::Written(path.into()));
         Ok(())
     }
 

@@ -1,9 +1,9 @@
 //! Strokes and fills.
 
 use super::Session;
-use crate::picking::pick;
-use crate::{Event, FillRegion, LayerEdit, SessionError, Stage, StrokePoint, StrokeTarget, SurfaceHit};
-use focus::{Brush, Channels, Edit, FillTarget, FocusLayer, FocusMap, LayerStack, PenSample, Stroke, fill};
+use crate::painter::{Painter, paintable};
+use crate::{Event, FillRegion, LayerEdit, SessionError, Stage, StrokePoint, SurfaceHit};
+use focus::{Channels, Edit, FillTarget, FocusMap, LayerStack, fill};
 use lens::{Camera, FocusOffset};
 
 impl Session {
@@ -11,39 +11,20 @@ impl Session {
         if self.stroke.is_some() {
             self.commit_stroke()?;
         }
-        let document = self.opened()?;
-        let layer = document.layers.active();
-        let channels = paintable(layer, document.brush.channels)?;
-        let brush = Brush { channels, ..document.brush.clone() };
-        let stroke = Stroke::begin(&layer.map, document.stage.canvas.clone(), brush);
-        self.stroke = Some(stroke.map_err(|error| SessionError::BadInput(error.to_string()))?);
+        self.stroke = Some(Painter::begin(self.opened()?, &point)?);
         self.extend_stroke(point)
     }
 
     pub(super) fn extend_stroke(&mut self, point: StrokePoint) -> Result<(), SessionError> {
         let Some(document) = &mut self.document else { return Err(SessionError::NothingOpen) };
         let Some(stroke) = &mut self.stroke else { return Ok(()) };
-        let hit = match point.at {
-            StrokeTarget::Surface(hit) => Some(hit),
-            StrokeTarget::Ray(ray) => pick(&document.stage.tracer, &ray),
-        };
-        let Some(hit) = hit else {
-            stroke.lift();
-            return Ok(());
-        };
-        let front = document.stage.scene.area_normal(hit.point.triangle).try_normalize();
-        let hit = focus::SurfaceHit { position: hit.position, normal: front.map(|n| n.as_vec3()) };
-        let pen = PenSample { pressure: point.pressure as f64 };
-        let changed = stroke.extend(&mut document.layers.active_mut().map, hit, pen);
+        let changed = stroke.extend(document, &point);
         self.show_layers(Some(changed))
     }
 
     pub(super) fn commit_stroke(&mut self) -> Result<(), SessionError> {
         let Some(stroke) = self.stroke.take() else { return Ok(()) };
-        let document = self.opened()?;
-        if let Some(edit) = stroke.commit(&document.layers.active().map) {
-            document.undo.push_paint(document.layers.active_index(), edit);
-            document.revision += 1;
+        if stroke.commit(self.opened()?) {
             self.preview_thread.settle();
         }
         Ok(())
@@ -51,7 +32,7 @@ impl Session {
 
     pub(super) fn abort_stroke(&mut self) -> Result<(), SessionError> {
         let Some(stroke) = self.stroke.take() else { return Ok(()) };
-        let changed = stroke.abort(&mut self.opened()?.layers.active_mut().map);
+        let changed = stroke.abort(self.opened()?);
         self.show_layers(Some(changed))
     }
 
@@ -149,18 +130,4 @@ impl Session {
         self.events.push(Event::LayersChanged);
         self.show_layers(None)
     }
-}
-
-/// What a brush with these channels touches of a layer: of an adjustment layer only its mask can be painted.
-fn paintable(layer: &FocusLayer, channels: Channels) -> Result<Channels, SessionError> {
-    let bad = |what: String| Err(SessionError::BadInput(what));
-    let name = &layer.name;
-    if !layer.is_visible {
-        return bad(format!("{name}: the layer is hidden (show it, or choose another one)"));
-    }
-    let channels = if layer.curve.is_some() { Channels::Mask } else { channels };
-    if channels == Channels::Mask && !layer.map.has_mask() {
-        return bad(format!("{name}: the layer has no mask to paint (add one in the Layers panel)"));
-    }
-    Ok(channels)
 }

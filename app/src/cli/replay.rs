@@ -1,0 +1,45 @@
+//! `focus-brush replay`.
+
+use super::arguments::ReplayArguments;
+use super::console::{Console, say_json};
+use super::failure::Failure;
+use super::new::check_project_name;
+use super::shot::{check_folder, unwrap_options};
+use serde_json::json;
+use session::{Document, InputKind, replay};
+use std::time::Instant;
+
+/// Paints recorded strokes on a project or a scene and saves it as a project.
+pub fn run(arguments: &ReplayArguments, console: &Console) -> Result<(), Failure> {
+    check_project_name(&arguments.output)?;
+    check_folder(&arguments.output)?;
+    let strokes = project::read_strokes(&arguments.strokes)?;
+    let unwrap = unwrap_options(None);
+    let mut document = match InputKind::of(&arguments.file)? {
+        InputKind::Scene => Document::begin(&arguments.file, None, None, &unwrap, console)?,
+        _ => Document::open_saved(&arguments.file, &unwrap, console)?,
+    };
+    console.warn(&document.warnings);
+    let start = Instant::now();
+    let painted = replay(&mut document, &strokes)
+        .map_err(|error| Failure::bad(format!("{}: {error}", arguments.strokes.display())))?;
+    let seconds = start.elapsed().as_secs_f64();
+    document.to_project().save(&arguments.output)?;
+    if arguments.json {
+        say_json(&json!({
+            "input": arguments.file,
+            "files": [arguments.output],
+            "strokes": strokes.len(),
+            "painted": painted,
+            "points": strokes.iter().map(|stroke| stroke.points.len()).sum::<usize>(),
+            "seconds": { "paint": seconds },
+        }));
+    } else {
+        console.note(&format!(
+            "wrote {}: {painted} of {} strokes painted",
+            arguments.output.display(),
+            strokes.len()
+        ));
+    }
+    Ok(())
+}
