@@ -286,7 +286,7 @@ impl Shell {
                     }
                 }
                 Event::ReferenceReady(ReferenceKind::Truth) => self.picture.show(Shown::Truth),
-                Event::ReferenceReady(_) => {}
+                Event::ReferenceReady(_) | Event::Verified => {}
                 Event::Written(path) => self.written(path, context),
                 Event::Failed(text) => {
                     self.after_save = None;

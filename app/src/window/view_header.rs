@@ -6,6 +6,9 @@ use super::{Action, ViewSettings, controls};
 use egui::{Button, Ui};
 use session::{CommandId, Session};
 
+/// Room for the picture's scale in percent, points: without it the number is left out.
+const PERCENT_WIDTH: f32 = 44.0;
+
 /// What the headers change.
 pub struct HeaderState<'a> {
     /// How the paint view looks.
@@ -29,7 +32,9 @@ pub fn view_header(
     };
     frame
         .show(ui, |ui| {
-            ui.horizontal(|ui| {
+            // A narrow view wraps its header: it must not grow wider than itself.
+            ui.horizontal_wrapped(|ui| {
+                ui.spacing_mut().item_spacing.x = 5.0;
                 let name = egui::Label::new(egui::RichText::new(title).strong()).selectable(false);
                 let name = ui
                     .add(name.sense(egui::Sense::drag()))
@@ -75,16 +80,24 @@ fn picture_header(ui: &mut Ui, session: &Session, picture: &mut PictureView, act
     let mut wiping = picture.wipe.is_on;
     let key = CommandId::Wipe.info().shortcut.map(|key| format!(" ({key})")).unwrap_or_default();
     let tip = format!("{}{key}", CommandId::Wipe.info().tooltip);
-    if ui.checkbox(&mut wiping, "Compare with").on_hover_text(tip).changed() {
+    if ui.checkbox(&mut wiping, "Compare").on_hover_text(tip).changed() {
         actions.push(CommandId::Wipe.into());
     }
     ui.add_enabled_ui(wiping, |ui| choose_picture(ui, "Compared picture", &mut picture.wipe.against));
+    let verify = CommandId::Verify.info();
+    let key = verify.shortcut.map(|key| format!(" ({key})")).unwrap_or_default();
+    let response = ui.add(Button::selectable(picture.verify.is_selecting(), "Verify"));
+    if response.on_hover_text(format!("{}{key}", verify.tooltip)).clicked() {
+        actions.push(verify.id.into());
+    }
     for (id, label) in [(CommandId::PictureFit, "Fit"), (CommandId::PictureActualSize, "100 %")] {
         if ui.add(Button::new(label)).on_hover_text(id.info().tooltip).clicked() {
             actions.push(id.into());
         }
     }
-    if let Some(percent) = picture.percent(session, ui.ctx().pixels_per_point()).filter(|p| p.is_finite()) {
+    if let Some(percent) = picture.percent(session, ui.ctx().pixels_per_point()).filter(|p| p.is_finite())
+        && ui.available_width() > PERCENT_WIDTH
+    {
         ui.weak(format!("{percent:.0} %")).on_hover_text("Screen pixels of a picture pixel.");
     }
 }

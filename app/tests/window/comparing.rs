@@ -26,6 +26,8 @@ fn a_wipe_shows_the_ordinary_lens_on_the_left_of_a_line_that_can_be_dragged() {
     person.window.run_steps(2);
     let reference = person.shell().session().reference(ReferenceKind::Standard).unwrap().clone();
     let image = person.picture_rect();
+    let inspector = person.window.get_by_label("f-number").rect();
+    assert!(image.right() <= inspector.left(), "the header does not push the view under the inspector");
     // Contrast of the chequers along a row.
     let contrast = |person: &mut Person, from: f32, to: f32| {
         let screen = person.window.render().unwrap();
@@ -90,5 +92,58 @@ fn the_ray_traced_picture_is_shown_and_says_when_it_is_old() {
     let session = person.shell().session();
     let pinhole = &session.reference(ReferenceKind::Pinhole).unwrap().picture;
     assert!(pinhole.coverage.iter().all(|c| *c == 1.0));
+    assert!(person.complaints().is_empty(), "{:?}", person.complaints());
+}
+
+#[test]
+fn a_rectangle_is_checked_by_rays_better_and_better_and_can_be_closed() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("wall.glb");
+    small_scene::write(&file);
+    let mut person = Person::opens(&file);
+    let map = person.document().map.clone();
+    person.presses(Modifiers::NONE, Key::R);
+    let image = person.picture_rect();
+    let path: Vec<_> = (0..=6).map(|k| at(image, 0.3 + 0.05 * k as f32, 0.4 + 0.05 * k as f32)).collect();
+    person.drags(&path);
+    person.lets_go(path[6]);
+    assert_eq!(person.document().map, map, "drawing the rectangle paints nothing");
+    let samples = |shell: &focus_brush::window::Shell| {
+        let known = shell.session().verification().and_then(|v| v.estimate.clone());
+        known.map_or(0, |estimate| estimate.samples_per_pixel)
+    };
+    person.wait_until("something is known", |shell| samples(shell) > 0);
+    let first = samples(person.shell());
+    person.waits();
+    assert!(samples(person.shell()) > first, "it got better in passes: {first}");
+    let session = person.shell().session();
+    let verification = session.verification().unwrap();
+    let (width, height) = (verification.camera.width as f32, verification.camera.height as f32);
+    assert!((verification.region.width as f32 / width - 0.3).abs() < 0.03, "{:?}", verification.region);
+    assert!((verification.region.y as f32 / height - 0.4).abs() < 0.03, "{:?}", verification.region);
+    let preview = session.preview().unwrap();
+    let error = verification.error_of(preview, lens::Exposure::Normalise).unwrap().unwrap();
+    assert!(
+        error.psnr > 25.0 && error.signed_mean_error.abs() < 0.02,
+        "{} {}",
+        error.psnr,
+        error.signed_mean_error
+    );
+    assert!(person.window.query_by_label_contains("PSNR").is_some());
+    // A control that fails: another picture is far off.
+    let mut wrong = preview.clone();
+    let mut picture = (*wrong.picture).clone();
+    picture.radiance.iter_mut().for_each(|rgb| *rgb = [0.5; 3]);
+    wrong.picture = std::sync::Arc::new(picture);
+    let far = verification.error_of(&wrong, lens::Exposure::Normalise).unwrap().unwrap();
+    assert!(far.psnr < error.psnr - 8.0, "{} {}", far.psnr, error.psnr);
+
+    // Old after a change, gone when closed.
+    person.window.state_mut().apply(Command::Fill(FillRegion::All, lens::FocusOffset::SHARP));
+    person.waits();
+    assert!(!person.shell().session().is_verification_current());
+    person.window.get_by_label("Close verification").click();
+    person.window.run_steps(3);
+    assert!(person.shell().session().verification().is_none());
     assert!(person.complaints().is_empty(), "{:?}", person.complaints());
 }

@@ -37,6 +37,12 @@ pub fn write_error_map(file: &Path, a: &LinearPicture, b: &LinearPicture) -> Res
     }
 }
 
+/// Where `a` differs from the reference `b`, in the colours of [`write_error_map`]: 8-bit sRGB, interleaved, row 0 on
+/// top. An error unless they have the same size.
+pub fn error_colours(a: &LinearPicture, b: &LinearPicture) -> Result<Vec<u8>, ProjectError> {
+    Ok(false_colours(a.width, a.height, &error_maps(a, b)?))
+}
+
 /// FLIP in the colours that its authors use, 8-bit sRGB, interleaved.
 fn false_colours(width: u32, height: u32, maps: &ErrorMaps) -> Vec<u8> {
     FlipImageFloat::with_data(width, height, &maps.flip).apply_color_lut(&nv_flip::magma_lut()).to_vec()

@@ -31,7 +31,7 @@ mod texel_bytes;
 pub use camera::{camera_from_json, camera_to_json, read_aperture_mask, read_camera, write_camera};
 pub use compare::{Comparison, ErrorMaps, compare, error_maps};
 pub use error::ProjectError;
-pub use error_map_file::write_error_map;
+pub use error_map_file::{error_colours, write_error_map};
 pub use focus_map_file::{FocusMapFile, write_focus_map};
 pub use picture_file::{Layer, LinearPicture, PictureOptions, read_picture, write_picture, write_rgb};
 pub use project_file::{NamedCamera, ProjectFile, SceneState};

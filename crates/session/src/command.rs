@@ -81,6 +81,11 @@ pub enum Command {
         /// Rays a pixel of a ray-traced one.
         samples_per_pixel: u32,
     },
+    /// Traces the rectangle between two positions of the picture ((0, 0) its upper left corner, (1, 1) its lower right),
+    /// to check the live picture there: in the background, better and better.
+    VerifyRegion([DVec2; 2]),
+    /// Stops verifying and forgets what was found.
+    EndVerification,
     /// Stops one piece of background work.
     Cancel(JobId),
     /// Stops all background work.
@@ -151,6 +156,8 @@ pub enum Event {
     PreviewReady(u64),
     /// A picture to compare with is ready: [`crate::Session::reference`].
     ReferenceReady(ReferenceKind),
+    /// More is known of the rectangle that is verified: [`crate::Session::verification`].
+    Verified,
     /// Background work went on.
     Progress(JobStatus),
     /// A file was written.

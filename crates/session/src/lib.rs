@@ -38,6 +38,7 @@ mod stage;
 mod steps;
 mod undo;
 mod unwrapped;
+mod verification;
 
 pub use aov::Aov;
 pub use baselines::{FirstHits, LayeredOptions, ScatterOptions, ViewsOptions};
@@ -63,4 +64,6 @@ pub use salf_file::write_salf;
 pub use session::{Session, SessionOptions};
 pub use stage::{Stage, load_scene};
 pub use steps::Steps;
+pub use trace::truth::Region;
 pub use unwrapped::write_unwrapped;
+pub use verification::{Verification, VerifiedError};

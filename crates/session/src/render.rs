@@ -153,7 +153,7 @@ pub(crate) fn light(tracer: &Arc<Tracer>, camera: &Camera) -> DirectLight {
 }
 
 /// Light for the ground truth, which shades many points a pixel: a few shadow rays each are enough.
-fn light_for_many_points(tracer: &Arc<Tracer>, camera: &Camera) -> DirectLight {
+pub(crate) fn light_for_many_points(tracer: &Arc<Tracer>, camera: &Camera) -> DirectLight {
     let background = DVec3::from_array(camera.background).as_vec3();
     DirectLight::with_options(tracer.clone(), background, DirectLightOptions { emitter_samples: 2 })
 }

@@ -3,6 +3,7 @@
 mod comparing;
 mod files;
 mod painting;
+mod verifying;
 
 use crate::document::Document;
 use crate::job::{Job, JobProgress, Waker};
@@ -13,7 +14,7 @@ use crate::preview::PreviewThread;
 use crate::undo::Undone;
 use crate::{
     CameraEdit, Command, Event, JobId, JobStatus, Preview, PreviewActivity, Reference, ReferenceKind,
-    SessionError, SurfaceHit,
+    SessionError, SurfaceHit, Verification,
 };
 use atlas::UnwrapOptions;
 use focus::{Changed, FillTarget};
@@ -23,6 +24,7 @@ use std::path::PathBuf;
 use std::sync::{Arc, mpsc};
 use std::time::{Duration, Instant};
 use trace::Ray;
+use trace::truth::Estimate;
 
 /// How a session works.
 #[derive(Clone)]
@@ -79,6 +81,8 @@ pub(crate) enum Outcome {
     },
     Written(PathBuf, Vec<String>),
     Reference(Box<Reference>),
+    /// What is known after another pass of the verification of this number.
+    Verified(u64, Box<Estimate>),
 }
 
 /// An open document and the work on it. See the crate's documentation.
@@ -99,10 +103,15 @@ pub struct Session {
     references: Vec<Reference>,
     /// Which of the jobs make such pictures.
     reference_jobs: Vec<(JobId, ReferenceKind)>,
+    verification: Option<Verification>,
+    verification_job: Option<JobId>,
+    /// Counts verifications.
+    verifications: u64,
     jobs: Vec<Job>,
     last_job: u64,
-    outcomes: mpsc::Receiver<(JobId, Result<Outcome, SessionError>)>,
-    sender: mpsc::Sender<(JobId, Result<Outcome, SessionError>)>,
+    /// What jobs hand over: with their id when they are done, without it on the way.
+    outcomes: mpsc::Receiver<(Option<JobId>, Result<Outcome, SessionError>)>,
+    sender: mpsc::Sender<(Option<JobId>, Result<Outcome, SessionError>)>,
     events: Vec<Event>,
     reported: Vec<JobStatus>,
 }
@@ -123,6 +132,9 @@ impl Session {
             recovery: Recovery::default(),
             references: Vec::new(),
             reference_jobs: Vec::new(),
+            verification: None,
+            verification_job: None,
+            verifications: 0,
             jobs: Vec::new(),
             last_job: PREVIEW_JOB.0,
             outcomes,
@@ -188,8 +200,8 @@ impl Session {
     /// What happened since the last call. To be called once a frame.
     pub fn poll(&mut self) -> Vec<Event> {
         while let Ok((id, outcome)) = self.outcomes.try_recv() {
-            self.jobs.retain(|job| job.id != id);
-            self.reference_jobs.retain(|(job, _)| *job != id);
+            self.jobs.retain(|job| Some(job.id) != id);
+            self.reference_jobs.retain(|(job, _)| Some(*job) != id);
             match outcome {
                 Ok(outcome) => self.take(outcome),
                 Err(SessionError::Cancelled) => {}
@@ -220,6 +232,7 @@ impl Session {
                 self.generation += 1;
                 (self.stroke, self.preview) = (None, None);
                 self.references.clear();
+                self.end_verification();
                 let camera = self.scaled_camera(&document.camera);
                 self.preview_camera = Some(camera.clone());
                 let stage = (document.stage.clone(), self.generation);
@@ -254,6 +267,7 @@ impl Session {
                 self.events.push(Event::Written(path));
             }
             Outcome::Reference(reference) => self.take_reference(*reference),
+            Outcome::Verified(number, estimate) => self.take_verified(number, *estimate),
         }
     }
 
@@ -337,6 +351,11 @@ impl Session {
             Command::ExportScene(path) => self.export_scene(path),
             Command::ExportStrokes(path) => self.export_strokes(&path),
             Command::ImportFocusMap(path) => self.import_focus_map(path),
+            Command::VerifyRegion(corners) => self.verify(corners),
+            Command::EndVerification => {
+                self.end_verification();
+                Ok(())
+            }
             Command::MakeReference { kind, samples_per_pixel } => {
                 self.make_reference(kind, samples_per_pixel)
             }
@@ -358,7 +377,7 @@ impl Session {
         let (sender, waker) = (self.sender.clone(), self.options.waker.clone());
         let job = Job::start(JobId(self.last_job), label, work, move |id, outcome| {
             // A session that is gone wants nothing.
-            let _ = sender.send((id, outcome));
+            let _ = sender.send((Some(id), outcome));
             waker();
         })?;
         self.jobs.push(job);

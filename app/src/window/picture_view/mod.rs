@@ -2,6 +2,7 @@
 
 mod shown;
 mod tone;
+mod verify;
 mod wipe;
 
 pub use shown::Shown;
@@ -17,6 +18,7 @@ use project::ViewFrame;
 use session::{Command, PreviewActivity, PreviewKind, ReferenceKind, Session, SurfaceHit};
 use shown::Textures;
 use tone::Tone;
+use verify::Verify;
 use wipe::Wipe;
 
 /// Wheel points that double the picture.
@@ -43,6 +45,8 @@ pub struct PictureView {
     pub shown: Shown,
     /// The line across it, and what is on its left.
     pub wipe: Wipe,
+    /// The rectangle that rays check.
+    pub verify: Verify,
     zoom: Zoom,
     stroke: StrokeInput,
     hover: Option<SurfaceHit>,
@@ -56,6 +60,7 @@ impl Default for PictureView {
             textures: Textures::default(),
             shown: Shown::Painted,
             wipe: Wipe::default(),
+            verify: Verify::default(),
             zoom: Zoom::Fit,
             stroke: StrokeInput::default(),
             hover: None,
@@ -135,7 +140,9 @@ impl PictureView {
         }
         self.ask_for_pictures(session, actions);
         let image = self.image;
-        if !is_wiping || session.is_painting() {
+        let is_selecting = self.verify.is_selecting();
+        self.verify.select(ui, &response, image, actions);
+        if !(is_wiping || is_selecting) || session.is_painting() {
             let shot = &document.camera;
             let frame =
                 ViewFrame { camera_to_world: shot.camera_to_world, yfov: shot.yfov, aspect: shot.aspect() };
@@ -143,7 +150,7 @@ impl PictureView {
             actions.extend(self.stroke.update(ui, &response, session, hand, frame, position));
         }
         let pointer = response.hover_pos().or_else(|| response.interact_pointer_pos());
-        let pointer = pointer.filter(|at| image.contains(*at) && !is_wiping);
+        let pointer = pointer.filter(|at| image.contains(*at) && !is_wiping && !is_selecting);
         self.hover = pointer.and_then(|at| session.pick(&session.picture_ray(picture_position(image, at))?));
         if let (Some(hit), Some(ring)) = (self.hover, hand.ring) {
             brush_ring::paint(&painter, &hit, ring, |point| self.screen_from_world(&document.camera, point));
@@ -151,6 +158,7 @@ impl PictureView {
         if response.hovered() && !is_wiping {
             ui.set_cursor_icon(egui::CursorIcon::Crosshair);
         }
+        self.verify.show(ui, session, image, rect, tone, actions);
         self.notice(ui, session);
     }
 
@@ -263,6 +271,7 @@ impl PictureView {
     fn notice(&self, ui: &Ui, session: &Session) {
         let pinhole = session.preview().is_some_and(|preview| preview.kind == PreviewKind::Pinhole);
         let text = match session.preview_activity() {
+            _ if self.verify.is_selecting() => "drag a rectangle to check it by rays (Esc: no)",
             PreviewActivity::Baking if pinhole => "rebuilding the light field, shown without blur meanwhile",
             PreviewActivity::Baking => "rebuilding the light field",
             PreviewActivity::Splatting if pinhole => "drawing the picture, shown without blur meanwhile",

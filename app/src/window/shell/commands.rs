@@ -118,6 +118,7 @@ impl Shell {
                 }
             }
             CommandId::Bake => self.apply(Command::Bake),
+            CommandId::Verify => self.picture.verify.toggle_selecting(),
             CommandId::Wipe => self.picture.toggle_wipe(),
             CommandId::RenderTruth => {
                 let kind = ReferenceKind::Truth;

@@ -172,7 +172,7 @@ impl Drop for Session {
         self.jobs.iter().for_each(|job| job.progress.cancel());
         while self.jobs.iter().any(|job| job.label == KEEPING || job.label.starts_with(SAVING)) {
             let Ok((id, outcome)) = self.outcomes.recv_timeout(LONGEST_WRITE) else { break };
-            self.jobs.retain(|job| job.id != id);
+            self.jobs.retain(|job| Some(job.id) != id);
             if let Ok(Outcome::Kept { path, .. }) = outcome {
                 self.recovery.file = Some(path);
             }

@@ -1,0 +1,183 @@
+//! A rectangle of the picture, checked by rays: drawn, shown, and how far the picture is off.
+
+use super::picture_position;
+use super::tone::{Tone, to_screen};
+use crate::window::{Action, controls};
+use egui::{
+    Color32, ColorImage, Key, PointerButton, Pos2, Rect, Response, Stroke, StrokeKind, TextureHandle,
+    TextureOptions, Ui, UiBuilder, pos2, vec2,
+};
+use session::{Command, Session, VerifiedError};
+
+/// What is shown in the rectangle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+enum Look {
+    /// The ray-traced picture.
+    #[default]
+    Truth,
+    /// Where the live picture differs from it.
+    Error,
+    /// The live picture.
+    Live,
+}
+
+/// The rectangle's state in the view.
+#[derive(Default)]
+pub struct Verify {
+    /// Whether the next drag draws the rectangle, and where it began.
+    selecting: Option<Option<Pos2>>,
+    look: Look,
+    texture: Option<TextureHandle>,
+    /// What the texture and the numbers were made of: picture, passes, look, tone.
+    made_of: Option<(u64, u32, Look, Tone)>,
+    error: Option<VerifiedError>,
+}
+
+impl Verify {
+    /// The next drag draws a rectangle; asked again, it does not.
+    pub fn toggle_selecting(&mut self) {
+        self.selecting = if self.selecting.is_none() { Some(None) } else { None };
+    }
+
+    /// Whether the pointer draws a rectangle.
+    pub fn is_selecting(&self) -> bool {
+        self.selecting.is_some()
+    }
+
+    /// Draws the rectangle by the pointer.
+    pub fn select(&mut self, ui: &Ui, response: &Response, image: Rect, actions: &mut Vec<Action>) {
+        let Some(start) = self.selecting else { return };
+        if ui.input(|input| input.key_pressed(Key::Escape)) {
+            self.selecting = None;
+            return;
+        }
+        ui.set_cursor_icon(egui::CursorIcon::Crosshair);
+        let down = ui.input(|input| input.pointer.button_down(PointerButton::Primary));
+        let pressed = ui.input(|input| input.pointer.primary_pressed());
+        let pointer = response.interact_pointer_pos().map(|at| image.clamp(at));
+        match (start, pointer) {
+            (None, Some(at)) if pressed && response.is_pointer_button_down_on() => {
+                self.selecting = Some(Some(at));
+            }
+            (Some(from), Some(at)) if down => {
+                let rect = Rect::from_two_pos(from, at);
+                outline(ui, rect, image);
+            }
+            (Some(from), _) if !down => {
+                let end = pointer.or_else(|| ui.input(|input| input.pointer.latest_pos()));
+                let end = end.map_or(from, |at| image.clamp(at));
+                self.selecting = None;
+                if from.distance(end) > 3.0 {
+                    let corners = [from, end].map(|at| picture_position(image, at));
+                    actions.push(Command::VerifyRegion(corners).into());
+                }
+            }
+            _ => {}
+        }
+    }
+
+    /// Shows the rectangle with what is known, over the picture at `image`.
+    pub fn show(
+        &mut self,
+        ui: &mut Ui,
+        session: &Session,
+        image: Rect,
+        view: Rect,
+        tone: Tone,
+        actions: &mut Vec<Action>,
+    ) {
+        let (Some(verification), Some(preview)) = (session.verification(), session.preview()) else {
+            *self = Self { selecting: self.selecting, look: self.look, ..Self::default() };
+            return;
+        };
+        let (region, camera) = (verification.region, &verification.camera);
+        let corner = |x: u32, y: u32| {
+            image.min + vec2(x as f32 / camera.width as f32, y as f32 / camera.height as f32) * image.size()
+        };
+        let rect = Rect::from_min_max(
+            corner(region.x, region.y),
+            corner(region.x + region.width, region.y + region.height),
+        );
+        let samples = verification.estimate.as_ref().map_or(0, |estimate| estimate.samples_per_pixel);
+        let made_of = Some((preview.id, samples, self.look, tone));
+        if let Some(estimate) = verification.estimate.as_ref().filter(|_| self.made_of != made_of) {
+            self.made_of = made_of;
+            self.error = verification.error_of(preview, tone.exposure).and_then(Result::ok);
+            let size = [region.width as usize, region.height as usize];
+            let pixels = match (self.look, &self.error) {
+                (Look::Truth, _) => Some(to_screen(&estimate.picture, tone)),
+                (Look::Error, Some(error)) => {
+                    let rgb = error.map.chunks_exact(3);
+                    Some(rgb.map(|rgb| Color32::from_rgb(rgb[0], rgb[1], rgb[2])).collect())
+                }
+                (Look::Error, None) | (Look::Live, _) => None,
+            };
+            self.texture = pixels.map(|pixels| {
+                ui.ctx().load_texture("verified", ColorImage::new(size, pixels), TextureOptions::LINEAR)
+            });
+        }
+        if let Some(texture) = self.texture.as_ref().filter(|_| self.look != Look::Live) {
+            let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
+            ui.painter_at(view).image(texture.id(), rect, whole, Color32::WHITE);
+        }
+        outline(ui, rect, view);
+        self.controls(ui, session, rect, view, samples, actions);
+    }
+
+    /// The line beneath the rectangle: what is shown, how far off the picture is, and a way to close it.
+    fn controls(
+        &mut self,
+        ui: &mut Ui,
+        session: &Session,
+        rect: Rect,
+        view: Rect,
+        samples: u32,
+        actions: &mut Vec<Action>,
+    ) {
+        let size = vec2(340.0f32.min(view.width() - 8.0), 46.0);
+        let below = rect.bottom() + 4.0 + size.y <= view.bottom();
+        let y = if below { rect.bottom() + 4.0 } else { (rect.top() - 4.0 - size.y).max(view.top()) };
+        let x = rect.left().clamp(view.left() + 4.0, (view.right() - size.x - 4.0).max(view.left() + 4.0));
+        let place = Rect::from_min_size(pos2(x, y), size);
+        ui.painter_at(view).rect_filled(place, 3.0, Color32::from_black_alpha(190));
+        let text = match (&self.error, samples) {
+            (_, 0) => "Tracing rays…".to_string(),
+            _ if !session.is_verification_current() => {
+                "Traced before the last change (R and a drag check anew).".to_string()
+            }
+            (None, _) => format!("{samples} rays a pixel; the picture is still being drawn."),
+            (Some(error), _) => format!(
+                "PSNR {:.1} dB, mean {:+.2} %, {samples} rays a pixel (good to {:.0} dB)",
+                error.psnr,
+                error.signed_mean_error * 100.0,
+                error.noise_psnr.min(200.0),
+            ),
+        };
+        ui.scope_builder(UiBuilder::new().max_rect(place.shrink(4.0)), |ui| {
+            ui.horizontal(|ui| {
+                let looks = [
+                    (Look::Truth, "Rays", "Show the ray-traced picture in the rectangle."),
+                    (Look::Error, "Error", "Show where the live picture differs: black where it looks alike (FLIP)."),
+                    (Look::Live, "Live", "Show the live picture in the rectangle."),
+                ];
+                for (look, name, tip) in looks {
+                    ui.selectable_value(&mut self.look, look, name).on_hover_text(tip);
+                }
+                let close = ui.button("Close").on_hover_text("Stop tracing and take the rectangle away.");
+                controls::named(&close, "Close verification");
+                if close.clicked() {
+                    actions.push(Command::EndVerification.into());
+                }
+            });
+            ui.label(egui::RichText::new(text).size(11.0)).on_hover_text(
+                "How far the live picture is from the rays: the signal-to-noise ratio, and how much brighter it is on the whole. Noise of the rays limits what can be told.",
+            );
+        });
+    }
+}
+
+fn outline(ui: &Ui, rect: Rect, within: Rect) {
+    let painter = ui.painter_at(within.expand(2.0));
+    painter.rect_stroke(rect, 0.0, Stroke::new(3.0, Color32::from_black_alpha(140)), StrokeKind::Middle);
+    painter.rect_stroke(rect, 0.0, Stroke::new(1.0, Color32::WHITE), StrokeKind::Middle);
+}
