@@ -23,9 +23,8 @@ mod input;
 mod job;
 mod layer_edit;
 mod light_field;
-pub use modelled::{DENSE_SAMPLE_BYTES, Modelled, ModelledRow, TexelStatistics};
-pub use painter::replay;
-pub use picking::{SurfaceHit, chief_ray, pick, view_ray};
+mod modelled;
+mod painter;
 mod picking;
 mod preview;
 mod preview_worker;
@@ -50,13 +49,9 @@ pub use error::SessionError;
 pub use input::{CameraChoice, Input, InputKind};
 pub use job::{JobId, JobProgress, JobStatus, Waker, guarded};
 pub use layer_edit::LayerEdit;
-<<<<<<< HEAD
 pub use modelled::{DENSE_SAMPLE_BYTES, Modelled, ModelledRow, TexelStatistics};
-pub use picking::{SurfaceHit, chief_ray, pick};
-=======
 pub use painter::replay;
 pub use picking::{SurfaceHit, chief_ray, pick, view_ray};
->>>>>>> 4e59293 (session: strokes are data in the view they were made in, exported and replayed; focus, app: mirror, flow, sharpen, straight lines, stabiliser, exact values)
 pub use preview::{Preview, PreviewActivity, PreviewKind};
 pub use reference::{Reference, ReferenceKind};
 pub use render::{RenderCost, RenderOptions, Rendered, Renderer, bake, render, render_input};
