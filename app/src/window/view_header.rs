@@ -32,6 +32,7 @@ pub fn view_header(
     };
     frame
         .show(ui, |ui| {
+            ui.set_width(ui.available_width());
             // A narrow view wraps its header: it must not grow wider than itself.
             ui.horizontal_wrapped(|ui| {
                 ui.spacing_mut().item_spacing.x = 5.0;
@@ -43,7 +44,6 @@ pub fn view_header(
                     Pane::Paint => paint_header(ui, state.settings),
                     Pane::Picture => picture_header(ui, session, state.picture, actions),
                 }
-                ui.allocate_space(egui::vec2(ui.available_width(), 0.0));
                 name.drag_started()
             })
             .inner
