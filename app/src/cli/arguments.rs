@@ -167,8 +167,8 @@ pub struct RenderArguments {
     /// Where the splat runs; there is no GPU backend yet, so auto is cpu
     #[arg(long, value_enum, default_value_t = BackendName::Auto)]
     pub backend: BackendName,
-    /// How coarse, in pixels, the splat may know what partly hidden points see of the aperture: smaller is more exact
-    /// and slower to bake
+    /// How coarse, in pixels, the light field may be: what partly hidden points see of the aperture, and which samples
+    /// are joined where they are out of focus. Smaller is more exact and slower; 0 joins none
     #[arg(long, value_name = "PX", default_value_t = 2.0, value_parser = not_negative)]
     pub tolerance: f64,
     /// Rays a pixel of the ground truth

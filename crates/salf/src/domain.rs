@@ -71,12 +71,29 @@ impl Domain {
             .collect()
     }
 
+    /// The cell that `pixel`, of the frame or its margin, lies in.
+    pub fn cell_around(&self, pixel: IVec2) -> Cell {
+        let block = (pixel + self.margin) / Self::BLOCK;
+        let mut cell = Cell { corner: block * Self::BLOCK - self.margin, side: Self::BLOCK };
+        while !self.is_fine_enough(cell) {
+            let side = cell.side / 2;
+            let beyond_middle = pixel.cmpge(cell.corner + side);
+            cell.corner += IVec2::select(beyond_middle, IVec2::splat(side), IVec2::ZERO);
+            cell.side = side;
+        }
+        cell
+    }
+
+    fn is_fine_enough(&self, cell: Cell) -> bool {
+        cell.side == 1 || self.distance_outside(cell) >= 4 * cell.side
+    }
+
     fn split(&self, cell: Cell, cells: &mut Vec<Cell>) {
         let beyond = self.size + self.margin;
         if cell.corner.x >= beyond.x || cell.corner.y >= beyond.y {
             return;
         }
-        if cell.side == 1 || self.distance_outside(cell) >= 4 * cell.side {
+        if self.is_fine_enough(cell) {
             cells.push(cell);
             return;
         }
@@ -112,6 +129,7 @@ mod tests {
                     }
                 }
             }
+            assert_eq!(domain.cell_around(cell.corner + cell.side / 2), cell);
             let inside = cell.corner.cmpge(IVec2::ZERO).all() && cell.corner.cmplt(domain.size).all();
             assert!(!inside || cell.side == 1);
         }

@@ -16,6 +16,7 @@ mod occluders;
 mod placement;
 mod sample;
 mod surface_patches;
+pub mod tree;
 mod view;
 mod visibility;
 

@@ -38,6 +38,11 @@ impl Default for Changes {
 }
 
 impl Changes {
+    /// Whether nothing has changed.
+    fn is_none(&self) -> bool {
+        matches!(self, Self::Texels(texels) if texels.is_empty())
+    }
+
     /// Takes up newer changes.
     pub fn join(&mut self, newer: &Changes) {
         match (&mut *self, newer) {
@@ -151,7 +156,7 @@ impl LightField {
     ) -> Result<Brought, SessionError> {
         let moved = self.moved_samples(camera);
         // Until all is through, the sum is of no lens.
-        self.summed = None;
+        let was_summed = self.summed.take().is_some();
         let brought = match moved {
             Some(samples) if samples.is_empty() => Brought::Nothing,
             Some(samples) => {
@@ -160,7 +165,11 @@ impl LightField {
             }
             None => {
                 let start = Instant::now();
-                self.splatter.render(camera, focus, progress)?;
+                if was_summed && self.unseen.is_none() {
+                    self.splatter.refocus(camera, progress)?;
+                } else {
+                    self.splatter.render(camera, focus, progress)?;
+                }
                 self.whole_seconds = start.elapsed().as_secs_f64();
                 Brought::Whole
             }

@@ -11,7 +11,7 @@ use project::Layer;
 use salf::{BakeOptions, Salf, SalfStatistics};
 use serde::Serialize;
 use slf::{DirectLight, DirectLightOptions};
-use splat::Splatter;
+use splat::{Splatter, Tolerance};
 use std::sync::Arc;
 use std::time::Instant;
 use trace::Tracer;
@@ -78,7 +78,8 @@ pub struct RenderOptions {
     pub renderer: Renderer,
     /// How the ray tracer samples. Its region must be the frame.
     pub truth: TruthOptions,
-    /// How coarse the light field may be, px (see [`BakeOptions::tolerance_px`]).
+    /// How coarse the light field may be, px (see [`BakeOptions::tolerance_px`]), and its splat (see
+    /// [`Tolerance::px`]).
     pub tolerance_px: f64,
     /// How [`Renderer::Layers`] cuts the picture.
     pub layered: LayeredOptions,
@@ -279,6 +280,7 @@ fn sum_light_field(
         baselines::scatter(&salf, camera, focus, &options.scatter, &*steps.begin("scattering"))?
     } else {
         let mut splatter = Splatter::new(salf);
+        splatter.set_tolerance(Tolerance::px(options.tolerance_px));
         splatter.render(camera, focus, &*steps.begin("splatting"))?;
         splatter.picture().clone()
     };

@@ -1,60 +1,165 @@
-//! The lens that a picture is summed with, and where it sends samples.
+//! The lens that a picture is summed with, and what it makes of each node.
 
-use crate::aperture_image::ApertureImage;
-use crate::kernel::Kernel;
-use lens::{Aperture, FocusOffset, Optics};
-use salf::Sample;
-use scene::SurfaceField;
+use crate::nodes::SplatNode;
+use crate::stencil::POSITION_BITS;
+use lens::{FocusOffset, Optics};
+use salf::tree::LEVELS;
 
-/// A larger splat leaves less than half a quantum in any pixel, however bright ([`crate::fixed_point::BRIGHTEST`]): nothing.
-const WIDEST_PX: f64 = (1u64 << 30) as f64;
-
-/// Aperture and optics of one picture, in units of the baked aperture.
-pub struct SplatLens {
-    kernel: Kernel,
-    optics: Optics,
+/// How coarse the sum may be.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tolerance {
+    /// A node may be drawn as one where its side is at most this share of the diameter of a 16 px circle of confusion
+    /// (of larger ones a smaller share, so that the cost a pixel stays). 0: every sample is drawn.
+    pub share_of_circle: f64,
 }
 
-/// How a sample is summed.
+impl Tolerance {
+    /// As fine as the samples.
+    pub const NONE: Self = Self { share_of_circle: 0.0 };
+
+    /// For pictures that are looked at while one works on them.
+    pub const VIEWING: Self = Self { share_of_circle: 0.25 };
+
+    /// Nodes of `px` pixels where the circle of confusion is 16.
+    pub fn px(px: f64) -> Self {
+        Self { share_of_circle: px / 16.0 }
+    }
+
+    /// The diameter of the circle of confusion, px, from which on nodes of `side` px may be drawn.
+    fn smallest_circle_px(self, side: f64) -> f64 {
+        if self.share_of_circle <= 0.0 {
+            return f64::INFINITY;
+        }
+        // side = share·D below 16 px, share·D·(16/D)^(2/3) above.
+        let linear = side / self.share_of_circle;
+        if linear <= 16.0 { linear } else { (linear / 16f64.powf(2.0 / 3.0)).powi(3) }
+    }
+}
+
+impl Default for Tolerance {
+    fn default() -> Self {
+        Self::VIEWING
+    }
+}
+
+/// Focus of a node: the mean of its samples and how far they are from it.
 #[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NodeFocus {
+    /// Mean t and anchor.
+    pub t: f32,
+    /// See `t`.
+    pub anchor: f32,
+    /// The largest differences; infinite where painted and unpainted samples mix.
+    pub t_apart: f32,
+    /// See `t_apart`.
+    pub anchor_apart: f32,
+}
+
+impl NodeFocus {
+    /// Nothing is painted.
+    pub const STANDARD: Self = Self { t: 1.0, anchor: 0.0, t_apart: 0.0, anchor_apart: 0.0 };
+
+    pub fn of(offset: FocusOffset) -> Self {
+        Self { t: offset.t as f32, anchor: offset.anchor as f32, ..Self::STANDARD }
+    }
+}
+
+/// How a node is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Placed {
-    /// Its defocus.
-    pub kappa: f64,
-    /// How fast its defocus changes with its depth, as a share of the unpainted: ∂κ/∂(1/s − 1/z) = t·(1 − a).
-    pub depth_share: f64,
+    /// Signed radius of the lens's aperture image, 1/256 px.
+    pub radius: i32,
     /// Whether it is unpainted.
     pub is_standard: bool,
 }
 
-impl SplatLens {
-    /// A lens of `optics`, which may be stopped down from `baked_radius`.
-    pub fn new(aperture: &Aperture, optics: Optics, baked_radius: f64) -> Self {
+/// Larger aperture images, 1/256 px, are taken as this large: none of their light is in the picture.
+const LARGEST_RADIUS: f64 = (1u32 << 30) as f64;
+
+/// A lens.
+pub struct LensInUse {
+    pub optics: Optics,
+    /// The lens's aperture radius as a share of the baked one, ≤ 1.
+    pub stop: f64,
+    /// From which |radius| on, 1/256 px, open nodes of each level may be drawn, and partly occluded ones.
+    smallest_radius: [[f64; LEVELS]; 2],
+}
+
+/// Partly occluded nodes are this much finer.
+const FINER_AT_OUTLINES: f64 = 1.5;
+
+/// The circles of confusion below a drawn node may differ by this share of its side.
+const FLAT: f64 = 0.3;
+
+impl LensInUse {
+    pub fn new(optics: Optics, baked_radius: f64, tolerance: Tolerance) -> Self {
         let stop = if baked_radius > 0.0 { (optics.aperture_radius / baked_radius).min(1.0) } else { 1.0 };
-        let kernel = Kernel::new(aperture, stop);
-        Self { kernel, optics: Optics { aperture_radius: baked_radius, ..optics } }
+        let smallest = |finer: f64| {
+            std::array::from_fn(|level| {
+                let circle = tolerance.smallest_circle_px(finer * (1 << level) as f64);
+                circle / 2.0 * (1 << POSITION_BITS) as f64
+            })
+        };
+        Self { optics, stop, smallest_radius: [smallest(1.0), smallest(FINER_AT_OUTLINES)] }
     }
 
-    /// Where `focus` sends a sample.
-    pub fn place(&self, sample: &Sample, focus: &dyn SurfaceField<FocusOffset>) -> Placed {
-        let offset =
-            sample.surface.map_or_else(|| focus.at_infinity(), |point| focus.at(point)).or_standard();
-        if offset.is_standard() {
-            self.standard(sample)
+    /// Where `focus` sends a node.
+    #[inline(always)]
+    pub fn place(&self, node: &SplatNode, focus: &NodeFocus) -> Placed {
+        let (inverse_depth, is_standard) = (node.inverse_depth as f64, (focus.t, focus.anchor) == (1.0, 0.0));
+        let kappa = if is_standard {
+            self.optics.standard_kappa(inverse_depth)
         } else {
-            let kappa = self.optics.kappa(sample.inverse_depth as f64, offset);
-            Placed { kappa, depth_share: offset.t * (1.0 - offset.anchor), is_standard: false }
+            self.optics.kappa(inverse_depth, FocusOffset::new(focus.t as f64, focus.anchor as f64))
+        };
+        let radius = self.optics.splat_radius_px(kappa) * (1 << POSITION_BITS) as f64;
+        Placed { radius: radius.clamp(-LARGEST_RADIUS, LARGEST_RADIUS).round_ties_even() as i32, is_standard }
+    }
+
+    /// Whether a node that was `placed` may stand for all below it.
+    #[inline(always)]
+    pub fn may_merge(&self, node: &SplatNode, focus: &NodeFocus, placed: Placed) -> bool {
+        let is_partial = usize::from(!node.is_open());
+        if (placed.radius.abs() as f64) < self.smallest_radius[is_partial][node.level as usize] {
+            return false;
         }
+        let optics = &self.optics;
+        let (t, a) = (focus.t as f64, focus.anchor as f64);
+        let defocus = optics.standard_kappa(node.inverse_depth as f64);
+        let mut apart = (t * (1.0 - a)).abs() * node.inverse_depth_spread as f64;
+        if focus.t_apart > 0.0 || focus.anchor_apart > 0.0 {
+            // The partial derivatives of κ.
+            apart += (1.0 / optics.image_distance + (1.0 - a) * defocus).abs() * focus.t_apart as f64
+                + (t * defocus).abs() * focus.anchor_apart as f64;
+        }
+        optics.splat_radius_px(apart) <= FLAT * (1 << node.level) as f64
     }
 
-    /// Where the unpainted lens sends a sample.
-    pub fn standard(&self, sample: &Sample) -> Placed {
-        let kappa = self.optics.standard_kappa(sample.inverse_depth as f64);
-        Placed { kappa, depth_share: 1.0, is_standard: true }
+    /// The largest |radius|, px, of what lies between two inverse depths, painted between two offsets.
+    pub fn largest_radius_px(&self, inverse_depths: [f32; 2], t: [f32; 2], anchor: [f32; 2]) -> f64 {
+        let mut largest: f64 = 0.0;
+        for depth in inverse_depths {
+            for t in t {
+                for anchor in anchor {
+                    let offset = FocusOffset::new(t as f64, anchor as f64);
+                    largest = largest.max(self.optics.kappa(depth as f64, offset).abs());
+                }
+            }
+        }
+        self.optics.splat_radius_px(largest)
     }
+}
 
-    /// The aperture image of a sample.
-    pub fn image<'a>(&'a self, sample: &'a Sample, placed: Placed) -> ApertureImage<'a> {
-        let radius_px = self.optics.splat_radius_px(placed.kappa).clamp(-WIDEST_PX, WIDEST_PX);
-        ApertureImage { sample, kernel: &self.kernel, radius_px, depth_share: placed.depth_share }
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn larger_nodes_ask_for_larger_circles() {
+        let tolerance = Tolerance { share_of_circle: 0.25 };
+        assert_eq!(tolerance.smallest_circle_px(2.0), 8.0);
+        assert_eq!(tolerance.smallest_circle_px(4.0), 16.0);
+        assert!((tolerance.smallest_circle_px(8.0) - 128.0).abs() < 1e-9);
+        assert_eq!(Tolerance::NONE.smallest_circle_px(2.0), f64::INFINITY);
     }
 }

@@ -7,19 +7,27 @@
 //! let picture = splatter.picture();
 //! ```
 //!
-//! A [`salf::Sample`] with the defocus κ throws an aperture image ([`aperture_image`]): pieces of the aperture
-//! ([`kernel`]) scaled by κ, each a rectangle blurred by the sample's footprint ([`trapezoid`]), written as differences
-//! along pixel rows ([`accumulator`]) in fixed point ([`fixed_point`]). Partly occluded samples share what open ones leave
-//! ([`partition`]).
+//! Samples stand in a hierarchy ([`salf::tree`]), turned to integers once ([`nodes`]). A lens ([`lens_in_use`]) and paint
+//! ([`paint`]) give each node its defocus κ, and so decide which nodes are drawn ([`sums`]): a sample itself where it is
+//! nearly in focus, one node for many where they are far out of it. A node is drawn as the aperture's image ([`draw`]) of
+//! rows that were cut once for all splats of its size ([`stencil`], [`shape`]), on the level of a pyramid of accumulators
+//! whose pixel is about its own size ([`canvas`]). Running sums and upsampling make the picture ([`resolve`]); partly
+//! occluded samples share what open ones leave of it ([`partition`]).
 
-mod accumulator;
-mod aperture_image;
-mod fixed_point;
-mod kernel;
+mod canvas;
+mod draw;
 mod lens_in_use;
+mod nodes;
+mod paint;
 mod partition;
+mod resolve;
+mod seen;
+mod shape;
 mod splatter;
+mod stencil;
 mod sums;
-mod trapezoid;
+mod widest;
 
+pub use lens_in_use::Tolerance;
 pub use splatter::{SplatError, Splatter};
+pub use sums::DrawnNodes;

@@ -7,21 +7,40 @@
 //! what the open ones leave:
 //!
 //! ```text
-//! picture(q) = free(q) + share(q)·sharing(q),    share(q) = (1 − open(q)) / partial(q)
+//! picture(q) = even(q)·(free(q) + share(q)·sharing(q)),    share(q) = (1 − open(q)) / partial(q)
 //! ```
 //!
 //! with `open` and `partial` the coverage of the *standard* picture by either kind. A ray's share does not depend on
 //! paint: paint that moves other rays to or from q leaves it as it is. Painted samples are summed with the visibility of
-//! their cells as it stands.
+//! their cells as it stands. What then still keeps the standard picture's coverage from 1, the ripple of finite samples,
+//! is taken out by `even`, which is 1 to within a few per cent.
 
-/// The factor of the partly occluded samples in a pixel whose standard coverage is `open` + `partial`.
-///
-/// It stays within [0, 8]: where almost nothing partial lies, what is left is the error of the open ones, and is
-/// not blown up.
-pub fn share_of_partial(open: f64, partial: f64) -> f32 {
-    const LARGEST: f64 = 8.0;
-    const LEAST_PARTIAL: f64 = 1e-3;
-    if partial < LEAST_PARTIAL { 1.0 } else { ((1.0 - open) / partial).clamp(0.0, LARGEST) as f32 }
+/// A pixel's factors.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Share {
+    /// Of the partly occluded samples.
+    pub partial: f32,
+    /// Of all.
+    pub even: f32,
+}
+
+impl Share {
+    /// Nothing is known of the standard picture.
+    pub const NONE: Self = Self { partial: 1.0, even: 1.0 };
+
+    /// The factors of a pixel whose standard coverage is `open` + `partial`.
+    ///
+    /// The share of partial samples stays within [0, 8]: where almost nothing partial lies, what is left is the error of
+    /// the open ones, and is not blown up.
+    pub fn of(open: f32, partial: f32) -> Self {
+        const LARGEST: f32 = 8.0;
+        const LEAST_PARTIAL: f32 = 1e-3;
+        const RIPPLE: f32 = 0.05;
+        let share = if partial < LEAST_PARTIAL { 1.0 } else { ((1.0 - open) / partial).clamp(0.0, LARGEST) };
+        let covered = open + share * partial;
+        let even = if (covered - 1.0).abs() <= RIPPLE { 1.0 / covered } else { 1.0 };
+        Self { partial: share, even }
+    }
 }
 
 #[cfg(test)]
@@ -30,9 +49,10 @@ mod tests {
 
     #[test]
     fn what_is_left_is_shared() {
-        assert_eq!(share_of_partial(0.25, 0.5), 1.5);
-        assert_eq!(share_of_partial(1.02, 0.5), 0.0);
-        assert_eq!(share_of_partial(0.0, 0.01), 8.0);
-        assert_eq!(share_of_partial(0.9, 0.0), 1.0);
+        assert_eq!(Share::of(0.25, 0.5), Share { partial: 1.5, even: 1.0 });
+        assert_eq!(Share::of(0.0, 0.01).partial, 8.0);
+        assert_eq!(Share::of(0.5, 0.0), Share::NONE, "a hole is no ripple");
+        let rippled = Share::of(1.02, 0.5);
+        assert_eq!((rippled.partial, rippled.even), (0.0, 1.0 / 1.02));
     }
 }

@@ -1,15 +1,21 @@
 //! The picture as a running integer sum that single samples can leave and enter.
 
-use crate::accumulator::{Band, running_sum};
-use crate::fixed_point::{BRIGHTEST, LARGEST_PIXEL, QUANTA};
-use crate::lens_in_use::{Placed, SplatLens};
-use crate::partition::share_of_partial;
-use crate::sums::{Sums, is_sharing};
-use lens::{Camera, FocusOffset, Picture};
+use crate::draw::Pen;
+use crate::lens_in_use::{LensInUse, Placed, Tolerance};
+use crate::nodes::{Nodes, Scale};
+use crate::paint::Paint;
+use crate::partition::Share;
+use crate::resolve::{Lines, Overflow};
+use crate::seen::{Seen, seen};
+use crate::shape::Shape;
+use crate::stencil::Stencils;
+use crate::sums::{DrawnNodes, RESOLVE_ROWS, Scene, Sums};
+use lens::{Aperture, Camera, FocusOffset, Picture};
 use progress::{Cancelled, Progress, Stage};
 use rayon::prelude::*;
-use salf::{Salf, Sample};
+use salf::Salf;
 use scene::SurfaceField;
+use std::cmp::Ordering;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -30,40 +36,67 @@ impl From<Cancelled> for SplatError {
     }
 }
 
+impl From<Overflow> for SplatError {
+    fn from(_: Overflow) -> Self {
+        Self::Overflow
+    }
+}
+
 /// A SALF being looked at: sums that follow the focus as it is painted.
-///
-/// Two sums are kept in integers: `free` of open samples and of painted ones, and `sharing` of the unpainted samples that
-/// see only part of the aperture; the latter share what the open ones leave of the standard picture.
 pub struct Splatter {
     salf: Arc<Salf>,
-    lens: SplatLens,
-    /// Where each sample was last summed.
-    placed: Vec<Placed>,
-    free: Vec<[i64; 4]>,
-    sharing: Vec<[i64; 4]>,
-    /// By what the sharing sum is multiplied, a pixel.
-    shares: Vec<f32>,
-    /// The largest radiance of any sample, at least 1.
-    brightest: f64,
+    /// The hierarchy; none if a sample is too bright.
+    nodes: Option<Nodes>,
+    tolerance: Tolerance,
+    aperture: ApertureInUse,
+    lens: LensInUse,
+    paint: Paint,
+    sums: Sums,
+    /// What each pixel's sums are multiplied by.
+    shares: Vec<Share>,
     picture: Picture,
+}
+
+/// What depends on the aperture's shape, and on how far it is stopped down from the baked one.
+struct ApertureInUse {
+    aperture: Aperture,
+    stop: f64,
+    stencils: Stencils,
+    seen: Vec<Seen>,
+}
+
+impl ApertureInUse {
+    fn new(aperture: &Aperture, stop: f64, nodes: Option<&Nodes>) -> Self {
+        let shape = Shape::new(aperture);
+        // A pinhole sees what its chief ray sees.
+        let seen = nodes.map_or_else(Vec::new, |nodes| seen(nodes, &shape, stop.max(1e-3)));
+        Self { aperture: aperture.clone(), stop, stencils: Stencils::new(shape), seen }
+    }
 }
 
 impl Splatter {
     /// Prepares to render `salf`. The picture is black until [`Self::render`].
     pub fn new(salf: Arc<Salf>) -> Self {
         let camera = &salf.camera;
-        let pixels = camera.width as usize * camera.height as usize;
-        let radiances = salf.samples.par_iter().map(|sample| sample.radiance.max_element());
+        let (width, height) = (camera.width as usize, camera.height as usize);
+        let nodes = Nodes::new(&salf, Scale::FINEST);
+        let tolerance = Tolerance::default();
         Self {
-            brightest: radiances.reduce(|| 1.0, f32::max) as f64,
-            lens: SplatLens::new(&camera.aperture, camera.optics(), camera.aperture_radius),
-            placed: Vec::new(),
-            free: vec![[0; 4]; pixels],
-            sharing: vec![[0; 4]; pixels],
-            shares: vec![1.0; pixels],
+            aperture: ApertureInUse::new(&camera.aperture, 1.0, nodes.as_ref()),
+            lens: LensInUse::new(camera.optics(), camera.aperture_radius, tolerance),
+            tolerance,
+            paint: Paint::default(),
+            sums: Sums::new([width, height], nodes.as_ref().is_some_and(|nodes| nodes.has_bright)),
+            shares: vec![Share::NONE; width * height],
             picture: Picture::black(camera.width, camera.height),
+            nodes,
             salf,
         }
+    }
+
+    /// Sets how coarse the sum may be, from the next [`Self::render`] on.
+    pub fn set_tolerance(&mut self, tolerance: Tolerance) {
+        self.tolerance = tolerance;
     }
 
     /// The light field.
@@ -76,6 +109,21 @@ impl Splatter {
         &self.picture
     }
 
+    /// Bytes of the hierarchy and of the sums; the light field's own are not among them.
+    pub fn bytes(&self) -> [usize; 2] {
+        [self.nodes.as_ref().map_or(0, Nodes::bytes), self.sums.bytes()]
+    }
+
+    /// What the picture is drawn with: samples where they are nearly in focus, fewer nodes where they are not.
+    pub fn drawn_nodes(&self) -> DrawnNodes {
+        let ApertureInUse { stencils, seen, stop, .. } = &self.aperture;
+        let count = |nodes| {
+            let pen = Pen::new(nodes, stencils, seen, *stop);
+            Scene { pen, lens: &self.lens, paint: &self.paint }.count()
+        };
+        self.nodes.as_ref().map_or_else(DrawnNodes::default, count)
+    }
+
     /// Sums the whole picture for a lens (`camera` may differ from the baked one in focus distance, aperture shape and a
     /// smaller aperture radius, nothing else) and a focus.
     ///
@@ -86,26 +134,62 @@ impl Splatter {
         focus: &dyn SurfaceField<FocusOffset>,
         progress: &dyn Progress,
     ) -> Result<(), SplatError> {
-        self.check_range()?;
-        let samples = &self.salf.samples;
-        self.lens = SplatLens::new(&camera.aperture, camera.optics(), self.salf.camera.aperture_radius);
-        let lens = &self.lens;
-        self.placed = samples.par_iter().map(|sample| lens.place(sample, focus)).collect();
-        let is_painted = self.placed.iter().any(|placed| !placed.is_standard);
+        let nodes = self.nodes.as_mut().ok_or(SplatError::Overflow)?;
+        self.lens = LensInUse::new(camera.optics(), self.salf.camera.aperture_radius, self.tolerance);
+        if (&self.aperture.aperture, self.aperture.stop) != (&camera.aperture, self.lens.stop) {
+            self.aperture = ApertureInUse::new(&camera.aperture, self.lens.stop, Some(nodes));
+        }
+        nodes.rescale(Scale::FINEST);
+        self.paint = Paint::look_up(nodes, &self.salf.samples, focus);
+        self.sum(progress)
+    }
 
+    /// Sums the whole picture for another lens, with the focus of before.
+    pub fn refocus(&mut self, camera: &Camera, progress: &dyn Progress) -> Result<(), SplatError> {
+        let nodes = self.nodes.as_mut().ok_or(SplatError::Overflow)?;
+        assert_eq!(self.paint.blocks.len(), nodes.blocks.len(), "refocus follows a render");
+        self.lens = LensInUse::new(camera.optics(), self.salf.camera.aperture_radius, self.tolerance);
+        if (&self.aperture.aperture, self.aperture.stop) != (&camera.aperture, self.lens.stop) {
+            self.aperture = ApertureInUse::new(&camera.aperture, self.lens.stop, Some(nodes));
+        }
+        nodes.rescale(Scale::FINEST);
+        self.sum(progress)
+    }
+
+    /// Sums all, with coarser integers where the finest do not hold it.
+    fn sum(&mut self, progress: &dyn Progress) -> Result<(), SplatError> {
+        loop {
+            match self.try_sum(progress) {
+                Err(SplatError::Overflow) => {
+                    let nodes = self.nodes.as_mut().ok_or(SplatError::Overflow)?;
+                    let coarser = nodes.scale.coarser().ok_or(SplatError::Overflow)?;
+                    nodes.rescale(coarser);
+                }
+                other => return other,
+            }
+        }
+    }
+
+    fn try_sum(&mut self, progress: &dyn Progress) -> Result<(), SplatError> {
+        let nodes = self.nodes.as_ref().ok_or(SplatError::Overflow)?;
+        let ApertureInUse { stencils, seen, stop, .. } = &self.aperture;
+        let scene = |paint| Scene { pen: Pen::new(nodes, stencils, seen, *stop), lens: &self.lens, paint };
+        let is_painted = !self.paint.is_standard();
+        // Shares are those of the standard picture.
+        let unpainted = Paint::default();
+        let first = Stage::new(progress, 0.0, if is_painted { 0.5 } else { 1.0 });
+        self.sums.set(&scene(&unpainted), &first)?;
         let width = self.salf.camera.width as usize;
-        let first = Stage::new(progress, 0.0, if is_painted { 0.6 } else { 1.0 });
-        let mut sums = Sums { width, free: &mut self.free, sharing: &mut self.sharing };
-        sums.set(lens, samples, &self.placed, &color, &first)?;
-        self.shares = if is_painted {
-            let standard: Vec<_> = samples.iter().map(|sample| lens.standard(sample)).collect();
-            let (mut open, mut partial) = (vec![[0]; self.free.len()], vec![[0]; self.free.len()]);
-            let mut sums = Sums { width, free: &mut open, sharing: &mut partial };
-            sums.set(lens, samples, &standard, &|_| [1.0], &Stage::new(progress, 0.6, 1.0))?;
-            shares_of(width, &open, &partial, 0)
-        } else {
-            shares_of(width, &self.free, &self.sharing, 3)
-        };
+        let sums = &self.sums;
+        let shares = self.shares.par_chunks_mut(RESOLVE_ROWS * width).enumerate();
+        shares.try_for_each(|(chunk, shares)| {
+            let rows = chunk_rows(chunk, shares.len() / width);
+            shares.copy_from_slice(&sums.shares(nodes, rows)?);
+            Ok::<_, Overflow>(())
+        })?;
+        if is_painted {
+            self.sums.set(&scene(&self.paint), &Stage::new(progress, 0.5, 1.0))?;
+        }
         self.resolve(0..self.salf.camera.height)
     }
 
@@ -117,93 +201,123 @@ impl Splatter {
         focus: &dyn SurfaceField<FocusOffset>,
         samples: &[u32],
     ) -> Result<Range<u32>, SplatError> {
-        assert_eq!(self.placed.len(), self.salf.samples.len(), "update follows a render");
-        let (width, height) = (self.salf.camera.width as usize, self.salf.camera.height as i64);
-        let mut changed = height..0;
-        for &index in samples {
-            let sample = &self.salf.samples[index as usize];
-            let (old, new) = (self.placed[index as usize], self.lens.place(sample, focus));
-            if old == new {
-                continue;
-            }
-            self.placed[index as usize] = new;
-            for (placed, sign) in [(old, -1), (new, 1)] {
-                let image = self.lens.image(sample, placed);
-                let rows = image.rows();
-                changed = changed.start.min(rows.start)..changed.end.max(rows.end);
-                let sum = if is_sharing(sample, placed) { &mut self.sharing } else { &mut self.free };
-                let mut band = Band::new(width, 0..height, sum);
-                image.deposit(&mut band, &color(sample), sign);
+        let nodes = self.nodes.as_ref().ok_or(SplatError::Overflow)?;
+        assert_eq!(self.paint.blocks.len(), nodes.blocks.len(), "update follows a render");
+        let mut leaves: Vec<u32> =
+            samples.iter().map(|&sample| nodes.node_of_sample[sample as usize]).collect();
+        leaves.sort_unstable();
+        let ApertureInUse { stencils, seen, stop, .. } = &self.aperture;
+        let height = self.salf.camera.height;
+        let (mut removed, mut added) = (Vec::new(), Vec::new());
+        let block_of = |leaf: &u32| nodes.block_of_node[*leaf as usize];
+        for leaves in leaves.chunk_by(|a, b| block_of(a) == block_of(b)) {
+            let block = block_of(&leaves[0]) as usize;
+            let before = self.paint.blocks[block].clone();
+            self.paint.update(nodes, block, leaves, &self.salf.samples, focus);
+            let pen = Pen::new(nodes, stencils, seen, *stop);
+            let scene = Scene { pen, lens: &self.lens, paint: &self.paint };
+            if before.as_deref() != self.paint.of_block(block) {
+                compare(&scene, block, before.as_deref(), &mut removed, &mut added);
             }
         }
-        let rows = changed.start.clamp(0, height) as u32..changed.end.clamp(0, height) as u32;
-        if rows.is_empty() {
-            return Ok(0..0);
+        let pen = Pen::new(nodes, stencils, seen, *stop);
+        self.sums.add(&pen, &removed, -1);
+        self.sums.add(&pen, &added, 1);
+        let mut rows = height..0;
+        for &(index, placed) in removed.iter().chain(&added) {
+            let reached = pen.rows(index, placed, height);
+            if !reached.is_empty() {
+                rows = rows.start.min(reached.start)..rows.end.max(reached.end);
+            }
         }
-        self.resolve(rows.clone())?;
-        Ok(rows)
+        if nodes.scale != Scale::FINEST {
+            return self.sum_again();
+        }
+        match self.resolve(rows.clone()) {
+            Ok(()) => Ok(rows),
+            Err(SplatError::Overflow) => self.sum_again(),
+            Err(other) => Err(other),
+        }
+    }
+
+    /// Sums all with the paint as it is.
+    fn sum_again(&mut self) -> Result<Range<u32>, SplatError> {
+        if let Some(nodes) = &mut self.nodes {
+            nodes.rescale(Scale::FINEST);
+        }
+        self.sum(&progress::Unwatched)?;
+        Ok(0..self.salf.camera.height)
     }
 
     /// Integrates `rows` of the sums to the picture.
     fn resolve(&mut self, rows: Range<u32>) -> Result<(), SplatError> {
+        let nodes = self.nodes.as_ref().ok_or(SplatError::Overflow)?;
+        if rows.is_empty() {
+            return Ok(());
+        }
         let width = self.salf.camera.width as usize;
-        let range = rows.start as usize * width..rows.end as usize * width;
-        let brightest = self.brightest;
-        let sums =
-            self.free[range.clone()].par_chunks(width).zip(self.sharing[range.clone()].par_chunks(width));
-        let shares = self.shares[range.clone()].par_chunks(width);
-        let radiance = self.picture.radiance[range.clone()].par_chunks_mut(width);
-        let coverage = self.picture.coverage[range].par_chunks_mut(width);
-        let lines = radiance.zip(coverage).zip(sums.zip(shares));
-        lines.try_for_each(|((radiance, coverage), ((free, sharing), shares))| {
-            for (x, (free, sharing)) in running_sum(free).zip(running_sum(sharing)).enumerate() {
-                let share = shares[x] as f64;
-                let value = |c: usize| (free[c] as f64 + share * sharing[c] as f64) / QUANTA;
-                // A colour is at most the brightest radiance times the coverage, which cannot wrap itself.
-                if free[3].max(sharing[3]) as f64 / QUANTA * brightest > LARGEST_PIXEL {
-                    return Err(SplatError::Overflow);
-                }
-                radiance[x] = std::array::from_fn(|c| value(c) as f32);
-                coverage[x] = value(3) as f32;
+        // The same chunks whatever rows are asked for.
+        let chunks = rows.start as usize / RESOLVE_ROWS..(rows.end as usize).div_ceil(RESOLVE_ROWS);
+        let (sums, shares) = (&self.sums, &self.shares);
+        let radiance = self.picture.radiance.par_chunks_mut(RESOLVE_ROWS * width);
+        let coverage = self.picture.coverage.par_chunks_mut(RESOLVE_ROWS * width);
+        let all = radiance.zip(coverage).enumerate().skip(chunks.start).take(chunks.len());
+        all.try_for_each(|(chunk, (radiance, coverage))| {
+            let of_chunk = chunk_rows(chunk, coverage.len() / width);
+            let wanted = of_chunk.start.max(rows.start as i32)..of_chunk.end.min(rows.end as i32);
+            let shares = &shares[wanted.start as usize * width..wanted.end as usize * width];
+            let lines: Lines = sums.picture(nodes, wanted.clone(), shares)?;
+            let first = (wanted.start - of_chunk.start) as usize * width;
+            let out = radiance[first..].iter_mut().zip(&mut coverage[first..]);
+            for ([r, g, b, covered], (radiance, coverage)) in lines.into_iter().zip(out) {
+                *radiance = [r, g, b];
+                *coverage = covered;
             }
             Ok(())
         })
     }
+}
 
-    /// Whether every sample is dim enough for the integers.
-    fn check_range(&self) -> Result<(), SplatError> {
-        let density = |sample: &Sample| {
-            let footprint = 4.0 * sample.half_size.x * sample.half_size.y;
-            (sample.weight.abs() + sample.tilt.abs().element_sum()) / footprint
+/// The pixel rows of a chunk of `count` rows.
+fn chunk_rows(chunk: usize, count: usize) -> Range<i32> {
+    let first = (chunk * RESOLVE_ROWS) as i32;
+    first..first + count as i32
+}
+
+/// What is no longer drawn of a block, and what is now, since its paint was `before`.
+fn compare(
+    scene: &Scene,
+    block: usize,
+    before: Option<&[crate::lens_in_use::NodeFocus]>,
+    removed: &mut Vec<(u32, Placed)>,
+    added: &mut Vec<(u32, Placed)>,
+) {
+    let drawn = |paint| {
+        let mut drawn = Vec::new();
+        scene.drawn(block, paint, |index, _, placed| drawn.push((index, placed)));
+        drawn
+    };
+    let (old, new) = (drawn(before), drawn(scene.paint.of_block(block)));
+    let (mut old, mut new) = (old.into_iter().peekable(), new.into_iter().peekable());
+    loop {
+        let order = match (old.peek(), new.peek()) {
+            (Some((a, _)), Some((b, _))) => a.cmp(b),
+            (Some(_), None) => Ordering::Less,
+            (None, Some(_)) => Ordering::Greater,
+            (None, None) => break,
         };
-        let is_dim =
-            |sample: &Sample| (sample.radiance.max_element().max(1.0) * density(sample)) as f64 <= BRIGHTEST;
-        if self.salf.samples.par_iter().all(is_dim) { Ok(()) } else { Err(SplatError::Overflow) }
+        match order {
+            Ordering::Less => removed.extend(old.next()),
+            Ordering::Greater => added.extend(new.next()),
+            Ordering::Equal => {
+                let (was, is) = (old.next(), new.next());
+                if was != is {
+                    removed.extend(was);
+                    added.extend(is);
+                }
+            }
+        }
     }
-}
-
-/// Radiance and coverage.
-fn color(sample: &Sample) -> [f64; 4] {
-    let [r, g, b] = sample.radiance.as_dvec3().to_array();
-    [r, g, b, 1.0]
-}
-
-/// What each pixel's sharing sum is multiplied by, from the sums of the standard picture, whose `channel` is coverage.
-fn shares_of<const C: usize>(
-    width: usize,
-    open: &[[i64; C]],
-    partial: &[[i64; C]],
-    channel: usize,
-) -> Vec<f32> {
-    let lines = open.par_chunks(width).zip(partial.par_chunks(width));
-    lines
-        .flat_map_iter(|(open, partial)| {
-            let covered = move |sum: [i64; C]| sum[channel] as f64 / QUANTA;
-            running_sum(open)
-                .zip(running_sum(partial))
-                .map(move |(open, partial)| share_of_partial(covered(open), covered(partial)))
-        })
-        .collect()
 }
 
 #[cfg(test)]

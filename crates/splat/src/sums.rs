@@ -1,74 +1,266 @@
-//! Summing all samples of a light field, band by band.
+//! All nodes of a light field, summed band by band of the picture.
 
-use crate::accumulator::Band;
-use crate::lens_in_use::{Placed, SplatLens};
+use crate::canvas::{Accumulator, Canvas};
+use crate::draw::Pen;
+use crate::lens_in_use::{LensInUse, NodeFocus, Placed};
+use crate::nodes::{Nodes, SplatNode};
+use crate::paint::Paint;
+use crate::partition::Share;
+use crate::resolve::{Lines, Overflow, Quanta, add_rows};
+use crate::widest::with_widest_instructions;
 use progress::{Cancelled, Progress};
 use rayon::prelude::*;
-use salf::{Sample, Visibility};
+use salf::tree::LEVELS;
+use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Pixel rows that one thread sums at a time: their sums fit into a core's cache.
-const BAND_ROWS: usize = 32;
+/// Pixel rows that one thread sums at a time; a multiple of the coarsest level's pixel.
+const BAND_ROWS: i32 = 64;
 
-/// The two sums of a picture, as differences along its rows, C channels each.
-pub struct Sums<'a, const C: usize> {
-    /// Picture width, px.
-    pub width: usize,
+/// One kind of samples: ordinary ones, and bright ones if there are any.
+#[derive(Clone, PartialEq)]
+pub struct Sum {
+    pub dim: Accumulator<i32>,
+    pub bright: Option<Accumulator<i64>>,
+}
+
+/// The sums of a picture.
+#[derive(Clone, PartialEq)]
+pub struct Sums {
     /// Open samples, and painted ones.
-    pub free: &'a mut [[i64; C]],
-    /// Unpainted samples that see part of the aperture.
-    pub sharing: &'a mut [[i64; C]],
+    pub free: Sum,
+    /// Unpainted samples that see part of the aperture: they share what open ones leave (see [`crate::partition`]).
+    pub sharing: Sum,
 }
 
-/// Whether a sample shares what open samples leave (see [`crate::partition`]).
-pub fn is_sharing(sample: &Sample, placed: Placed) -> bool {
-    placed.is_standard && sample.visibility != Visibility::Open
+/// Rows of a sum to draw on.
+struct SumCanvas<'a> {
+    dim: Canvas<'a, i32>,
+    bright: Option<Canvas<'a, i64>>,
 }
 
-impl<const C: usize> Sums<'_, C> {
-    /// Sets the sums to those of `samples`, `light` times each.
-    pub fn set(
-        &mut self,
-        lens: &SplatLens,
-        samples: &[Sample],
-        placed: &[Placed],
-        light: &(impl Fn(&Sample) -> [f64; C] + Sync),
-        progress: &dyn Progress,
-    ) -> Result<(), Cancelled> {
-        let width = self.width;
-        let of_band = samples_of_bands(self.free.len() / width, lens, samples, placed);
-        let done = AtomicUsize::new(0);
-        let free = self.free.par_chunks_mut(BAND_ROWS * width);
-        let sharing = self.sharing.par_chunks_mut(BAND_ROWS * width);
-        free.zip(sharing).zip(&of_band).enumerate().try_for_each(|(index, ((free, sharing), in_band))| {
-            progress.check()?;
-            let first = (index * BAND_ROWS) as i64;
-            let rows = first..first + (free.len() / width) as i64;
-            free.fill([0; C]);
-            sharing.fill([0; C]);
-            let mut free = Band::new(width, rows.clone(), free);
-            let mut sharing = Band::new(width, rows, sharing);
-            for &index in in_band {
-                let (sample, placed) = (&samples[index as usize], placed[index as usize]);
-                let band = if is_sharing(sample, placed) { &mut sharing } else { &mut free };
-                lens.image(sample, placed).deposit(band, &light(sample), 1);
+impl Sum {
+    fn new([width, height]: [usize; 2], has_bright: bool) -> Self {
+        Self {
+            dim: Accumulator::new(width, height, LEVELS),
+            bright: has_bright.then(|| Accumulator::new(width, height, 1)),
+        }
+    }
+
+    fn bands(&mut self, rows: i32) -> Vec<SumCanvas<'_>> {
+        let mut bright = self.bright.as_mut().map(|bright| bright.bands(rows).into_iter());
+        let dim = self.dim.bands(rows).into_iter();
+        dim.map(|dim| SumCanvas { dim, bright: bright.as_mut().and_then(Iterator::next) }).collect()
+    }
+
+    fn canvas(&mut self) -> SumCanvas<'_> {
+        SumCanvas { dim: self.dim.canvas(), bright: self.bright.as_mut().map(Accumulator::canvas) }
+    }
+
+    fn bytes(&self) -> usize {
+        self.dim.bytes() + self.bright.as_ref().map_or(0, Accumulator::bytes)
+    }
+
+    /// Its pixel rows `rows`.
+    fn lines(&self, nodes: &Nodes, rows: Range<i32>) -> Result<Lines, Overflow> {
+        let mut lines = vec![[0.0; 4]; self.dim.levels[0].width * rows.len()];
+        let dim = Quanta::new(nodes.scale.dim_bits, 32, nodes.brightest.min(crate::nodes::BRIGHT as f64));
+        add_rows(&self.dim, dim, rows.clone(), &mut lines)?;
+        if let Some(bright) = &self.bright {
+            let quanta = Quanta::new(nodes.scale.bright_bits, 64, nodes.brightest);
+            let mut light = vec![[0.0; 4]; lines.len()];
+            add_rows(bright, quanta, rows, &mut light)?;
+            for (pixel, light) in lines.iter_mut().zip(light) {
+                (0..3).for_each(|c| pixel[c] += light[c]);
             }
-            progress.report((done.fetch_add(1, Ordering::Relaxed) + 1) as f32 / of_band.len() as f32);
+        }
+        Ok(lines)
+    }
+}
+
+impl SumCanvas<'_> {
+    fn clear(&mut self) {
+        self.dim.clear();
+        if let Some(bright) = &mut self.bright {
+            bright.clear();
+        }
+    }
+
+    #[inline(always)]
+    fn draw(&mut self, pen: &Pen, index: u32, node: &SplatNode, placed: Placed, sign: i64) {
+        // All coverage is summed alike, so that how bright a sample is leaves no trace in it.
+        match &mut self.bright {
+            Some(bright) if node.is_bright => {
+                let coverage = node.light[3];
+                pen.draw(index, node.light, placed, bright, sign);
+                let finer = pen.nodes.scale.dim_bits - pen.nodes.scale.bright_bits;
+                pen.draw(
+                    index,
+                    [0.0, 0.0, 0.0, coverage * (finer as f32).exp2()],
+                    placed,
+                    &mut self.dim,
+                    sign,
+                );
+            }
+            _ => pen.draw(index, node.light, placed, &mut self.dim, sign),
+        }
+    }
+}
+
+/// What is summed: nodes as a lens sees them, and their paint.
+pub struct Scene<'a> {
+    pub pen: Pen<'a>,
+    pub lens: &'a LensInUse,
+    pub paint: &'a Paint,
+}
+
+impl Scene<'_> {
+    /// Calls `visit` with each node of a block that is drawn, painted as `paint` says.
+    #[inline(always)]
+    pub fn drawn(
+        &self,
+        block: usize,
+        paint: Option<&[NodeFocus]>,
+        mut visit: impl FnMut(u32, &SplatNode, Placed),
+    ) {
+        let first = self.pen.nodes.blocks[block].start;
+        let nodes = self.pen.nodes.of_block(block);
+        let mut at = 0;
+        while at < nodes.len() {
+            let node = &nodes[at];
+            let focus = paint.map_or(NodeFocus::STANDARD, |paint| paint[at]);
+            let placed = self.lens.place(node, &focus);
+            if node.is_leaf || self.lens.may_merge(node, &focus, placed) {
+                visit(first + at as u32, node, placed);
+                at = (node.end - first) as usize;
+            } else {
+                at += 1;
+            }
+        }
+    }
+
+    /// The pixel rows that a block's light may reach.
+    fn reach(&self, block: usize) -> Range<i32> {
+        let bounds = &self.pen.nodes.bounds[block];
+        let (mut t, mut anchor) = ([1.0f32; 2], [0.0f32; 2]);
+        for focus in self.paint.of_block(block).into_iter().flatten() {
+            t = [t[0].min(focus.t), t[1].max(focus.t)];
+            anchor = [anchor[0].min(focus.anchor), anchor[1].max(focus.anchor)];
+        }
+        let radius = self.lens.largest_radius_px(bounds.inverse_depths, t, anchor);
+        // Coarse levels spread a little further.
+        let reach = radius * 1.01 + 2.0 * bounds.half_height as f64 + 3.0 * (1 << LEVELS) as f64;
+        let clamp = |row: f64| row.clamp(-1e9, 1e9) as i32;
+        clamp(bounds.rows[0] as f64 - reach)..clamp(bounds.rows[1] as f64 + reach)
+    }
+}
+
+impl Sums {
+    /// Empty ones, for a picture of this size.
+    pub fn new(size: [usize; 2], has_bright: bool) -> Self {
+        Self { free: Sum::new(size, has_bright), sharing: Sum::new(size, has_bright) }
+    }
+
+    /// Bytes in memory.
+    pub fn bytes(&self) -> usize {
+        self.free.bytes() + self.sharing.bytes()
+    }
+
+    /// Sets them to what a scene sends.
+    pub fn set(&mut self, scene: &Scene, progress: &dyn Progress) -> Result<(), Cancelled> {
+        let blocks = scene.pen.nodes.blocks.len();
+        let reaches: Vec<_> = (0..blocks).into_par_iter().map(|block| scene.reach(block)).collect();
+        let bands: Vec<_> =
+            self.free.bands(BAND_ROWS).into_iter().zip(self.sharing.bands(BAND_ROWS)).collect();
+        let (count, done) = (bands.len(), AtomicUsize::new(0));
+        bands.into_par_iter().enumerate().with_max_len(1).try_for_each(|(band, (mut free, mut sharing))| {
+            progress.check()?;
+            free.clear();
+            sharing.clear();
+            let rows = band as i32 * BAND_ROWS..(band as i32 + 1) * BAND_ROWS;
+            let reaches = reaches.iter().enumerate();
+            let blocks = reaches.filter(|(_, reach)| reach.start <= rows.end && reach.end >= rows.start);
+            with_widest_instructions(
+                #[inline(always)]
+                || {
+                    for (block, _) in blocks {
+                        scene.drawn(
+                            block,
+                            scene.paint.of_block(block),
+                            #[inline(always)]
+                            |index, node, placed| {
+                                let canvas = if is_sharing(node, placed) { &mut sharing } else { &mut free };
+                                canvas.draw(&scene.pen, index, node, placed, 1);
+                            },
+                        );
+                    }
+                },
+            );
+            progress.report((done.fetch_add(1, Ordering::Relaxed) + 1) as f32 / count as f32);
             Ok(())
         })
     }
+
+    /// Adds (`sign` 1) nodes, or takes them away (−1).
+    pub fn add(&mut self, pen: &Pen, drawn: &[(u32, Placed)], sign: i64) {
+        let (mut free, mut sharing) = (self.free.canvas(), self.sharing.canvas());
+        with_widest_instructions(
+            #[inline(always)]
+            || {
+                for &(index, placed) in drawn {
+                    let node = &pen.nodes.nodes[index as usize];
+                    let canvas = if is_sharing(node, placed) { &mut sharing } else { &mut free };
+                    canvas.draw(pen, index, node, placed, sign);
+                }
+            },
+        );
+    }
+
+    /// The factors that a standard picture's sums give its pixel rows `rows`.
+    pub fn shares(&self, nodes: &Nodes, rows: Range<i32>) -> Result<Vec<Share>, Overflow> {
+        let (free, sharing) = (self.free.lines(nodes, rows.clone())?, self.sharing.lines(nodes, rows)?);
+        Ok(free.iter().zip(&sharing).map(|(free, sharing)| Share::of(free[3], sharing[3])).collect())
+    }
+
+    /// The picture's pixel rows `rows`.
+    pub fn picture(&self, nodes: &Nodes, rows: Range<i32>, shares: &[Share]) -> Result<Lines, Overflow> {
+        let mut lines = self.free.lines(nodes, rows.clone())?;
+        let sharing = self.sharing.lines(nodes, rows)?;
+        for ((pixel, sharing), share) in lines.iter_mut().zip(&sharing).zip(shares) {
+            (0..4).for_each(|c| pixel[c] = share.even * (pixel[c] + share.partial * sharing[c]));
+        }
+        Ok(lines)
+    }
 }
 
-/// The samples that reach into each band of a picture of `height` rows.
-fn samples_of_bands(height: usize, lens: &SplatLens, samples: &[Sample], placed: &[Placed]) -> Vec<Vec<u32>> {
-    let mut of_band = vec![Vec::new(); height.div_ceil(BAND_ROWS)];
-    for (index, (sample, placed)) in samples.iter().zip(placed).enumerate() {
-        let rows = lens.image(sample, *placed).rows();
-        let rows = rows.start.max(0) as usize..rows.end.clamp(0, height as i64) as usize;
-        if !rows.is_empty() {
-            let bands = rows.start / BAND_ROWS..rows.end.div_ceil(BAND_ROWS);
-            of_band[bands].iter_mut().for_each(|band| band.push(index as u32));
-        }
-    }
-    of_band
+/// Whether a node shares what open samples leave.
+#[inline(always)]
+fn is_sharing(node: &SplatNode, placed: Placed) -> bool {
+    placed.is_standard && !node.is_open()
 }
+
+/// What a picture was drawn with.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct DrawnNodes {
+    /// Samples and nodes that stand for several, by level, that see the whole aperture.
+    pub open: [usize; LEVELS],
+    /// Those that see part of it.
+    pub partial: [usize; LEVELS],
+}
+
+impl Scene<'_> {
+    /// Counts what is drawn.
+    pub fn count(&self) -> DrawnNodes {
+        let mut counts = DrawnNodes::default();
+        for block in 0..self.pen.nodes.blocks.len() {
+            self.drawn(block, self.paint.of_block(block), |_, node, _| {
+                let of_kind = if node.is_open() { &mut counts.open } else { &mut counts.partial };
+                of_kind[node.level as usize] += 1;
+            });
+        }
+        counts
+    }
+}
+
+/// Rows that one thread resolves at a time.
+pub const RESOLVE_ROWS: usize = 32;

@@ -1,0 +1,87 @@
+//! The samples as a hierarchy: quadtrees of samples that lie on one smooth surface.
+//!
+//! A splat that spreads its light over a circle of confusion of D pixels does not care for samples closer together than a
+//! fraction of D. So samples are joined, two cells by two, to nodes that stand for all of them: their weight, their mean
+//! position, radiance, depth and tilt, how far they spread, and what most of them see of the aperture. Which nodes are
+//! used is decided when the picture is made, from the defocus that each then has; the hierarchy knows no focus.
+//!
+//! Only like is joined with like: samples of about one depth, and among the partly occluded ones those that see about the
+//! same part of the aperture. Highlights stay alone: their aperture images are seen one by one.
+
+mod build;
+mod grid;
+
+use crate::sample::Salf;
+use glam::{Vec2, Vec3};
+use std::ops::Range;
+
+/// Side of a block, px: no node is larger.
+pub const BLOCK_PX: i32 = crate::domain::Domain::BLOCK;
+
+/// Levels of the hierarchy: cells of 1, 2, 4, 8 and 16 px.
+pub const LEVELS: usize = BLOCK_PX.ilog2() as usize + 1;
+
+/// Samples and nodes above them.
+#[derive(Clone, Debug, Default)]
+pub struct Tree {
+    /// The blocks of the picture and its margin, row by row from the upper left one.
+    pub blocks: Vec<Block>,
+    /// All nodes: block by block, each node before those below it.
+    pub nodes: Vec<Node>,
+    /// Visibility of the nodes (see [`Node::visibility`]).
+    pub words: Vec<u64>,
+    /// The node of each sample.
+    pub node_of_sample: Vec<u32>,
+}
+
+/// A square of [`BLOCK_PX`] pixels.
+#[derive(Clone, Debug, Default)]
+pub struct Block {
+    /// Its nodes.
+    pub nodes: Range<u32>,
+}
+
+/// One sample, or several as one.
+#[derive(Clone, Debug)]
+pub struct Node {
+    /// Mean position in the pinhole picture, px.
+    pub center: Vec2,
+    /// Half the sides of its footprint, px: a box of its variance.
+    pub half_size: Vec2,
+    /// Mean inverse depth; 0 for the background.
+    pub inverse_depth: f32,
+    /// How far the inverse depths below it lie apart.
+    pub inverse_depth_spread: f32,
+    /// Weight toward the aperture's centre, px² (see [`crate::Sample`]).
+    pub weight: f32,
+    /// Its change over the aperture, px².
+    pub tilt: Vec2,
+    /// Mean radiance.
+    pub radiance: Vec3,
+    /// Its cell has a side of 2 to this, px.
+    pub level: u8,
+    /// What it sees of the aperture.
+    pub visibility: NodeVisibility,
+    /// The index behind the last node below it.
+    pub end: u32,
+    /// The sample, if it is one.
+    pub sample: Option<u32>,
+}
+
+/// Where a node's visibility is kept.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NodeVisibility {
+    /// It sees the whole aperture.
+    Open,
+    /// 8 × 8 cells: one word, at this place of [`Tree::words`].
+    Cells8(u32),
+    /// 16 × 16 cells: four words.
+    Cells16(u32),
+}
+
+impl Tree {
+    /// Builds the hierarchy over a light field. Samples brighter than `highlight` stay alone.
+    pub fn new(salf: &Salf, highlight: f32) -> Self {
+        build::build(salf, highlight)
+    }
+}

@@ -1,0 +1,383 @@
+//! Building the hierarchy, block by block.
+
+use crate::sample::{Salf, Sample, Visibility};
+use crate::tree::grid::Grid;
+use crate::tree::{BLOCK_PX, Block, LEVELS, Node, NodeVisibility, Tree};
+use glam::{IVec2, Vec2, Vec3};
+use rayon::prelude::*;
+
+/// Nodes are joined whose standard circles of confusion differ by at most this share of the joint cell's side.
+const SMOOTH: f32 = 0.5;
+
+/// Partly occluded nodes are joined if at most this share of the aperture's cells differs between each and most.
+const ALIKE: f32 = 0.3;
+
+/// Samples whose weight changes by more than this over the aperture, as a share of it, stay alone.
+const STEEP: f32 = 0.75;
+
+pub fn build(salf: &Salf, highlight: f32) -> Tree {
+    let grid = Grid::new(salf);
+    let of_block = grid.samples_of_blocks(&salf.samples);
+    let parallax_px = salf.camera.optics().splat_radius_px(1.0) as f32;
+    let parts: Vec<_> = of_block
+        .par_iter()
+        .enumerate()
+        .map(|(index, samples)| {
+            let mut builder = Builder { salf, grid: &grid, highlight, parallax_px, arena: Vec::new() };
+            builder.build(grid.corner(index), samples)
+        })
+        .collect();
+    assemble(&parts, salf.samples.len())
+}
+
+/// Joins the blocks' parts.
+fn assemble(parts: &[(Vec<Node>, Vec<u64>)], samples: usize) -> Tree {
+    let mut tree = Tree { node_of_sample: vec![0; samples], ..Tree::default() };
+    tree.nodes.reserve_exact(parts.iter().map(|(nodes, _)| nodes.len()).sum());
+    tree.words.reserve_exact(parts.iter().map(|(_, words)| words.len()).sum());
+    for (nodes, words) in parts {
+        let (first, first_word) = (tree.nodes.len() as u32, tree.words.len() as u32);
+        for node in nodes {
+            if let Some(sample) = node.sample {
+                tree.node_of_sample[sample as usize] = tree.nodes.len() as u32;
+            }
+            let visibility = match node.visibility {
+                NodeVisibility::Open => NodeVisibility::Open,
+                NodeVisibility::Cells8(at) => NodeVisibility::Cells8(first_word + at),
+                NodeVisibility::Cells16(at) => NodeVisibility::Cells16(first_word + at),
+            };
+            tree.nodes.push(Node { visibility, end: first + node.end, ..node.clone() });
+        }
+        tree.words.extend(words);
+        tree.blocks.push(Block { nodes: first..tree.nodes.len() as u32 });
+    }
+    tree
+}
+
+/// A node while its block is being built.
+struct Growing {
+    node: Node,
+    cells: Option<Cells>,
+    children: Vec<usize>,
+}
+
+/// Visibility of a growing node: 16 × 16 cells.
+#[derive(Clone, Copy)]
+struct Cells {
+    words: [u64; 4],
+    /// Whether eight cells a side say it all.
+    is_coarse: bool,
+}
+
+struct Builder<'a> {
+    salf: &'a Salf,
+    grid: &'a Grid,
+    highlight: f32,
+    parallax_px: f32,
+    arena: Vec<Growing>,
+}
+
+impl Builder<'_> {
+    fn build(&mut self, corner: IVec2, samples: &[u32]) -> (Vec<Node>, Vec<u64>) {
+        let mut alone = Vec::new();
+        // Nodes that may still be joined, with the corner of their cell in the block.
+        let mut open_ended: Vec<(IVec2, usize)> = Vec::new();
+        for &index in samples {
+            let sample = &self.salf.samples[index as usize];
+            let pixel = self.grid.pixel(sample);
+            let growing = leaf(sample, index, self.grid.cell_level(pixel));
+            if self.stays_alone(&growing.node) {
+                alone.push(self.arena.len());
+            } else {
+                open_ended.push((pixel - corner, self.arena.len()));
+            }
+            self.arena.push(growing);
+        }
+        for level in 1..LEVELS as u8 {
+            open_ended = self.join(level, open_ended);
+        }
+        let (mut nodes, mut words) = (Vec::with_capacity(self.arena.len()), Vec::new());
+        for root in open_ended.into_iter().map(|(_, index)| index).chain(alone) {
+            self.emit(root, &mut nodes, &mut words);
+        }
+        (nodes, words)
+    }
+
+    fn stays_alone(&self, node: &Node) -> bool {
+        let cell = (1 << node.level) as f32;
+        node.radiance.max_element() > self.highlight
+            || node.tilt.abs().element_sum() > STEEP * node.weight
+            || node.half_size.max_element() > cell / 2.0
+            || 1 << node.level >= BLOCK_PX
+    }
+
+    /// Joins the nodes of each cell of `level`.
+    fn join(&mut self, level: u8, nodes: Vec<(IVec2, usize)>) -> Vec<(IVec2, usize)> {
+        let cells_a_row = (BLOCK_PX >> level) as usize;
+        let mut of_cell = vec![Vec::new(); cells_a_row * cells_a_row];
+        for (pixel, index) in nodes {
+            let cell = pixel >> level as i32;
+            of_cell[cell.y as usize * cells_a_row + cell.x as usize].push((pixel, index));
+        }
+        let mut joined = Vec::new();
+        for members in of_cell {
+            let mut groups: Vec<(IVec2, Vec<usize>)> = Vec::new();
+            for (pixel, index) in members {
+                // A cell that was sampled more coarsely waits for its level.
+                let fits = self.arena[index].node.level < level;
+                let group = groups.iter_mut().find(|(_, group)| {
+                    fits && group.len() < MOST_MEMBERS && self.belongs(level, index, group[0])
+                });
+                match group {
+                    Some((_, group)) => group.push(index),
+                    None => groups.push((pixel, vec![index])),
+                }
+            }
+            for (pixel, group) in groups {
+                let index = if group.len() == 1 { group[0] } else { self.parent(level, group) };
+                joined.push((pixel, index));
+            }
+        }
+        joined
+    }
+
+    fn belongs(&self, level: u8, index: usize, first: usize) -> bool {
+        let (a, b) = (&self.arena[index], &self.arena[first]);
+        let apart = (a.node.inverse_depth - b.node.inverse_depth).abs() * self.parallax_px;
+        let is_smooth = b.node.level < level && apart <= SMOOTH * (1 << level) as f32;
+        is_smooth
+            && match (&a.cells, &b.cells) {
+                (None, None) => true,
+                (Some(a), Some(b)) => a.distance(b) <= ALIKE,
+                _ => false,
+            }
+    }
+
+    fn parent(&mut self, level: u8, children: Vec<usize>) -> usize {
+        let members: Vec<&Growing> = children.iter().map(|&index| &self.arena[index]).collect();
+        let node = mean(level, &members);
+        let cells = members[0].cells.is_some().then(|| most(&members));
+        self.arena.push(Growing { node, cells, children });
+        self.arena.len() - 1
+    }
+
+    fn emit(&self, index: usize, nodes: &mut Vec<Node>, words: &mut Vec<u64>) {
+        let growing = &self.arena[index];
+        let place = nodes.len();
+        let visibility = growing.cells.map_or(NodeVisibility::Open, |cells| cells.store(words));
+        nodes.push(Node { visibility, ..growing.node.clone() });
+        for &child in &growing.children {
+            self.emit(child, nodes, words);
+        }
+        nodes[place].end = nodes.len() as u32;
+    }
+}
+
+fn leaf(sample: &Sample, index: u32, level: u8) -> Growing {
+    let cells = match &sample.visibility {
+        Visibility::Open => None,
+        Visibility::Cells(words) => Some(Cells::of(words)),
+    };
+    let node = Node {
+        center: sample.center,
+        half_size: sample.half_size,
+        inverse_depth: sample.inverse_depth,
+        inverse_depth_spread: 0.0,
+        weight: sample.weight,
+        tilt: sample.tilt,
+        radiance: sample.radiance,
+        level,
+        visibility: NodeVisibility::Open,
+        end: 0,
+        sample: Some(index),
+    };
+    Growing { node, cells, children: Vec::new() }
+}
+
+/// The node that stands for `members`.
+fn mean(level: u8, members: &[&Growing]) -> Node {
+    let nodes = || members.iter().map(|growing| &growing.node);
+    let weight: f32 = nodes().map(|node| node.weight).sum();
+    let center = nodes().map(|node| node.weight * node.center).sum::<Vec2>() / weight;
+    let variance = |node: &Node| node.half_size * node.half_size / 3.0 + (node.center - center).powf(2.0);
+    let variance = nodes().map(|node| node.weight * variance(node)).sum::<Vec2>() / weight;
+    let low = nodes().map(|n| n.inverse_depth - n.inverse_depth_spread / 2.0).fold(f32::INFINITY, f32::min);
+    let high =
+        nodes().map(|n| n.inverse_depth + n.inverse_depth_spread / 2.0).fold(f32::NEG_INFINITY, f32::max);
+    let inverse_depth = nodes().map(|node| node.weight * node.inverse_depth).sum::<f32>() / weight;
+    Node {
+        center,
+        half_size: (3.0 * variance).map(f32::sqrt),
+        inverse_depth,
+        inverse_depth_spread: 2.0 * (high - inverse_depth).max(inverse_depth - low),
+        weight,
+        tilt: nodes().map(|node| node.tilt).sum(),
+        radiance: nodes().map(|node| node.weight * node.radiance).sum::<Vec3>() / weight,
+        level,
+        visibility: NodeVisibility::Open,
+        end: 0,
+        sample: None,
+    }
+}
+
+/// What most of `members` see; where they are even, every other cell.
+fn most(members: &[&Growing]) -> Cells {
+    const CHECKERS: u64 = 0x5555_AAAA_5555_AAAA;
+    let seen: Vec<_> = members.iter().filter_map(|growing| growing.cells.as_ref()).collect();
+    let words = std::array::from_fn(|word| {
+        // Counts of 64 cells at once: bit k of the count of each in `count[k]`.
+        let mut count = [0u64; COUNTER_BITS];
+        for cells in &seen {
+            let mut carry = cells.words[word];
+            for bit in &mut count {
+                (*bit, carry) = (*bit ^ carry, *bit & carry);
+            }
+        }
+        let (more, even) = compare(&count, seen.len() / 2);
+        more | if seen.len() % 2 == 0 { even & CHECKERS } else { 0 }
+    });
+    Cells { words, is_coarse: false }
+}
+
+/// Bits of the counts of [`most`].
+const COUNTER_BITS: usize = 5;
+
+/// Nodes that are joined at most.
+const MOST_MEMBERS: usize = (1 << COUNTER_BITS) - 1;
+
+/// Which counts are above a number, and which equal to it.
+fn compare(count: &[u64; COUNTER_BITS], number: usize) -> (u64, u64) {
+    let (mut more, mut even) = (0, u64::MAX);
+    for (k, &bits) in count.iter().enumerate().rev() {
+        if number >> k & 1 == 1 {
+            even &= bits;
+        } else {
+            more |= even & bits;
+            even &= !bits;
+        }
+    }
+    (more, even)
+}
+
+impl Cells {
+    fn of(words: &[u64]) -> Self {
+        match *words {
+            [word] => Self { words: finer(word), is_coarse: true },
+            [a, b, c, d] => Self { words: [a, b, c, d], is_coarse: false },
+            _ => unreachable!("a visibility has one word or four"),
+        }
+    }
+
+    /// The share of cells that differ.
+    fn distance(&self, other: &Self) -> f32 {
+        let differing: u32 = self.words.iter().zip(other.words).map(|(a, b)| (a ^ b).count_ones()).sum();
+        differing as f32 / 256.0
+    }
+
+    fn store(&self, words: &mut Vec<u64>) -> NodeVisibility {
+        let at = words.len() as u32;
+        if self.is_coarse {
+            words.push(coarser(self.words));
+            NodeVisibility::Cells8(at)
+        } else {
+            words.extend(self.words);
+            NodeVisibility::Cells16(at)
+        }
+    }
+}
+
+/// 8 × 8 cells as 16 × 16.
+fn finer(word: u64) -> [u64; 4] {
+    let mut words = [0u64; 4];
+    for row in 0..16 {
+        let bits = word >> (row / 2 * 8) & 0xFF;
+        let doubled = (0..8).map(|k| (bits >> k & 1) * (3 << (2 * k))).sum::<u64>();
+        words[row / 4] |= doubled << (row % 4 * 16);
+    }
+    words
+}
+
+/// The inverse of [`finer`].
+fn coarser(words: [u64; 4]) -> u64 {
+    (0..64).map(|k| (words[k / 8 * 2 / 4] >> (k / 8 * 2 % 4 * 16 + k % 8 * 2) & 1) << k).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DVec2;
+    use lens::Camera;
+    use scene::SurfacePoint;
+
+    #[test]
+    fn coarse_cells_survive() {
+        for word in [0, u64::MAX, 0x0123_4567_89AB_CDEF] {
+            assert_eq!(coarser(finer(word)), word);
+            assert_eq!(finer(word).iter().map(|w| w.count_ones()).sum::<u32>(), 4 * word.count_ones());
+        }
+    }
+
+    #[test]
+    fn most_is_a_majority() {
+        let growing = |word: u64| Growing {
+            node: leaf(&plane(|_, _| 1.0).samples[0], 0, 0).node,
+            cells: Some(Cells { words: [word, 0, u64::MAX, 0], is_coarse: false }),
+            children: Vec::new(),
+        };
+        let members: Vec<_> = [0b1110, 0b1100, 0b1010].map(growing).into_iter().collect();
+        let members: Vec<_> = members.iter().collect();
+        assert_eq!(most(&members).words, [0b1110, 0, u64::MAX, 0]);
+        assert_eq!(most(&members[..2]).words[0], 0b1100 | 0b0010 & 0x5555_AAAA_5555_AAAA);
+    }
+
+    fn plane(depth_of: impl Fn(u32, u32) -> f32) -> Salf {
+        let camera = Camera { width: 40, height: 24, aperture_radius: 0.5, ..Camera::default() };
+        let sample = |k: u32| {
+            let (x, y) = (k % 40, k / 40);
+            Sample {
+                center: Vec2::new(x as f32 + 0.5, y as f32 + 0.5),
+                half_size: Vec2::splat(0.5),
+                inverse_depth: depth_of(x, y),
+                weight: 1.0,
+                tilt: Vec2::ZERO,
+                radiance: Vec3::splat(if (x, y) == (3, 3) { 100.0 } else { x as f32 * 0.01 }),
+                surface: Some(SurfacePoint { triangle: k, barycentric: DVec2::ZERO }),
+                visibility: Visibility::Open,
+            }
+        };
+        Salf { samples: (0..40 * 24).map(sample).collect(), camera, margin_px: 0 }
+    }
+
+    #[test]
+    fn a_plane_becomes_a_pyramid_and_keeps_its_sums() {
+        let salf = plane(|_, _| 0.5);
+        let tree = Tree::new(&salf, 4.0);
+        let leaves = tree.nodes.iter().filter(|node| node.sample.is_some()).count();
+        assert_eq!(leaves, salf.samples.len());
+        for (index, &node) in tree.node_of_sample.iter().enumerate() {
+            assert_eq!(tree.nodes[node as usize].sample, Some(index as u32));
+        }
+        let block = &tree.nodes[tree.blocks[1].nodes.start as usize];
+        assert_eq!((block.level, block.weight, block.center), (4, 256.0, Vec2::new(24.0, 8.0)));
+        assert!((block.half_size - 8.0).abs().max_element() < 1e-3);
+        assert!((block.radiance.x - 0.235).abs() < 1e-5);
+        let highlight = &tree.nodes[tree.node_of_sample[3 * 40 + 3] as usize];
+        assert_eq!((highlight.radiance.x, highlight.level), (100.0, 0));
+        // Sums of each level of each tree are those of its leaves.
+        let mut at = 0;
+        let mut weight = 0.0;
+        while at < tree.nodes.len() {
+            weight += tree.nodes[at].weight;
+            at = tree.nodes[at].end as usize;
+        }
+        assert_eq!(weight, 40.0 * 24.0);
+    }
+
+    #[test]
+    fn a_step_of_depth_is_not_joined() {
+        let salf = plane(|x, _| if x < 21 { 0.5 } else { 3.0 });
+        let tree = Tree::new(&salf, 4.0);
+        assert!(tree.nodes.iter().all(|node| node.inverse_depth == 0.5 || node.inverse_depth == 3.0));
+        assert!(tree.nodes.iter().any(|node| node.level == 4));
+    }
+}

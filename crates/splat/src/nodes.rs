@@ -1,0 +1,253 @@
+//! The light field's hierarchy in the integers of the sum.
+
+use crate::canvas::Pixel;
+use rayon::prelude::*;
+use salf::tree::{LEVELS, Node, NodeVisibility, Tree};
+use salf::{Salf, Visibility};
+use std::ops::Range;
+
+/// Brighter samples stay alone in the hierarchy.
+pub const HIGHLIGHT: f32 = 4.0;
+
+/// Samples whose radiance times footprint density is above this are summed in wide integers.
+pub const BRIGHT: f32 = 16.0;
+
+/// The brightest sample that can be summed, as radiance times footprint density.
+pub const BRIGHTEST: f32 = (1u32 << 22) as f32;
+
+/// How many quanta make a pixel of radiance 1.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Scale {
+    /// For ordinary samples, in 32 bits: 2 to this.
+    pub dim_bits: i32,
+    /// For bright ones, in 64.
+    pub bright_bits: i32,
+}
+
+impl Scale {
+    /// The finest: a pixel may be covered 32 times.
+    pub const FINEST: Self = Self { dim_bits: 22, bright_bits: 16 };
+    /// Bits that are given up when a pixel is covered more often.
+    const STEP: i32 = 8;
+
+    /// For light that converges more.
+    pub fn coarser(self) -> Option<Self> {
+        let dim_bits = self.dim_bits - Self::STEP;
+        (dim_bits > 0).then_some(Self { dim_bits, ..self })
+    }
+}
+
+/// A node as the splat uses it. Positions are in 1/256 px, shares of 1 in 1/16384.
+#[derive(Clone, Copy, Debug)]
+pub struct SplatNode {
+    /// Mean position in the pinhole picture.
+    pub center: [i32; 2],
+    /// Half the sides of its footprint.
+    pub half_size: [u16; 2],
+    /// Its cell has a side of 2 to this, px; it is drawn on that level.
+    pub level: u8,
+    /// Whether it is summed in wide integers.
+    pub is_bright: bool,
+    /// Where it stands what it sees of the aperture; [`OPEN`] if all.
+    pub cells: u32,
+    /// Mean 1/z.
+    pub inverse_depth: f32,
+    /// How far they lie apart below it.
+    pub inverse_depth_spread: f32,
+    /// Red, green, blue and coverage of one pixel of its level, in quanta.
+    pub light: [f32; 4],
+    /// The weight of the aperture point u is `base` + `tilt`·u.
+    pub base: i16,
+    /// See `base`.
+    pub tilt: [i16; 2],
+    /// The index behind the last node below it.
+    pub end: u32,
+    /// Whether it is a sample.
+    pub is_leaf: bool,
+}
+
+/// What a node sees of the aperture: rows of 16 cells, row 0 at v = −1, column 0 (u = −1) the lowest bit.
+pub type Cells = [u16; 16];
+
+/// The place of the cells of a node that sees all.
+pub const OPEN: u32 = u32::MAX;
+
+impl SplatNode {
+    /// Whether it sees the whole aperture.
+    #[inline(always)]
+    pub fn is_open(&self) -> bool {
+        self.cells == OPEN
+    }
+}
+
+/// The hierarchy in integers.
+pub struct Nodes {
+    /// Nodes of each block.
+    pub blocks: Vec<Range<u32>>,
+    /// Bounds of what lies in each block.
+    pub bounds: Vec<Bounds>,
+    pub nodes: Vec<SplatNode>,
+    cells: Vec<Cells>,
+    /// The sample of each node that is one.
+    pub sample_of_node: Vec<u32>,
+    pub node_of_sample: Vec<u32>,
+    pub block_of_node: Vec<u32>,
+    pub scale: Scale,
+    /// The largest radiance, at least 1.
+    pub brightest: f64,
+    pub has_bright: bool,
+}
+
+/// Where the centres of a block's nodes lie, and how deep.
+#[derive(Clone, Copy, Debug)]
+pub struct Bounds {
+    /// Rows, px.
+    pub rows: [f32; 2],
+    /// Inverse depths.
+    pub inverse_depths: [f32; 2],
+    /// The largest half height, px.
+    pub half_height: f32,
+}
+
+/// One as a share.
+pub const ONE: i32 = 1 << 14;
+
+impl Nodes {
+    /// Reads a light field. `None` if a sample is too bright to be summed.
+    pub fn new(salf: &Salf, scale: Scale) -> Option<Self> {
+        let tree = Tree::new(salf, HIGHLIGHT);
+        let nodes: Option<Vec<_>> = tree.nodes.par_iter().map(|node| convert(node, scale)).collect();
+        let mut nodes = nodes?;
+        let mut cells = Vec::new();
+        for (splat, node) in nodes.iter_mut().zip(&tree.nodes) {
+            if let Some(found) = cells_of(node.visibility, &tree.words) {
+                splat.cells = cells.len() as u32;
+                cells.push(found);
+            }
+        }
+        let mut block_of_node = vec![0; nodes.len()];
+        for (index, block) in tree.blocks.iter().enumerate() {
+            let range = block.nodes.start as usize..block.nodes.end as usize;
+            block_of_node[range].fill(index as u32);
+        }
+        let brightest = salf.samples.par_iter().map(|sample| sample.radiance.max_element());
+        Some(Self {
+            bounds: tree.blocks.iter().map(|block| Bounds::of(&tree, &block.nodes)).collect(),
+            blocks: tree.blocks.into_iter().map(|block| block.nodes).collect(),
+            has_bright: nodes.iter().any(|node| node.is_bright),
+            nodes,
+            cells,
+            sample_of_node: tree.nodes.iter().map(|node| node.sample.unwrap_or(u32::MAX)).collect(),
+            node_of_sample: tree.node_of_sample,
+            block_of_node,
+            scale,
+            brightest: brightest.reduce(|| 1.0, f32::max) as f64,
+        })
+    }
+
+    /// Changes to another scale.
+    pub fn rescale(&mut self, scale: Scale) {
+        if self.scale == scale {
+            return;
+        }
+        let factor = ((scale.dim_bits - self.scale.dim_bits) as f32).exp2();
+        for node in self.nodes.iter_mut().filter(|node| !node.is_bright) {
+            node.light = node.light.map(|value| value * factor);
+        }
+        self.scale = scale;
+    }
+
+    /// Bytes in memory.
+    pub fn bytes(&self) -> usize {
+        size_of_val(&*self.nodes)
+            + size_of_val(&*self.cells)
+            + size_of_val(&*self.sample_of_node)
+            + size_of_val(&*self.node_of_sample)
+            + size_of_val(&*self.block_of_node)
+    }
+
+    /// The nodes of a block.
+    pub fn of_block(&self, block: usize) -> &[SplatNode] {
+        let range = &self.blocks[block];
+        &self.nodes[range.start as usize..range.end as usize]
+    }
+
+    /// What a node sees of the aperture; `None` if all.
+    #[inline(always)]
+    pub fn cells(&self, node: &SplatNode) -> Option<&Cells> {
+        self.cells.get(node.cells as usize)
+    }
+}
+
+impl Bounds {
+    fn of(tree: &Tree, nodes: &Range<u32>) -> Self {
+        let mut bounds = Self {
+            rows: [f32::INFINITY, f32::NEG_INFINITY],
+            inverse_depths: [f32::INFINITY, f32::NEG_INFINITY],
+            half_height: 0.0,
+        };
+        for node in &tree.nodes[nodes.start as usize..nodes.end as usize] {
+            bounds.rows = [bounds.rows[0].min(node.center.y), bounds.rows[1].max(node.center.y)];
+            let [low, high] = bounds.inverse_depths;
+            bounds.inverse_depths = [low.min(node.inverse_depth), high.max(node.inverse_depth)];
+            bounds.half_height = bounds.half_height.max(node.half_size.y);
+        }
+        bounds
+    }
+}
+
+/// What a node sees, as 16 rows of 16 cells; `None` if all.
+fn cells_of(visibility: NodeVisibility, words: &[u64]) -> Option<Cells> {
+    match visibility {
+        NodeVisibility::Open => None,
+        NodeVisibility::Cells8(at) => {
+            let words = &words[at as usize..][..1];
+            let doubled = |bits: u64| (0..8).map(|k| ((bits >> k & 1) as u16 * 3) << (2 * k)).sum();
+            Some(std::array::from_fn(|row| doubled(Visibility::row(words, row / 2))))
+        }
+        NodeVisibility::Cells16(at) => {
+            let words = &words[at as usize..][..4];
+            Some(std::array::from_fn(|row| Visibility::row(words, row) as u16))
+        }
+    }
+}
+
+/// A node in integers. `None` if it is too bright.
+fn convert(node: &Node, scale: Scale) -> Option<SplatNode> {
+    const NARROWEST: f32 = 8.0;
+    let fixed = |px: f32| (px * 256.0).round() as i32;
+    let half_size = node.half_size.to_array().map(|half| (half * 256.0).round().clamp(NARROWEST, 65535.0));
+    // Where the weight changes sign over the aperture it is given as a share of its largest.
+    let largest = node.weight.abs() + node.tilt.abs().element_sum();
+    let is_edge_on = node.tilt.abs().element_sum() > node.weight;
+    let weight = if is_edge_on { largest } else { node.weight };
+    let share = |part: f32| (part / weight * ONE as f32).round() as i16;
+    let density = weight / (4.0 * half_size[0] * half_size[1] / 65536.0);
+    let brightness = node.radiance.max_element().max(1.0) * density.max(1.0);
+    if !(brightness <= BRIGHTEST) {
+        return None;
+    }
+    let is_bright = brightness > BRIGHT;
+    let bits = if is_bright { scale.bright_bits } else { scale.dim_bits };
+    let quanta = weight * 0.25f32.powi(node.level as i32) * (bits as f32).exp2();
+    let [r, g, b] = node.radiance.to_array();
+    debug_assert!((node.level as usize) < LEVELS);
+    Some(SplatNode {
+        center: node.center.to_array().map(fixed),
+        half_size: half_size.map(|half| half as u16),
+        // Wide sums have one level.
+        level: if is_bright { 0 } else { node.level },
+        is_bright,
+        cells: OPEN,
+        inverse_depth: node.inverse_depth,
+        inverse_depth_spread: node.inverse_depth_spread,
+        light: [r, g, b, 1.0].map(|value| value * quanta),
+        base: if is_edge_on { share(node.weight) } else { ONE as i16 },
+        tilt: [share(node.tilt.x), share(node.tilt.y)],
+        end: node.end,
+        is_leaf: node.sample.is_some(),
+    })
+}
+
+/// Light of one row.
+pub type Light = Pixel<i64>;

@@ -1,0 +1,121 @@
+//! What is painted on the nodes.
+
+use crate::lens_in_use::NodeFocus;
+use crate::nodes::{Nodes, ONE};
+use lens::FocusOffset;
+use rayon::prelude::*;
+use salf::Sample;
+use scene::SurfaceField;
+
+/// Focus of all nodes, block by block; a block on which nothing is painted has none.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Paint {
+    pub blocks: Vec<Option<Box<[NodeFocus]>>>,
+}
+
+impl Paint {
+    /// Looks up the focus of every sample.
+    pub fn look_up(nodes: &Nodes, samples: &[Sample], focus: &dyn SurfaceField<FocusOffset>) -> Self {
+        let blocks = (0..nodes.blocks.len()).into_par_iter().map(|block| {
+            let first = nodes.blocks[block].start as usize;
+            let of_nodes = nodes.of_block(block);
+            let of_leaf =
+                |index: usize| offset(&samples[nodes.sample_of_node[first + index] as usize], focus);
+            let mut painted: Option<Box<[NodeFocus]>> = None;
+            for index in (0..of_nodes.len()).filter(|&index| of_nodes[index].is_leaf) {
+                let found = of_leaf(index);
+                if found != NodeFocus::STANDARD {
+                    painted.get_or_insert_with(|| vec![NodeFocus::STANDARD; of_nodes.len()].into())[index] =
+                        found;
+                }
+            }
+            if let Some(painted) = &mut painted {
+                (0..of_nodes.len()).rev().for_each(|index| take_up(nodes, block, painted, index));
+            }
+            painted
+        });
+        Self { blocks: blocks.collect() }
+    }
+
+    /// Whether nothing is painted.
+    pub fn is_standard(&self) -> bool {
+        self.blocks.iter().all(Option::is_none)
+    }
+
+    /// Looks up again the focus of the samples at `leaves`, nodes of `block` in order.
+    pub fn update(
+        &mut self,
+        nodes: &Nodes,
+        block: usize,
+        leaves: &[u32],
+        samples: &[Sample],
+        focus: &dyn SurfaceField<FocusOffset>,
+    ) {
+        let first = nodes.blocks[block].start;
+        let mut painted = self.blocks[block]
+            .take()
+            .unwrap_or_else(|| vec![NodeFocus::STANDARD; nodes.of_block(block).len()].into());
+        for &leaf in leaves {
+            painted[(leaf - first) as usize] =
+                offset(&samples[nodes.sample_of_node[leaf as usize] as usize], focus);
+        }
+        (0..painted.len()).rev().for_each(|index| take_up(nodes, block, &mut painted, index));
+        let is_standard = painted.iter().all(|focus| *focus == NodeFocus::STANDARD);
+        self.blocks[block] = (!is_standard).then_some(painted);
+    }
+
+    /// Focus of the nodes of a block; `None` if nothing is painted.
+    pub fn of_block(&self, block: usize) -> Option<&[NodeFocus]> {
+        self.blocks.get(block)?.as_deref()
+    }
+}
+
+fn offset(sample: &Sample, focus: &dyn SurfaceField<FocusOffset>) -> NodeFocus {
+    NodeFocus::of(sample.surface.map_or_else(|| focus.at_infinity(), |point| focus.at(point)))
+}
+
+/// Sets the focus of a node from those below it; a sample keeps its own.
+fn take_up(nodes: &Nodes, block: usize, painted: &mut [NodeFocus], index: usize) {
+    let of_nodes = nodes.of_block(block);
+    let node = &of_nodes[index];
+    if node.is_leaf {
+        return;
+    }
+    let first = nodes.blocks[block].start;
+    let end = (node.end - first) as usize;
+    let children = || {
+        let mut next = index + 1;
+        std::iter::from_fn(move || {
+            let child = next;
+            (child < end).then(|| {
+                next = (of_nodes[child].end - first) as usize;
+                child
+            })
+        })
+    };
+    let standard = children().filter(|&child| painted[child] == NodeFocus::STANDARD).count();
+    if standard == children().count() {
+        painted[index] = NodeFocus::STANDARD;
+        return;
+    }
+    let (mut t, mut anchor, mut weight) = (0.0f64, 0.0f64, 0.0f64);
+    for child in children() {
+        let share = of_nodes[child].light[3] as f64 * (1u32 << (2 * of_nodes[child].level)) as f64;
+        let share = share * of_nodes[child].base.unsigned_abs() as f64 / ONE as f64;
+        t += share * painted[child].t as f64;
+        anchor += share * painted[child].anchor as f64;
+        weight += share;
+    }
+    let mut mean =
+        NodeFocus { t: (t / weight) as f32, anchor: (anchor / weight) as f32, ..NodeFocus::STANDARD };
+    for child in children() {
+        let below = painted[child];
+        mean.t_apart = mean.t_apart.max(2.0 * ((below.t - mean.t).abs() + below.t_apart / 2.0));
+        mean.anchor_apart =
+            mean.anchor_apart.max(2.0 * ((below.anchor - mean.anchor).abs() + below.anchor_apart / 2.0));
+    }
+    if standard > 0 {
+        mean.t_apart = f32::INFINITY;
+    }
+    painted[index] = mean;
+}

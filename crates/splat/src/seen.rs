@@ -1,0 +1,69 @@
+//! What partly occluded nodes see of the lens's aperture, in one number and one point.
+
+use crate::nodes::{Nodes, ONE};
+use crate::shape::Shape;
+use glam::DVec2;
+use rayon::prelude::*;
+
+/// The light that a node sends through the lens's aperture, as a share of what its weight at the centre would send
+/// through all of it, and the mean aperture point of that light.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Seen {
+    /// Times 65536.
+    pub share: u32,
+    /// Times 16384, in units of the lens's radius.
+    pub mean: [i16; 2],
+}
+
+/// Sums over cells: share of the aperture, first and second moments.
+#[derive(Clone, Copy, Default)]
+struct Moments([f64; 6]);
+
+impl Moments {
+    fn add(&mut self, other: &Self) {
+        (0..6).for_each(|k| self.0[k] += other.0[k]);
+    }
+}
+
+/// Of every node; open ones have none.
+pub fn seen(nodes: &Nodes, shape: &Shape, stop: f64) -> Vec<Seen> {
+    let cells = shape.cells(1.0 / stop);
+    // Of every eight cells of a row at once.
+    let table: Vec<[Moments; 256]> = (0..32)
+        .map(|half_row| {
+            std::array::from_fn(|bits| {
+                let mut sum = Moments::default();
+                for k in (0..8).filter(|k| bits >> k & 1 == 1) {
+                    let (share, u) = cells[half_row * 8 + k];
+                    let moments = [1.0, u.x, u.y, u.x * u.x, u.x * u.y, u.y * u.y];
+                    sum.add(&Moments(moments.map(|m| share * m)));
+                }
+                sum
+            })
+        })
+        .collect();
+    let of = |node: &crate::nodes::SplatNode| {
+        let Some(rows) = nodes.cells(node) else { return Seen::default() };
+        let mut sum = Moments::default();
+        for (row, &bits) in rows.iter().enumerate() {
+            sum.add(&table[2 * row][(bits & 255) as usize]);
+            sum.add(&table[2 * row + 1][(bits >> 8) as usize]);
+        }
+        let [m, x, y, xx, xy, yy] = sum.0;
+        let one = ONE as f64;
+        // The tilt is that over the baked aperture.
+        let (base, tilt) = (node.base as f64 / one, node.tilt.map(|tilt| tilt as f64 / one * stop));
+        let share = base * m + tilt[0] * x + tilt[1] * y;
+        if share <= 0.0 {
+            return Seen::default();
+        }
+        let first =
+            DVec2::new(base * x + tilt[0] * xx + tilt[1] * xy, base * y + tilt[0] * xy + tilt[1] * yy);
+        let mean = (first / share).clamp(DVec2::NEG_ONE, DVec2::ONE);
+        Seen {
+            share: (share * 65536.0).round() as u32,
+            mean: (mean * one).to_array().map(|m| m.round() as i16),
+        }
+    };
+    nodes.nodes.par_iter().map(of).collect()
+}

@@ -1,0 +1,115 @@
+//! The aperture's shape, cut finely: what stencils are made from.
+
+use glam::DVec2;
+use lens::{Aperture, ApertureShape, Run};
+
+/// Rows of a shape with an outline.
+const FINE_ROWS: usize = 512;
+
+/// An aperture of radius 1, v up.
+pub struct Shape {
+    aperture: Aperture,
+    /// Rows from v = −1 up, of equal height.
+    rows: Vec<Vec<Run>>,
+    /// Open area over [−1, 1]², weighted by transmission.
+    pub open_area: f64,
+    /// Mean of the open area.
+    pub mean: DVec2,
+    /// Its variance along each axis.
+    pub variance: DVec2,
+}
+
+impl Shape {
+    pub fn new(aperture: &Aperture) -> Self {
+        let cut = aperture.rows(FINE_ROWS);
+        let open_area = cut.open_area();
+        let rows: Vec<Vec<Run>> = cut.rows.into_iter().map(|row| row.runs).collect();
+        let (mut mean, mut square) = (DVec2::ZERO, DVec2::ZERO);
+        let height = 2.0 / rows.len() as f64;
+        for (v, run) in with_middle(&rows) {
+            let width = run.end - run.start;
+            let share = width * height * run.transmission / open_area;
+            let middle = DVec2::new((run.start + run.end) / 2.0, v);
+            mean += share * middle;
+            square += share * (middle * middle + DVec2::new(width, height).powf(2.0) / 12.0);
+        }
+        Self { aperture: aperture.clone(), rows, open_area, mean, variance: square - mean * mean }
+    }
+
+    /// Whether it is a picture, whose rows may be open in several places.
+    pub fn is_picture(&self) -> bool {
+        matches!(self.aperture.shape, ApertureShape::Mask(_))
+    }
+
+    /// Its rows for a splat of `radius_px`: as fine as an outline needs, or of about a pixel where each row may be
+    /// open in many places.
+    pub fn rows_for(&self, radius_px: f64) -> std::borrow::Cow<'_, [Vec<Run>]> {
+        if !self.is_picture() {
+            return self.rows.as_slice().into();
+        }
+        let count = ((2.0 * radius_px).ceil() as usize).clamp(2, FINE_ROWS);
+        self.aperture.rows(count).rows.into_iter().map(|row| row.runs).collect()
+    }
+
+    /// The row that v in [−1, 1] lies in.
+    pub fn row_at(&self, v: f64) -> &[Run] {
+        let count = self.rows.len();
+        &self.rows[(((v + 1.0) / 2.0 * count as f64) as usize).min(count - 1)]
+    }
+
+    /// Share of the open area in each of 16 × 16 cells of the square of `side` ≥ 1 around it, row 0 at its lowest v, with
+    /// the mean aperture point of that share.
+    pub fn cells(&self, side: f64) -> Vec<(f64, DVec2)> {
+        let mut cells = vec![(0.0, DVec2::ZERO); 256];
+        let height = 2.0 / self.rows.len() as f64;
+        for (v, run) in with_middle(&self.rows) {
+            let row = (((v / side + 1.0) * 8.0) as usize).min(15);
+            for column in 0..16 {
+                let [low, high] = [column, column + 1].map(|k| (k as f64 / 8.0 - 1.0) * side);
+                let (start, end) = (run.start.max(low), run.end.min(high));
+                if end > start {
+                    let share = (end - start) * height * run.transmission / self.open_area;
+                    let (total, mean) = &mut cells[row * 16 + column];
+                    *mean += share * DVec2::new((start + end) / 2.0, v);
+                    *total += share;
+                }
+            }
+        }
+        cells.iter_mut().filter(|(share, _)| *share > 0.0).for_each(|(share, mean)| *mean /= *share);
+        cells
+    }
+}
+
+/// All runs with the v of the middle of their row.
+fn with_middle(rows: &[Vec<Run>]) -> impl Iterator<Item = (f64, &Run)> {
+    let height = 2.0 / rows.len() as f64;
+    rows.iter().enumerate().flat_map(move |(k, row)| {
+        let v = -1.0 + height * (k as f64 + 0.5);
+        row.iter().map(move |run| (v, run))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn moments_of_the_disc_and_the_square() {
+        let disc = Shape::new(&ApertureShape::Disc.into());
+        assert!((disc.variance - 0.25).abs().max_element() < 1e-4 && disc.mean.length() < 1e-9);
+        let square = Shape::new(&ApertureShape::Square.into());
+        assert!((square.variance - 1.0 / 3.0).abs().max_element() < 1e-4);
+    }
+
+    #[test]
+    fn cells_share_the_open_area() {
+        for side in [1.0, 2.5] {
+            let shape =
+                Shape::new(&ApertureShape::Polygon { blades: 5, rotation: 0.3, roundness: 0.2 }.into());
+            let cells = shape.cells(side);
+            let total: f64 = cells.iter().map(|(share, _)| share).sum();
+            let mean: DVec2 = cells.iter().map(|(share, mean)| *share * *mean).sum();
+            assert!((total - 1.0).abs() < 1e-9 && mean.distance(shape.mean) < 1e-6);
+        }
+    }
+}

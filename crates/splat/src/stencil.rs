@@ -1,0 +1,225 @@
+//! Stencils: the aperture's image at every radius, cut to pixel rows once and used by all splats of that radius.
+//!
+//! A stencil's run says: in this pixel row, from here to there, this much light a quantum. Positions are in 1/256 px from
+//! the splat's centre, so that a splat costs a few integer operations a row. Radii are tabled in steps of 1/128 of
+//! themselves, the centre's height in eighths of a pixel.
+
+use crate::shape::Shape;
+use lens::Run;
+use std::sync::OnceLock;
+
+/// Bits behind the point of positions: 1/256 px.
+pub const POSITION_BITS: u32 = 8;
+
+/// Bits behind the point of a run's height.
+pub const HEIGHT_BITS: u32 = 24;
+
+/// Stencils are made up to this radius, px.
+pub const LARGEST_RADIUS_PX: i32 = 64;
+
+/// Heights of the centre within a pixel.
+const PHASES: usize = 8;
+
+/// Light in one pixel row.
+#[derive(Clone, Copy, Debug)]
+pub struct StencilRun {
+    /// The pixel row, from that of the centre.
+    pub row: i32,
+    /// From where, in 1/256 px from the centre.
+    pub start: i32,
+    /// To where.
+    pub end: i32,
+    /// What a pixel within it gets of the splat's light, times 2²⁴.
+    pub height: u32,
+    /// The aperture's v at the row's middle, times 2¹⁴.
+    pub v: i32,
+}
+
+/// The aperture's image at one radius and one height within the pixel.
+pub type Stencil = Box<[StencilRun]>;
+
+/// All stencils of an aperture, made when they are first used.
+pub struct Stencils {
+    pub shape: Shape,
+    /// Far (upright) radii, then near ones.
+    tables: [Vec<OnceLock<[Stencil; PHASES]>>; 2],
+}
+
+/// The place of a radius (1/256 px, ≥ 0) in the table: a float of seven bits.
+#[inline(always)]
+fn index_of(radius: u32) -> usize {
+    if radius < 256 {
+        return (radius as usize + 1) / 2;
+    }
+    let octave = radius.ilog2() - 8;
+    // Rounding up to the next octave is its first place.
+    let mantissa = (radius + (1 << octave)) >> (octave + 1);
+    (octave as usize) * 128 + mantissa as usize
+}
+
+/// The radius, px, that a place of the table stands for.
+fn radius_at(index: usize) -> f64 {
+    if index < 128 {
+        return index as f64 / 128.0;
+    }
+    let (octave, mantissa) = ((index - 128) / 128, (index - 128) % 128 + 128);
+    mantissa as f64 / 128.0 * (1u64 << octave) as f64
+}
+
+impl Stencils {
+    pub fn new(shape: Shape) -> Self {
+        let places = index_of((LARGEST_RADIUS_PX as u32) << POSITION_BITS) + 1;
+        let table = || (0..places).map(|_| OnceLock::new()).collect();
+        Self { shape, tables: [table(), table()] }
+    }
+
+    /// The stencil of a signed radius (1/256 px, at most [`LARGEST_RADIUS_PX`]) for a centre at the height `y` (1/256 px),
+    /// and the pixel row of that centre.
+    #[inline(always)]
+    pub fn at(&self, radius: i32, y: i32) -> (&Stencil, i32) {
+        let table = &self.tables[usize::from(radius < 0)];
+        let index = index_of(radius.unsigned_abs());
+        let stencils = table[index].get_or_init(|| {
+            let radius_px = radius_at(index) * if radius < 0 { -1.0 } else { 1.0 };
+            std::array::from_fn(|phase| self.cut(radius_px, phase as f64 / PHASES as f64))
+        });
+        let rounded = y + (1 << POSITION_BITS) / (2 * PHASES as i32);
+        let phase = (rounded >> 5) as usize % PHASES;
+        (&stencils[phase], rounded >> POSITION_BITS)
+    }
+
+    /// Cuts the shape to pixel rows: `radius_px` signed, the centre at `phase` of its pixel.
+    fn cut(&self, radius_px: f64, phase: f64) -> Stencil {
+        let rows = self.shape.rows_for(radius_px.abs());
+        let size = radius_px.abs();
+        let height_px = 2.0 * size / rows.len() as f64;
+        let first = (phase - size).floor() as i64;
+        let mut cut: Vec<Vec<WeightedRun>> = vec![Vec::new(); (2.0 * size).ceil() as usize + 2];
+        for (k, runs) in rows.iter().enumerate() {
+            // The height of the row's lower edge on the picture; v goes up, pixel rows go down.
+            let v = -1.0 + 2.0 * (k as f64 + 0.5) / rows.len() as f64;
+            let top = phase - v * radius_px - height_px / 2.0;
+            let mut row = top.floor();
+            while row < top + height_px {
+                let overlap = (top + height_px).min(row + 1.0) - top.max(row);
+                // A share of the area of the whole splat; at radius 0 all of it is in one pixel row.
+                let share = if height_px > 0.0 { overlap / height_px } else { 1.0 };
+                if share > 0.0 {
+                    let light = share * 2.0 / rows.len() as f64 / self.shape.open_area;
+                    let place = (row as i64 - first) as usize;
+                    cut[place].extend(runs.iter().map(|run| WeightedRun::new(run, radius_px, light, v)));
+                }
+                row += 1.0;
+            }
+        }
+        let is_picture = self.shape.is_picture();
+        let mut stencil = Vec::new();
+        for (place, mut runs) in cut.into_iter().enumerate() {
+            if !is_picture {
+                runs = WeightedRun::mean(&runs).into_iter().collect();
+            }
+            stencil.extend(runs.iter().filter_map(|run| run.quantised((place as i64 + first) as i32)));
+        }
+        stencil.into()
+    }
+}
+
+/// A run in px, with its share of the splat's light.
+#[derive(Clone, Copy)]
+struct WeightedRun {
+    start: f64,
+    end: f64,
+    light: f64,
+    v: f64,
+}
+
+/// Narrower runs, px, are widened: light between two pixels' edges has no height to give.
+const NARROWEST_PX: f64 = 1.0 / 16.0;
+
+impl WeightedRun {
+    fn new(run: &Run, radius_px: f64, light: f64, v: f64) -> Self {
+        let [a, b] = [run.start * radius_px, run.end * radius_px];
+        let light = light * (run.end - run.start) * run.transmission;
+        Self { start: a.min(b), end: a.max(b), light, v }
+    }
+
+    /// One run with the light, mean and variance of all.
+    fn mean(runs: &[Self]) -> Option<Self> {
+        let light: f64 = runs.iter().map(|run| run.light).sum();
+        if light <= 0.0 {
+            return None;
+        }
+        let average =
+            |f: &dyn Fn(&Self) -> f64| runs.iter().map(|run| run.light * f(run)).sum::<f64>() / light;
+        let middle = average(&|run| (run.start + run.end) / 2.0);
+        let square = average(&|run| {
+            ((run.start + run.end) / 2.0 - middle).powi(2) + (run.end - run.start).powi(2) / 12.0
+        });
+        let half = (3.0 * square).sqrt();
+        Some(Self { start: middle - half, end: middle + half, light, v: average(&|run| run.v) })
+    }
+
+    fn quantised(&self, row: i32) -> Option<StencilRun> {
+        let middle = (self.start + self.end) / 2.0;
+        let half = ((self.end - self.start) / 2.0).max(NARROWEST_PX / 2.0);
+        let [start, end] = [middle - half, middle + half].map(|x| (x * 256.0).round() as i32);
+        let height = self.light / (end - start) as f64 * 256.0 * (1u64 << HEIGHT_BITS) as f64;
+        let v = (self.v * 16384.0).round() as i32;
+        let height = height.round() as u32;
+        (height > 0).then_some(StencilRun { row, start, end, height, v })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use lens::{ApertureMask, ApertureShape};
+    use std::sync::Arc;
+
+    #[test]
+    fn places_of_the_table_invert() {
+        for index in 0..900 {
+            let radius = radius_at(index) * 256.0;
+            assert_eq!(index_of(radius.round() as u32), index, "{radius}");
+        }
+        let largest = (1..1u32 << 14).map(|r| (radius_at(index_of(r)) * 256.0 / r as f64 - 1.0).abs());
+        assert!(largest.skip(256).fold(0.0, f64::max) < 1.0 / 250.0);
+    }
+
+    fn letter() -> ApertureShape {
+        let transmission = (0..64).map(|k| f32::from(k % 8 < 3 || k < 16)).collect();
+        ApertureShape::Mask(Arc::new(ApertureMask { width: 8, height: 8, transmission, file: String::new() }))
+    }
+
+    /// Light, mean and variance of a stencil are those of the shape.
+    #[test]
+    fn moments_are_those_of_the_shape() {
+        for shape in [ApertureShape::Disc, ApertureShape::Square, letter()] {
+            let stencils = Stencils::new(Shape::new(&shape.clone().into()));
+            for radius in [1.7, -2.2, 4.0, -11.3, 63.0] {
+                for y in [0.5, 0.125, 0.875] {
+                    let (stencil, base) = stencils.at((radius * 256.0f64).round() as i32, (y * 256.0) as i32);
+                    let (mut light, mut mean, mut square) = (0.0, [0.0; 2], [0.0; 2]);
+                    for run in stencil {
+                        let [a, b] = [run.start, run.end].map(|x| x as f64 / 256.0);
+                        let share = (b - a) * run.height as f64 / (1u64 << HEIGHT_BITS) as f64;
+                        let down = (base + run.row) as f64 + 0.5 - y;
+                        light += share;
+                        mean = [mean[0] + share * (a + b) / 2.0, mean[1] + share * down];
+                        square[0] += share * ((a + b).powi(2) / 4.0 + (b - a).powi(2) / 12.0);
+                        square[1] += share * down * down;
+                    }
+                    let wanted = (stencils.shape.mean * radius).to_array();
+                    let what = format!("{shape:?} {radius} {y}: {light} {mean:?}");
+                    assert!((light - 1.0).abs() < 2e-3, "{what}");
+                    assert!((mean[0] - wanted[0]).abs() < 0.02 * radius.abs() + 0.01, "{what}");
+                    assert!((mean[1] + wanted[1]).abs() < 0.02 * radius.abs() + 0.01, "{what}");
+                    let variance = (stencils.shape.variance * radius * radius).to_array();
+                    let found = [square[0] - mean[0].powi(2), square[1] - mean[1].powi(2)];
+                    assert!((found[0] / variance[0] - 1.0).abs() < 0.05 + 0.02 / radius.powi(2), "{what}");
+                    assert!((found[1] - variance[1]).abs() < 0.2 + 0.02 * variance[1], "{what} {found:?}");
+                }
+            }
+        }
+    }
+}
