@@ -70,8 +70,10 @@ impl Paint {
     }
 }
 
+/// What is painted on a sample; an offset that is not valid counts as nothing.
 fn offset(sample: &Sample, focus: &dyn SurfaceField<FocusOffset>) -> NodeFocus {
-    NodeFocus::of(sample.surface.map_or_else(|| focus.at_infinity(), |point| focus.at(point)))
+    let offset = sample.surface.map_or_else(|| focus.at_infinity(), |point| focus.at(point));
+    NodeFocus::of(offset.or_standard())
 }
 
 /// Sets the focus of a node from those below it; a sample keeps its own.

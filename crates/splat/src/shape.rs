@@ -8,9 +8,9 @@ const FINE_ROWS: usize = 512;
 
 /// An aperture of radius 1, v up.
 pub struct Shape {
-    aperture: Aperture,
-    /// Rows from v = −1 up, of equal height.
     rows: Vec<Vec<Run>>,
+    /// Whether it is a picture, whose rows may be open in several places.
+    pub is_picture: bool,
     /// Open area over [−1, 1]², weighted by transmission.
     pub open_area: f64,
     /// Mean of the open area.
@@ -33,22 +33,13 @@ impl Shape {
             mean += share * middle;
             square += share * (middle * middle + DVec2::new(width, height).powf(2.0) / 12.0);
         }
-        Self { aperture: aperture.clone(), rows, open_area, mean, variance: square - mean * mean }
+        let is_picture = matches!(aperture.shape, ApertureShape::Mask(_));
+        Self { rows, is_picture, open_area, mean, variance: square - mean * mean }
     }
 
-    /// Whether it is a picture, whose rows may be open in several places.
-    pub fn is_picture(&self) -> bool {
-        matches!(self.aperture.shape, ApertureShape::Mask(_))
-    }
-
-    /// Its rows for a splat of `radius_px`: as fine as an outline needs, or of about a pixel where each row may be
-    /// open in many places.
-    pub fn rows_for(&self, radius_px: f64) -> std::borrow::Cow<'_, [Vec<Run>]> {
-        if !self.is_picture() {
-            return self.rows.as_slice().into();
-        }
-        let count = ((2.0 * radius_px).ceil() as usize).clamp(2, FINE_ROWS);
-        self.aperture.rows(count).rows.into_iter().map(|row| row.runs).collect()
+    /// Its rows from v = −1 up, of equal height.
+    pub fn rows(&self) -> &[Vec<Run>] {
+        &self.rows
     }
 
     /// The row that v in [−1, 1] lies in.
