@@ -16,7 +16,7 @@ pub const CASES: &[Case] = &[
     Case {
         name: "energy: picture + outside = input",
         reason: "What a frame cuts off is what an over-wide frame has beyond it, bit for bit, and all of it is the input, but \
-                 for the rounding of each of a splat's pixels to a quantum of 2⁻²⁸.",
+                 for the rounding of each of a splat's pixels to a quantum of 2⁻²².",
         control: "mass of the rays that land in the frame, taken for all",
         check: inside_and_outside,
     },
@@ -35,8 +35,8 @@ pub const CASES: &[Case] = &[
     },
 ];
 
-/// Half the step of the splat's sums.
-const HALF_QUANTUM: f64 = 1.0 / (1u64 << 29) as f64;
+/// The step of the splat's sums.
+const STEP: f64 = splat::QUANTUM;
 
 fn inside_and_outside(effort: Effort, progress: &dyn Progress) -> Result<Finding, Cancelled> {
     const FRAME: u32 = 33;
@@ -61,18 +61,13 @@ fn inside_and_outside(effort: Effort, progress: &dyn Progress) -> Result<Finding
         let lost_by_splat = (energy(&outer) - f64::from(count)) / f64::from(count);
         lost.push(lost_by_splat);
         // The disc, grown by a pixel's diagonal, holds all the pixels that it touches.
-        shares.push(lost_by_splat / (HALF_QUANTUM * PI * (f64::abs(radius) + SQRT_2).powi(2)));
+        shares.push(lost_by_splat / (STEP * PI * (f64::abs(radius) + SQRT_2).powi(2)));
         cut = cut.min((energy(&inner) - f64::from(count)).abs() / f64::from(count));
     }
-    let limits = [("frame", 0.0), ("lost", 1e-6), ("half quanta a splat and pixel", 1.0)];
-    let expected = "the frame is a crop of the over-wide one, bit for bit; its sum the input's to 1e-6 and to half a quantum \
+    let limits = [("frame", 0.0), ("lost", 1e-6), ("quanta a splat and pixel", 1.0)];
+    let expected = "the frame is a crop of the over-wide one, bit for bit; its sum the input's to 1e-6 and to a quantum \
                     a splat and pixel";
-    Ok(Finding::of(
-        expected,
-        limits,
-        [worst(crop), worst(lost), worst(shares)],
-        [UNTRIED, cut, cut / HALF_QUANTUM],
-    ))
+    Ok(Finding::of(expected, limits, [worst(crop), worst(lost), worst(shares)], [UNTRIED, cut, cut / STEP]))
 }
 
 /// The largest difference between a picture and the middle of a wider one.

@@ -20,7 +20,7 @@ pub const CASES: &[Case] = &[
     },
     Case {
         name: "1e4 dim samples on one pixel",
-        reason: "Each is rounded to the nearest quantum in each of its pixels, so half a quantum (2⁻²⁹) a sample and pixel is \
+        reason: "Each is rounded up or down to a quantum in each of its pixels, so a quantum (2⁻²²) a sample and pixel is \
                  the most that can be lost.",
         control: "quanta of 2⁻¹²",
         check: dim_samples,
@@ -34,8 +34,8 @@ pub const CASES: &[Case] = &[
     },
 ];
 
-/// Half the step of the splat's sums.
-const HALF_QUANTUM: f64 = 1.0 / (1u64 << 29) as f64;
+/// The step of the splat's sums.
+const STEP: f64 = splat::QUANTUM;
 
 const FIREFLY: f32 = 1e6;
 const WALL: f32 = 1e-3;
@@ -113,13 +113,13 @@ fn dim_samples(_: Effort, progress: &dyn Progress) -> Result<Finding, Cancelled>
         errors.push(energy(&picture_of_stars(&camera, samples, offset, progress)?) - 1.0);
         // The disc, grown by a pixel's diagonal, holds all the pixels that it touches.
         let pixels = PI * (radius + SQRT_2).powi(2);
-        shares.push(errors[errors.len() - 1] / (HALF_QUANTUM * pixels * COUNT as f64));
+        shares.push(errors[errors.len() - 1] / (STEP * pixels * COUNT as f64));
     }
     let coarse = |mass: f64| (mass * 4096.0).round() / 4096.0;
     let rounded = COUNT as f64 * coarse(1.0 / COUNT as f64) - 1.0;
-    let expected = "mass 1 to half a quantum a sample and pixel, sharp and spread over up to 450 px";
-    let limits = [("error", 0.01), ("of half quanta", 1.0)];
-    let most = HALF_QUANTUM * COUNT as f64;
+    let expected = "mass 1 to a quantum a sample and pixel, sharp and spread over up to 450 px";
+    let limits = [("error", 0.01), ("of quanta", 1.0)];
+    let most = STEP * COUNT as f64;
     Ok(Finding::of(expected, limits, [worst(errors), worst(shares)], [rounded.abs(), rounded.abs() / most]))
 }
 

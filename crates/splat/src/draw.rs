@@ -9,10 +9,10 @@ use crate::canvas::{Canvas, Rows, Word};
 use crate::lens_in_use::Placed;
 use crate::nodes::{Cells, Light, Nodes, ONE, SplatNode};
 use crate::seen::Seen;
-use crate::stencil::{HEIGHT_BITS, LARGEST_RADIUS_PX, POSITION_BITS, Stencils};
+use crate::stencil::{HEIGHT_BITS, LARGEST_RADIUS_PX, POSITION_BITS, StencilRun, Stencils};
 
-/// Aperture images of a smaller radius, 1/256 px, are boxes.
-const BOX_RADIUS: i32 = 384;
+/// Aperture images of a smaller standard deviation, px, are boxes.
+const BOX_DEVIATION_PX: f64 = 0.75;
 
 /// Bits behind the point of the heights of large images.
 const LARGE_HEIGHT_BITS: u32 = 36;
@@ -32,6 +32,8 @@ pub struct Pen<'a> {
     too_blurred: [i64; salf::tree::LEVELS],
     /// 16384 over the mean variance.
     per_variance: i64,
+    /// Aperture images of a smaller radius, 1/256 px, are boxes.
+    box_radius: i64,
 }
 
 /// A node's image on its level: centre and signed radius, 1/256 px of the level.
@@ -64,6 +66,7 @@ impl<'a> Pen<'a> {
             mean: shape.mean.to_array().map(fixed),
             too_blurred,
             per_variance: (ONE as f64 / variance).round() as i64,
+            box_radius: (BOX_DEVIATION_PX / variance.sqrt() * 256.0).ceil() as i64,
         }
     }
 
@@ -84,9 +87,9 @@ impl<'a> Pen<'a> {
             center: [node.center[0] >> node.level, node.center[1] >> node.level],
             radius: placed.radius / (1 << node.level),
             light: [light[0] as i64, light[1] as i64, light[2] as i64, light[3] as i64],
-            dither: seed(node),
+            dither: seed(node, self.nodes.middle),
         };
-        let is_small = node.level == 0 && placed.radius.abs() < BOX_RADIUS;
+        let is_small = node.level == 0 && (placed.radius.abs() as i64) < self.box_radius;
         match self.nodes.cells(node) {
             None => {
                 let moved = |k: usize| (node.tilt[k] as i64 * self.tilt_shift[k]) >> 14;
@@ -152,17 +155,17 @@ impl<'a> Pen<'a> {
             return self.draw_large(image, cells, rows, sign);
         }
         let (stencil, base) = self.stencils.at(radius, image.center[1]);
-        let reach = |row: Option<&crate::stencil::StencilRun>| row.map_or(0, |run| base + run.row);
-        if reach(stencil.last()) < rows.first || reach(stencil.first()) >= rows.end {
+        let row_of = |run: Option<&StencilRun>| run.map_or(0, |run| base + run.row);
+        if row_of(stencil.runs.last()) < rows.first || row_of(stencil.runs.first()) >= rows.end {
             return;
         }
-        for run in stencil {
+        for run in &stencil.runs {
             let row = base + run.row;
             if row < rows.first || row >= rows.end {
                 continue;
             }
             let span = [image.center[0] + run.start, image.center[0] + run.end];
-            let value = image.value(run.height as i64, HEIGHT_BITS, row);
+            let value = image.value(run.height as i64, stencil.height_bits, row);
             match cells {
                 None => rows.add_run(row, span[0], span[1], value, sign),
                 Some(cells) => self.add_seen(
@@ -236,7 +239,8 @@ impl<'a> Pen<'a> {
         sign: i64,
     ) {
         // A pixel row may lie across several rows of cells: each splat takes one of them, each row its own.
-        let jitter = (image.dither ^ (row as u32).wrapping_mul(0x85EB_CA77)).wrapping_mul(0xC2B2_AE35) >> 18;
+        let from_center = (row - (image.center[1] >> POSITION_BITS)) as u32;
+        let jitter = (image.dither ^ from_center.wrapping_mul(0x85EB_CA77)).wrapping_mul(0xC2B2_AE35) >> 18;
         let pixel = (ONE << POSITION_BITS) as i64 / (image.radius.unsigned_abs().max(1) as i64);
         let jittered = v as i64 + ((pixel * (jitter as i64 - ONE as i64 / 2)) >> 14);
         let of_baked = (jittered * self.stop as i64) >> 14;
@@ -290,7 +294,9 @@ impl Image<'_> {
     /// The light of a pixel, rounded up or down at random so that the mean is kept.
     #[inline(always)]
     fn value(&self, height: i64, bits: u32, row: i32) -> Light {
-        let dither = self.dither.wrapping_add((row as u32).wrapping_mul(0x9E37_79B1));
+        // By the row from the centre's, so that a frame's crop has the same bits.
+        let row = (row - (self.center[1] >> POSITION_BITS)) as u32;
+        let dither = self.dither.wrapping_add(row.wrapping_mul(0x9E37_79B1));
         let dither = (dither ^ dither >> 15).wrapping_mul(0x2C1B_3C6D) as i64 >> (32 - HEIGHT_BITS);
         let dither = dither << (bits - HEIGHT_BITS);
         let mut value = [0; 4];
@@ -301,10 +307,10 @@ impl Image<'_> {
     }
 }
 
-/// Where a node's dither starts: its place, whatever else is in the light field.
+/// Where a node's dither starts: its place from the picture's middle, whatever else is in the light field.
 #[inline(always)]
-fn seed(node: &SplatNode) -> u32 {
-    let [x, y] = [node.center[0] as u32, node.center[1] as u32];
+fn seed(node: &SplatNode, middle: [i32; 2]) -> u32 {
+    let [x, y] = [(node.center[0] - middle[0]) as u32, (node.center[1] - middle[1]) as u32];
     (x.wrapping_mul(0x9E37_79B1) ^ y.wrapping_mul(0x85EB_CA77) ^ node.level as u32).wrapping_mul(0xC2B2_AE3D)
 }
 

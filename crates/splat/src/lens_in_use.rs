@@ -1,6 +1,7 @@
 //! The lens that a picture is summed with, and what it makes of each node.
 
 use crate::nodes::SplatNode;
+use crate::shape::Shape;
 use crate::stencil::POSITION_BITS;
 use lens::{FocusOffset, Optics};
 use salf::tree::LEVELS;
@@ -38,7 +39,7 @@ impl Tolerance {
 
 impl Default for Tolerance {
     fn default() -> Self {
-        Self::VIEWING
+        Self::NONE
     }
 }
 
@@ -79,8 +80,6 @@ const LARGEST_RADIUS: f64 = (1u32 << 30) as f64;
 /// A lens.
 pub struct LensInUse {
     pub optics: Optics,
-    /// The lens's aperture radius as a share of the baked one, ≤ 1.
-    pub stop: f64,
     /// From which |radius| on, 1/256 px, open nodes of each level may be drawn, and partly occluded ones.
     smallest_radius: [[f64; LEVELS]; 2],
 }
@@ -92,15 +91,21 @@ const FINER_AT_OUTLINES: f64 = 1.5;
 const FLAT: f64 = 0.3;
 
 impl LensInUse {
-    pub fn new(optics: Optics, baked_radius: f64, tolerance: Tolerance) -> Self {
-        let stop = if baked_radius > 0.0 { (optics.aperture_radius / baked_radius).min(1.0) } else { 1.0 };
+    pub fn new(optics: Optics, shape: &Shape, tolerance: Tolerance) -> Self {
+        let deviation = (shape.variance.min_element()).sqrt();
         let smallest = |finer: f64| {
             std::array::from_fn(|level| {
                 let circle = tolerance.smallest_circle_px(finer * (1 << level) as f64);
-                circle / 2.0 * (1 << POSITION_BITS) as f64
+                // A disc as wide as the shape: its standard deviation is a quarter of its diameter.
+                circle / (4.0 * deviation) * (1 << POSITION_BITS) as f64
             })
         };
-        Self { optics, stop, smallest_radius: [smallest(1.0), smallest(FINER_AT_OUTLINES)] }
+        Self { optics, smallest_radius: [smallest(1.0), smallest(FINER_AT_OUTLINES)] }
+    }
+
+    /// The lens's aperture radius as a share of the baked one, ≤ 1.
+    pub fn stop(optics: &Optics, baked_radius: f64) -> f64 {
+        if baked_radius > 0.0 { (optics.aperture_radius / baked_radius).min(1.0) } else { 1.0 }
     }
 
     /// Where `focus` sends a node.

@@ -29,5 +29,6 @@ mod sums;
 mod widest;
 
 pub use lens_in_use::Tolerance;
+pub use nodes::QUANTUM;
 pub use splatter::{SplatError, Splatter};
 pub use sums::DrawnNodes;

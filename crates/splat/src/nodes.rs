@@ -37,6 +37,9 @@ impl Scale {
     }
 }
 
+/// The step of a pixel's sum of ordinary samples, for radiance 1: each splat is rounded to it, up or down, in every pixel.
+pub const QUANTUM: f64 = 1.0 / (1u32 << Scale::FINEST.dim_bits) as f64;
+
 /// A node as the splat uses it. Positions are in 1/256 px, shares of 1 in 1/16384.
 #[derive(Clone, Copy, Debug)]
 pub struct SplatNode {
@@ -93,6 +96,8 @@ pub struct Nodes {
     pub node_of_sample: Vec<u32>,
     pub block_of_node: Vec<u32>,
     pub scale: Scale,
+    /// The picture's middle, 1/256 px.
+    pub middle: [i32; 2],
     /// The largest radiance, at least 1.
     pub brightest: f64,
     pub has_bright: bool,
@@ -141,6 +146,7 @@ impl Nodes {
             node_of_sample: tree.node_of_sample,
             block_of_node,
             scale,
+            middle: [salf.camera.width, salf.camera.height].map(|side| side as i32 * 128),
             brightest: brightest.reduce(|| 1.0, f32::max) as f64,
         })
     }

@@ -81,9 +81,11 @@ impl Splatter {
         let (width, height) = (camera.width as usize, camera.height as usize);
         let nodes = Nodes::new(&salf, Scale::FINEST);
         let tolerance = Tolerance::default();
+        let aperture = ApertureInUse::new(&camera.aperture, 1.0, nodes.as_ref());
+        let shape = &aperture.stencils.shape;
         Self {
-            aperture: ApertureInUse::new(&camera.aperture, 1.0, nodes.as_ref()),
-            lens: LensInUse::new(camera.optics(), camera.aperture_radius, tolerance),
+            lens: LensInUse::new(camera.optics(), shape, tolerance),
+            aperture,
             tolerance,
             paint: Paint::default(),
             sums: Sums::new([width, height], nodes.as_ref().is_some_and(|nodes| nodes.has_bright)),
@@ -134,11 +136,8 @@ impl Splatter {
         focus: &dyn SurfaceField<FocusOffset>,
         progress: &dyn Progress,
     ) -> Result<(), SplatError> {
+        self.take_up(camera);
         let nodes = self.nodes.as_mut().ok_or(SplatError::Overflow)?;
-        self.lens = LensInUse::new(camera.optics(), self.salf.camera.aperture_radius, self.tolerance);
-        if (&self.aperture.aperture, self.aperture.stop) != (&camera.aperture, self.lens.stop) {
-            self.aperture = ApertureInUse::new(&camera.aperture, self.lens.stop, Some(nodes));
-        }
         nodes.rescale(Scale::FINEST);
         self.paint = Paint::look_up(nodes, &self.salf.samples, focus);
         self.sum(progress)
@@ -146,14 +145,21 @@ impl Splatter {
 
     /// Sums the whole picture for another lens, with the focus of before.
     pub fn refocus(&mut self, camera: &Camera, progress: &dyn Progress) -> Result<(), SplatError> {
+        self.take_up(camera);
         let nodes = self.nodes.as_mut().ok_or(SplatError::Overflow)?;
         assert_eq!(self.paint.blocks.len(), nodes.blocks.len(), "refocus follows a render");
-        self.lens = LensInUse::new(camera.optics(), self.salf.camera.aperture_radius, self.tolerance);
-        if (&self.aperture.aperture, self.aperture.stop) != (&camera.aperture, self.lens.stop) {
-            self.aperture = ApertureInUse::new(&camera.aperture, self.lens.stop, Some(nodes));
-        }
         nodes.rescale(Scale::FINEST);
         self.sum(progress)
+    }
+
+    /// Puts on a lens.
+    fn take_up(&mut self, camera: &Camera) {
+        let (optics, baked_radius) = (camera.optics(), self.salf.camera.aperture_radius);
+        let stop = LensInUse::stop(&optics, baked_radius);
+        if (&self.aperture.aperture, self.aperture.stop) != (&camera.aperture, stop) {
+            self.aperture = ApertureInUse::new(&camera.aperture, stop, self.nodes.as_ref());
+        }
+        self.lens = LensInUse::new(optics, &self.aperture.stencils.shape, self.tolerance);
     }
 
     /// Sums all, with coarser integers where the finest do not hold it.
