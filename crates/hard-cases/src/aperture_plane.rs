@@ -109,7 +109,7 @@ fn grazing(effort: Effort, progress: &dyn Progress) -> Result<Finding, Cancelled
         untilted.push(farthest_from(&picture_of(flat, &focus, progress)?, 1.0));
         traced.push(farthest_from(&shot.truth(FocusOffset::STANDARD, 4, progress)?, 1.0));
     }
-    let limits = [("splat", 0.03), ("truth", 1e-6)];
-    let expected = "1 ± 0.03 splatted, 1 traced, from floors 2 to 200 aperture radii below";
+    let limits = [("splat", 0.05), ("truth", 1e-6)];
+    let expected = "1 ± 0.05 splatted, 1 traced, from floors 2 to 200 aperture radii below";
     Ok(Finding::of(expected, limits, [worst(splatted), worst(traced)], [worst(untilted), UNTRIED]))
 }

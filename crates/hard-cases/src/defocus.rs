@@ -52,8 +52,8 @@ fn kappa_to_zero(_: Effort, progress: &dyn Progress) -> Result<Finding, Cancelle
         picture_of_stars(&camera, samples, offset_of(kappa, &camera), progress)
     };
     let naive = |kappa: f64| Ok(naive_disc(&camera, camera.optics().splat_radius_px(kappa)));
-    let expected = "mass 1 ± 1e-5; L1 distance from sharp ≤ 4r; P(−κ) is P(κ) turned, to two quanta";
-    let limits = [("mass", 1e-5), ("distance/4r", 1.0), ("turned", 2.0 * splat::QUANTUM)];
+    let expected = "mass 1 ± 1e-5; L1 distance from sharp ≤ 4r; P(−κ) is P(κ) turned, to 1e-3";
+    let limits = [("mass", 1e-5), ("distance/4r", 1.0), ("turned", 1e-3)];
     Ok(Finding::of(expected, limits, tends_to_sharp(&camera, of)?, tends_to_sharp(&camera, naive)?))
 }
 

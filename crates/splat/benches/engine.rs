@@ -55,6 +55,11 @@ fn main() {
         println!("  coverage beyond 0.5 %: {:.3} %", 100.0 * beyond as f64 / coverage.len() as f64);
         if let (Some(file), false) = (files.get(1), painted) {
             write_pfm(file, &converged);
+            if let Some(file) = files.get(2) {
+                let mut c = converged.clone();
+                c.radiance = c.coverage.iter().map(|&c| [c; 3]).collect();
+                write_pfm(file, &c);
+            }
         }
         for share in [0.125, 0.25, 0.5] {
             splatter.set_tolerance(Tolerance { share_of_circle: share });

@@ -10,6 +10,12 @@
 
 use salf::tree::LEVELS;
 
+/// Bits behind the point of positions: 1/4096 px.
+pub const POSITION_BITS: u32 = 12;
+
+/// A pixel, as a position.
+pub const PIXEL: i32 = 1 << POSITION_BITS;
+
 /// An integer that differences are summed in.
 pub trait Word: Copy + Default + PartialEq + Send + Sync {
     /// Of a wide integer, its lower bits.
@@ -18,7 +24,7 @@ pub trait Word: Copy + Default + PartialEq + Send + Sync {
     fn wide(self) -> i64;
     /// The sum, wrapping.
     fn plus(self, other: Self) -> Self;
-    /// ⌊self·(256 − fraction)/256⌋ and what that leaves of self ≥ 0, both times `sign`.
+    /// ⌊self·(4096 − fraction)/4096⌋ and what that leaves of self ≥ 0, both times `sign`.
     fn split(self, fraction: i32, sign: i64) -> [Self; 2];
 }
 
@@ -37,9 +43,10 @@ impl Word for i32 {
     }
     #[inline(always)]
     fn split(self, fraction: i32, sign: i64) -> [Self; 2] {
-        let rest = 256 - fraction;
+        let rest = PIXEL - fraction;
         // In two parts, each of which fits into 32 bits.
-        let near = (self >> 8).wrapping_mul(rest).wrapping_add(((self & 255) * rest) >> 8);
+        let (high, low) = (self >> POSITION_BITS, self & (PIXEL - 1));
+        let near = high.wrapping_mul(rest).wrapping_add((low * rest) >> POSITION_BITS);
         let sign = sign as i32;
         [near.wrapping_mul(sign), self.wrapping_sub(near).wrapping_mul(sign)]
     }
@@ -60,7 +67,7 @@ impl Word for i64 {
     }
     #[inline(always)]
     fn split(self, fraction: i32, sign: i64) -> [Self; 2] {
-        let near = (self * (256 - fraction) as i64) >> 8;
+        let near = (self * (PIXEL - fraction) as i64) >> POSITION_BITS;
         [sign * near, sign * (self - near)]
     }
 }
@@ -191,13 +198,13 @@ impl<W: Word> Canvas<'_, W> {
 }
 
 impl<W: Word> Rows<'_, W> {
-    /// A position (1/256 px) no further outside than needs be told apart.
+    /// A position (1/4096 px) no further outside than needs be told apart.
     #[inline(always)]
     pub fn clamped(&self, x: i64) -> i32 {
-        x.clamp(-1024, (self.width as i64 + 4) << 8) as i32
+        x.clamp(-4 * PIXEL as i64, (self.width as i64 + 4) << POSITION_BITS) as i32
     }
 
-    /// Adds (`sign` 1) or takes away (−1) light from `start` to `end` (1/256 px) of a row: `value` ≥ 0 a pixel.
+    /// Adds (`sign` 1) or takes away (−1) light from `start` to `end` (1/4096 px) of a row: `value` ≥ 0 a pixel.
     #[inline(always)]
     pub fn add_run(&mut self, row: i32, start: i32, end: i32, value: [i64; 4], sign: i64) {
         let stride = self.width + 3;
@@ -207,7 +214,7 @@ impl<W: Word> Rows<'_, W> {
         let mut total = 0;
         for (at, sign) in [(start, sign), (end, -sign)] {
             // The border is column 0.
-            let (column, fraction) = ((at >> 8) + 1, at & 255);
+            let (column, fraction) = ((at >> POSITION_BITS) + 1, at & (PIXEL - 1));
             let (first, second) = (column.clamp(0, last), (column + 1).clamp(0, last));
             let (mut near, mut far) = ([W::default(); 4], [W::default(); 4]);
             for c in 0..4 {
@@ -257,14 +264,16 @@ mod tests {
 
     #[test]
     fn a_run_is_exact_and_leaves_nothing_behind() {
-        for (start, end) in [(5 * 256, 9 * 256), (1337, 1500), (-5000, 700), (700, 9000), (-9000, 9000)] {
+        for (start, end) in
+            [(5 << 12, 9 << 12), (21337, 24500), (-50000, 7000), (7000, 90000), (-90000, 90000)]
+        {
             let mut accumulator = Accumulator::<i32>::new(20, 4, 1);
             accumulator.canvas().levels[0].add_run(2, start, end, [1000, 7, 0, 100_000], 1);
             let row = pixels(&accumulator, 2).expect("nothing wraps");
             for (x, pixel) in row.iter().enumerate() {
-                let left = (x as i32 - 1) * 256;
-                let inside = (end.min(left + 256) - start.max(left)).max(0) as i64;
-                assert!((pixel[3] - 100_000 * inside / 256).abs() <= 1, "{start} {x}: {pixel:?}");
+                let left = (x as i32 - 1) * PIXEL;
+                let inside = (end.min(left + PIXEL) - start.max(left)).max(0) as i64;
+                assert!((pixel[3] - 100_000 * inside / PIXEL as i64).abs() <= 1, "{start} {x}: {pixel:?}");
             }
             assert_eq!(pixels(&accumulator, 1).unwrap(), vec![[0; 4]; 22]);
             accumulator.canvas().levels[0].add_run(2, start, end, [1000, 7, 0, 100_000], -1);
@@ -278,11 +287,11 @@ mod tests {
         let mut accumulator = Accumulator::<i32>::new(20, 4, 1);
         for k in 0..3 {
             assert!(pixels(&accumulator, 0).is_some(), "{k} fit");
-            accumulator.canvas().levels[0].add_run(0, 1000, 3000, [0, 0, 0, 3 << 28], 1);
+            accumulator.canvas().levels[0].add_run(0, 16000, 48000, [0, 0, 0, 3 << 28], 1);
         }
         assert!(pixels(&accumulator, 0).is_none());
         let mut wide = Accumulator::<i64>::new(20, 4, 1);
-        (0..3).for_each(|_| wide.canvas().levels[0].add_run(0, 1000, 3000, [0, 0, 0, 3 << 28], 1));
+        (0..3).for_each(|_| wide.canvas().levels[0].add_run(0, 16000, 48000, [0, 0, 0, 3 << 28], 1));
         assert!(pixels(&wide, 0).is_some());
     }
 

@@ -1,8 +1,8 @@
 //! The lens that a picture is summed with, and what it makes of each node.
 
-use crate::nodes::SplatNode;
+use crate::canvas::POSITION_BITS;
+use crate::nodes::{ONE, SplatNode};
 use crate::shape::Shape;
-use crate::stencil::POSITION_BITS;
 use lens::{FocusOffset, Optics};
 use salf::tree::LEVELS;
 
@@ -68,19 +68,25 @@ impl NodeFocus {
 /// How a node is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Placed {
-    /// Signed radius of the lens's aperture image, 1/256 px.
+    /// Signed radius of the lens's aperture image, 1/4096 px.
     pub radius: i32,
+    /// How fast its defocus changes with depth, as a share of the unpainted, times 16384: t·(1 − a).
+    pub depth_share: i32,
     /// Whether it is unpainted.
     pub is_standard: bool,
+    /// Whether it is a sample of a cell larger than may be drawn as one.
+    pub is_split: bool,
 }
 
-/// Larger aperture images, 1/256 px, are taken as this large: none of their light is in the picture.
+/// Larger aperture images, 1/4096 px, are taken as this large: none of their light is in the picture.
 const LARGEST_RADIUS: f64 = (1u32 << 30) as f64;
 
 /// A lens.
 pub struct LensInUse {
     pub optics: Optics,
-    /// From which |radius| on, 1/256 px, open nodes of each level may be drawn, and partly occluded ones.
+    /// Whether every sample is drawn, as exactly as it can be.
+    pub is_exact: bool,
+    /// From which |radius| on, 1/4096 px, open nodes of each level may be drawn, and partly occluded ones.
     smallest_radius: [[f64; LEVELS]; 2],
 }
 
@@ -100,7 +106,8 @@ impl LensInUse {
                 circle / (4.0 * deviation) * (1 << POSITION_BITS) as f64
             })
         };
-        Self { optics, smallest_radius: [smallest(1.0), smallest(FINER_AT_OUTLINES)] }
+        let is_exact = tolerance == Tolerance::NONE;
+        Self { optics, is_exact, smallest_radius: [smallest(1.0), smallest(FINER_AT_OUTLINES)] }
     }
 
     /// The lens's aperture radius as a share of the baked one, ≤ 1.
@@ -118,14 +125,23 @@ impl LensInUse {
             self.optics.kappa(inverse_depth, FocusOffset::new(focus.t as f64, focus.anchor as f64))
         };
         let radius = self.optics.splat_radius_px(kappa) * (1 << POSITION_BITS) as f64;
-        Placed { radius: radius.clamp(-LARGEST_RADIUS, LARGEST_RADIUS).round_ties_even() as i32, is_standard }
+        let radius = radius.clamp(-LARGEST_RADIUS, LARGEST_RADIUS).round_ties_even() as i32;
+        let depth_share = focus.t * (1.0 - focus.anchor) * ONE as f32;
+        let is_split = node.is_leaf && node.level > 0 && !self.is_far_out(node, radius);
+        Placed { radius, depth_share: depth_share.clamp(-1e9, 1e9) as i32, is_standard, is_split }
+    }
+
+    /// Whether an aperture image of this radius, 1/4096 px, is large enough for a node's side.
+    #[inline(always)]
+    fn is_far_out(&self, node: &SplatNode, radius: i32) -> bool {
+        let is_partial = usize::from(!node.is_open());
+        radius.abs() as f64 >= self.smallest_radius[is_partial][node.level as usize]
     }
 
     /// Whether a node that was `placed` may stand for all below it.
     #[inline(always)]
     pub fn may_merge(&self, node: &SplatNode, focus: &NodeFocus, placed: Placed) -> bool {
-        let is_partial = usize::from(!node.is_open());
-        if (placed.radius.abs() as f64) < self.smallest_radius[is_partial][node.level as usize] {
+        if !self.is_far_out(node, placed.radius) {
             return false;
         }
         let optics = &self.optics;

@@ -1,6 +1,6 @@
 //! The light field's hierarchy in the integers of the sum.
 
-use crate::canvas::Pixel;
+use crate::canvas::{PIXEL, Pixel};
 use rayon::prelude::*;
 use salf::tree::{LEVELS, Node, NodeVisibility, Tree};
 use salf::{Salf, Visibility};
@@ -40,7 +40,7 @@ impl Scale {
 /// The step of a pixel's sum of ordinary samples, for radiance 1: each splat is rounded to it, up or down, in every pixel.
 pub const QUANTUM: f64 = 1.0 / (1u32 << Scale::FINEST.dim_bits) as f64;
 
-/// A node as the splat uses it. Positions are in 1/256 px, shares of 1 in 1/16384.
+/// A node as the splat uses it. Positions are in 1/4096 px, shares of 1 in 1/16384.
 #[derive(Clone, Copy, Debug)]
 pub struct SplatNode {
     /// Mean position in the pinhole picture.
@@ -96,7 +96,7 @@ pub struct Nodes {
     pub node_of_sample: Vec<u32>,
     pub block_of_node: Vec<u32>,
     pub scale: Scale,
-    /// The picture's middle, 1/256 px.
+    /// The picture's middle, 1/4096 px.
     pub middle: [i32; 2],
     /// The largest radiance, at least 1.
     pub brightest: f64,
@@ -146,7 +146,7 @@ impl Nodes {
             node_of_sample: tree.node_of_sample,
             block_of_node,
             scale,
-            middle: [salf.camera.width, salf.camera.height].map(|side| side as i32 * 128),
+            middle: [salf.camera.width, salf.camera.height].map(|side| side as i32 * (PIXEL / 2)),
             brightest: brightest.reduce(|| 1.0, f32::max) as f64,
         })
     }
@@ -220,15 +220,16 @@ fn cells_of(visibility: NodeVisibility, words: &[u64]) -> Option<Cells> {
 
 /// A node in integers. `None` if it is too bright.
 fn convert(node: &Node, scale: Scale) -> Option<SplatNode> {
-    const NARROWEST: f32 = 8.0;
-    let fixed = |px: f32| (px * 256.0).round() as i32;
-    let half_size = node.half_size.to_array().map(|half| (half * 256.0).round().clamp(NARROWEST, 65535.0));
+    const NARROWEST: f32 = PIXEL as f32 / 32.0;
+    let fixed = |px: f32| (px * PIXEL as f32).round() as i32;
+    let half_size =
+        node.half_size.to_array().map(|half| (half * PIXEL as f32).round().clamp(NARROWEST, 65535.0));
     // Where the weight changes sign over the aperture it is given as a share of its largest.
     let largest = node.weight.abs() + node.tilt.abs().element_sum();
     let is_edge_on = node.tilt.abs().element_sum() > node.weight;
     let weight = if is_edge_on { largest } else { node.weight };
     let share = |part: f32| (part / weight * ONE as f32).round() as i16;
-    let density = weight / (4.0 * half_size[0] * half_size[1] / 65536.0);
+    let density = weight / (4.0 * half_size[0] * half_size[1] / (PIXEL * PIXEL) as f32);
     let brightness = node.radiance.max_element().max(1.0) * density.max(1.0);
     if !(brightness <= BRIGHTEST) {
         return None;

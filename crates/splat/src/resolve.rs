@@ -136,7 +136,7 @@ mod tests {
                 (accumulator.levels[level].width as i32, accumulator.levels[level].height as i32);
             let mut canvas = accumulator.canvas();
             for row in -1..=height {
-                canvas.levels[level].add_run(row, -256, (width + 1) << 8, [1024, 512, 0, 1024], 1);
+                canvas.levels[level].add_run(row, -4096, (width + 1) << 12, [1024, 512, 0, 1024], 1);
             }
             drop(canvas);
             for pixel in whole(&accumulator) {
@@ -149,9 +149,9 @@ mod tests {
     fn parts_equal_the_whole_and_mass_is_kept() {
         let mut accumulator = Accumulator::<i32>::new(64, 64, LEVELS);
         let mut canvas = accumulator.canvas();
-        canvas.levels[3].add_run(4, 1000, 1300, [1 << 20; 4], 1);
-        canvas.levels[1].add_run(13, 3000, 4300, [1 << 20; 4], 1);
-        canvas.levels[0].add_run(40, 3000, 4300, [1 << 20; 4], 1);
+        canvas.levels[3].add_run(4, 16000, 20800, [1 << 20; 4], 1);
+        canvas.levels[1].add_run(13, 48000, 68800, [1 << 20; 4], 1);
+        canvas.levels[0].add_run(40, 48000, 68800, [1 << 20; 4], 1);
         drop(canvas);
         let lines = whole(&accumulator);
         let mass: f64 = lines.iter().map(|pixel| pixel[3] as f64).sum();

@@ -1,5 +1,6 @@
 //! What partly occluded nodes see of the lens's aperture, in one number and one point.
 
+use crate::draw::WHOLE;
 use crate::nodes::{Nodes, ONE};
 use crate::shape::Shape;
 use glam::DVec2;
@@ -9,7 +10,7 @@ use rayon::prelude::*;
 /// through all of it, and the mean aperture point of that light.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Seen {
-    /// Times 65536.
+    /// Times 2²⁴.
     pub share: u32,
     /// Times 16384, in units of the lens's radius.
     pub mean: [i16; 2],
@@ -61,7 +62,7 @@ pub fn seen(nodes: &Nodes, shape: &Shape, stop: f64) -> Vec<Seen> {
             DVec2::new(base * x + tilt[0] * xx + tilt[1] * xy, base * y + tilt[0] * xy + tilt[1] * yy);
         let mean = (first / share).clamp(DVec2::NEG_ONE, DVec2::ONE);
         Seen {
-            share: (share * 65536.0).round() as u32,
+            share: (share * WHOLE as f64).round() as u32,
             mean: (mean * one).to_array().map(|m| m.round() as i16),
         }
     };

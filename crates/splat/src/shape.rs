@@ -37,6 +37,25 @@ impl Shape {
         Self { rows, is_picture, open_area, mean, variance: square - mean * mean }
     }
 
+    /// Its parts in a grid of `side` × `side` cells of [−1, 1]², those without light left out.
+    pub fn parts(&self, side: usize) -> Vec<Part> {
+        let mut parts = vec![Part::default(); side * side];
+        let height = 2.0 / self.rows.len() as f64;
+        for (v, run) in with_middle(&self.rows) {
+            let row = (((v + 1.0) / 2.0 * side as f64) as usize).min(side - 1);
+            for (column, part) in parts[row * side..(row + 1) * side].iter_mut().enumerate() {
+                let [low, high] = [column, column + 1].map(|k| 2.0 * k as f64 / side as f64 - 1.0);
+                let (start, end) = (run.start.max(low), run.end.min(high));
+                if end > start {
+                    let size = DVec2::new(end - start, height);
+                    let share = size.x * size.y * run.transmission / self.open_area;
+                    part.add(share, DVec2::new((start + end) / 2.0, v), size);
+                }
+            }
+        }
+        parts.into_iter().filter(|part| part.share > 0.0).map(Part::about_its_mean).collect()
+    }
+
     /// Its rows from v = −1 up, of equal height.
     pub fn rows(&self) -> &[Vec<Run>] {
         &self.rows
@@ -68,6 +87,31 @@ impl Shape {
         }
         cells.iter_mut().filter(|(share, _)| *share > 0.0).for_each(|(share, mean)| *mean /= *share);
         cells
+    }
+}
+
+/// A part of an aperture.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Part {
+    /// Share of the open area.
+    pub share: f64,
+    /// Its mean.
+    pub mean: DVec2,
+    /// Its variance along each axis.
+    pub variance: DVec2,
+}
+
+impl Part {
+    fn add(&mut self, share: f64, center: DVec2, size: DVec2) {
+        self.share += share;
+        self.mean += share * center;
+        self.variance += share * (center * center + size * size / 12.0);
+    }
+
+    /// From sums of moments to mean and variance.
+    fn about_its_mean(self) -> Self {
+        let mean = self.mean / self.share;
+        Self { mean, variance: (self.variance / self.share - mean * mean).max(DVec2::ZERO), ..self }
     }
 }
 

@@ -74,6 +74,13 @@ impl ApertureInUse {
     }
 }
 
+impl ApertureInUse {
+    /// What nodes are drawn with.
+    fn pen<'a>(&'a self, nodes: &'a Nodes, lens: &LensInUse) -> Pen<'a> {
+        Pen::new(nodes, &self.stencils, &self.seen, self.stop, lens.is_exact)
+    }
+}
+
 impl Splatter {
     /// Prepares to render `salf`. The picture is black until [`Self::render`].
     pub fn new(salf: Arc<Salf>) -> Self {
@@ -118,10 +125,10 @@ impl Splatter {
 
     /// What the picture is drawn with: samples where they are nearly in focus, fewer nodes where they are not.
     pub fn drawn_nodes(&self) -> DrawnNodes {
-        let ApertureInUse { stencils, seen, stop, .. } = &self.aperture;
+        let (aperture, lens) = (&self.aperture, &self.lens);
         let count = |nodes| {
-            let pen = Pen::new(nodes, stencils, seen, *stop);
-            Scene { pen, lens: &self.lens, paint: &self.paint }.count()
+            let pen = aperture.pen(nodes, lens);
+            Scene { pen, lens, paint: &self.paint }.count()
         };
         self.nodes.as_ref().map_or_else(DrawnNodes::default, count)
     }
@@ -178,8 +185,8 @@ impl Splatter {
 
     fn try_sum(&mut self, progress: &dyn Progress) -> Result<(), SplatError> {
         let nodes = self.nodes.as_ref().ok_or(SplatError::Overflow)?;
-        let ApertureInUse { stencils, seen, stop, .. } = &self.aperture;
-        let scene = |paint| Scene { pen: Pen::new(nodes, stencils, seen, *stop), lens: &self.lens, paint };
+        let (aperture, lens) = (&self.aperture, &self.lens);
+        let scene = |paint| Scene { pen: aperture.pen(nodes, lens), lens, paint };
         let is_painted = !self.paint.is_standard();
         // Shares are those of the standard picture.
         let unpainted = Paint::default();
@@ -212,7 +219,8 @@ impl Splatter {
         let mut leaves: Vec<u32> =
             samples.iter().map(|&sample| nodes.node_of_sample[sample as usize]).collect();
         leaves.sort_unstable();
-        let ApertureInUse { stencils, seen, stop, .. } = &self.aperture;
+        let was_standard = self.paint.is_standard();
+        let (aperture, lens) = (&self.aperture, &self.lens);
         let height = self.salf.camera.height;
         let (mut removed, mut added) = (Vec::new(), Vec::new());
         let block_of = |leaf: &u32| nodes.block_of_node[*leaf as usize];
@@ -220,13 +228,13 @@ impl Splatter {
             let block = block_of(&leaves[0]) as usize;
             let before = self.paint.blocks[block].clone();
             self.paint.update(nodes, block, leaves, &self.salf.samples, focus);
-            let pen = Pen::new(nodes, stencils, seen, *stop);
-            let scene = Scene { pen, lens: &self.lens, paint: &self.paint };
+            let pen = aperture.pen(nodes, lens);
+            let scene = Scene { pen, lens, paint: &self.paint };
             if before.as_deref() != self.paint.of_block(block) {
                 compare(&scene, block, before.as_deref(), &mut removed, &mut added);
             }
         }
-        let pen = Pen::new(nodes, stencils, seen, *stop);
+        let pen = aperture.pen(nodes, lens);
         self.sums.add(&pen, &removed, -1);
         self.sums.add(&pen, &added, 1);
         let mut rows = height..0;
@@ -238,6 +246,9 @@ impl Splatter {
         }
         if nodes.scale != Scale::FINEST {
             return self.sum_again();
+        }
+        if was_standard != self.paint.is_standard() {
+            rows = 0..height;
         }
         match self.resolve(rows.clone()) {
             Ok(()) => Ok(rows),
@@ -264,7 +275,7 @@ impl Splatter {
         let width = self.salf.camera.width as usize;
         // The same chunks whatever rows are asked for.
         let chunks = rows.start as usize / RESOLVE_ROWS..(rows.end as usize).div_ceil(RESOLVE_ROWS);
-        let (sums, shares) = (&self.sums, &self.shares);
+        let (sums, shares, is_painted) = (&self.sums, &self.shares, !self.paint.is_standard());
         let radiance = self.picture.radiance.par_chunks_mut(RESOLVE_ROWS * width);
         let coverage = self.picture.coverage.par_chunks_mut(RESOLVE_ROWS * width);
         let all = radiance.zip(coverage).enumerate().skip(chunks.start).take(chunks.len());
@@ -272,7 +283,7 @@ impl Splatter {
             let of_chunk = chunk_rows(chunk, coverage.len() / width);
             let wanted = of_chunk.start.max(rows.start as i32)..of_chunk.end.min(rows.end as i32);
             let shares = &shares[wanted.start as usize * width..wanted.end as usize * width];
-            let lines: Lines = sums.picture(nodes, wanted.clone(), shares)?;
+            let lines: Lines = sums.picture(nodes, wanted.clone(), shares, is_painted)?;
             let first = (wanted.start - of_chunk.start) as usize * width;
             let out = radiance[first..].iter_mut().zip(&mut coverage[first..]);
             for ([r, g, b, covered], (radiance, coverage)) in lines.into_iter().zip(out) {

@@ -1,15 +1,13 @@
 //! Stencils: the aperture's image at every radius, cut to pixel rows once and used by all splats of that radius.
 //!
-//! A stencil's run says: in this pixel row, from here to there, this much light a quantum. Positions are in 1/256 px from
-//! the splat's centre, so that a splat costs a few integer operations a row. Radii are tabled in steps of 1/128 of
-//! themselves, the centre's height in eighths of a pixel.
+//! A stencil's run says: in this pixel row, from here to there, this much light a quantum. Positions are in 1/4096 px from
+//! the splat's centre, so that a splat costs a few integer operations a row. Radii are tabled in steps of 1/256 of
+//! themselves, the centre's height in 32nds of a pixel.
 
-use crate::shape::Shape;
+use crate::canvas::{PIXEL, POSITION_BITS};
+use crate::shape::{Part, Shape};
 use lens::Run;
 use std::sync::OnceLock;
-
-/// Bits behind the point of positions: 1/256 px.
-pub const POSITION_BITS: u32 = 8;
 
 /// Bits behind the point of the height of a splat of one pixel.
 pub const HEIGHT_BITS: u32 = 24;
@@ -18,14 +16,14 @@ pub const HEIGHT_BITS: u32 = 24;
 pub const LARGEST_RADIUS_PX: i32 = 64;
 
 /// Heights of the centre within a pixel.
-const PHASES: usize = 8;
+const PHASES: usize = 32;
 
 /// Light in one pixel row.
 #[derive(Clone, Copy, Debug)]
 pub struct StencilRun {
     /// The pixel row, from that of the centre.
     pub row: i32,
-    /// From where, in 1/256 px from the centre.
+    /// From where, in 1/4096 px from the centre.
     pub start: i32,
     /// To where.
     pub end: i32,
@@ -47,50 +45,60 @@ pub struct Stencil {
 /// All stencils of an aperture, made when they are first used.
 pub struct Stencils {
     pub shape: Shape,
+    /// Its parts, few and many.
+    pub parts: [Vec<Part>; 2],
     /// Far (upright) radii, then near ones.
     tables: [Vec<OnceLock<[Stencil; PHASES]>>; 2],
 }
 
-/// The place of a radius (1/256 px, ≥ 0) in the table: a float of seven bits.
+/// Bits behind the point of the table's radii.
+const RADIUS_BITS: u32 = 8;
+
+/// Bits of the table's radii below the leading one.
+const MANTISSA_BITS: u32 = 8;
+
+/// The place of a radius (1/256 px, ≥ 0) in the table: a float of eight bits, rounded.
 #[inline(always)]
 fn index_of(radius: u32) -> usize {
-    if radius < 256 {
-        return (radius as usize + 1) / 2;
-    }
-    let octave = radius.ilog2() - 8;
+    let octave = (radius | 1).ilog2().saturating_sub(MANTISSA_BITS);
+    let steps = (radius + (1 << octave) / 2) >> octave;
     // Rounding up to the next octave is its first place.
-    let mantissa = (radius + (1 << octave)) >> (octave + 1);
-    (octave as usize) * 128 + mantissa as usize
+    ((octave << MANTISSA_BITS) + steps) as usize
 }
 
 /// The radius, px, that a place of the table stands for.
 fn radius_at(index: usize) -> f64 {
-    if index < 128 {
-        return index as f64 / 128.0;
+    let one = 1usize << MANTISSA_BITS;
+    if index < 2 * one {
+        return index as f64 / 256.0;
     }
-    let (octave, mantissa) = ((index - 128) / 128, (index - 128) % 128 + 128);
-    mantissa as f64 / 128.0 * (1u64 << octave) as f64
+    let (octave, mantissa) = (index / one - 1, index % one + one);
+    mantissa as f64 / 256.0 * (1u64 << octave) as f64
 }
 
 impl Stencils {
     pub fn new(shape: Shape) -> Self {
-        let places = index_of((LARGEST_RADIUS_PX as u32) << POSITION_BITS) + 1;
+        let places = index_of((LARGEST_RADIUS_PX as u32) << RADIUS_BITS) + 1;
         let table = || (0..places).map(|_| OnceLock::new()).collect();
-        Self { shape, tables: [table(), table()] }
+        let parts = [2, 4].map(|side| shape.parts(side));
+        Self { shape, parts, tables: [table(), table()] }
     }
 
-    /// The stencil of a signed radius (1/256 px, at most [`LARGEST_RADIUS_PX`]) for a centre at the height `y` (1/256 px),
+    /// The stencil of a signed radius (1/4096 px, at most [`LARGEST_RADIUS_PX`]) for a centre at the height `y` (1/4096 px),
     /// and the pixel row of that centre.
     #[inline(always)]
     pub fn at(&self, radius: i32, y: i32) -> (&Stencil, i32) {
         let table = &self.tables[usize::from(radius < 0)];
-        let index = index_of(radius.unsigned_abs());
+        // Rounded to the table's bits.
+        let shift = POSITION_BITS - RADIUS_BITS;
+        let index = index_of((radius.unsigned_abs() + (1 << shift) / 2) >> shift);
         let stencils = table[index].get_or_init(|| {
             let radius_px = radius_at(index) * if radius < 0 { -1.0 } else { 1.0 };
             std::array::from_fn(|phase| self.cut(radius_px, phase as f64 / PHASES as f64))
         });
-        let rounded = y + (1 << POSITION_BITS) / (2 * PHASES as i32);
-        let phase = (rounded >> 5) as usize % PHASES;
+        let step = PIXEL / PHASES as i32;
+        let rounded = y + step / 2;
+        let phase = (rounded & (PIXEL - 1)) as usize / step as usize;
         (&stencils[phase], rounded >> POSITION_BITS)
     }
 
@@ -210,8 +218,8 @@ impl WeightedRun {
     fn quantised(&self, row: i32, height_bits: u32) -> Option<StencilRun> {
         let middle = (self.start + self.end) / 2.0;
         let half = ((self.end - self.start) / 2.0).max(NARROWEST_PX / 2.0);
-        let [start, end] = [middle - half, middle + half].map(|x| (x * 256.0).round() as i32);
-        let height = self.light / (end - start) as f64 * 256.0 * (1u64 << height_bits) as f64;
+        let [start, end] = [middle - half, middle + half].map(|x| (x * PIXEL as f64).round() as i32);
+        let height = self.light / (end - start) as f64 * PIXEL as f64 * (1u64 << height_bits) as f64;
         let v = (self.v * 16384.0).round() as i32;
         let height = height.round() as u32;
         (height > 0).then_some(StencilRun { row, start, end, height, v })
@@ -226,12 +234,14 @@ mod tests {
 
     #[test]
     fn places_of_the_table_invert() {
-        for index in 0..900 {
+        for index in 0..1800 {
             let radius = radius_at(index) * 256.0;
             assert_eq!(index_of(radius.round() as u32), index, "{radius}");
         }
-        let largest = (1..1u32 << 14).map(|r| (radius_at(index_of(r)) * 256.0 / r as f64 - 1.0).abs());
-        assert!(largest.skip(256).fold(0.0, f64::max) < 1.0 / 250.0);
+        for radius in 1..1u32 << 14 {
+            let apart = (radius_at(index_of(radius)) * 256.0 - radius as f64).abs();
+            assert!(apart <= radius as f64 / 511.0);
+        }
     }
 
     fn letter() -> ApertureShape {
@@ -247,12 +257,12 @@ mod tests {
         let mask = ApertureMask { width: 64, height: 64, transmission, file: String::new() };
         let stencils = Stencils::new(Shape::new(&ApertureShape::Mask(Arc::new(mask)).into()));
         for radius in [1.7, 3.0, 20.0, 60.0] {
-            let (stencil, base) = stencils.at((radius * 256.0f64) as i32, 128);
+            let (stencil, base) = stencils.at((radius * 4096.0f64) as i32, PIXEL / 2);
             let (mut light, mut mean) = (0.0, [0.0; 2]);
             for run in &stencil.runs {
                 let share = (run.end - run.start) as f64 * run.height as f64;
                 light += share;
-                mean[0] += share * (run.start + run.end) as f64 / 512.0;
+                mean[0] += share * (run.start + run.end) as f64 / 8192.0;
                 mean[1] += share * (base + run.row) as f64;
             }
             let wanted = [(50.5 / 32.0 - 1.0) * radius, -(1.0 - 5.5 / 32.0) * radius];
@@ -268,10 +278,11 @@ mod tests {
             let stencils = Stencils::new(Shape::new(&shape.clone().into()));
             for radius in [1.7, -2.2, 4.0, -11.3, 63.0] {
                 for y in [0.5, 0.125, 0.875] {
-                    let (stencil, base) = stencils.at((radius * 256.0f64).round() as i32, (y * 256.0) as i32);
+                    let (stencil, base) =
+                        stencils.at((radius * 4096.0f64).round() as i32, (y * 4096.0) as i32);
                     let (mut light, mut mean, mut square) = (0.0, [0.0; 2], [0.0; 2]);
                     for run in &stencil.runs {
-                        let [a, b] = [run.start, run.end].map(|x| x as f64 / 256.0);
+                        let [a, b] = [run.start, run.end].map(|x| x as f64 / PIXEL as f64);
                         let share = (b - a) * run.height as f64 / (1u64 << stencil.height_bits) as f64;
                         let down = (base + run.row) as f64 + 0.5 - y;
                         light += share;

@@ -219,15 +219,23 @@ impl Sums {
     /// The factors that a standard picture's sums give its pixel rows `rows`.
     pub fn shares(&self, nodes: &Nodes, rows: Range<i32>) -> Result<Vec<Share>, Overflow> {
         let (free, sharing) = (self.free.lines(nodes, rows.clone())?, self.sharing.lines(nodes, rows)?);
-        Ok(free.iter().zip(&sharing).map(|(free, sharing)| Share::of(free[3], sharing[3])).collect())
+        let shares = free.iter().zip(&sharing).map(|(free, sharing)| Share::of(free[3], sharing[3]));
+        Ok(shares.collect())
     }
 
-    /// The picture's pixel rows `rows`.
-    pub fn picture(&self, nodes: &Nodes, rows: Range<i32>, shares: &[Share]) -> Result<Lines, Overflow> {
+    /// The picture's pixel rows `rows`, evened out if nothing is painted.
+    pub fn picture(
+        &self,
+        nodes: &Nodes,
+        rows: Range<i32>,
+        shares: &[Share],
+        is_painted: bool,
+    ) -> Result<Lines, Overflow> {
         let mut lines = self.free.lines(nodes, rows.clone())?;
         let sharing = self.sharing.lines(nodes, rows)?;
         for ((pixel, sharing), share) in lines.iter_mut().zip(&sharing).zip(shares) {
-            (0..4).for_each(|c| pixel[c] = share.even * (pixel[c] + share.partial * sharing[c]));
+            let even = if is_painted { 1.0 } else { share.even };
+            (0..4).for_each(|c| pixel[c] = even * (pixel[c] + share.partial * sharing[c]));
         }
         Ok(lines)
     }

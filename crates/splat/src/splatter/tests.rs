@@ -108,3 +108,58 @@ fn too_bright_is_an_error() {
     let result = Splatter::new(Arc::new(salf)).render(&camera(), &standard(), &Unwatched);
     assert_eq!(result, Err(SplatError::Overflow));
 }
+
+/// The standard picture of a slanted wall is uniform, wherever its blur goes through 0.
+#[test]
+fn a_slanted_wall_is_covered_evenly() {
+    for (slope, limit) in [(0.0, 1e-5), (0.01, 0.005), (0.04, 0.01), (0.1, 0.015), (0.3, 0.04)] {
+        for across in [false, true] {
+            let found = ripple_of_wall(slope, slope, across);
+            assert!(found < limit, "slope {slope}, {across}: {found}");
+        }
+    }
+    assert!(ripple_of_wall(0.3, 0.0, false) > 0.02, "weights that ignore the slope");
+}
+
+/// The largest difference of the coverage from 1 in the middle of a wall whose splat radius changes by `slope` px a px.
+fn ripple_of_wall(slope: f64, tilt: f64, across: bool) -> f64 {
+    const SIDE: u32 = 120;
+    const MARGIN: i32 = 48;
+    let camera =
+        Camera { width: SIDE, height: SIDE, focus_distance: 2.0, aperture_radius: 0.1, ..Camera::default() };
+    let per_kappa = camera.optics().splat_radius_px(1.0);
+    let mut samples = Vec::new();
+    for y in -MARGIN..SIDE as i32 + MARGIN {
+        for x in -MARGIN..SIDE as i32 + MARGIN {
+            let center = DVec2::new(x as f64 + 0.5, y as f64 + 0.5);
+            let along = if across { center.y } else { center.x };
+            let radius = slope * (along - 51.3);
+            let tilt = if across { Vec2::new(0.0, -tilt as f32) } else { Vec2::new(tilt as f32, 0.0) };
+            samples.push(Sample {
+                center: center.as_vec2(),
+                half_size: Vec2::splat(0.5),
+                inverse_depth: (0.5 - radius / per_kappa) as f32,
+                weight: 1.0,
+                tilt,
+                radiance: Vec3::ONE,
+                surface: None,
+                visibility: Visibility::Open,
+            });
+        }
+    }
+    let mut splatter = Splatter::new(Arc::new(Salf { camera: camera.clone(), margin_px: 48, samples }));
+    splatter.render(&camera, &standard(), &Unwatched).unwrap();
+    let coverage = &splatter.picture().coverage;
+    if std::env::var_os("SHOW").is_some() {
+        for x in 20..100 {
+            let along = if across { x * 120 + 60 } else { 60 * 120 + x };
+            println!(
+                "{slope} {across} x {x} r {:.3}: {:.5}",
+                slope * (x as f64 + 0.5 - 51.3),
+                coverage[along]
+            );
+        }
+    }
+    let inside = |k: &usize| [k % 120, k / 120].iter().all(|c| (20..100).contains(c));
+    (0..coverage.len()).filter(inside).map(|k| (coverage[k] as f64 - 1.0).abs()).fold(0.0, f64::max)
+}
