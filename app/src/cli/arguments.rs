@@ -168,9 +168,10 @@ pub struct RenderArguments {
     #[arg(long, value_enum, default_value_t = BackendName::Auto)]
     pub backend: BackendName,
     /// How coarse, in pixels, the light field may be: what partly hidden points see of the aperture, and which samples
-    /// are joined where they are out of focus. Smaller is more exact and slower; 0 joins none
-    #[arg(long, value_name = "PX", default_value_t = 2.0, value_parser = not_negative)]
-    pub tolerance: f64,
+    /// are joined where they are out of focus. Smaller is more exact and slower; 0 joins none (default: 2 for the first, 0
+    /// for the second)
+    #[arg(long, value_name = "PX", value_parser = not_negative)]
+    pub tolerance: Option<f64>,
     /// Rays a pixel of the ground truth
     #[arg(long, value_name = "N", default_value_t = 64, value_parser = clap::value_parser!(u32).range(1..=1 << 20))]
     pub spp: u32,

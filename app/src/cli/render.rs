@@ -11,6 +11,7 @@ use session::{
     Aov, Input, LayeredOptions, RenderOptions, Rendered, Renderer, ScatterOptions, SessionError,
     ViewsOptions, render_input,
 };
+use splat::Tolerance;
 use std::time::Instant;
 use trace::truth::{Estimator, Sampler, TruthOptions};
 
@@ -30,8 +31,10 @@ pub fn run(arguments: &RenderArguments, console: &Console) -> Result<(), Failure
     let (camera, focus) = shot(&input, &arguments.shot, console)?;
     let open_seconds = start.elapsed().as_secs_f64();
 
+    let default = RenderOptions::default();
     let options = RenderOptions {
-        tolerance_px: arguments.tolerance,
+        tolerance_px: arguments.tolerance.unwrap_or(default.tolerance_px),
+        splat_tolerance: arguments.tolerance.map_or(default.splat_tolerance, Tolerance::px),
         renderer,
         truth: truth_options(arguments),
         layered: LayeredOptions { layers: arguments.layers },

@@ -6,7 +6,7 @@ use focus::Focus;
 use lens::{Camera, Picture};
 use salf::Salf;
 use session::{RenderOptions, Renderer, SessionError, Steps, bake, render};
-use splat::Splatter;
+use splat::{Splatter, Tolerance};
 use std::sync::Arc;
 use trace::Tracer;
 
@@ -134,7 +134,10 @@ impl Contender {
     fn options(&self) -> RenderOptions {
         let mut options = RenderOptions { renderer: self.kind(), ..RenderOptions::default() };
         match *self {
-            Self::Splat { tolerance_px } => options.tolerance_px = tolerance_px,
+            Self::Splat { tolerance_px } => {
+                options.tolerance_px = tolerance_px;
+                options.splat_tolerance = Tolerance::px(tolerance_px);
+            }
             Self::Truth { samples_per_pixel } => {
                 options.truth.samples_per_pixel = samples_per_pixel;
                 options.truth.seed = MEASURED_SEED;
@@ -155,6 +158,7 @@ impl Contender {
         match *self {
             Self::Splat { .. } => from_light_field(shot, &options, steps, |salf| {
                 let mut splatter = Splatter::new(salf.clone());
+                splatter.set_tolerance(options.splat_tolerance);
                 splatter.render(shot.camera, shot.focus, &*steps.begin("splatting"))?;
                 Ok(splatter.picture().clone())
             }),

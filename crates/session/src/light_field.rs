@@ -7,7 +7,7 @@ use focus::Focus;
 use lens::{Camera, Picture};
 use progress::Progress;
 use salf::BakeOptions;
-use splat::{SplatError, Splatter};
+use splat::{SplatError, Splatter, Tolerance};
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -101,7 +101,11 @@ impl LightField {
         Ok(Self {
             index: SampleIndex::new(&salf, &stage.atlas),
             modelled: Modelled::with_texels(&salf, &stage.tracer, Some(&stage.texels.texels)),
-            splatter: Splatter::new(salf),
+            splatter: {
+                let mut splatter = Splatter::new(salf);
+                splatter.set_tolerance(Tolerance::VIEWING);
+                splatter
+            },
             summed: None,
             unseen: Changes::default(),
             whole_seconds: f64::INFINITY,

@@ -78,9 +78,10 @@ pub struct RenderOptions {
     pub renderer: Renderer,
     /// How the ray tracer samples. Its region must be the frame.
     pub truth: TruthOptions,
-    /// How coarse the light field may be, px (see [`BakeOptions::tolerance_px`]), and its splat (see
-    /// [`Tolerance::px`]).
+    /// How coarse the light field may be, px (see [`BakeOptions::tolerance_px`]).
     pub tolerance_px: f64,
+    /// How coarse its splat may be.
+    pub splat_tolerance: Tolerance,
     /// How [`Renderer::Layers`] cuts the picture.
     pub layered: LayeredOptions,
     /// What [`Renderer::Views`] captures.
@@ -97,6 +98,7 @@ impl Default for RenderOptions {
             renderer: Renderer::Splat,
             truth: TruthOptions { samples_per_pixel: 64, ..TruthOptions::default() },
             tolerance_px: BakeOptions::TOLERANCE_PX,
+            splat_tolerance: Tolerance::NONE,
             layered: LayeredOptions::default(),
             views: ViewsOptions::default(),
             scatter: ScatterOptions::default(),
@@ -280,7 +282,7 @@ fn sum_light_field(
         baselines::scatter(&salf, camera, focus, &options.scatter, &*steps.begin("scattering"))?
     } else {
         let mut splatter = Splatter::new(salf);
-        splatter.set_tolerance(Tolerance::px(options.tolerance_px));
+        splatter.set_tolerance(options.splat_tolerance);
         splatter.render(camera, focus, &*steps.begin("splatting"))?;
         splatter.picture().clone()
     };
