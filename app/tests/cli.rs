@@ -409,7 +409,7 @@ fn strokes_are_replayed_onto_a_new_project() {
     let brush = focus::Brush { radius: 0.3, target: lens::FocusOffset::new(1.4, 0.5), ..Default::default() };
     let points = (0..20).map(|k| [0.3 + 0.02 * k as f64, 0.5, 1.0]).collect();
     let stroke = project::RecordedStroke { layer: "Paint".into(), brush, view, points };
-    project::write_strokes(&place.path("strokes.json"), &[stroke.clone()]).unwrap();
+    project::write_strokes(&place.path("strokes.json"), std::slice::from_ref(&stroke)).unwrap();
     let told = place.json("replay quads.fbrush strokes.json -o painted.fbrush --json");
     assert_eq!((told["painted"].as_u64(), told["points"].as_u64()), (Some(1), Some(20)));
     let painted = ProjectFile::load(&place.path("painted.fbrush")).unwrap();

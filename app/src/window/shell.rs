@@ -488,9 +488,9 @@ impl Shell {
 /// Where the user's own files go when nothing says where: documents, else home, else here.
 fn own_folder() -> PathBuf {
     let folders = directories::UserDirs::new();
-    let own = folders.and_then(|folders| {
+    let own = folders.map(|folders| {
         let documents = folders.document_dir().filter(|folder| folder.is_dir());
-        Some(documents.unwrap_or(folders.home_dir()).to_path_buf())
+        documents.unwrap_or(folders.home_dir()).to_path_buf()
     });
     own.or_else(|| std::env::current_dir().ok()).unwrap_or_default()
 }

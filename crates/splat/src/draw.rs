@@ -350,7 +350,7 @@ impl<'a> Pen<'a> {
         for run in &stencil.runs {
             let span = [image.center[0] + run.start, image.center[0] + run.end].map(i64::from);
             self.seen_runs(image, cells, base + run.row, run.v, span, |start, end, weight| {
-                passing += (((end - start) * run.height as i64) >> POSITION_BITS) * weight >> 14;
+                passing += ((((end - start) * run.height as i64) >> POSITION_BITS) * weight) >> 14;
             });
         }
         // `passing` is times 2 to the stencil's height bits.
@@ -546,10 +546,10 @@ impl Image<'_> {
         let dither = self.dither.wrapping_add(row.wrapping_mul(0x9E37_79B1));
         let dither = (dither ^ dither >> 15).wrapping_mul(0x2C1B_3C6D) as i64 >> (32 - HEIGHT_BITS);
         let dither = dither << (bits - HEIGHT_BITS);
-        let mut value = [0; 4];
         let height = (height * self.share) >> 24;
-        for c in 0..4 {
-            value[c] = (self.light[c] * height + dither) >> bits;
+        let mut value = self.light;
+        for light in &mut value {
+            *light = (*light * height + dither) >> bits;
         }
         value
     }

@@ -231,7 +231,7 @@ fn convert(node: &Node, scale: Scale) -> Option<SplatNode> {
     let share = |part: f32| (part / weight * ONE as f32).round() as i16;
     let density = weight / (4.0 * half_size[0] * half_size[1] / (PIXEL * PIXEL) as f32);
     let brightness = node.radiance.max_element().max(1.0) * density.max(1.0);
-    if !(brightness <= BRIGHTEST) {
+    if brightness > BRIGHTEST || brightness.is_nan() {
         return None;
     }
     let is_bright = brightness > BRIGHT;
