@@ -35,7 +35,7 @@ impl ReportOptions {
     /// Height of the pictures unless a size is given, px.
     pub const HEIGHT: u32 = 180;
     /// Rays a pixel of the references unless asked otherwise.
-    pub const REFERENCE_SPP: u32 = 4096;
+    pub const REFERENCE_SPP: u32 = 1024;
     /// The same for a quick report.
     pub const QUICK_REFERENCE_SPP: u32 = 512;
     /// Fewest rays a pixel of a reference: two halves are compared.

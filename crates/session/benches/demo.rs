@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use salf::BakeOptions;
 use scene::{LoadOptions, SurfaceField, SurfacePoint};
 use slf::DirectLight;
-use splat::Splatter;
+use splat::{Splatter, Tolerance};
 use std::collections::HashSet;
 use std::path::Path;
 use std::sync::Arc;
@@ -71,30 +71,45 @@ fn main() {
     let (open, partial, bytes) = (counts.open, counts.partial, counts.bytes as f64 / (1 << 20) as f64);
     println!("  {open} open and {partial} partly occluded samples, {bytes:.0} MiB");
 
+    let start = Instant::now();
     let mut splatter = Splatter::new(Arc::new(salf));
-    let mut render = |focus: &dyn SurfaceField<FocusOffset>| {
-        let start = Instant::now();
-        splatter.render(&camera, focus, &Unwatched).expect("in range");
-        start.elapsed().as_secs_f64()
-    };
+    report("hierarchy over the samples", start.elapsed().as_secs_f64());
+    let [tree, sums] = splatter.bytes().map(|bytes| bytes >> 20);
+    println!("  {tree} MiB of nodes, {sums} MiB of sums");
     let standard = focus::FocusRecipe::default().evaluate(&scene).expect("empty recipes fit");
-    report("full splat, unpainted", render(&standard));
-    report("full splat, painted", render(&focus));
+    let mut exact: Vec<Picture> = Vec::new();
+    for (name, tolerance) in [("exact", Tolerance::NONE), ("viewing", Tolerance::VIEWING)] {
+        splatter.set_tolerance(tolerance);
+        for (index, (what, focus)) in [("unpainted", &standard), ("painted", &focus)].into_iter().enumerate()
+        {
+            let mut times = [Vec::new(), Vec::new()];
+            for _ in 0..3 {
+                times[0].push(seconds(|| splatter.render(&camera, focus, &Unwatched).expect("in range")));
+                times[1].push(seconds(|| splatter.refocus(&camera, &Unwatched).expect("in range")));
+            }
+            let [render, refocus] = times.map(|times| median(times.into_iter()));
+            report(&format!("{name}, {what}: full splat"), render);
+            report(&format!("{name}, {what}: another lens"), refocus);
+            match exact.get(index) {
+                None => exact.push(splatter.picture().clone()),
+                Some(exact) => println!("  {:.1} dB against exact", psnr(splatter.picture(), exact)),
+            }
+        }
+    }
     let painted = splatter.picture().clone();
 
     let dab = dab_samples(&splatter, width as f32, height as f32);
     let points = dab.iter().filter_map(|&index| splatter.salf().samples[index as usize].surface.map(key));
     let dabbed = Dabbed { focus: &focus, points: points.collect() };
     let mut update = |focus: &dyn SurfaceField<FocusOffset>| {
-        let start = Instant::now();
-        splatter.update(focus, &dab).expect("in range");
-        start.elapsed().as_secs_f64()
+        seconds(|| drop(splatter.update(focus, &dab).expect("in range")))
     };
-    let seconds = median((0..21).map(|k| if k % 2 == 0 { update(&dabbed) } else { update(&focus) }));
-    report(&format!("dab of {} samples", dab.len()), seconds);
+    let dab_seconds = median((0..21).map(|k| if k % 2 == 0 { update(&dabbed) } else { update(&focus) }));
+    report(&format!("viewing, dab of {} samples", dab.len()), dab_seconds);
     let after_dab = splatter.picture().clone();
 
     let mut fresh = Splatter::new(splatter.salf().clone());
+    fresh.set_tolerance(Tolerance::VIEWING);
     fresh.render(&camera, &dabbed, &Unwatched).expect("in range");
     check("a dab equals a render from scratch", fresh.picture() == &after_dab);
     check("the dab shows", after_dab != painted);
@@ -104,6 +119,19 @@ fn main() {
         fresh.picture().clone()
     });
     check(&format!("1 thread equals {threads}"), one_thread == painted);
+}
+
+/// PSNR in dB on values clipped to [0, 1].
+fn psnr(a: &Picture, b: &Picture) -> f64 {
+    let pairs = a.radiance.iter().flatten().zip(b.radiance.iter().flatten());
+    let square: f64 = pairs.map(|(a, b)| (a.clamp(0.0, 1.0) - b.clamp(0.0, 1.0)).powi(2) as f64).sum();
+    -10.0 * (square / (3 * a.radiance.len()) as f64).log10()
+}
+
+fn seconds(work: impl FnOnce()) -> f64 {
+    let start = Instant::now();
+    work();
+    start.elapsed().as_secs_f64()
 }
 
 /// The samples nearest to a point of the fox.
