@@ -232,7 +232,7 @@ pub struct ReportArguments {
     pub output: PathBuf,
     #[command(flatten)]
     pub shot: ShotArguments,
-    /// Rays a pixel of the reference pictures (default: 4096, with --quick 512)
+    /// Rays a pixel of the reference pictures (default: 1024, with --quick 512)
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=1 << 20))]
     pub spp: Option<u32>,
     /// Measure only a few points of every sweep
