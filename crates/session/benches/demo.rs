@@ -102,7 +102,9 @@ fn main() {
     let points = dab.iter().filter_map(|&index| splatter.salf().samples[index as usize].surface.map(key));
     let dabbed = Dabbed { focus: &focus, points: points.collect() };
     let mut update = |focus: &dyn SurfaceField<FocusOffset>| {
-        seconds(|| drop(splatter.update(focus, &dab).expect("in range")))
+        seconds(|| {
+            splatter.update(focus, &dab).expect("in range");
+        })
     };
     let dab_seconds = median((0..21).map(|k| if k % 2 == 0 { update(&dabbed) } else { update(&focus) }));
     report(&format!("viewing, dab of {} samples", dab.len()), dab_seconds);
