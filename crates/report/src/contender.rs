@@ -156,16 +156,15 @@ impl Contender {
         let colour = size_of::<[f32; 3]>();
         let options = self.options();
         match *self {
-            Self::Splat { .. } => from_light_field(shot, &options, steps, |salf| {
-                let mut splatter = Splatter::new(salf.clone());
-                splatter.set_tolerance(options.splat_tolerance);
-                splatter.render(shot.camera, shot.focus, &*steps.begin("splatting"))?;
-                Ok(splatter.picture().clone())
-            }),
-            Self::Scatter { .. } => from_light_field(shot, &options, steps, |salf| {
-                let progress = steps.begin("scattering");
-                Ok(scatter(salf, shot.camera, shot.focus, &options.scatter, &*progress)?)
-            }),
+            Self::Splat { .. } => splat(shot, &options, steps),
+            Self::Scatter { .. } => {
+                let (baked, salf) = light_field(shot, &options, steps)?;
+                let drawn = timed(|| {
+                    let progress = steps.begin("scattering");
+                    Ok(scatter(&salf, shot.camera, shot.focus, &options.scatter, &*progress)?)
+                })?;
+                Ok(from_light_field(&salf, baked, drawn, salf.statistics().bytes))
+            }
             Self::Truth { .. } => whole(shot, &options, shot.tracer.bytes(), steps),
             // A colour and a defocus a pixel.
             Self::Blur | Self::Layers { .. } => {
@@ -198,22 +197,43 @@ fn whole(
     })
 }
 
-/// A renderer that bakes a light field once and draws every picture from it.
-fn from_light_field(
+/// The splat: what it makes of the light field once counts as baked, each further lens is a picture.
+fn splat(shot: Shot<'_>, options: &RenderOptions, steps: &dyn Steps) -> Result<Drawn, SessionError> {
+    let (baked, salf) = light_field(shot, options, steps)?;
+    let prepared = timed(|| {
+        let mut splatter = Splatter::new(salf.clone());
+        splatter.set_tolerance(options.splat_tolerance);
+        splatter.render(shot.camera, shot.focus, &*steps.begin("splatting"))?;
+        Ok(splatter)
+    })?;
+    let mut splatter = prepared.value;
+    let drawn = timed(|| {
+        splatter.refocus(shot.camera, &*steps.begin("splatting"))?;
+        Ok(splatter.picture().clone())
+    })?;
+    let first = (prepared.seconds - drawn.seconds).max(0.0);
+    let bytes = salf.statistics().bytes + splatter.bytes().iter().sum::<usize>();
+    Ok(from_light_field(&salf, baked + first, drawn, bytes))
+}
+
+/// Bakes the light field, and how long that took, s.
+fn light_field(
     shot: Shot<'_>,
     options: &RenderOptions,
     steps: &dyn Steps,
-    draw: impl Fn(&Arc<Salf>) -> Result<Picture, SessionError>,
-) -> Result<Drawn, SessionError> {
+) -> Result<(f64, Arc<Salf>), SessionError> {
     let baked = timed(|| bake(shot.tracer, shot.camera, shot.focus, options.tolerance_px, steps))?;
-    let salf = Arc::new(baked.value);
-    let Timed { value: picture, seconds, repeats } = timed(|| draw(&salf))?;
-    Ok(Drawn {
-        picture,
-        bake_seconds: Some(baked.seconds),
-        picture_seconds: seconds,
-        repeats,
-        bytes: salf.statistics().bytes,
+    Ok((baked.seconds, Arc::new(baked.value)))
+}
+
+/// A picture of a renderer that bakes a light field once and draws every picture from it.
+fn from_light_field(salf: &Salf, bake_seconds: f64, drawn: Timed<Picture>, bytes: usize) -> Drawn {
+    Drawn {
+        picture: drawn.value,
+        bake_seconds: Some(bake_seconds),
+        picture_seconds: drawn.seconds,
+        repeats: drawn.repeats,
+        bytes,
         samples: Some(salf.samples.len()),
-    })
+    }
 }
