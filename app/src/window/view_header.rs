@@ -98,6 +98,7 @@ fn picture_header(ui: &mut Ui, session: &Session, picture: &mut PictureView, act
     if let Some(percent) = picture.percent(session, ui.ctx().pixels_per_point()).filter(|p| p.is_finite())
         && ui.available_width() > PERCENT_WIDTH
     {
-        ui.add(egui::Label::new(egui::RichText::new(format!("{percent:.0} %")).weak()).extend()).on_hover_text("Screen pixels of a picture pixel.");
+        ui.add(egui::Label::new(egui::RichText::new(format!("{percent:.0} %")).weak()).extend())
+            .on_hover_text("Screen pixels of a picture pixel.");
     }
 }
