@@ -256,5 +256,5 @@ fn convert(node: &Node, scale: Scale) -> Option<SplatNode> {
     })
 }
 
-/// Light of one row.
+/// Red, green, blue and coverage, in quanta.
 pub type Light = Pixel<i64>;

@@ -150,16 +150,6 @@ fn ripple_of_wall(slope: f64, tilt: f64, across: bool) -> f64 {
     let mut splatter = Splatter::new(Arc::new(Salf { camera: camera.clone(), margin_px: 48, samples }));
     splatter.render(&camera, &standard(), &Unwatched).unwrap();
     let coverage = &splatter.picture().coverage;
-    if std::env::var_os("SHOW").is_some() {
-        for x in 20..100 {
-            let along = if across { x * 120 + 60 } else { 60 * 120 + x };
-            println!(
-                "{slope} {across} x {x} r {:.3}: {:.5}",
-                slope * (x as f64 + 0.5 - 51.3),
-                coverage[along]
-            );
-        }
-    }
     let inside = |k: &usize| [k % 120, k / 120].iter().all(|c| (20..100).contains(c));
     (0..coverage.len()).filter(inside).map(|k| (coverage[k] as f64 - 1.0).abs()).fold(0.0, f64::max)
 }
