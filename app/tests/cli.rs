@@ -401,7 +401,7 @@ fn strokes_are_replayed_onto_a_new_project() {
     let project = ProjectFile::load(&place.path("quads.fbrush")).unwrap();
     assert!(project.focus_map.is_some() && project.cameras[0].camera.width == 96);
     let camera = &project.cameras[0].camera;
-    let view = project::ViewFrame {
+    let view = focus::ViewFrame {
         camera_to_world: camera.camera_to_world,
         yfov: camera.yfov,
         aspect: camera.aspect(),
@@ -409,7 +409,8 @@ fn strokes_are_replayed_onto_a_new_project() {
     let brush = focus::Brush { radius: 0.3, target: lens::FocusOffset::new(1.4, 0.5), ..Default::default() };
     let points = (0..20).map(|k| [0.3 + 0.02 * k as f64, 0.5, 1.0]).collect();
     let stroke = project::RecordedStroke { layer: "Paint".into(), brush, view, points };
-    project::write_strokes(&place.path("strokes.json"), std::slice::from_ref(&stroke)).unwrap();
+    let recorded = |stroke: &project::RecordedStroke| [project::RecordedStep::Stroke(stroke.clone())];
+    project::write_strokes(&place.path("strokes.json"), &recorded(&stroke)).unwrap();
     let told = place.json("replay quads.fbrush strokes.json -o painted.fbrush --json");
     assert_eq!((told["painted"].as_u64(), told["points"].as_u64()), (Some(1), Some(20)));
     let painted = ProjectFile::load(&place.path("painted.fbrush")).unwrap();
@@ -419,6 +420,6 @@ fn strokes_are_replayed_onto_a_new_project() {
     assert_eq!(again.focus_map, painted.focus_map);
     place.fails("replay quads.fbrush strokes.json -o painted.json", 2, &[".fbrush"]);
     let lost = project::RecordedStroke { layer: "nowhere".into(), ..stroke };
-    project::write_strokes(&place.path("lost.json"), &[lost]).unwrap();
-    place.fails("replay quads.fbrush lost.json -o x.fbrush", 3, &["lost.json", "stroke 1", "nowhere"]);
+    project::write_strokes(&place.path("lost.json"), &recorded(&lost)).unwrap();
+    place.fails("replay quads.fbrush lost.json -o x.fbrush", 3, &["lost.json", "step 1", "nowhere"]);
 }

@@ -28,7 +28,7 @@ pub enum Subcommand {
     Info(InfoArguments),
     /// Make a project of a scene, with a camera and a focus to begin with
     New(NewArguments),
-    /// Paint recorded strokes (`Export strokes…` in the window writes them) on a project or a scene
+    /// Paint what was recorded (`Export strokes…` in the window writes it) on a project or a scene
     Replay(ReplayArguments),
     /// Write a scene with the atlas as its second UV set (TEXCOORD_1)
     Unwrap(UnwrapArguments),

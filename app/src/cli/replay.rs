@@ -5,15 +5,16 @@ use super::console::{Console, say_json};
 use super::failure::Failure;
 use super::new::check_project_name;
 use super::shot::{check_folder, unwrap_options};
+use project::RecordedStep;
 use serde_json::json;
 use session::{Document, InputKind, replay};
 use std::time::Instant;
 
-/// Paints recorded strokes on a project or a scene and saves it as a project.
+/// Does recorded steps on a project or a scene and saves it as a project.
 pub fn run(arguments: &ReplayArguments, console: &Console) -> Result<(), Failure> {
     check_project_name(&arguments.output)?;
     check_folder(&arguments.output)?;
-    let strokes = project::read_strokes(&arguments.strokes)?;
+    let steps = project::read_strokes(&arguments.strokes)?;
     let unwrap = unwrap_options(None);
     let mut document = match InputKind::of(&arguments.file)? {
         InputKind::Scene => Document::begin(&arguments.file, None, None, &unwrap, console)?,
@@ -21,7 +22,7 @@ pub fn run(arguments: &ReplayArguments, console: &Console) -> Result<(), Failure
     };
     console.warn(&document.warnings);
     let start = Instant::now();
-    let painted = replay(&mut document, &strokes)
+    let painted = replay(&mut document, &steps)
         .map_err(|error| Failure::bad(format!("{}: {error}", arguments.strokes.display())))?;
     let seconds = start.elapsed().as_secs_f64();
     document.to_project().save(&arguments.output)?;
@@ -29,17 +30,25 @@ pub fn run(arguments: &ReplayArguments, console: &Console) -> Result<(), Failure
         say_json(&json!({
             "input": arguments.file,
             "files": [arguments.output],
-            "strokes": strokes.len(),
+            "steps": steps.len(),
             "painted": painted,
-            "points": strokes.iter().map(|stroke| stroke.points.len()).sum::<usize>(),
+            "points": steps.iter().map(points).sum::<usize>(),
             "seconds": { "paint": seconds },
         }));
     } else {
         console.note(&format!(
-            "wrote {}: {painted} of {} strokes painted",
+            "wrote {}: {painted} of {} steps changed it",
             arguments.output.display(),
-            strokes.len()
+            steps.len()
         ));
     }
     Ok(())
+}
+
+/// Points of a stroke.
+fn points(step: &RecordedStep) -> usize {
+    match step {
+        RecordedStep::Stroke(stroke) => stroke.points.len(),
+        _ => 0,
+    }
 }

@@ -1,15 +1,14 @@
 //! The help windows: every shortcut by the command table, and what this program is.
 
+use super::{keys, navigation};
 use egui::{Align2, Context, Grid, RichText, ScrollArea, Window};
 use session::{COMMANDS, Menu};
 
 /// Pointer gestures, which no command table knows.
-const GESTURES: [(&str, &str); 9] = [
+const GESTURES: [(&str, &str); 7] = [
     ("Left drag", "paint, in either view"),
+    ("Shift+click", "draw a straight line from the last stroke"),
     ("Esc during a stroke", "take the stroke back"),
-    ("Middle drag, Alt+left drag", "turn the paint view; slide the picture"),
-    ("Shift+middle drag, Shift+Alt+left drag", "slide the paint view"),
-    ("Ctrl+middle drag", "bring the paint view nearer"),
     ("Wheel, pinch", "come nearer, in either view"),
     ("Double click with the middle button", "fit the picture"),
     ("Drop a file on the window", "open it"),
@@ -34,10 +33,14 @@ impl Help {
         let shortcuts = shortcuts.pivot(Align2::CENTER_CENTER).default_pos(middle);
         shortcuts.collapsible(false).show(context, |ui| {
             ScrollArea::vertical().auto_shrink([false; 2]).show(ui, |ui| {
-                table(ui, "Mouse and pen", GESTURES.iter().map(|(key, what)| (key.to_string(), *what)));
+                let map = keys::map(ui.ctx());
+                ui.label(format!("Keys and mouse as in {} (View menu).", map.name()));
+                let gestures = GESTURES.into_iter().chain(navigation::gestures(map));
+                table(ui, "Mouse and pen", gestures.map(|(key, what)| (key.to_string(), what)));
                 for menu in Menu::ALL {
                     let rows = COMMANDS.iter().filter(|info| info.menu == menu);
-                    let rows = rows.filter_map(|info| Some((info.shortcut?.to_string(), info.tooltip)));
+                    let rows =
+                        rows.filter_map(|info| Some((map.shortcut(info.id)?.to_string(), info.tooltip)));
                     table(ui, menu.title(), rows);
                 }
             });

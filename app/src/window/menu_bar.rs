@@ -1,7 +1,7 @@
 //! The menus, straight from the command table.
 
 use super::inspector::is_layer_command_possible;
-use super::{Action, ViewSettings};
+use super::{Action, ViewSettings, keys};
 use egui::{Button, Ui};
 use session::{COMMANDS, CommandId, CommandInfo, Document, Menu};
 
@@ -45,6 +45,8 @@ fn begins_group(id: CommandId) -> bool {
             | PictureFit
             | ShowFocus
             | ResetLayout
+            | KeysBlender
+            | SelectAll
             | FillPart
             | DuplicateLayer
             | RaiseLayer
@@ -52,7 +54,7 @@ fn begins_group(id: CommandId) -> bool {
             | AddMask
             | FocusHere
             | ResetMap
-            | BrushLarger
+            | BrushSize
             | BrushNearer
             | FocusNearer
             | CameraFromView
@@ -69,8 +71,9 @@ fn item(ui: &mut Ui, info: &CommandInfo, state: &MenuState<'_>, actions: &mut Ve
         _ => info.name.to_string(),
     };
     let mut button = Button::new(name);
-    if let Some(shortcut) = info.shortcut {
-        button = button.shortcut_text(shortcut.to_string());
+    let key = keys::text(ui.ctx(), info.id);
+    if !key.is_empty() {
+        button = button.shortcut_text(key);
     }
     let response = ui.add_enabled(is_possible(info.id, state), button).on_hover_text(info.tooltip);
     if response.on_disabled_hover_text(info.tooltip).clicked() {
@@ -87,7 +90,11 @@ fn with_what(name: &str, what: Option<&str>) -> String {
 pub fn is_possible(id: CommandId, state: &MenuState<'_>) -> bool {
     use CommandId::*;
     match id {
-        Open | OpenDemo | Quit | ResetLayout | Palette | Shortcuts | About => true,
+        Open | OpenDemo | Quit | ResetLayout | KeysBlender | KeysSubstance | KeysKrita | Palette
+        | Shortcuts | About => true,
+        SelectAll | InvertSelection | MaskFromSelection => {
+            state.document.is_some_and(|document| document.selection.is_some())
+        }
         Undo => state.document.is_some_and(|document| document.undo_name().is_some()),
         Redo => state.document.is_some_and(|document| document.redo_name().is_some()),
         Stop => state.working,

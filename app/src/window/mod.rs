@@ -4,31 +4,36 @@
 //! * `paint_view`: the scene in 3D in the colours of its blur. `picture_view`: the refocused picture.
 //!   Both are painted on by the same pointer code.
 //! * `inspector`, `tool_bar`, `menu_bar`, `status_line`: read the document and emit [`Action`]s.
-//! * `palette`, `shortcuts`, `help`, `menu_bar`: views of the one command table in `session`.
+//! * `palette`, `keys`, `help`, `menu_bar`: views of the one command table in `session`.
+//! * `pointer`, `drag_tool`, `brush_gesture`, `navigation`: what pointer and pen do.
 //! * `file_dialog`, `unsaved_question`, `toasts`: what the window asks and tells.
 
 mod action;
+mod brush_gesture;
 mod brush_ring;
 mod controls;
 pub(crate) mod demo;
+mod drag_tool;
 mod false_colour;
 mod file_dialog;
 mod focus_slider;
 mod help;
 mod inspector;
+mod keys;
 mod layout;
 mod menu_bar;
+mod navigation;
 mod paint_view;
 mod palette;
 mod picture_view;
 mod pointer;
 mod shell;
-mod shortcuts;
 mod status_line;
 mod theme;
 mod toasts;
 mod tool;
 mod tool_bar;
+mod tool_settings;
 mod unsaved_question;
 mod view_header;
 mod view_settings;

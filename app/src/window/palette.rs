@@ -82,7 +82,7 @@ impl Palette {
 }
 
 fn row(ui: &mut egui::Ui, info: &CommandInfo, chosen: bool) -> egui::Response {
-    let shortcut = info.shortcut.map(|key| key.to_string()).unwrap_or_default();
+    let shortcut = super::keys::text(ui.ctx(), info.id);
     let label = format!("{}: {}", info.menu.title(), info.name);
     let layout = egui::Layout::top_down_justified(egui::Align::LEFT);
     let button = egui::Button::selectable(chosen, label).right_text(RichText::new(shortcut).weak());

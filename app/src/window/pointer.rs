@@ -3,21 +3,28 @@
 //! A stroke is told in the view's own terms: where in it the pen is. So it can be recorded and painted again.
 
 use super::brush_ring::BrushRing;
-use super::{Action, Tool};
-use egui::{Event, PointerButton, Pos2, Response, Ui};
-use glam::DVec2;
-use project::ViewFrame;
-use session::{Command, FillRegion, Session, StrokePoint, StrokeTarget, view_ray};
-use trace::Ray;
+use super::drag_tool::{Drag, DragView, combine};
+use super::tool_settings::ToolSettings;
+use super::{Action, Tool, navigation};
+use egui::{Event, Modifiers, PointerButton, Pos2, Response, Ui};
+use focus::{Combine, ViewFrame};
+use glam::{DVec2, DVec3};
+use lens::FocusOffset;
+use project::SelectionShape;
+use session::{Command, FillRegion, Session, StrokePoint, StrokeTarget, SurfaceHit, view_ray};
 
 /// How far apart the points of a straight line are told, screen points.
 const LINE_STEP: f32 = 4.0;
 
 /// What the user holds.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Hand {
     /// The tool.
     pub tool: Tool,
+    /// What it is set to.
+    pub settings: ToolSettings,
+    /// Whether pointer and keys set up the brush now, and do nothing else.
+    pub is_busy: bool,
     /// The ring that shows where it paints.
     pub ring: Option<BrushRing>,
     /// Length of the string by which the pointer pulls the brush, points.
@@ -28,6 +35,10 @@ pub struct Hand {
 #[derive(Default)]
 pub struct StrokeInput {
     painting: bool,
+    /// The drag of a tool that is dragged.
+    drag: Option<Drag>,
+    /// Where cloning takes the focus from, until the first stroke says where it goes.
+    clone_from: Option<DVec3>,
     /// Where the brush is: on the string behind the pointer.
     brush: Option<Pos2>,
     /// Where the last stroke ended, and in which view: a straight line may go on from there.
@@ -42,12 +53,15 @@ impl StrokeInput {
         ui: &Ui,
         response: &Response,
         session: &Session,
-        hand: Hand,
+        hand: &Hand,
         frame: ViewFrame,
         position: impl Fn(Pos2) -> DVec2,
     ) -> Vec<Action> {
         let mut actions = Vec::new();
         let Some(document) = session.document() else { return actions };
+        if hand.is_busy {
+            return actions;
+        }
         // The modifiers of the press itself: a frame may hold more than one event.
         let pressed = ui.input(|input| {
             let press = |event: &Event| match event {
@@ -61,21 +75,50 @@ impl StrokeInput {
         let down = ui.input(|input| input.pointer.primary_down());
         let pressure = ui.input(|input| pen_pressure(&input.events));
         let point = |at| StrokePoint { at: StrokeTarget::View(frame, position(at)), pressure };
+        let view = DragView { frame, position: &position };
+        if let Some(drag) = &mut self.drag {
+            if ui.input(|input| input.key_pressed(egui::Key::Escape)) {
+                self.drag = None;
+                return actions;
+            }
+            if let Some(at) = response.interact_pointer_pos().filter(|_| response.dragged()) {
+                actions.extend(drag.extend(at, session, &hand.settings, &view));
+            }
+            if !down && let Some(drag) = self.drag.take() {
+                actions.extend(drag.end(session, &hand.settings, &view));
+            }
+            return actions;
+        }
         if self.painting && !session.is_painting() {
             // Taken back meanwhile, by Esc or undo: the rest of the drag paints nothing.
             self.painting = false;
         }
-        let plain = pressed.is_some_and(|modifiers| !modifiers.alt && !modifiers.command);
-        let start = response.is_pointer_button_down_on() && plain;
-        if start && let Some(at) = response.interact_pointer_pos() {
+        let own = |modifiers: &Modifiers| {
+            let picks = hand.tool.selects() || hand.tool == Tool::Clone;
+            !navigation::claims_primary(ui.ctx(), *modifiers) && (picks || !modifiers.command)
+        };
+        let start = pressed.filter(own).filter(|_| response.is_pointer_button_down_on());
+        if let (Some(modifiers), Some(at)) = (start, response.interact_pointer_pos()) {
             response.request_focus();
             let tool = hand.tool;
-            if tool.paints() {
-                let mode = tool.mode(document.brush.mode);
-                if mode != document.brush.mode {
-                    actions.push(Command::SetBrush(focus::Brush { mode, ..document.brush.clone() }).into());
+            let hit = || session.pick(&view_ray(&frame, position(at)));
+            if tool == Tool::Clone && modifiers.command {
+                self.clone_from = hit().map(|hit| hit.position).or(self.clone_from);
+            } else if tool.paints() {
+                let mut brush = document.brush.clone();
+                brush.mode = tool.mode(brush.mode);
+                if let Some((from, to)) = self.clone_from.take_if(|_| tool == Tool::Clone).zip(hit()) {
+                    brush.clone_offset = (from - to.position).to_array();
                 }
-                let line = pressed.is_some_and(|modifiers| modifiers.shift);
+                if tool == Tool::Clone && brush.clone_offset == [0.0; 3] {
+                    let what = "Clone: nothing to paint yet (Ctrl+click takes the focus from a place first)";
+                    actions.push(Action::Complain(what.into()));
+                    return actions;
+                }
+                if brush != document.brush {
+                    actions.push(Command::SetBrush(brush).into());
+                }
+                let line = modifiers.shift;
                 let from =
                     self.last_end.filter(|(view, _)| line && *view == frame).map_or(at, |(_, end)| end);
                 actions.push(Command::BeginStroke(point(from)).into());
@@ -86,8 +129,13 @@ impl StrokeInput {
                 }
                 self.painting = true;
                 self.brush = Some(at);
-            } else {
-                actions.extend(click(session, tool, &view_ray(&frame, position(at))));
+            } else if tool.drags() {
+                self.drag = Some(Drag::begin(tool, modifiers, at, session, &view));
+            } else if let Some(hit) = hit() {
+                let target = document.brush.target;
+                let front = document.scene().area_normal(hit.point.triangle).normalize_or_zero();
+                let facing = SelectionShape::Normal { normal: front, degrees: hand.settings.facing_degrees };
+                actions.extend(click(tool, hit, target, facing, combine(modifiers)));
             }
             return actions;
         }
@@ -118,6 +166,15 @@ impl StrokeInput {
     }
 }
 
+impl StrokeInput {
+    /// Draws the drag that goes on.
+    pub fn paint(&self, ui: &Ui, clip: egui::Rect) {
+        if let Some(drag) = &self.drag {
+            drag.paint(&ui.painter_at(clip));
+        }
+    }
+}
+
 /// Where the brush comes to lie when the pointer pulls it by a string: it stays while the string is slack.
 fn pulled(brush: Option<Pos2>, pointer: Pos2, string: f32) -> Pos2 {
     let Some(brush) = brush.filter(|_| string > 0.0) else { return pointer };
@@ -135,17 +192,27 @@ fn pen_pressure(events: &[Event]) -> f32 {
     events.iter().rev().find_map(force).map_or(1.0, |force| force.clamp(0.0, 1.0))
 }
 
-/// What a tool that does not paint does where it is clicked.
-fn click(session: &Session, tool: Tool, ray: &Ray) -> Option<Action> {
-    let target = session.document()?.brush.target;
-    let hit = session.pick(ray)?;
+/// What a tool that is clicked does where it is.
+fn click(
+    tool: Tool,
+    hit: SurfaceHit,
+    target: FocusOffset,
+    facing: SelectionShape,
+    combine: Combine,
+) -> Option<Action> {
+    let select = |region| Command::SelectRegion(region, combine);
     let command = match tool {
         Tool::FillObject => Command::Fill(FillRegion::Node(hit), target),
         Tool::FillMaterial => Command::Fill(FillRegion::Material(hit), target),
         Tool::FillChart => Command::Fill(FillRegion::Chart(hit), target),
+        Tool::SharpHere => Command::Fill(FillRegion::Node(hit), FocusOffset::SHARP),
+        Tool::SelectObject => select(FillRegion::Node(hit)),
+        Tool::SelectMaterial => select(FillRegion::Material(hit)),
+        Tool::SelectChart => select(FillRegion::Chart(hit)),
+        Tool::SelectFacing => Command::Select(facing, combine),
         Tool::FocusHere => Command::FocusHere(hit),
         Tool::Pick => Command::Pick(hit),
-        Tool::Brush | Tool::Smooth | Tool::Sharpen | Tool::Reset => return None,
+        _ => return None,
     };
     Some(command.into())
 }

@@ -7,8 +7,10 @@
 //! A frame first takes up what happened, then draws everything from the document as it is; what is asked for is collected in a
 //! list of [`Action`]s and carried out at the end.
 
-use super::brush_ring::BrushRing;
 mod commands;
+
+use super::brush_gesture::BrushGesture;
+use super::brush_ring::BrushRing;
 
 use super::file_dialog::{FileDialog, Purpose};
 use super::help::Help;
@@ -21,10 +23,10 @@ use super::picture_view::{PictureView, Shown};
 use super::pointer::Hand;
 use super::status_line::{Hover, StatusNotes, status_line};
 use super::toasts::{Severity, Toasts};
-use super::tool_bar::{signed_circle_px, tool_bar};
+use super::tool_bar::{largest_radius, signed_circle_px, tool_bar};
 use super::unsaved_question::{Answer, Next, UnsavedQuestion};
 use super::view_header::{HeaderState, view_header};
-use super::{Action, Tool, ViewSettings, WindowOptions, demo, shortcuts, theme};
+use super::{Action, Tool, ViewSettings, WindowOptions, demo, keys, theme};
 use eframe::{CreationContext, Frame, Storage};
 use egui::{CentralPanel, Context, Panel, Ui, ViewportCommand};
 use egui_tiles::Tree;
@@ -55,6 +57,7 @@ pub struct Shell {
     toasts: Toasts,
     palette: Palette,
     help: Help,
+    gesture: BrushGesture,
     dialog: FileDialog,
     question: UnsavedQuestion,
     /// What waits for a save to end well.
@@ -98,6 +101,7 @@ impl Shell {
             toasts: Toasts::default(),
             palette: Palette::default(),
             help: Help::default(),
+            gesture: BrushGesture::default(),
             dialog: FileDialog::new(options.system_dialogs),
             question: UnsavedQuestion::default(),
             after_save: None,
@@ -130,6 +134,11 @@ impl Shell {
     /// The picture view.
     pub fn picture_view(&self) -> &PictureView {
         &self.picture
+    }
+
+    /// How things are shown.
+    pub fn settings(&self) -> &ViewSettings {
+        &self.settings
     }
 
     /// The chosen tool.
@@ -285,6 +294,11 @@ impl Shell {
                         self.paint.map_changed(document, columns, rows);
                     }
                 }
+                Event::SelectionChanged => {
+                    if let Some(document) = self.session.document() {
+                        self.paint.selection_changed(document);
+                    }
+                }
                 Event::ReferenceReady(ReferenceKind::Truth) => self.picture.show(Shown::Truth),
                 Event::ReferenceReady(_) | Event::Verified => {}
                 Event::Written(path) => self.written(path, context),
@@ -390,11 +404,23 @@ impl Shell {
         if self.palette.is_open() || self.dialog.is_open() || self.question.is_open() {
             return;
         }
+        if self.gesture.has_input() {
+            self.set_up_brush(context);
+            return;
+        }
         let escape = context.input(|input| input.key_pressed(egui::Key::Escape));
         if escape && self.session.is_painting() {
             actions.push(Command::AbortStroke.into());
         }
-        actions.extend(shortcuts::pressed(context).into_iter().map(Action::Run));
+        actions.extend(keys::pressed(context).into_iter().map(Action::Run));
+    }
+
+    /// The pointer and the keys set a number of the brush.
+    fn set_up_brush(&mut self, context: &Context) {
+        let Some(document) = self.session.document() else { return };
+        if let Some(brush) = self.gesture.update(context, largest_radius(document)) {
+            self.apply(Command::SetBrush(brush));
+        }
     }
 
     fn perform(&mut self, actions: Vec<Action>, context: &Context) {
@@ -450,15 +476,21 @@ impl Shell {
     }
 
     fn views(&mut self, ui: &mut Ui, actions: &mut Vec<Action>) {
-        let hand = Hand { tool: self.tool, ring: self.ring(), string: self.settings.stabiliser };
+        let hand = Hand {
+            tool: self.tool,
+            settings: self.settings.tools.clone(),
+            is_busy: self.gesture.has_input(),
+            ring: self.ring(),
+            string: self.settings.stabiliser,
+        };
         let Self { layout, paint, picture, session, settings, .. } = self;
         let mut panes = Panes {
             pane_ui: |ui: &mut Ui, pane: Pane| {
                 ui.spacing_mut().item_spacing.y = 0.0;
                 let dragged = view_header(ui, pane, session, HeaderState { settings, picture }, actions);
                 match pane {
-                    Pane::Paint => paint.ui(ui, session, hand, settings.look(), actions),
-                    Pane::Picture => picture.ui(ui, session, hand, settings.display_stops, actions),
+                    Pane::Paint => paint.ui(ui, session, &hand, settings.look(), actions),
+                    Pane::Picture => picture.ui(ui, session, &hand, settings.display_stops, actions),
                 }
                 dragged
             },
@@ -505,6 +537,7 @@ impl eframe::App for Shell {
     fn ui(&mut self, ui: &mut Ui, _frame: &mut Frame) {
         let context = ui.ctx().clone();
         let mut actions = Vec::new();
+        keys::obey(&context, self.settings.key_map);
         self.dropped_files(&context);
         self.keys(&context, &mut actions);
         Panel::top("menu").show(ui, |ui| {
@@ -527,7 +560,7 @@ impl eframe::App for Shell {
                 ui,
                 |ui| {
                     let hover = self.hovered();
-                    self.inspector.ui(ui, &self.session, &mut self.settings, hover, &mut actions);
+                    self.inspector.ui(ui, &self.session, self.tool, &mut self.settings, hover, &mut actions);
                 },
             );
         }

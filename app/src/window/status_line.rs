@@ -1,5 +1,6 @@
 //! One line at the bottom: what is being worked on, how fast, and what to try.
 
+use super::inspector::selected;
 use super::{Action, controls};
 use egui::{Align, Layout, ProgressBar, Ui};
 use session::{Command, JobStatus, PreviewKind, Session};
@@ -49,8 +50,15 @@ pub fn status_line(ui: &mut Ui, session: &Session, notes: StatusNotes<'_>, actio
             }
         }
         if let Some(document) = session.document() {
-            ui.label(format!("undo {}", controls::bytes(document.undo_bytes())))
-                .on_hover_text("Memory that the undo steps hold.");
+            let [held, budget] = document.undo_bytes().map(controls::bytes);
+            ui.label(format!("undo {held} of {budget}")).on_hover_text(
+                "Memory that the steps of undo hold, and may hold before the oldest are forgotten.",
+            );
+            if document.selection.is_some() {
+                ui.separator();
+                ui.label(format!("painting {}", selected(document)))
+                    .on_hover_text("Only what is selected can be painted (Select menu).");
+            }
             ui.separator();
         }
         if notes.drawing {

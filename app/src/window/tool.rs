@@ -13,6 +13,8 @@ pub enum Tool {
     Smooth,
     /// Strokes that make ramps into steps.
     Sharpen,
+    /// Strokes that paint the focus of another place.
+    Clone,
     /// Strokes that give the ordinary lens back, or take the layer's mask away.
     Reset,
     /// A click fills the object.
@@ -21,6 +23,24 @@ pub enum Tool {
     FillMaterial,
     /// A click fills the piece of the atlas.
     FillChart,
+    /// A drag draws a gradient.
+    Gradient,
+    /// A click makes the object sharp.
+    SharpHere,
+    /// A line around what may be painted.
+    SelectLasso,
+    /// A box around what may be painted.
+    SelectBox,
+    /// A click lets the object be painted.
+    SelectObject,
+    /// A click lets the material be painted.
+    SelectMaterial,
+    /// A click lets the piece of the atlas be painted.
+    SelectChart,
+    /// A click lets be painted what faces alike.
+    SelectFacing,
+    /// A drag from the nearest to the farthest that may be painted.
+    SelectDepth,
     /// A click focuses the lens there.
     FocusHere,
     /// A click takes the focus from there.
@@ -28,9 +48,25 @@ pub enum Tool {
 }
 
 impl Tool {
-    /// Those in the tool bar, left to right.
-    pub const BAR: [Tool; 6] =
-        [Tool::Brush, Tool::Smooth, Tool::Reset, Tool::FillObject, Tool::FocusHere, Tool::Pick];
+    /// Those in the tool bar, left to right: families, of which the chosen one is shown, the first otherwise.
+    pub const BAR: [&[Tool]; 8] = [
+        &[Tool::Brush],
+        &[Tool::Smooth, Tool::Sharpen],
+        &[Tool::Clone],
+        &[Tool::Reset],
+        &[Tool::FillObject, Tool::FillMaterial, Tool::FillChart, Tool::SharpHere],
+        &[Tool::Gradient],
+        &[
+            Tool::SelectLasso,
+            Tool::SelectBox,
+            Tool::SelectObject,
+            Tool::SelectMaterial,
+            Tool::SelectChart,
+            Tool::SelectFacing,
+            Tool::SelectDepth,
+        ],
+        &[Tool::FocusHere, Tool::Pick],
+    ];
 
     /// The command that chooses it.
     pub fn command(self) -> CommandId {
@@ -38,13 +74,28 @@ impl Tool {
             Tool::Brush => CommandId::Brush,
             Tool::Smooth => CommandId::Smooth,
             Tool::Sharpen => CommandId::Sharpen,
+            Tool::Clone => CommandId::Clone,
             Tool::Reset => CommandId::Erase,
             Tool::FillObject => CommandId::FillPart,
             Tool::FillMaterial => CommandId::FillMaterial,
             Tool::FillChart => CommandId::FillChart,
+            Tool::Gradient => CommandId::Gradient,
+            Tool::SharpHere => CommandId::SharpHere,
+            Tool::SelectLasso => CommandId::SelectLasso,
+            Tool::SelectBox => CommandId::SelectBox,
+            Tool::SelectObject => CommandId::SelectObject,
+            Tool::SelectMaterial => CommandId::SelectMaterial,
+            Tool::SelectChart => CommandId::SelectChart,
+            Tool::SelectFacing => CommandId::SelectFacing,
+            Tool::SelectDepth => CommandId::SelectDepth,
             Tool::FocusHere => CommandId::FocusHere,
             Tool::Pick => CommandId::Pick,
         }
+    }
+
+    /// The tool that a command chooses.
+    pub fn of(id: CommandId) -> Option<Self> {
+        Self::BAR.into_iter().flatten().copied().find(|tool| tool.command() == id)
     }
 
     /// Its word in the tool bar.
@@ -53,18 +104,48 @@ impl Tool {
             Tool::Brush => "Brush",
             Tool::Smooth => "Smooth",
             Tool::Sharpen => "Sharpen",
+            Tool::Clone => "Clone",
             Tool::Reset => "Reset",
             Tool::FillObject => "Fill",
             Tool::FillMaterial => "Fill material",
             Tool::FillChart => "Fill chart",
+            Tool::Gradient => "Gradient",
+            Tool::SharpHere => "Make sharp",
+            Tool::SelectLasso => "Lasso",
+            Tool::SelectBox => "Box",
+            Tool::SelectObject => "Select object",
+            Tool::SelectMaterial => "Select material",
+            Tool::SelectChart => "Select chart",
+            Tool::SelectFacing => "Select facing",
+            Tool::SelectDepth => "Select depth",
             Tool::FocusHere => "Focus here",
             Tool::Pick => "Pick",
         }
     }
 
-    /// Whether it paints strokes; else a click does it.
+    /// Whether it is dragged from one place to another.
+    pub fn drags(self) -> bool {
+        matches!(self, Tool::Gradient | Tool::SelectLasso | Tool::SelectBox | Tool::SelectDepth)
+    }
+
+    /// Whether it chooses what may be painted.
+    pub fn selects(self) -> bool {
+        use Tool::*;
+        matches!(
+            self,
+            SelectLasso
+                | SelectBox
+                | SelectObject
+                | SelectMaterial
+                | SelectChart
+                | SelectFacing
+                | SelectDepth
+        )
+    }
+
+    /// Whether it paints strokes.
     pub fn paints(self) -> bool {
-        matches!(self, Tool::Brush | Tool::Smooth | Tool::Sharpen | Tool::Reset)
+        matches!(self, Tool::Brush | Tool::Smooth | Tool::Sharpen | Tool::Clone | Tool::Reset)
     }
 
     /// The brush mode of its strokes; `chosen` is the Brush tool's own.
@@ -72,6 +153,7 @@ impl Tool {
         match self {
             Tool::Smooth => BrushMode::Smooth,
             Tool::Sharpen => BrushMode::Sharpen,
+            Tool::Clone => BrushMode::Clone,
             Tool::Reset => BrushMode::Reset,
             _ => chosen,
         }
@@ -85,10 +167,24 @@ impl Tool {
             }
             Tool::Smooth => "Drag in either view to even out the focus.",
             Tool::Sharpen => "Drag in either view to turn soft changes of focus into hard ones.",
+            Tool::Clone => {
+                "Ctrl+click takes the focus from a place, then drag: the brush paints it elsewhere."
+            }
             Tool::Reset => "Drag in either view to give the ordinary lens back.",
             Tool::FillObject => "Click an object in either view to give it the chosen focus.",
             Tool::FillMaterial => "Click a material in either view to give it the chosen focus.",
             Tool::FillChart => "Click a chart in either view to give it the chosen focus.",
+            Tool::Gradient => {
+                "Drag a line in either view: the chosen focus at its start leads to what is there, or another."
+            }
+            Tool::SharpHere => "Click an object in either view to make it sharp; everything else stays.",
+            Tool::SelectLasso | Tool::SelectBox => {
+                "Drag around what may be painted; all else is frozen. Shift adds, Ctrl takes away."
+            }
+            Tool::SelectObject | Tool::SelectMaterial | Tool::SelectChart | Tool::SelectFacing => {
+                "Click what may be painted; all else is frozen. Shift adds, Ctrl takes away."
+            }
+            Tool::SelectDepth => "Drag from the nearest to the farthest thing that may be painted.",
             Tool::FocusHere => "Click in either view to focus the lens there.",
             Tool::Pick => "Click in either view to take the focus from there.",
         }

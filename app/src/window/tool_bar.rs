@@ -1,7 +1,7 @@
 //! The tools and the brush's three numbers, always at hand.
 
 use super::focus_slider::focus_slider;
-use super::{Action, Tool, controls};
+use super::{Action, Tool, controls, keys};
 use egui::{Button, Ui};
 use focus::Brush;
 use lens::{FocusOffset, Optics};
@@ -10,17 +10,8 @@ use session::{Command, Document};
 /// Draws the tool bar.
 pub fn tool_bar(ui: &mut Ui, document: Option<&Document>, tool: Tool, actions: &mut Vec<Action>) {
     ui.horizontal(|ui| {
-        for candidate in Tool::BAR {
-            let chosen = candidate == tool
-                || (candidate == Tool::Smooth && tool == Tool::Sharpen)
-                || (candidate == Tool::FillObject && matches!(tool, Tool::FillMaterial | Tool::FillChart));
-            let label = if chosen { tool.label() } else { candidate.label() };
-            let info = candidate.command().info();
-            let response = ui.add(Button::selectable(chosen, label));
-            let key = info.shortcut.map(|key| format!(" ({key})")).unwrap_or_default();
-            if response.on_hover_text(format!("{}{key}", info.tooltip)).clicked() {
-                actions.push(candidate.command().into());
-            }
+        for family in Tool::BAR {
+            tool_button(ui, family, tool, actions);
         }
         let Some(document) = document else { return };
         ui.separator();
@@ -48,6 +39,31 @@ pub fn tool_bar(ui: &mut Ui, document: Option<&Document>, tool: Tool, actions: &
             .on_hover_text("The blur that the brush paints, on the full-size picture.");
         push_brush(document, brush, actions);
     });
+}
+
+/// The button of a family of tools: the chosen one, or the first; a right click shows them all.
+fn tool_button(ui: &mut Ui, family: &[Tool], tool: Tool, actions: &mut Vec<Action>) {
+    let chosen = family.contains(&tool);
+    let shown = if chosen { tool } else { family[0] };
+    let response = ui.add(Button::selectable(chosen, shown.label()));
+    let tip = keys::tip(ui.ctx(), shown.command());
+    let more = if family.len() > 1 { "\nRight click for others of its kind." } else { "" };
+    let response = response.on_hover_text(format!("{tip}{more}"));
+    if response.clicked() {
+        actions.push(shown.command().into());
+    }
+    if family.len() > 1 {
+        response.context_menu(|ui| {
+            for tool in family {
+                let key = keys::text(ui.ctx(), tool.command());
+                let button = Button::new(tool.label()).shortcut_text(key);
+                if ui.add(button).on_hover_text(tool.command().info().tooltip).clicked() {
+                    actions.push(tool.command().into());
+                    ui.close();
+                }
+            }
+        });
+    }
 }
 
 /// Sends the brush if it changed.

@@ -2,7 +2,7 @@
 
 use super::layout::Pane;
 use super::picture_view::{PictureView, Shown};
-use super::{Action, ViewSettings, controls};
+use super::{Action, ViewSettings, controls, keys};
 use egui::{Button, Ui};
 use session::{CommandId, Session};
 
@@ -78,20 +78,17 @@ fn choose_picture(ui: &mut Ui, name: &str, shown: &mut Shown) {
 fn picture_header(ui: &mut Ui, session: &Session, picture: &mut PictureView, actions: &mut Vec<Action>) {
     choose_picture(ui, "Shown picture", &mut picture.shown);
     let mut wiping = picture.wipe.is_on;
-    let key = CommandId::Wipe.info().shortcut.map(|key| format!(" ({key})")).unwrap_or_default();
-    let tip = format!("{}{key}", CommandId::Wipe.info().tooltip);
+    let tip = keys::tip(ui.ctx(), CommandId::Wipe);
     if ui.checkbox(&mut wiping, "Compare").on_hover_text(tip).changed() {
         actions.push(CommandId::Wipe.into());
     }
     ui.add_enabled_ui(wiping, |ui| choose_picture(ui, "Compared picture", &mut picture.wipe.against));
-    let verify = CommandId::Verify.info();
-    let key = verify.shortcut.map(|key| format!(" ({key})")).unwrap_or_default();
     let response = ui.add(Button::selectable(picture.verify.is_selecting(), "Verify"));
-    if response.on_hover_text(format!("{}{key}", verify.tooltip)).clicked() {
-        actions.push(verify.id.into());
+    if response.on_hover_text(keys::tip(ui.ctx(), CommandId::Verify)).clicked() {
+        actions.push(CommandId::Verify.into());
     }
     for (id, label) in [(CommandId::PictureFit, "Fit"), (CommandId::PictureActualSize, "100 %")] {
-        if ui.add(Button::new(label)).on_hover_text(id.info().tooltip).clicked() {
+        if ui.add(Button::new(label)).on_hover_text(keys::tip(ui.ctx(), id)).clicked() {
             actions.push(id.into());
         }
     }

@@ -1,7 +1,9 @@
 //! How things are shown. Kept between runs, not part of any document.
 
 use super::paint_view::SurfaceLook;
+use super::tool_settings::ToolSettings;
 use serde::{Deserialize, Serialize};
+use session::KeyMap;
 use std::path::{Path, PathBuf};
 
 /// Files that the Open recent menu remembers.
@@ -23,6 +25,10 @@ pub struct ViewSettings {
     pub display_stops: f32,
     /// Length of the string by which the pointer pulls the brush, points: 0 is none, more is steadier.
     pub stabiliser: f32,
+    /// Whose keys and mouse buttons are obeyed.
+    pub key_map: KeyMap,
+    /// What the tools are set to.
+    pub tools: ToolSettings,
     /// Files opened lately, the latest first.
     pub recent: Vec<PathBuf>,
     /// Whether the hint of the first start was put away.
@@ -39,6 +45,8 @@ impl Default for ViewSettings {
             preview_size: 640,
             display_stops: 0.0,
             stabiliser: 0.0,
+            key_map: KeyMap::default(),
+            tools: ToolSettings::default(),
             recent: Vec::new(),
             hint_seen: false,
         }

@@ -1,9 +1,13 @@
 //! The window, acted on by pointer and keys, headless.
 
+mod accessible;
 mod acting;
+mod commands;
 mod comparing;
 mod controls;
 mod documents;
+mod dragging;
+mod key_maps;
 mod layers;
 mod painting;
 mod small_scene;

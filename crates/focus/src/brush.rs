@@ -1,6 +1,6 @@
 //! The brush: what a dab does to the texels under it.
 
-use glam::DVec3;
+use crate::Symmetry;
 use lens::FocusOffset;
 use serde::{Deserialize, Serialize};
 
@@ -23,6 +23,8 @@ pub struct Brush {
     /// What is set; for adding and subtracting, t − 1 and anchor are what a full dab adds.
     #[serde(with = "FocusOffsetFields")]
     pub target: FocusOffset,
+    /// Where, from each painted point, cloning takes the focus from; world units.
+    pub clone_offset: [f64; 3],
     /// Which of the two numbers it touches.
     pub channels: Channels,
     /// What t is kept within, lowest and highest, by adding and subtracting.
@@ -33,7 +35,9 @@ pub struct Brush {
     /// Whether every dab is also painted mirrored: left and right (x), up and down (y), front and back (z), about
     /// `mirror_center`; several at once give all combinations.
     pub mirror: [bool; 3],
-    /// What is mirrored about, world.
+    /// How often every dab is painted around the vertical through `mirror_center`, in [1, 64]; 1 is once.
+    pub radial: u32,
+    /// What is mirrored and turned about, world.
     pub mirror_center: [f64; 3],
     /// How much a light pen weakens a dab: 0 not at all, 1 down to nothing.
     pub pressure_to_strength: f64,
@@ -56,6 +60,8 @@ pub enum BrushMode {
     Smooth,
     /// Makes ramps steeper, up to a step; dabs build up.
     Sharpen,
+    /// Moves them to what stood elsewhere, by `clone_offset`, when the stroke began. As [`Self::Set`].
+    Clone,
     /// Moves them back to the standard lens; on a map with a mask, takes the mask away. As [`Self::Set`].
     Reset,
 }
@@ -106,10 +112,12 @@ impl Default for Brush {
             spacing: 0.25,
             mode: BrushMode::Set,
             target: FocusOffset::SHARP,
+            clone_offset: [0.0; 3],
             channels: Channels::Both,
             offset_limits: [0.0, 2.0],
             normal_limit_degrees: 90.0,
             mirror: [false; 3],
+            radial: 1,
             mirror_center: [0.0; 3],
             pressure_to_strength: 1.0,
             pressure_to_radius: 0.0,
@@ -135,7 +143,8 @@ impl Brush {
             _ if !(0.0..=180.0).contains(&self.normal_limit_degrees) => {
                 Some("normal_limit_degrees must be in [0, 180]")
             }
-            _ if !self.mirror_center.iter().all(|x| x.is_finite()) => Some("mirror_center must be finite"),
+            _ if !self.clone_offset.iter().all(|x| x.is_finite()) => Some("clone_offset must be finite"),
+            _ if !self.symmetry().is_valid() => Some("mirror_center must be finite, radial in [1, 64]"),
             _ if !unit.contains(&self.pressure_to_strength) => Some("pressure_to_strength must be in [0, 1]"),
             _ if !unit.contains(&self.pressure_to_radius) => Some("pressure_to_radius must be in [0, 1]"),
             _ => None,
@@ -150,6 +159,7 @@ impl Brush {
             BrushMode::Subtract => "Subtract stroke",
             BrushMode::Smooth => "Smooth stroke",
             BrushMode::Sharpen => "Sharpen stroke",
+            BrushMode::Clone => "Clone stroke",
             BrushMode::Reset => "Reset stroke",
         }
     }
@@ -167,14 +177,9 @@ impl Brush {
         }
     }
 
-    /// A direction turned into each of the mirrored ones: itself first, signs along the axes.
-    pub(crate) fn mirror_signs(&self) -> impl Iterator<Item = DVec3> + use<> {
-        let mirror = self.mirror;
-        (0..8u8).filter_map(move |bits| {
-            let flips = [0, 1, 2].map(|axis| bits >> axis & 1 == 1);
-            let wanted = (0..3).all(|axis| mirror[axis] || !flips[axis]);
-            wanted.then(|| DVec3::from_array(flips.map(|flipped| if flipped { -1.0 } else { 1.0 })))
-        })
+    /// Where else every dab, fill and gradient is painted.
+    pub fn symmetry(&self) -> Symmetry {
+        Symmetry { mirror: self.mirror, radial: self.radial, center: self.mirror_center }
     }
 
     /// The radius of a dab at a pen pressure.
@@ -196,7 +201,9 @@ fn response(share: f64, pen: PenSample) -> f64 {
 /// How [`FocusOffset`] is written.
 #[derive(Serialize, Deserialize)]
 #[serde(remote = "FocusOffset", deny_unknown_fields)]
-struct FocusOffsetFields {
+pub struct FocusOffsetFields {
+    /// The focus offset.
     t: f64,
+    /// What it is relative to, in [0, 1].
     anchor: f64,
 }

@@ -124,12 +124,35 @@ impl Canvas {
 
     /// The texel nearest to `center` among those that `accept` lets through, if its centroid is no further
     /// away than its own size (the side of a square of its area).
-    pub(crate) fn nearest(&self, center: DVec3, accept: impl Fn(&CanvasTexel) -> bool) -> Option<usize> {
+    pub fn nearest(&self, center: DVec3, accept: impl Fn(&CanvasTexel) -> bool) -> Option<usize> {
+        let reach = |texel: &CanvasTexel| texel.area.sqrt() as f32;
+        self.nearest_where(center, self.largest_texel as f64, |texel, distance| {
+            distance <= reach(texel) && accept(texel)
+        })
+    }
+
+    /// The texel nearest to `center`, at most `radius` away: sought in ever wider spheres, the first as wide as `guess`.
+    pub(crate) fn nearest_within(&self, center: DVec3, guess: f64, radius: f64) -> Option<usize> {
+        let mut reach = guess.max(radius * 1e-3).min(radius);
+        loop {
+            let found = self.nearest_where(center, reach, |_, _| true);
+            if found.is_some() || reach >= radius {
+                return found;
+            }
+            reach = (2.0 * reach).min(radius);
+        }
+    }
+
+    fn nearest_where(
+        &self,
+        center: DVec3,
+        radius: f64,
+        accept: impl Fn(&CanvasTexel, f32) -> bool,
+    ) -> Option<usize> {
         let mut best: Option<(f32, usize)> = None;
-        self.within(center, self.largest_texel as f64, |index, distance| {
-            let texel = &self.texels[index];
-            let near = distance <= texel.area.sqrt() as f32 && best.is_none_or(|(least, _)| distance < least);
-            if near && accept(texel) {
+        self.within(center, radius, |index, distance| {
+            let nearer = best.is_none_or(|(least, _)| distance < least);
+            if nearer && accept(&self.texels[index], distance) {
                 best = Some((distance, index));
             }
         });

@@ -2,7 +2,7 @@
 
 use crate::focus_map::texel_of;
 use crate::smooth::Smoothed;
-use crate::{Brush, BrushMode, Canvas, CanvasTexel, Channels, FocusMap};
+use crate::{Brush, BrushMode, Canvas, CanvasTexel, Channels, FocusMap, Selection};
 use glam::{DVec3, Vec3};
 use lens::FocusOffset;
 
@@ -36,21 +36,27 @@ impl Dab {
 
     /// Texels under the dab (indices into the canvas) and the brush's falloff at each, in (0, 1]. A dab smaller
     /// than the texels takes the one that it lies in.
-    pub fn covered(&self, brush: &Brush, canvas: &Canvas) -> Vec<(usize, f32)> {
+    pub fn covered(
+        &self,
+        brush: &Brush,
+        canvas: &Canvas,
+        selection: Option<&Selection>,
+    ) -> Vec<(usize, f32)> {
         let mut covered = Vec::new();
         let mut any_within = false;
+        let is_selected = |index: usize| selection.is_none_or(|selection| selection.contains(index));
         canvas.within(self.center, self.radius, |index, distance| {
             if self.faces(brush, &canvas.texels()[index]) {
                 any_within = true;
                 let share = brush.falloff(distance as f64 / self.radius);
-                if share > 0.0 {
+                if share > 0.0 && is_selected(index) {
                     covered.push((index, share as f32));
                 }
             }
         });
         if !any_within {
             let texel = canvas.nearest(self.center, |texel| self.faces(brush, texel));
-            covered.extend(texel.map(|index| (index, 1.0)));
+            covered.extend(texel.filter(|&index| is_selected(index)).map(|index| (index, 1.0)));
         }
         covered
     }
@@ -65,7 +71,7 @@ impl Dab {
         map: &mut FocusMap,
         changed: &mut Vec<[u32; 2]>,
     ) {
-        let covered = self.covered(brush, canvas);
+        let covered = self.covered(brush, canvas, stroke.selection);
         let touches = brush.channels.touches();
         let mut write = |map: &mut FocusMap, index, value| {
             write_channels(canvas, map, index, value, touches, changed);
@@ -80,6 +86,23 @@ impl Dab {
                         stroke.coverage[index] = share;
                         let from = canvas.value(stroke.before, index);
                         write(map, index, washed(brush, map.has_mask(), from, share));
+                    }
+                }
+            }
+            BrushMode::Clone => {
+                let offset = DVec3::from_array(brush.clone_offset);
+                for (index, share) in covered {
+                    let ceiling = share * self.strength as f32;
+                    let before = stroke.coverage[index];
+                    // The surface there may lie a little beside the place: it need not be parallel to the one here.
+                    let texel = &canvas.texels()[index];
+                    let source =
+                        canvas.nearest_within(texel.position + offset, texel.area.sqrt(), self.radius);
+                    if let Some(source) = source.filter(|_| ceiling > before) {
+                        let share = before + (ceiling - before) * brush.flow as f32;
+                        stroke.coverage[index] = share;
+                        let [from, to] = [index, source].map(|index| canvas.value(stroke.before, index));
+                        write(map, index, [0, 1, 2].map(|k| toward(from[k], to[k], share)));
                     }
                 }
             }
@@ -122,6 +145,8 @@ impl Dab {
 pub(crate) struct Wash<'a> {
     pub before: &'a FocusMap,
     pub coverage: &'a mut [f32],
+    /// What may be painted; everything where there is none.
+    pub selection: Option<&'a Selection>,
 }
 
 /// [t, anchor, mask] of a texel that was `from` when the stroke began and is painted by `share`.
@@ -135,7 +160,11 @@ fn washed(brush: &Brush, has_mask: bool, from: [f32; 3], share: f32) -> [f32; 3]
     if resets && (has_mask || brush.channels == Channels::Mask) {
         return [t, anchor, toward(mask, 0.0, share)];
     }
-    let target = texel_of(if resets { FocusOffset::STANDARD } else { brush.target });
+    over(from, texel_of(if resets { FocusOffset::STANDARD } else { brush.target }), share)
+}
+
+/// [t, anchor, mask] of a texel that was `from`, with `share` of a focus laid over it (Porter and Duff's *over*).
+pub(crate) fn over([t, anchor, mask]: [f32; 3], target: [f32; 2], share: f32) -> [f32; 3] {
     let grown = toward(mask, 1.0, share);
     let own = if grown > 0.0 { (share / grown).min(1.0) } else { 0.0 };
     [toward(t, target[0], own), toward(anchor, target[1], own), grown]

@@ -40,6 +40,15 @@ pub enum FocusError {
         /// What is wrong with it.
         problem: &'static str,
     },
+    /// A change of the layers that cannot be made.
+    #[error("layers: {problem}")]
+    BadLayerEdit {
+        /// What is wrong with it.
+        problem: &'static str,
+    },
+    /// One layer more than there may be.
+    #[error("layers: there are {} already (remove one first)", crate::LayerStack::MOST_LAYERS)]
+    TooManyLayers,
     /// The map belongs to another atlas.
     #[error("the focus map has {}×{} texels, the atlas {}×{} (bake the focus again for this atlas)", map[0], map[1], canvas[0], canvas[1])]
     SizesDiffer {

@@ -2,11 +2,13 @@
 
 use crate::dab::write_channels;
 use crate::focus_map::texel_of;
-use crate::{Canvas, Changed, Channels, FocusError, FocusMap};
+use crate::{Canvas, CanvasTexel, Changed, Channels, FocusError, FocusMap, Selection};
 use lens::FocusOffset;
+use serde::{Deserialize, Serialize};
 
 /// What is filled.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum FillTarget {
     /// All parts of a node (an object, or one instance): index into `Scene::nodes`.
     Node(u32),
@@ -22,6 +24,20 @@ pub enum FillTarget {
     Background,
 }
 
+impl FillTarget {
+    /// Whether a texel belongs to it.
+    pub fn contains(self, canvas: &Canvas, texel: &CanvasTexel) -> bool {
+        match self {
+            Self::Node(node) => canvas.node_of(texel) == node,
+            Self::Material(material) => canvas.material_of(texel) == material,
+            Self::Part(part) => texel.part == part,
+            Self::Chart(chart) => texel.chart == chart,
+            Self::Everything => true,
+            Self::Background => false,
+        }
+    }
+}
+
 /// Fills `target` with `value` on the given channels. Returns what changed; the background's value, which has
 /// no texel, shows in the map alone.
 pub fn fill(
@@ -31,6 +47,18 @@ pub fn fill(
     value: FocusOffset,
     channels: Channels,
 ) -> Result<Changed, FocusError> {
+    fill_selected(map, canvas, &[target], (value, channels), None)
+}
+
+/// Fills several targets with a value on the given channels, but only what is selected (`None`: everything). Returns
+/// what changed.
+pub fn fill_selected(
+    map: &mut FocusMap,
+    canvas: &Canvas,
+    targets: &[FillTarget],
+    (value, channels): (FocusOffset, Channels),
+    selection: Option<&Selection>,
+) -> Result<Changed, FocusError> {
     if !value.is_valid() {
         return Err(FocusError::BadValue { entry: "fill".to_string() });
     }
@@ -38,7 +66,7 @@ pub fn fill(
         return Err(FocusError::SizesDiffer { map: map.size(), canvas: canvas.size() });
     }
     let touches = channels.touches();
-    if target == FillTarget::Background {
+    if targets.contains(&FillTarget::Background) {
         let [t, anchor, _] = touches;
         map.background_mask = 1.0;
         map.background.t = if t { value.t } else { map.background.t };
@@ -47,15 +75,8 @@ pub fn fill(
     let [t, anchor] = texel_of(value);
     let mut changed = Vec::new();
     for (index, texel) in canvas.texels().iter().enumerate() {
-        let inside = match target {
-            FillTarget::Node(node) => canvas.node_of(texel) == node,
-            FillTarget::Material(material) => canvas.material_of(texel) == material,
-            FillTarget::Part(part) => texel.part == part,
-            FillTarget::Chart(chart) => texel.chart == chart,
-            FillTarget::Everything => true,
-            FillTarget::Background => false,
-        };
-        if inside {
+        let is_inside = targets.iter().any(|target| target.contains(canvas, texel));
+        if is_inside && selection.is_none_or(|selection| selection.contains(index)) {
             write_channels(canvas, map, index, [t, anchor, 1.0], touches, &mut changed);
         }
     }

@@ -7,7 +7,9 @@
 //! * [`Brush`] and [`Stroke`]: painting with spheres along a path on the surface, as one transaction.
 //! * [`FocusLayer`] and [`LayerStack`]: maps with masks, joined by a [`Blend`]; a [`DepthCurve`] makes an adjustment
 //!   layer. What they make together is a map again, and that is what is rendered.
-//! * [`fill`]: the same value over a node, part, material or chart.
+//! * [`LayerEdit`]: a change of the layers, as data.
+//! * [`fill`]: the same value over a node, part, material or chart. [`Gradient`]: one that changes along a line.
+//! * [`Selection`]: what may be painted. [`Symmetry`]: where else everything is painted.
 //! * [`Edit`]: what undo takes back and redo makes again.
 
 mod bake;
@@ -23,29 +25,39 @@ mod error;
 mod fill;
 mod focus_image;
 mod focus_map;
+mod gradient;
 mod layer;
+mod layer_edit;
 mod layer_stack;
 mod recipe;
+mod selection;
 mod smooth;
 mod source;
 mod stroke;
+mod symmetry;
 mod texel_tree;
 mod tile_grid;
+mod view_frame;
 
 pub use blend::Blend;
-pub use brush::{Brush, BrushMode, Channels, PenSample};
+pub use brush::{Brush, BrushMode, Channels, FocusOffsetFields, PenSample};
 pub use canvas::{Canvas, CanvasTexel};
 pub use changed::Changed;
 pub use curve::Curve;
 pub use depth_curve::DepthCurve;
 pub use edit::Edit;
 pub use error::FocusError;
-pub use fill::{FillTarget, fill};
+pub use fill::{FillTarget, fill, fill_selected};
 pub use focus_image::FocusImage;
 pub use focus_map::FocusMap;
+pub use gradient::{Gradient, GradientLine, GradientShape, draw_gradient};
 pub use layer::FocusLayer;
+pub use layer_edit::LayerEdit;
 pub use layer_stack::LayerStack;
 pub use recipe::{FocusRecipe, RecipeEntry};
+pub use selection::{Combine, Selection, SelectionResult};
 pub use source::{Focus, FocusSource};
 pub use stroke::{Stroke, SurfaceHit};
+pub use symmetry::{Symmetry, SymmetryImage};
 pub use tile_grid::TILE_SIDE;
+pub use view_frame::ViewFrame;

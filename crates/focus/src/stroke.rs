@@ -1,7 +1,7 @@
 //! A stroke: dabs along the pen's path, as one transaction.
 
 use crate::dab::{Dab, Wash};
-use crate::{Brush, Canvas, Changed, Edit, FocusError, FocusMap, PenSample};
+use crate::{Brush, Canvas, Changed, Edit, FocusError, FocusMap, PenSample, Selection, SymmetryImage};
 use glam::{DVec3, Vec3};
 use std::sync::Arc;
 
@@ -27,6 +27,10 @@ pub struct Stroke {
     before: FocusMap,
     /// How strongly each texel of the canvas has been painted so far.
     coverage: Vec<f32>,
+    /// What may be painted; everything where there is none.
+    selection: Option<Selection>,
+    /// Where else every dab is painted.
+    images: Vec<SymmetryImage>,
     /// The last hit, and how far after it the next dab is due.
     last: Option<(SurfaceHit, PenSample)>,
     until_next_dab: f64,
@@ -45,7 +49,14 @@ impl Stroke {
             return Err(FocusError::SizesDiffer { map: map.size(), canvas: canvas.size() });
         }
         let coverage = vec![0.0; canvas.texels().len()];
-        Ok(Self { brush, canvas, before: map.clone(), coverage, last: None, until_next_dab: 0.0 })
+        let images = brush.symmetry().images();
+        let (before, selection) = (map.clone(), None);
+        Ok(Self { brush, canvas, before, coverage, selection, images, last: None, until_next_dab: 0.0 })
+    }
+
+    /// The same stroke, painting only what is selected.
+    pub fn within(self, selection: Option<Selection>) -> Self {
+        Self { selection, ..self }
     }
 
     /// Draws on to the next hit. Returns what changed.
@@ -112,20 +123,18 @@ impl Stroke {
     }
 
     fn dab(&mut self, map: &mut FocusMap, hit: SurfaceHit, pen: PenSample, changed: &mut Vec<[u32; 2]>) {
-        let center = DVec3::from_array(self.brush.mirror_center);
-        for signs in self.brush.mirror_signs() {
+        for image in &self.images {
             let dab = Dab {
-                // The pen's own place stays what it is, to the bit.
-                center: if signs == DVec3::ONE {
-                    hit.position
-                } else {
-                    center + (hit.position - center) * signs
-                },
-                normal: hit.normal.map(|normal| normal * signs.as_vec3()),
+                center: image.point(hit.position),
+                normal: hit.normal.map(|normal| image.direction(normal.as_dvec3()).as_vec3()),
                 radius: self.brush.radius_at(pen),
                 strength: self.brush.strength_at(pen),
             };
-            let mut wash = Wash { before: &self.before, coverage: &mut self.coverage };
+            let mut wash = Wash {
+                before: &self.before,
+                coverage: &mut self.coverage,
+                selection: self.selection.as_ref(),
+            };
             dab.paint(&self.brush, &self.canvas, &mut wash, map, changed);
         }
     }

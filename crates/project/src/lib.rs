@@ -37,4 +37,7 @@ pub use picture_file::{Layer, LinearPicture, PictureOptions, read_picture, write
 pub use project_file::{NamedCamera, ProjectFile, SceneState};
 pub use recipe::{FocusFile, read_focus, read_recipe};
 pub use recovery::{find_recovery, recovery_path_for, remove_recovery, unsaved_recovery_path};
-pub use strokes_file::{RecordedStroke, ViewFrame, read_strokes, write_strokes};
+pub use strokes_file::{
+    RecordedFill, RecordedGradient, RecordedSelection, RecordedStep, RecordedStroke, SelectionShape,
+    read_strokes, write_strokes,
+};

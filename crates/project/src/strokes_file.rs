@@ -1,19 +1,25 @@
-//! Recorded strokes as JSON: what was painted as data, to be painted again.
+//! Recorded painting as JSON: what was done as data, to be done again.
 //!
 //! ```text
-//! {"format": "focus-brush strokes", "version": 1, "strokes": [
-//!   {"layer": "Paint", "brush": {…},
+//! {"format": "focus-brush strokes", "version": 2, "steps": [
+//!   {"stroke": {"layer": "Paint", "brush": {…},
 //!    "view": {"camera_to_world": [16 numbers, by columns], "yfov": 0.7, "aspect": 1.78},
-//!    "points": [[0.5, 0.25, 1.0], …]}]}
+//!    "points": [[0.5, 0.25, 1.0], …]}},
+//!   {"fill": {"layer": "Paint", "targets": [{"node": 3}], "focus": {"t": 1.0, "anchor": 1.0}}},
+//!   {"gradient": {"layer": "Paint", "gradient": {…}}},
+//!   {"select": {"shape": {"depth": {…}}, "combine": "add"}},
+//!   {"layers": {"opacity": [1, 0.5]}}, "reset"]}
 //! ```
 //!
 //! A point is where the pen was in the view it painted in ((0, 0) the upper left corner, (1, 1) the lower right) and
-//! how hard it pressed, in [0, 1]. When is not recorded: dabs follow the path, not the clock.
+//! how hard it pressed, in [0, 1]. When is not recorded: dabs follow the path, not the clock. Version 1 held
+//! `"strokes": [{"layer": …}, …]` alone; it is read as well.
 
 use crate::ProjectError;
 use crate::disk::{read_bytes, write_verified};
-use focus::Brush;
-use glam::{DMat4, DVec2, DVec3};
+use focus::{Brush, Combine, FillTarget, FocusOffsetFields, Gradient, LayerEdit, ViewFrame};
+use glam::{DVec2, DVec3};
+use lens::FocusOffset;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 
@@ -21,35 +27,60 @@ use std::path::Path;
 const FORMAT: &str = "focus-brush strokes";
 
 /// The version that is written.
-const VERSION: u64 = 1;
+const VERSION: u64 = 2;
 
-/// A perspective view that was painted in.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct ViewFrame {
-    /// Its pose, glTF axes: looks down −Z, +Y up.
-    pub camera_to_world: DMat4,
-    /// Full vertical angle of view, rad.
-    pub yfov: f64,
-    /// Width over height.
-    pub aspect: f64,
+/// One thing that was done.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum RecordedStep {
+    /// A stroke.
+    Stroke(RecordedStroke),
+    /// A region was given one focus.
+    Fill(RecordedFill),
+    /// A gradient was drawn.
+    Gradient(RecordedGradient),
+    /// What may be painted was chosen.
+    Select(RecordedSelection),
+    /// The layers were changed.
+    Layers(LayerEdit),
+    /// The active layer was masked to what may be painted.
+    Mask,
+    /// All paint was taken away.
+    Reset,
 }
 
-impl ViewFrame {
-    /// Where the view looks from, and the world direction of a position in it ((0, 0) upper left, (1, 1) lower
-    /// right), of depth 1 along the view's axis.
-    pub fn ray(&self, position: DVec2) -> (DVec3, DVec3) {
-        let half_height = (self.yfov / 2.0).tan();
-        let x = (2.0 * position.x - 1.0) * self.aspect * half_height;
-        let y = (1.0 - 2.0 * position.y) * half_height;
-        let m = &self.camera_to_world;
-        let direction = m.x_axis.truncate() * x + m.y_axis.truncate() * y - m.z_axis.truncate();
-        (m.w_axis.truncate(), direction)
+impl RecordedStep {
+    /// Memory that it takes, in bytes.
+    pub fn bytes(&self) -> usize {
+        let own = match self {
+            Self::Stroke(stroke) => size_of_val(&*stroke.points) + stroke.layer.len(),
+            Self::Fill(fill) => size_of_val(&*fill.targets) + fill.layer.len(),
+            Self::Gradient(gradient) => gradient.layer.len(),
+            Self::Select(RecordedSelection { shape: SelectionShape::Outline { points, .. }, .. }) => {
+                size_of_val(&**points)
+            }
+            Self::Select(_) | Self::Layers(_) | Self::Mask | Self::Reset => 0,
+        };
+        size_of::<Self>() + own
     }
 
-    /// Whether it can be looked through.
-    pub fn is_valid(&self) -> bool {
-        let angle = self.yfov > 0.0 && self.yfov < std::f64::consts::PI;
-        angle && self.aspect > 0.0 && self.aspect.is_finite() && self.camera_to_world.is_finite()
+    /// What is wrong with it, if anything.
+    fn problem(&self) -> Option<String> {
+        let bad = |what: &str| Some(what.to_string());
+        match self {
+            Self::Stroke(stroke) => match stroke.brush.problem() {
+                Some(problem) => Some(format!("brush: {problem}")),
+                None if !stroke.view.is_valid() => bad("its view cannot be looked through"),
+                None if !stroke.points.as_flattened().iter().all(|number| number.is_finite()) => {
+                    bad("it has points that are not finite")
+                }
+                None => None,
+            },
+            Self::Fill(fill) if !fill.focus.is_valid() => bad("its focus cannot be used"),
+            Self::Gradient(drawn) if !drawn.gradient.is_valid() => bad("its gradient cannot be drawn"),
+            Self::Select(selection) if !selection.shape.is_valid() => bad("its shape cannot be used"),
+            _ => None,
+        }
     }
 }
 
@@ -66,32 +97,120 @@ pub struct RecordedStroke {
     pub points: Vec<[f64; 3]>,
 }
 
+/// A fill as it was made.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct RecordedFill {
+    /// The name of the layer.
+    pub layer: String,
+    /// What was filled.
+    pub targets: Vec<FillTarget>,
+    /// With what.
+    #[serde(with = "FocusOffsetFields")]
+    pub focus: FocusOffset,
+}
+
+/// A gradient as it was drawn.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct RecordedGradient {
+    /// The name of the layer.
+    pub layer: String,
+    /// The gradient.
+    pub gradient: Gradient,
+}
+
+/// A choice of what may be painted.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct RecordedSelection {
+    /// What was chosen.
+    pub shape: SelectionShape,
+    /// How it joined what was selected.
+    pub combine: Combine,
+}
+
+/// A set of texels, by what they are or where they lie.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum SelectionShape {
+    /// Everything: nothing is frozen.
+    Everything,
+    /// What was not selected.
+    Inverse,
+    /// Nodes, materials, parts or charts.
+    Targets(Vec<FillTarget>),
+    /// What lies between two planes across an axis.
+    Depth {
+        /// A point on the plane of depth 0, world.
+        origin: DVec3,
+        /// Unit axis, world.
+        axis: DVec3,
+        /// Nearest and farthest depth.
+        range: [f64; 2],
+    },
+    /// What faces one way.
+    Normal {
+        /// Unit normal, world.
+        normal: DVec3,
+        /// The largest angle from it, degrees.
+        degrees: f64,
+    },
+    /// What is seen within an outline drawn in a view.
+    Outline {
+        /// The view.
+        view: ViewFrame,
+        /// Corners, (0, 0) upper left, (1, 1) lower right; closed.
+        points: Vec<DVec2>,
+        /// Whether hidden surfaces behind belong to it too.
+        through: bool,
+    },
+}
+
+impl SelectionShape {
+    /// Whether it can be used.
+    pub fn is_valid(&self) -> bool {
+        match self {
+            Self::Everything | Self::Inverse | Self::Targets(_) => true,
+            Self::Depth { origin, axis, range: [near, far] } => {
+                origin.is_finite() && axis.is_finite() && near <= far
+            }
+            Self::Normal { normal, degrees } => normal.is_finite() && (0.0..=180.0).contains(degrees),
+            Self::Outline { view, points, .. } => {
+                view.is_valid() && points.len() >= 3 && points.iter().all(|point| point.is_finite())
+            }
+        }
+    }
+}
+
 /// The file.
 #[derive(Serialize, Deserialize)]
 struct StrokesFile {
     format: String,
     version: u64,
+    #[serde(default)]
+    steps: Vec<RecordedStep>,
+    /// Of version 1.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     strokes: Vec<RecordedStroke>,
 }
 
-/// Writes strokes.
-pub fn write_strokes(file: &Path, strokes: &[RecordedStroke]) -> Result<(), ProjectError> {
-    let content = StrokesFile { format: FORMAT.into(), version: VERSION, strokes: strokes.to_vec() };
+/// Writes what was recorded.
+pub fn write_strokes(file: &Path, steps: &[RecordedStep]) -> Result<(), ProjectError> {
+    let content =
+        StrokesFile { format: FORMAT.into(), version: VERSION, steps: steps.to_vec(), strokes: Vec::new() };
     let bytes = serde_json::to_vec(&content).map_err(std::io::Error::other);
     let bytes = bytes.map_err(|source| ProjectError::Write { file: file.to_owned(), source })?;
     write_verified(file, &bytes, |back| match parse(file, back) {
-        Ok(read) if read == strokes => Ok(()),
+        Ok(read) if read == steps => Ok(()),
         Ok(_) => Err("its content differs".to_string()),
         Err(error) => Err(error.to_string()),
     })
 }
 
-/// Reads strokes.
-pub fn read_strokes(file: &Path) -> Result<Vec<RecordedStroke>, ProjectError> {
+/// Reads what was recorded.
+pub fn read_strokes(file: &Path) -> Result<Vec<RecordedStep>, ProjectError> {
     parse(file, &read_bytes(file)?)
 }
 
-fn parse(file: &Path, bytes: &[u8]) -> Result<Vec<RecordedStroke>, ProjectError> {
+fn parse(file: &Path, bytes: &[u8]) -> Result<Vec<RecordedStep>, ProjectError> {
     let error = |problem: String| ProjectError::content(file, problem, "record the strokes again");
     let content: StrokesFile = serde_json::from_slice(bytes)
         .map_err(|e| error(format!("holds no strokes that can be understood: {e}")))?;
@@ -102,17 +221,12 @@ fn parse(file: &Path, bytes: &[u8]) -> Result<Vec<RecordedStroke>, ProjectError>
         let (file, version, newest) = (file.to_owned(), content.version, VERSION);
         return Err(ProjectError::Newer { file, version, newest });
     }
-    for (index, stroke) in content.strokes.iter().enumerate() {
-        let place = |what: &str| error(format!("stroke {}: {what}", index + 1));
-        if let Some(problem) = stroke.brush.problem() {
-            return Err(place(&format!("brush: {problem}")));
-        }
-        if !stroke.view.is_valid() {
-            return Err(place("its view cannot be looked through"));
-        }
-        if !stroke.points.as_flattened().iter().all(|number| number.is_finite()) {
-            return Err(place("it has points that are not finite"));
+    let old = content.strokes.into_iter().map(RecordedStep::Stroke);
+    let steps: Vec<_> = old.chain(content.steps).collect();
+    for (index, step) in steps.iter().enumerate() {
+        if let Some(problem) = step.problem() {
+            return Err(error(format!("step {}: {problem}", index + 1)));
         }
     }
-    Ok(content.strokes)
+    Ok(steps)
 }

@@ -1,8 +1,14 @@
 //! Recorded strokes, written and read.
 
-use focus::Brush;
+use focus::{
+    Brush, Combine, FillTarget, Gradient, GradientLine, GradientShape, LayerEdit, Symmetry, ViewFrame,
+};
 use glam::{DMat4, DVec2, DVec3};
-use project::{RecordedStroke, ViewFrame, read_strokes, write_strokes};
+use lens::FocusOffset;
+use project::{
+    RecordedFill, RecordedGradient, RecordedSelection, RecordedStep, RecordedStroke, SelectionShape,
+    read_strokes, write_strokes,
+};
 
 fn stroke() -> RecordedStroke {
     let view = ViewFrame {
@@ -22,16 +28,50 @@ fn stroke() -> RecordedStroke {
 fn what_is_written_is_read_to_the_bit_and_what_is_wrong_is_told() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("strokes.json");
-    let strokes = [stroke(), RecordedStroke { points: Vec::new(), ..stroke() }];
-    write_strokes(&file, &strokes).unwrap();
-    assert_eq!(read_strokes(&file).unwrap(), strokes);
+    let layer = String::from("far \"lamp\"");
+    let select = |shape, combine| RecordedStep::Select(RecordedSelection { shape, combine });
+    let gradient = Gradient {
+        shape: GradientShape::Radial,
+        line: GradientLine::View(stroke().view, [DVec2::new(0.1, 0.2), DVec2::new(1.0 / 3.0, 0.7)]),
+        from: FocusOffset::SHARP,
+        to: Some(FocusOffset::new(1.03, 0.25)),
+        symmetry: Symmetry { radial: 3, ..Symmetry::default() },
+    };
+    let across = GradientLine::World([DVec3::ZERO, DVec3::new(0.1, 0.2, 0.3)]);
+    let fading = Gradient { line: across, to: None, ..gradient };
+    let points = vec![DVec2::ZERO, DVec2::X, DVec2::new(0.3, 0.9)];
+    let steps = [
+        RecordedStep::Stroke(stroke()),
+        RecordedStep::Stroke(RecordedStroke { points: Vec::new(), ..stroke() }),
+        RecordedStep::Fill(RecordedFill {
+            layer: layer.clone(),
+            targets: vec![FillTarget::Node(3), FillTarget::Background, FillTarget::Everything],
+            focus: FocusOffset::new(0.97, 0.5),
+        }),
+        RecordedStep::Gradient(RecordedGradient { layer: layer.clone(), gradient }),
+        RecordedStep::Gradient(RecordedGradient { layer, gradient: fading }),
+        select(SelectionShape::Outline { view: stroke().view, points, through: true }, Combine::Replace),
+        select(SelectionShape::Targets(vec![FillTarget::Material(1)]), Combine::Add),
+        select(SelectionShape::Inverse, Combine::Replace),
+        select(
+            SelectionShape::Depth { origin: DVec3::ONE, axis: DVec3::Z, range: [0.5, 2.0] },
+            Combine::Intersect,
+        ),
+        select(SelectionShape::Normal { normal: DVec3::Y, degrees: 30.0 }, Combine::Subtract),
+        RecordedStep::Layers(LayerEdit::AddPaint),
+        RecordedStep::Layers(LayerEdit::Opacity(1, 0.3)),
+        RecordedStep::Layers(LayerEdit::Shift { from: 1, to: 0 }),
+        RecordedStep::Reset,
+    ];
+    write_strokes(&file, &steps).unwrap();
+    assert_eq!(read_strokes(&file).unwrap(), steps);
 
     let text = std::fs::read_to_string(&file).unwrap();
     let cases = [
         ("focus-brush strokes", "shopping list", "shopping list"),
-        ("\"version\":1", "\"version\":9", "update the program"),
-        ("\"yfov\":0.7", "\"yfov\":-0.7", "stroke 1: its view"),
-        ("\"hardness\":0.5", "\"hardness\":7", "stroke 1: brush: hardness"),
+        ("\"version\":2", "\"version\":9", "update the program"),
+        ("\"yfov\":0.7", "\"yfov\":-0.7", "step 1: its view"),
+        ("\"hardness\":0.5", "\"hardness\":7", "step 1: brush: hardness"),
         ("\"points\":[[", "\"points\":[[\"a\",", "understood"),
     ];
     for (from, to, expected) in cases {
@@ -40,6 +80,16 @@ fn what_is_written_is_read_to_the_bit_and_what_is_wrong_is_told() {
         let error = read_strokes(&file).unwrap_err().to_string();
         assert!(error.contains(expected) && error.contains("strokes.json"), "{error}");
     }
+}
+
+#[test]
+fn files_of_the_first_version_are_read() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("strokes.json");
+    let stroke = serde_json::to_string(&stroke()).unwrap();
+    let text = format!(r#"{{"format":"focus-brush strokes","version":1,"strokes":[{stroke}]}}"#);
+    std::fs::write(&file, text).unwrap();
+    assert_eq!(read_strokes(&file).unwrap(), [RecordedStep::Stroke(self::stroke())]);
 }
 
 #[test]

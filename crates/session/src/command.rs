@@ -1,10 +1,10 @@
 //! What a session can be asked to do, and what it tells back.
 
-use crate::{CameraEdit, JobId, JobStatus, LayerEdit, ReferenceKind, SurfaceHit};
-use focus::Brush;
+use crate::{CameraEdit, JobId, JobStatus, ReferenceKind, SurfaceHit};
+use focus::{Brush, Combine, Gradient, LayerEdit, ViewFrame};
 use glam::DVec2;
 use lens::{Exposure, FocusOffset};
-use project::ViewFrame;
+use project::SelectionShape;
 use std::ops::Range;
 use std::path::PathBuf;
 use trace::Ray;
@@ -31,7 +31,7 @@ pub enum Command {
     /// Replaces the focus map by one that was exported for this atlas.
     ImportFocusMap(PathBuf),
 
-    /// Takes back the last stroke, fill or lens change.
+    /// Takes back the last stroke, fill, selection or lens change.
     Undo,
     /// Does again what was taken back.
     Redo,
@@ -53,15 +53,23 @@ pub enum Command {
     BeginStroke(StrokePoint),
     /// Moves the stroke on.
     ExtendStroke(StrokePoint),
-    /// Ends the stroke: one step of undo, or nothing if it changed nothing.
+    /// Draws a gradient, or another one in the place of the one being drawn.
+    DragGradient(Gradient),
+    /// Ends the stroke or gradient: one step of undo, or nothing if it changed nothing.
     CommitStroke,
-    /// Takes the stroke back, leaving no trace.
+    /// Takes the stroke or gradient back, leaving no trace.
     AbortStroke,
     /// Changes the layers of focus.
     Layer(LayerEdit),
     /// Paints on another layer from now on, counted from the bottom.
     ActivateLayer(usize),
-    /// Gives a whole region a focus.
+    /// Chooses what may be painted; all else is frozen.
+    Select(SelectionShape, Combine),
+    /// Chooses a whole region to be painted.
+    SelectRegion(FillRegion, Combine),
+    /// Lets the active layer count only where it may be painted.
+    MaskFromSelection,
+    /// Gives a whole region a focus. What lies at the images of the brush's symmetry is filled too.
     Fill(FillRegion, FocusOffset),
     /// Returns everything to the ordinary lens.
     ResetMap,
@@ -92,7 +100,7 @@ pub enum Command {
     CancelAll,
 }
 
-/// What a fill covers, named by a point on it.
+/// What a fill or a selection covers, named by a point on it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum FillRegion {
     /// The object: every part of the point's node.
@@ -150,6 +158,8 @@ pub enum Event {
     MapChanged(Range<u32>, Range<u32>),
     /// The layers changed (also by undo), or another one is painted on.
     LayersChanged,
+    /// Something else may be painted than before.
+    SelectionChanged,
     /// The brush changed (by picking).
     BrushChanged,
     /// A new preview is ready: [`crate::Session::preview`].

@@ -19,6 +19,16 @@ pub enum CommandId {
     Quit,
     Undo,
     Redo,
+    SelectLasso,
+    SelectBox,
+    SelectObject,
+    SelectMaterial,
+    SelectChart,
+    SelectFacing,
+    SelectDepth,
+    SelectAll,
+    InvertSelection,
+    MaskFromSelection,
     FrameAll,
     FrameCursor,
     ViewFromCamera,
@@ -27,21 +37,32 @@ pub enum CommandId {
     ShowFocus,
     ShowSurface,
     ResetLayout,
+    KeysBlender,
+    KeysSubstance,
+    KeysKrita,
     Brush,
     Smooth,
     Sharpen,
+    Clone,
     Erase,
     FillPart,
     FillMaterial,
     FillChart,
     FillAll,
+    Gradient,
+    SharpHere,
     FocusHere,
     Pick,
     ResetMap,
+    BrushSize,
+    BrushStrength,
+    BrushHardness,
     BrushLarger,
     BrushSmaller,
     BrushHarder,
     BrushSofter,
+    BrushStronger,
+    BrushWeaker,
     BrushNearer,
     BrushFarther,
     BrushSharp,
@@ -79,6 +100,7 @@ pub enum CommandId {
 pub enum Menu {
     File,
     Edit,
+    Select,
     View,
     Focus,
     Layer,
@@ -89,14 +111,24 @@ pub enum Menu {
 
 impl Menu {
     /// All menus, left to right.
-    pub const ALL: [Menu; 8] =
-        [Menu::File, Menu::Edit, Menu::View, Menu::Focus, Menu::Layer, Menu::Lens, Menu::Render, Menu::Help];
+    pub const ALL: [Menu; 9] = [
+        Menu::File,
+        Menu::Edit,
+        Menu::Select,
+        Menu::View,
+        Menu::Focus,
+        Menu::Layer,
+        Menu::Lens,
+        Menu::Render,
+        Menu::Help,
+    ];
 
     /// The title in the menu bar.
     pub fn title(self) -> &'static str {
         match self {
             Menu::File => "File",
             Menu::Edit => "Edit",
+            Menu::Select => "Select",
             Menu::View => "View",
             Menu::Focus => "Focus",
             Menu::Layer => "Layer",
@@ -121,17 +153,20 @@ pub struct Shortcut {
 }
 
 impl Shortcut {
-    const fn key(key: &'static str) -> Option<Self> {
+    pub(crate) const fn key(key: &'static str) -> Option<Self> {
         Some(Self { command: false, shift: false, alt: false, key })
     }
-    const fn command(key: &'static str) -> Option<Self> {
+    pub(crate) const fn command(key: &'static str) -> Option<Self> {
         Some(Self { command: true, shift: false, alt: false, key })
     }
-    const fn command_shift(key: &'static str) -> Option<Self> {
+    pub(crate) const fn command_shift(key: &'static str) -> Option<Self> {
         Some(Self { command: true, shift: true, alt: false, key })
     }
-    const fn shift(key: &'static str) -> Option<Self> {
+    pub(crate) const fn shift(key: &'static str) -> Option<Self> {
         Some(Self { command: false, shift: true, alt: false, key })
+    }
+    pub(crate) const fn alt(key: &'static str) -> Option<Self> {
+        Some(Self { command: false, shift: false, alt: true, key })
     }
 }
 
@@ -161,8 +196,8 @@ pub struct CommandInfo {
     pub name: &'static str,
     /// One sentence that says what it does.
     pub tooltip: &'static str,
-    /// Its key, if it has one; unique.
-    pub shortcut: Option<Shortcut>,
+    /// Its key in every key map that has no other for it; [`crate::KeyMap::shortcut`] knows.
+    pub(crate) shortcut: Option<Shortcut>,
     /// Where it stands.
     pub menu: Menu,
 }
@@ -190,8 +225,18 @@ pub const COMMANDS: &[CommandInfo] = &[
     row(CommandId::ExportStrokes, Menu::File, None, "Export strokes…", "Write the strokes that can be undone as data, to paint them again with `focus-brush replay`."),
     row(CommandId::ImportFocusMap, Menu::File, None, "Import focus map…", "Replace the painted focus by a map written earlier."),
     row(CommandId::Quit, Menu::File, Shortcut::command("Q"), "Quit", "Close the window; asks when something is unsaved."),
-    row(CommandId::Undo, Menu::Edit, Shortcut::command("Z"), "Undo", "Take back the last stroke, fill or lens change."),
+    row(CommandId::Undo, Menu::Edit, Shortcut::command("Z"), "Undo", "Take back the last stroke, fill, selection or lens change."),
     row(CommandId::Redo, Menu::Edit, Shortcut::command_shift("Z"), "Redo", "Do again what was taken back."),
+    row(CommandId::SelectLasso, Menu::Select, Shortcut::key("L"), "Lasso", "Draw around what may be painted; all else is frozen. Shift adds, Ctrl takes away."),
+    row(CommandId::SelectBox, Menu::Select, Shortcut::shift("L"), "Box", "Drag a box around what may be painted; all else is frozen. Shift adds, Ctrl takes away."),
+    row(CommandId::SelectObject, Menu::Select, Shortcut::key("O"), "Object", "Paint only on the clicked object. Shift adds, Ctrl takes away."),
+    row(CommandId::SelectMaterial, Menu::Select, None, "Material", "Paint only on the clicked material. Shift adds, Ctrl takes away."),
+    row(CommandId::SelectChart, Menu::Select, None, "Chart", "Paint only on the clicked atlas chart. Shift adds, Ctrl takes away."),
+    row(CommandId::SelectFacing, Menu::Select, None, "Facing alike", "Paint only on what faces as the clicked surface does. Shift adds, Ctrl takes away."),
+    row(CommandId::SelectDepth, Menu::Select, None, "Depth range", "Drag from the nearest to the farthest thing that may be painted. Shift adds, Ctrl takes away."),
+    row(CommandId::SelectAll, Menu::Select, Shortcut::command_shift("A"), "Everything", "Let everything be painted again."),
+    row(CommandId::InvertSelection, Menu::Select, Shortcut::command("I"), "Invert selection", "Freeze what may be painted, and the other way round."),
+    row(CommandId::MaskFromSelection, Menu::Select, None, "Mask from selection", "Let this layer count only where it may be painted."),
     row(CommandId::FrameAll, Menu::View, Shortcut::key("Home"), "Frame all", "Show the whole scene in the paint view."),
     row(CommandId::FrameCursor, Menu::View, Shortcut::key("F"), "Orbit around cursor", "Centre the paint view on what lies under the cursor."),
     row(CommandId::ViewFromCamera, Menu::View, Shortcut::key("0"), "View from camera", "Look through the shot camera in the paint view."),
@@ -202,21 +247,32 @@ pub const COMMANDS: &[CommandInfo] = &[
     row(CommandId::ShowFocus, Menu::View, Shortcut::key("C"), "Show focus", "Colour the paint view by the blur that the focus gives."),
     row(CommandId::ShowSurface, Menu::View, Shortcut::key("V"), "Show surface", "Show the scene's own colours in the paint view."),
     row(CommandId::ResetLayout, Menu::View, None, "Reset layout", "Put the panels back where they were at first."),
+    row(CommandId::KeysBlender, Menu::View, None, "Keys as in Blender", "Keys and mouse as in Blender."),
+    row(CommandId::KeysSubstance, Menu::View, None, "Keys as in Substance", "Keys and mouse as in Substance 3D Painter."),
+    row(CommandId::KeysKrita, Menu::View, None, "Keys as in Krita", "Keys and mouse as in Krita."),
     row(CommandId::Brush, Menu::Focus, Shortcut::key("B"), "Brush", "Paint the chosen focus."),
     row(CommandId::Smooth, Menu::Focus, Shortcut::key("S"), "Smooth", "Even out the painted focus."),
     row(CommandId::Sharpen, Menu::Focus, Shortcut::shift("S"), "Sharpen", "Turn soft changes of the painted focus into hard ones."),
+    row(CommandId::Clone, Menu::Focus, Shortcut::key("K"), "Clone", "Paint the focus of another place: Ctrl+click takes it, then drag."),
     row(CommandId::Erase, Menu::Focus, Shortcut::key("E"), "Reset brush", "Paint the ordinary lens back."),
     row(CommandId::FillPart, Menu::Focus, Shortcut::key("G"), "Fill object", "Give the whole clicked object the chosen focus."),
     row(CommandId::FillMaterial, Menu::Focus, None, "Fill material", "Give everything of the clicked material the chosen focus."),
     row(CommandId::FillChart, Menu::Focus, None, "Fill chart", "Give the clicked atlas chart the chosen focus."),
     row(CommandId::FillAll, Menu::Focus, None, "Fill everything", "Give the whole scene the chosen focus."),
+    row(CommandId::Gradient, Menu::Focus, Shortcut::key("D"), "Gradient", "Drag a line along which the focus changes from the chosen one."),
+    row(CommandId::SharpHere, Menu::Focus, Shortcut::shift("H"), "Make sharp", "Make the clicked object sharp; everything else stays as it is."),
     row(CommandId::FocusHere, Menu::Focus, Shortcut::key("H"), "Focus here", "Set the lens's focus distance to what is clicked."),
     row(CommandId::Pick, Menu::Focus, Shortcut::key("I"), "Pick", "Take the brush's focus from what is clicked."),
     row(CommandId::ResetMap, Menu::Focus, None, "Reset all paint", "Return the whole scene to the ordinary lens."),
+    row(CommandId::BrushSize, Menu::Focus, None, "Set brush size", "Move the mouse, or type the radius and Enter."),
+    row(CommandId::BrushStrength, Menu::Focus, None, "Set brush strength", "Move the mouse, or type a number up to 1 and Enter."),
+    row(CommandId::BrushHardness, Menu::Focus, None, "Set brush hardness", "Move the mouse, or type a number up to 1 and Enter."),
     row(CommandId::BrushLarger, Menu::Focus, Shortcut::key("CloseBracket"), "Larger brush", "Make the brush larger."),
     row(CommandId::BrushSmaller, Menu::Focus, Shortcut::key("OpenBracket"), "Smaller brush", "Make the brush smaller."),
     row(CommandId::BrushHarder, Menu::Focus, Shortcut::shift("CloseBracket"), "Harder brush", "Sharpen the brush's edge."),
     row(CommandId::BrushSofter, Menu::Focus, Shortcut::shift("OpenBracket"), "Softer brush", "Soften the brush's edge."),
+    row(CommandId::BrushStronger, Menu::Focus, None, "Stronger brush", "Make strokes stronger."),
+    row(CommandId::BrushWeaker, Menu::Focus, None, "Weaker brush", "Make strokes weaker."),
     row(CommandId::BrushNearer, Menu::Focus, Shortcut::key("Comma"), "Blur nearer", "Move the brush's focus toward near blur."),
     row(CommandId::BrushFarther, Menu::Focus, Shortcut::key("Period"), "Blur farther", "Move the brush's focus toward far blur."),
     row(CommandId::BrushSharp, Menu::Focus, Shortcut::key("X"), "Paint sharp", "Set the brush to perfectly sharp, wherever the camera focuses."),
@@ -247,6 +303,34 @@ pub const COMMANDS: &[CommandInfo] = &[
 ];
 
 impl CommandId {
+    /// Whether running it, where it can do something, is a step of undo. All others change no document (they show things,
+    /// choose tools, set up the brush), or change it when something is clicked next, or handle whole files.
+    pub fn is_undoable(self) -> bool {
+        use CommandId::*;
+        matches!(
+            self,
+            SelectAll
+                | InvertSelection
+                | MaskFromSelection
+                | FillAll
+                | ResetMap
+                | AddLayer
+                | AddDepthCurve
+                | DuplicateLayer
+                | RemoveLayer
+                | RaiseLayer
+                | LowerLayer
+                | AddMask
+                | InvertMask
+                | RemoveMask
+                | OpenAperture
+                | CloseAperture
+                | FocusNearer
+                | FocusFarther
+                | CameraFromView
+        )
+    }
+
     /// The command's row in the table.
     pub fn info(self) -> &'static CommandInfo {
         COMMANDS.iter().find(|info| info.id == self).expect("every command has a row")
@@ -259,14 +343,12 @@ mod tests {
     use std::collections::HashSet;
 
     #[test]
-    fn names_and_shortcuts_are_unique() {
+    fn names_are_unique_and_tooltips_are_sentences() {
         let mut names = HashSet::new();
-        let mut keys = HashSet::new();
         let mut ids = HashSet::new();
         for info in COMMANDS {
             assert!(ids.insert(info.id), "{:?} stands twice", info.id);
             assert!(names.insert(info.name), "{} stands twice", info.name);
-            assert!(info.shortcut.is_none_or(|key| keys.insert(key)), "{}: its key is taken", info.name);
             assert!(info.tooltip.ends_with('.'), "{}: the tooltip is a sentence", info.name);
         }
     }

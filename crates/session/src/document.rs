@@ -4,14 +4,14 @@ use crate::input::{CameraChoice, Input, InputKind};
 use crate::undo::Undo;
 use crate::{SessionError, Stage, Steps};
 use atlas::UnwrapOptions;
-use focus::{Brush, Changed, FocusMap, FocusRecipe, LayerStack, RecipeEntry};
+use focus::{Brush, Changed, FocusMap, FocusRecipe, LayerStack, RecipeEntry, Selection};
 use lens::{Camera, Exposure};
 use project::{FocusFile, NamedCamera, ProjectFile};
 use scene::{Scene, SceneCamera};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// An open document. Focus map and camera are saved and can be undone; brush, exposure and view are saved with
+/// An open document. Focus map and camera are saved and can be undone; selection can be undone and is not saved; brush, exposure and view are saved with
 /// them and are not part of the history.
 pub struct Document {
     /// Scene, atlas and what works on them.
@@ -26,6 +26,8 @@ pub struct Document {
     pub exposure: Exposure,
     /// The brush of the strokes to come.
     pub brush: Brush,
+    /// What may be painted; everything where there is none. Part of the history, not of what is saved.
+    pub selection: Option<Selection>,
     /// Layout and viewpoint as the window wants them, any JSON.
     pub view: serde_json::Value,
     /// The project file; none before the first save.
@@ -48,6 +50,9 @@ pub struct Document {
 const SHOT: &str = "shot";
 
 impl Document {
+    /// Memory that steps of undo may keep alive unless told otherwise.
+    pub const UNDO_BUDGET_BYTES: usize = 256 << 20;
+
     /// Opens a scene or a project. Work that was not saved when the program last ended is restored: the document
     /// is then unsaved, and its warnings say so.
     pub fn open(path: &Path, unwrap: &UnwrapOptions, steps: &dyn Steps) -> Result<Self, SessionError> {
@@ -176,7 +181,8 @@ impl Document {
             path: None,
             warnings: input.warnings,
             template,
-            undo: Undo::default(),
+            undo: Undo::new(Self::UNDO_BUDGET_BYTES),
+            selection: None,
             revision: 0,
             saved: 0,
         })
@@ -243,8 +249,8 @@ impl Document {
         self.undo.names()
     }
 
-    /// Bytes that the undo steps hold.
-    pub fn undo_bytes(&self) -> usize {
+    /// Memory that the undo steps keep alive, and how much they may, in bytes.
+    pub fn undo_bytes(&self) -> [usize; 2] {
         self.undo.bytes()
     }
 

@@ -3,8 +3,8 @@
 use crate::document::Document;
 use crate::picking::{pick, view_ray};
 use crate::{SessionError, StrokePoint, StrokeTarget};
-use focus::{Brush, Changed, Channels, FocusLayer, PenSample, Stroke};
-use project::{RecordedStroke, ViewFrame};
+use focus::{Brush, Changed, Channels, FocusLayer, FocusMap, Gradient, PenSample, Stroke, ViewFrame};
+use project::{RecordedStep, RecordedStroke};
 
 /// A stroke and its record.
 pub(crate) struct Painter {
@@ -20,8 +20,8 @@ impl Painter {
         let layer = document.layers.active();
         let channels = paintable(layer, document.brush.channels)?;
         let brush = Brush { channels, ..document.brush.clone() };
-        let stroke = Stroke::begin(&layer.map, document.stage.canvas.clone(), brush.clone())
-            .map_err(|error| SessionError::BadInput(error.to_string()))?;
+        let stroke = Stroke::begin(&layer.map, document.stage.canvas.clone(), brush.clone())?;
+        let stroke = stroke.within(document.selection.clone());
         let view = match point.at {
             StrokeTarget::View(view, _) => Some(view),
             StrokeTarget::Ray(_) | StrokeTarget::Surface(_) => None,
@@ -64,8 +64,8 @@ impl Painter {
     /// Ends the stroke: one step of undo, or nothing if it changed nothing. Whether it changed anything.
     pub fn commit(self, document: &mut Document) -> bool {
         let Some(edit) = self.stroke.commit(&document.layers.active().map) else { return false };
-        let record = self.is_recordable.then_some(self.record);
-        document.undo.push_stroke(document.layers.active_index(), edit, record);
+        let record = self.is_recordable.then_some(RecordedStep::Stroke(self.record));
+        document.undo.push_paint(document.layers.active_index(), edit, record);
         document.revision += 1;
         true
     }
@@ -76,39 +76,120 @@ impl Painter {
     }
 }
 
-/// Paints recorded strokes on a document, each on the layer of its name, as steps of undo. The document's brush stays
-/// what it was.
-pub fn replay(document: &mut Document, strokes: &[RecordedStroke]) -> Result<usize, SessionError> {
+/// A gradient being drawn: drawn anew from what was there, until it pleases.
+pub(crate) struct GradientInHand {
+    before: FocusMap,
+    gradient: Gradient,
+}
+
+impl GradientInHand {
+    /// Draws the first one.
+    pub fn begin(document: &mut Document, gradient: Gradient) -> Result<Self, SessionError> {
+        let before = document.layers.active().map.clone();
+        document.draw_gradient(&before, &gradient)?;
+        Ok(Self { before, gradient })
+    }
+
+    /// Draws another one in its place.
+    pub fn change(&mut self, document: &mut Document, gradient: Gradient) -> Result<(), SessionError> {
+        document.draw_gradient(&self.before, &gradient)?;
+        self.gradient = gradient;
+        Ok(())
+    }
+
+    /// Ends it: one step of undo, or nothing if it changed nothing. Whether it changed anything.
+    pub fn commit(self, document: &mut Document) -> bool {
+        document.finish_gradient(&self.before, self.gradient)
+    }
+
+    /// Takes it back.
+    pub fn abort(self, document: &mut Document) {
+        document.layers.active_mut().map = self.before;
+    }
+}
+
+/// What is being painted and is no step of undo yet.
+pub(crate) enum Underway {
+    /// A stroke.
+    Stroke(Box<Painter>),
+    /// A gradient.
+    Gradient(Box<GradientInHand>),
+}
+
+/// Does recorded steps on a document, each on the layer of its name, as steps of undo. The document's brush stays
+/// what it was. Returns how many changed anything.
+pub fn replay(document: &mut Document, steps: &[RecordedStep]) -> Result<usize, SessionError> {
     let brush = document.brush.clone();
-    let mut painted = 0;
-    for (index, stroke) in strokes.iter().enumerate() {
-        let error = |what: String| SessionError::BadInput(format!("stroke {}: {what}", index + 1));
-        let layers = document.layers.layers();
-        let Some(layer) = layers.iter().position(|layer| layer.name == stroke.layer) else {
-            let names: Vec<_> = layers.iter().map(|layer| format!("\"{}\"", layer.name)).collect();
-            let there_are = names.join(", ");
-            return Err(error(format!("no layer is called \"{}\" (there are {there_are})", stroke.layer)));
-        };
-        document.layers.activate(layer);
-        document.brush = stroke.brush.clone();
-        let points: Vec<_> = stroke
-            .points
-            .iter()
-            .map(|&[x, y, pressure]| StrokePoint {
-                at: StrokeTarget::View(stroke.view, glam::DVec2::new(x, y)),
-                pressure: pressure as f32,
-            })
-            .collect();
-        let Some(first) = points.first() else { continue };
-        let mut painter = Painter::begin(document, first).map_err(|e| error(e.to_string()))?;
-        for point in &points {
-            let changed = painter.extend(document, point);
-            document.recomposite(Some(&changed));
-        }
-        painted += usize::from(painter.commit(document));
+    let mut done = 0;
+    for (index, step) in steps.iter().enumerate() {
+        let changed = redo(document, step)
+            .map_err(|error| SessionError::BadInput(format!("step {}: {error}", index + 1)))?;
+        done += usize::from(changed);
     }
     document.brush = brush;
-    Ok(painted)
+    Ok(done)
+}
+
+/// Does one recorded step. Whether it changed anything.
+fn redo(document: &mut Document, step: &RecordedStep) -> Result<bool, SessionError> {
+    let before = document.undo.names().count();
+    match step {
+        RecordedStep::Stroke(stroke) => {
+            activate(document, &stroke.layer)?;
+            return draw(document, stroke);
+        }
+        RecordedStep::Fill(fill) => {
+            activate(document, &fill.layer)?;
+            document.fill(fill.targets.clone(), fill.focus)?;
+        }
+        RecordedStep::Gradient(drawn) => {
+            activate(document, &drawn.layer)?;
+            GradientInHand::begin(document, drawn.gradient)?.commit(document);
+        }
+        RecordedStep::Select(selection) => {
+            return document.select(selection.shape.clone(), selection.combine);
+        }
+        RecordedStep::Layers(edit) => {
+            document.edit_layers(edit.clone())?;
+        }
+        RecordedStep::Mask => {
+            document.mask_selected()?;
+        }
+        RecordedStep::Reset => {
+            document.reset_map()?;
+        }
+    }
+    document.recomposite(None);
+    Ok(document.undo.names().count() != before)
+}
+
+/// Paints on the layer of this name from now on.
+fn activate(document: &mut Document, name: &str) -> Result<(), SessionError> {
+    let layers = document.layers.layers();
+    let Some(layer) = layers.iter().position(|layer| layer.name == name) else {
+        let names: Vec<_> = layers.iter().map(|layer| format!("\"{}\"", layer.name)).collect();
+        let there_are = names.join(", ");
+        let what = format!("no layer is called \"{name}\" (there are {there_are})");
+        return Err(SessionError::BadInput(what));
+    };
+    document.layers.activate(layer);
+    Ok(())
+}
+
+/// Paints a recorded stroke on the active layer. Whether it changed anything.
+fn draw(document: &mut Document, stroke: &RecordedStroke) -> Result<bool, SessionError> {
+    document.brush = stroke.brush.clone();
+    let mut points = stroke.points.iter().map(|&[x, y, pressure]| StrokePoint {
+        at: StrokeTarget::View(stroke.view, glam::DVec2::new(x, y)),
+        pressure: pressure as f32,
+    });
+    let Some(first) = points.next() else { return Ok(false) };
+    let mut painter = Painter::begin(document, &first)?;
+    for point in std::iter::once(first).chain(points) {
+        let changed = painter.extend(document, &point);
+        document.recomposite(Some(&changed));
+    }
+    Ok(painter.commit(document))
 }
 
 /// What a brush with these channels touches of a layer: of an adjustment layer only its mask can be painted.

@@ -1,8 +1,8 @@
 //! From a pointer to a surface: rays of the shot camera, and what they meet.
 
+use focus::ViewFrame;
 use glam::{DVec2, DVec3};
 use lens::Camera;
-use project::ViewFrame;
 use scene::{Scene, SurfacePoint};
 use trace::{Ray, Tracer};
 

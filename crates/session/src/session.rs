@@ -8,10 +8,10 @@ mod verifying;
 use crate::document::Document;
 use crate::job::{Job, JobProgress, Waker};
 use crate::light_field::{Changes, serves};
-use crate::painter::Painter;
+use crate::painter::Underway;
 use crate::picking::{chief_ray, pick};
 use crate::preview::PreviewThread;
-use crate::undo::Undone;
+use crate::undo::{Undo, Undoable, Undone};
 use crate::{
     CameraEdit, Command, Event, JobId, JobStatus, Preview, PreviewActivity, Reference, ReferenceKind,
     SessionError, SurfaceHit, Verification,
@@ -33,6 +33,8 @@ pub struct SessionOptions {
     pub unwrap: UnwrapOptions,
     /// The longest side that the preview is drawn at, px.
     pub preview_size: u32,
+    /// Memory that steps of undo may keep alive, in bytes; the oldest are forgotten beyond it.
+    pub undo_budget_bytes: usize,
     /// How long after a change unsaved work is written to its recovery file. With the time that writing takes, it
     /// is what a crash may cost.
     pub keep_after: Duration,
@@ -45,6 +47,7 @@ impl Default for SessionOptions {
         Self {
             unwrap: UnwrapOptions::default(),
             preview_size: 640,
+            undo_budget_bytes: Document::UNDO_BUDGET_BYTES,
             keep_after: Duration::from_secs(15),
             waker: Arc::new(|| {}),
         }
@@ -91,7 +94,7 @@ pub struct Session {
     document: Option<Document>,
     /// Counts opened documents.
     generation: u64,
-    stroke: Option<Painter>,
+    underway: Option<Underway>,
     preview_thread: PreviewThread,
     preview: Option<Preview>,
     /// The camera that the preview was asked to show last.
@@ -125,7 +128,7 @@ impl Session {
             options,
             document: None,
             generation: 0,
-            stroke: None,
+            underway: None,
             preview: None,
             preview_camera: None,
             seen_preview: 0,
@@ -159,9 +162,9 @@ impl Session {
         self.preview_thread.activity().0
     }
 
-    /// Whether a stroke is going on.
+    /// Whether a stroke or a gradient is going on.
     pub fn is_painting(&self) -> bool {
-        self.stroke.is_some()
+        self.underway.is_some()
     }
 
     /// Whether all background work is done and the preview shows the document as it is.
@@ -227,10 +230,11 @@ impl Session {
 
     fn take(&mut self, outcome: Outcome) {
         match outcome {
-            Outcome::Opened(document) => {
+            Outcome::Opened(mut document) => {
+                document.undo = Undo::new(self.options.undo_budget_bytes);
                 self.forget_recovery();
                 self.generation += 1;
-                (self.stroke, self.preview) = (None, None);
+                (self.underway, self.preview) = (None, None);
                 self.references.clear();
                 self.end_verification();
                 let camera = self.scaled_camera(&document.camera);
@@ -311,9 +315,11 @@ impl Session {
             Command::ActivateLayer(index) => self.activate_layer(index),
             Command::Fill(region, focus) => self.fill(region, focus),
             Command::ResetMap => self.reset_map(),
-            Command::SetBackgroundFocus(focus) => {
-                self.fill_target("Background focus", FillTarget::Background, focus)
-            }
+            Command::SetBackgroundFocus(focus) => self.fill_targets(vec![FillTarget::Background], focus),
+            Command::DragGradient(gradient) => self.drag_gradient(gradient),
+            Command::Select(shape, combine) => self.select(shape, combine),
+            Command::MaskFromSelection => self.mask_selected(),
+            Command::SelectRegion(region, combine) => self.select_region(region, combine),
             Command::FocusHere(hit) => {
                 let depth = self.opened()?.camera.camera_from_world(hit.position).z;
                 self.edit_camera(CameraEdit::FocusDistance(depth))?;
@@ -385,20 +391,22 @@ impl Session {
     }
 
     fn step_back(&mut self) -> Result<(), SessionError> {
-        if self.stroke.is_some() {
+        if self.underway.is_some() {
             return self.abort_stroke();
         }
         let document = self.opened()?;
-        let undone = document.undo.undo(&mut document.layers, &mut document.camera);
+        let Document { undo, layers, camera, selection, .. } = document;
+        let undone = undo.undo(Undoable { layers, camera, selection });
         self.after_step(undone)
     }
 
     fn step_forward(&mut self) -> Result<(), SessionError> {
-        if self.stroke.is_some() {
+        if self.underway.is_some() {
             return Ok(());
         }
         let document = self.opened()?;
-        let done = document.undo.redo(&mut document.layers, &mut document.camera);
+        let Document { undo, layers, camera, selection, .. } = document;
+        let done = undo.redo(Undoable { layers, camera, selection });
         self.after_step(done)
     }
 
@@ -415,6 +423,10 @@ impl Session {
                 self.opened()?.revision += 1;
                 self.events.push(Event::LayersChanged);
                 self.show_layers(Some(Changed { texels }))
+            }
+            Some(Undone::Selection) => {
+                self.events.push(Event::SelectionChanged);
+                Ok(())
             }
             Some(Undone::Layers) => {
                 self.opened()?.revision += 1;
@@ -466,7 +478,7 @@ impl Session {
         let map = self.opened()?.map.clone();
         let changes = if background { Changes::Everything } else { Changes::Texels(changed.texels) };
         self.preview_thread.set_map(map, &changes);
-        if self.stroke.is_none() {
+        if self.underway.is_none() {
             self.preview_thread.settle();
         }
         self.events.push(Event::MapChanged(columns, rows));

@@ -1,43 +1,57 @@
-//! Undo and redo of paint and lens in the order in which they happened.
+//! Undo and redo of paint, selection and lens in the order in which they happened.
 
-use focus::{Edit, LayerStack};
+use focus::{Edit, LayerStack, Selection};
 use lens::Camera;
-use project::RecordedStroke;
+use project::RecordedStep;
 use std::collections::VecDeque;
 
-/// Memory that the steps may keep alive; the oldest are forgotten beyond it.
-const BUDGET_BYTES: usize = 256 << 20;
+/// What a step changed, and both its ends.
+#[derive(Clone, Debug)]
+enum Change {
+    /// The map of one layer.
+    Paint { layer: usize, edit: Edit },
+    /// The layers themselves.
+    Layers { before: Box<LayerStack>, after: Box<LayerStack> },
+    /// The camera.
+    Camera { before: Box<Camera>, after: Box<Camera> },
+    /// What may be painted.
+    Selection { before: Option<Selection>, after: Option<Selection> },
+}
+
+impl Change {
+    fn bytes(&self) -> usize {
+        let selected = |selection: &Option<Selection>| selection.as_ref().map_or(0, Selection::bytes);
+        match self {
+            Self::Paint { edit, .. } => edit.bytes(),
+            Self::Layers { before, after } => before.bytes_beside(after) + after.bytes_beside(before),
+            Self::Camera { .. } => 2 * size_of::<Camera>(),
+            Self::Selection { before, after } => selected(before) + selected(after),
+        }
+    }
+}
 
 /// One step.
 #[derive(Clone, Debug)]
-enum Step {
-    /// Of the map of one layer; a stroke with what was drawn.
-    Paint { layer: usize, edit: Edit, stroke: Option<Box<RecordedStroke>> },
-    /// Of the layers themselves.
-    Layers { name: &'static str, before: Box<LayerStack>, after: Box<LayerStack> },
-    /// Of the camera.
-    Camera { name: &'static str, before: Box<Camera>, after: Box<Camera> },
+struct Step {
+    name: String,
+    change: Change,
+    /// What was done, as data, where it can be done again.
+    record: Option<Box<RecordedStep>>,
+    /// Memory that it keeps alive.
+    bytes: usize,
 }
 
 impl Step {
-    fn name(&self) -> &str {
-        match self {
-            Self::Paint { edit, .. } => edit.name(),
-            Self::Layers { name, .. } | Self::Camera { name, .. } => name,
-        }
+    fn new(name: String, change: Change, record: Option<RecordedStep>) -> Self {
+        let mut step = Self { name, change, record: record.map(Box::new), bytes: 0 };
+        step.weigh();
+        step
     }
 
-    fn bytes(&self) -> usize {
-        match self {
-            Self::Paint { edit, stroke, .. } => {
-                let points = stroke.as_ref().map_or(0, |stroke| size_of_val(&*stroke.points));
-                size_of::<Step>() + edit.bytes() + points
-            }
-            Self::Layers { before, after, .. } => {
-                size_of::<Step>() + before.bytes_beside(after) + after.bytes_beside(before)
-            }
-            Self::Camera { .. } => size_of::<Step>() + 2 * size_of::<Camera>(),
-        }
+    /// Takes stock of its memory.
+    fn weigh(&mut self) {
+        let record = self.record.as_ref().map_or(0, |record| record.bytes());
+        self.bytes = size_of::<Self>() + self.name.len() + self.change.bytes() + record;
     }
 }
 
@@ -50,60 +64,96 @@ pub(crate) enum Undone {
     Layers,
     /// The camera.
     Camera,
+    /// What may be painted.
+    Selection,
+}
+
+/// What the steps change.
+pub(crate) struct Undoable<'a> {
+    pub layers: &'a mut LayerStack,
+    pub camera: &'a mut Camera,
+    pub selection: &'a mut Option<Selection>,
 }
 
 /// The steps that can be taken back, and those that can be done again.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub(crate) struct Undo {
     done: VecDeque<Step>,
     undone: Vec<Step>,
     /// Whether the next edit of the same name joins the latest step.
     run: bool,
+    /// Memory that the steps may keep alive; the oldest are forgotten beyond it.
+    budget_bytes: usize,
+    bytes: usize,
 }
 
 impl Undo {
+    /// No steps yet.
+    pub fn new(budget_bytes: usize) -> Self {
+        Self { done: VecDeque::new(), undone: Vec::new(), run: false, budget_bytes, bytes: 0 }
+    }
+
     /// Takes up a change of the map of a layer.
-    pub fn push_paint(&mut self, layer: usize, edit: Edit) {
-        self.push(Step::Paint { layer, edit, stroke: None });
+    pub fn push_paint(&mut self, layer: usize, edit: Edit, record: Option<RecordedStep>) {
+        self.push(Step::new(edit.name().into(), Change::Paint { layer, edit }, record));
         self.run = false;
     }
 
-    /// Takes up a stroke on a layer.
-    pub fn push_stroke(&mut self, layer: usize, edit: Edit, stroke: Option<RecordedStroke>) {
-        self.push(Step::Paint { layer, edit, stroke: stroke.map(Box::new) });
+    /// Takes up a change of what may be painted.
+    pub fn push_selection(
+        &mut self,
+        name: &str,
+        before: Option<Selection>,
+        after: Option<Selection>,
+        record: Option<RecordedStep>,
+    ) {
+        self.push(Step::new(name.into(), Change::Selection { before, after }, record));
         self.run = false;
     }
 
-    /// The strokes that can be taken back, oldest first.
-    pub fn strokes(&self) -> impl Iterator<Item = &RecordedStroke> {
-        self.done.iter().filter_map(|step| match step {
-            Step::Paint { stroke, .. } => stroke.as_deref(),
-            Step::Layers { .. } | Step::Camera { .. } => None,
-        })
+    /// What was done and can be taken back, as data, oldest first.
+    pub fn records(&self) -> impl Iterator<Item = &RecordedStep> {
+        self.done.iter().filter_map(|step| step.record.as_deref())
     }
 
-    /// Takes up a change of the layers; edits of one name in a row are one step where `joins` says so.
-    pub fn push_layers(&mut self, name: &'static str, before: LayerStack, after: LayerStack, joins: bool) {
-        match self.done.back_mut() {
-            Some(Step::Layers { name: last, after: end, .. }) if self.run && joins && *last == name => {
-                **end = after;
-                self.undone.clear();
-            }
-            _ => self.push(Step::Layers { name, before: before.into(), after: after.into() }),
-        }
-        self.run = joins;
+    /// Takes up a change of the layers; edits of one thing in a row, as a dragged slider makes them, are one step.
+    pub fn push_layers(
+        &mut self,
+        name: &str,
+        before: LayerStack,
+        after: LayerStack,
+        record: Option<RecordedStep>,
+    ) {
+        let edit = |record: Option<&RecordedStep>| match record {
+            Some(RecordedStep::Layers(edit)) => edit.dragged(),
+            _ => None,
+        };
+        let dragged = edit(record.as_ref());
+        let goes_on = |last: &Step| dragged.is_some() && edit(last.record.as_deref()) == dragged;
+        let before = match self.last_of_run(goes_on) {
+            Some(Step { change: Change::Layers { before, .. }, .. }) => before,
+            _ => before.into(),
+        };
+        self.push(Step::new(name.into(), Change::Layers { before, after: after.into() }, record));
+        self.run = dragged.is_some();
     }
 
     /// Takes up a change of the camera; edits of one name in a row are one step.
-    pub fn push_camera(&mut self, name: &'static str, before: Camera, after: Camera) {
-        match self.done.back_mut() {
-            Some(Step::Camera { name: last, after: end, .. }) if self.run && *last == name => {
-                **end = after;
-                self.undone.clear();
-            }
-            _ => self.push(Step::Camera { name, before: before.into(), after: after.into() }),
-        }
+    pub fn push_camera(&mut self, name: &str, before: Camera, after: Camera) {
+        let before = match self.last_of_run(|last| last.name == name) {
+            Some(Step { change: Change::Camera { before, .. }, .. }) => before,
+            _ => before.into(),
+        };
+        self.push(Step::new(name.into(), Change::Camera { before, after: after.into() }, None));
         self.run = true;
+    }
+
+    /// Takes the latest step away, if the run of edits that it belongs to goes on.
+    fn last_of_run(&mut self, goes_on: impl Fn(&Step) -> bool) -> Option<Step> {
+        let run = self.run;
+        let last = self.done.pop_back_if(|last| run && goes_on(last))?;
+        self.bytes -= last.bytes;
+        Some(last)
     }
 
     /// Ends a run of edits.
@@ -112,35 +162,35 @@ impl Undo {
     }
 
     fn push(&mut self, step: Step) {
-        self.undone.clear();
+        self.bytes -= self.undone.drain(..).map(|step| step.bytes).sum::<usize>();
+        self.bytes += step.bytes;
         self.done.push_back(step);
-        self.forget_beyond(BUDGET_BYTES);
-    }
-
-    /// Forgets the oldest steps beyond a budget; the latest is kept.
-    fn forget_beyond(&mut self, budget_bytes: usize) {
-        while self.bytes() > budget_bytes && self.done.len() > 1 {
-            self.done.pop_front();
+        while self.bytes > self.budget_bytes && self.done.len() > 1 {
+            self.bytes -= self.done.pop_front().map_or(0, |step| step.bytes);
         }
     }
 
     /// Takes the latest step back.
-    pub fn undo(&mut self, layers: &mut LayerStack, camera: &mut Camera) -> Option<Undone> {
+    pub fn undo(&mut self, state: Undoable<'_>) -> Option<Undone> {
         let step = self.done.pop_back()?;
         self.run = false;
-        let undone = match &step {
-            Step::Paint { layer, edit, .. } => {
-                layers.activate(*layer);
-                let texels = edit.revert(&mut layers.active_mut().map).texels;
+        let undone = match &step.change {
+            Change::Paint { layer, edit } => {
+                state.layers.activate(*layer);
+                let texels = edit.revert(&mut state.layers.active_mut().map).texels;
                 Undone::Paint { texels, background: edit.changes_background() }
             }
-            Step::Layers { before, .. } => {
-                *layers = (**before).clone();
+            Change::Layers { before, .. } => {
+                *state.layers = (**before).clone();
                 Undone::Layers
             }
-            Step::Camera { before, .. } => {
-                *camera = (**before).clone();
+            Change::Camera { before, .. } => {
+                *state.camera = (**before).clone();
                 Undone::Camera
+            }
+            Change::Selection { before, .. } => {
+                *state.selection = before.clone();
+                Undone::Selection
             }
         };
         self.undone.push(step);
@@ -148,22 +198,26 @@ impl Undo {
     }
 
     /// Makes the step again that was taken back last.
-    pub fn redo(&mut self, layers: &mut LayerStack, camera: &mut Camera) -> Option<Undone> {
+    pub fn redo(&mut self, state: Undoable<'_>) -> Option<Undone> {
         let step = self.undone.pop()?;
         self.run = false;
-        let done = match &step {
-            Step::Paint { layer, edit, .. } => {
-                layers.activate(*layer);
-                let texels = edit.apply(&mut layers.active_mut().map).texels;
+        let done = match &step.change {
+            Change::Paint { layer, edit } => {
+                state.layers.activate(*layer);
+                let texels = edit.apply(&mut state.layers.active_mut().map).texels;
                 Undone::Paint { texels, background: edit.changes_background() }
             }
-            Step::Layers { after, .. } => {
-                *layers = (**after).clone();
+            Change::Layers { after, .. } => {
+                *state.layers = (**after).clone();
                 Undone::Layers
             }
-            Step::Camera { after, .. } => {
-                *camera = (**after).clone();
+            Change::Camera { after, .. } => {
+                *state.camera = (**after).clone();
                 Undone::Camera
+            }
+            Change::Selection { after, .. } => {
+                *state.selection = after.clone();
+                Undone::Selection
             }
         };
         self.done.push_back(step);
@@ -171,31 +225,58 @@ impl Undo {
     }
 
     pub fn undo_name(&self) -> Option<&str> {
-        self.done.back().map(Step::name)
+        self.done.back().map(|step| &*step.name)
     }
 
     pub fn redo_name(&self) -> Option<&str> {
-        self.undone.last().map(Step::name)
+        self.undone.last().map(|step| &*step.name)
     }
 
     /// All steps that can be taken back, oldest first.
     pub fn names(&self) -> impl Iterator<Item = &str> {
-        self.done.iter().map(Step::name)
+        self.done.iter().map(|step| &*step.name)
     }
 
-    pub fn bytes(&self) -> usize {
-        self.done.iter().chain(&self.undone).map(Step::bytes).sum()
+    /// Memory that the steps keep alive, and how much they may.
+    pub fn bytes(&self) -> [usize; 2] {
+        [self.bytes, self.budget_bytes]
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use focus::{FocusLayer, FocusMap};
+    use focus::{FocusLayer, FocusMap, LayerEdit};
     use lens::FocusOffset;
 
-    fn blank() -> LayerStack {
-        LayerStack::of(FocusMap::new(4, 4, FocusOffset::STANDARD))
+    /// What a document has to be undone.
+    struct State {
+        undo: Undo,
+        layers: LayerStack,
+        camera: Camera,
+        selection: Option<Selection>,
+    }
+
+    impl State {
+        fn new() -> Self {
+            let layers = LayerStack::of(FocusMap::new(4, 4, FocusOffset::STANDARD));
+            Self { undo: Undo::new(1 << 20), layers, camera: focused(3.0), selection: None }
+        }
+
+        fn undo(&mut self) -> Option<Undone> {
+            let Self { undo, layers, camera, selection } = self;
+            undo.undo(Undoable { layers, camera, selection })
+        }
+
+        fn redo(&mut self) -> Option<Undone> {
+            let Self { undo, layers, camera, selection } = self;
+            undo.redo(Undoable { layers, camera, selection })
+        }
+
+        fn focuses(&mut self, at: f64) {
+            let before = std::mem::replace(&mut self.camera, focused(at));
+            self.undo.push_camera("Focus distance", before, self.camera.clone());
+        }
     }
 
     fn focused(at: f64) -> Camera {
@@ -204,81 +285,88 @@ mod tests {
 
     #[test]
     fn a_dragged_slider_is_one_step() {
-        let mut undo = Undo::default();
-        let mut layers = blank();
-        let mut camera = focused(3.0);
-        for k in 0..5 {
-            undo.push_camera("Focus distance", focused(3.0 + k as f64), focused(4.0 + k as f64));
-        }
-        undo.finish_run();
-        undo.push_camera("Focus distance", focused(8.0), focused(9.0));
-        assert_eq!(undo.undo(&mut layers, &mut camera), Some(Undone::Camera));
-        assert_eq!(camera.focus_distance, 8.0);
-        undo.undo(&mut layers, &mut camera);
-        assert_eq!(camera.focus_distance, 3.0);
-        assert_eq!(undo.undo(&mut layers, &mut camera), None);
-        undo.redo(&mut layers, &mut camera);
-        assert_eq!(camera.focus_distance, 8.0);
+        let mut state = State::new();
+        (4..9).for_each(|at| state.focuses(at as f64));
+        state.undo.finish_run();
+        state.focuses(9.0);
+        assert_eq!(state.undo(), Some(Undone::Camera));
+        assert_eq!(state.camera.focus_distance, 8.0);
+        state.undo();
+        assert_eq!(state.camera.focus_distance, 3.0);
+        assert_eq!(state.undo(), None);
+        state.redo();
+        assert_eq!(state.camera.focus_distance, 8.0);
     }
 
     #[test]
     fn the_oldest_steps_are_forgotten_first() {
-        let mut undo = Undo::default();
-        for k in 0..10 {
-            undo.push_camera("Focus distance", focused(3.0 + k as f64), focused(4.0 + k as f64));
-            undo.finish_run();
+        let mut state = State::new();
+        state.focuses(4.0);
+        let [one, _] = state.undo.bytes();
+        state.undo = Undo::new(5 * one + one / 2);
+        for at in 5..15 {
+            state.focuses(at as f64);
+            state.undo.finish_run();
         }
-        let (ten, budget) = (undo.bytes(), undo.bytes() / 2);
-        undo.forget_beyond(budget);
-        assert!(undo.bytes() <= budget && undo.bytes() > ten / 3);
-        let (mut layers, mut camera) = (blank(), focused(13.0));
-        undo.undo(&mut layers, &mut camera);
-        assert_eq!(camera.focus_distance, 12.0);
-        undo.forget_beyond(0);
-        assert_eq!(undo.names().count(), 1, "the latest is kept");
+        assert_eq!(state.undo.bytes(), [5 * one, 5 * one + one / 2]);
+        state.undo();
+        assert_eq!(state.undo.bytes()[0], 5 * one, "what can be done again counts too");
+        state.focuses(20.0);
+        assert_eq!(state.undo.bytes()[0], 5 * one);
+        while state.undo().is_some() {}
+        assert_eq!(state.camera.focus_distance, 9.0, "the first five are forgotten");
+        state.undo = Undo::new(0);
+        state.focuses(1.0);
+        assert_eq!(state.undo.names().count(), 1, "the latest is kept");
     }
 
     #[test]
     fn paint_layers_and_lens_are_undone_in_order() {
-        let mut undo = Undo::default();
-        let mut layers = blank();
-        let before = layers.clone();
-        layers.active_mut().map.set(1, 2, [0.5, 1.0]);
-        let edit = Edit::between("Brush stroke", &before.active().map, &layers.active().map).unwrap();
-        undo.push_paint(0, edit);
-        let painted = layers.clone();
-        assert!(layers.insert(FocusLayer::painted("Layer 1", FocusMap::clear(4, 4))));
-        undo.push_layers("Add layer", painted.clone(), layers.clone(), false);
-        let two = layers.clone();
-        let mut camera = focused(5.0);
-        undo.push_camera("Focus distance", focused(3.0), focused(5.0));
-        assert_eq!(undo.undo_name(), Some("Focus distance"));
-        undo.undo(&mut layers, &mut camera);
-        assert_eq!((camera.focus_distance, &layers), (3.0, &two));
-        assert_eq!(undo.undo(&mut layers, &mut camera), Some(Undone::Layers));
-        assert_eq!(layers, painted);
-        let undone = undo.undo(&mut layers, &mut camera);
-        assert_eq!(undone, Some(Undone::Paint { texels: vec![[1, 2]], background: false }));
-        assert_eq!(layers, before);
-        undo.redo(&mut layers, &mut camera);
-        undo.redo(&mut layers, &mut camera);
-        assert_eq!(layers, two);
-        undo.push_camera("Focus distance", focused(3.0), focused(6.0));
-        assert_eq!(undo.redo_name(), None, "a new step forgets what was undone");
+        let mut state = State::new();
+        let before = state.layers.clone();
+        state.layers.active_mut().map.set(1, 2, [0.5, 1.0]);
+        let map = &state.layers.active().map;
+        let edit = Edit::between("Brush stroke", &before.active().map, map).unwrap();
+        state.undo.push_paint(0, edit, None);
+        let painted = state.layers.clone();
+        assert!(state.layers.insert(FocusLayer::painted("Layer 1", FocusMap::clear(4, 4))));
+        state.undo.push_layers("Add layer", painted.clone(), state.layers.clone(), None);
+        let two = state.layers.clone();
+        state.focuses(5.0);
+        assert_eq!(state.undo.undo_name(), Some("Focus distance"));
+        state.undo();
+        assert_eq!((state.camera.focus_distance, &state.layers), (3.0, &two));
+        assert_eq!(state.undo(), Some(Undone::Layers));
+        assert_eq!(state.layers, painted);
+        assert_eq!(state.undo(), Some(Undone::Paint { texels: vec![[1, 2]], background: false }));
+        assert_eq!(state.layers, before);
+        state.redo();
+        state.redo();
+        assert_eq!(state.layers, two);
+        state.focuses(6.0);
+        assert_eq!(state.undo.redo_name(), None, "a new step forgets what was undone");
     }
 
     #[test]
-    fn a_dragged_opacity_is_one_step() {
-        let mut undo = Undo::default();
-        let (mut layers, mut camera) = (blank(), focused(3.0));
-        let first = layers.clone();
-        for k in 1..=5 {
-            let before = layers.clone();
-            layers.active_mut().opacity = 1.0 - 0.1 * k as f64;
-            undo.push_layers("Layer opacity", before, layers.clone(), true);
+    fn a_dragged_opacity_is_one_step_and_another_layer_s_is_another() {
+        let mut state = State::new();
+        assert!(state.layers.insert(FocusLayer::painted("Layer 1", FocusMap::clear(4, 4))));
+        let first = state.layers.clone();
+        for (layer, opacity) in [(0, 0.9), (0, 0.8), (0, 0.7), (1, 0.6), (1, 0.5)] {
+            let before = state.layers.clone();
+            state.layers.layer_mut(layer).unwrap().opacity = opacity;
+            let edit = RecordedStep::Layers(LayerEdit::Opacity(layer, opacity));
+            state.undo.push_layers("Layer opacity", before, state.layers.clone(), Some(edit));
         }
-        undo.undo(&mut layers, &mut camera);
-        assert_eq!(layers, first);
-        assert_eq!(undo.undo_name(), None);
+        let records: Vec<_> = state.undo.records().cloned().collect();
+        assert_eq!(
+            records,
+            [(0, 0.7), (1, 0.5)].map(|(k, o)| RecordedStep::Layers(LayerEdit::Opacity(k, o)))
+        );
+        state.undo();
+        assert_eq!(state.layers.layers()[0].opacity, 0.7);
+        state.undo();
+        assert_eq!(state.layers, first);
+        assert_eq!(state.undo.undo_name(), None);
     }
 }

@@ -5,6 +5,7 @@ mod tiny_glb;
 use focus::BrushMode;
 use glam::DVec2;
 use lens::{FocusOffset, Picture};
+use project::RecordedStep;
 use session::{
     CameraEdit, Command, Event, FillRegion, PreviewKind, Session, SessionError, SessionOptions, StrokePoint,
 };
@@ -310,10 +311,10 @@ fn a_failed_open_leaves_the_document_and_says_why() {
 }
 
 /// The picture as a view that is painted in.
-fn shot_view(session: &Session) -> project::ViewFrame {
+fn shot_view(session: &Session) -> focus::ViewFrame {
     let camera = &session.document().unwrap().camera;
     let (camera_to_world, yfov, aspect) = (camera.camera_to_world, camera.yfov, camera.aspect());
-    project::ViewFrame { camera_to_world, yfov, aspect }
+    focus::ViewFrame { camera_to_world, yfov, aspect }
 }
 
 /// A wave across the picture, `bunch` events between two polls.
@@ -355,7 +356,7 @@ fn recorded_strokes_paint_the_same_map_again_whatever_the_timing() {
             session.apply(Command::SetBrush(brush)).unwrap();
             wave(&mut session, 0.4 + 0.02 * k as f64, bunch);
         }
-        session.apply(Command::Layer(session::LayerEdit::AddPaint)).unwrap();
+        session.apply(Command::Layer(focus::LayerEdit::AddPaint)).unwrap();
         let target = FocusOffset::new(0.8, 1.0);
         let brush = focus::Brush { radius: 0.2, target, ..focus::Brush::default() };
         session.apply(Command::SetBrush(brush)).unwrap();
@@ -373,21 +374,27 @@ fn recorded_strokes_paint_the_same_map_again_whatever_the_timing() {
     let other = paint(50);
     assert!(other.document().unwrap().layers == document.layers, "events in another rhythm");
 
-    let strokes = project::read_strokes(&strokes).unwrap();
-    assert_eq!(strokes.len(), 5);
-    assert_eq!(strokes[4].layer, "Layer 1");
-    assert_eq!(strokes[0].points.len(), 51);
+    let steps = project::read_strokes(&strokes).unwrap();
+    assert_eq!(steps.len(), 6);
+    assert_eq!(steps[4], RecordedStep::Layers(focus::LayerEdit::AddPaint));
+    let RecordedStep::Stroke(first) = &steps[0] else { panic!("a stroke: {:?}", steps[0]) };
+    assert_eq!(first.points.len(), 51);
+    let strokes: Vec<_> = steps.iter().filter(|s| matches!(s, RecordedStep::Stroke(_))).cloned().collect();
     let nobody = progress::Unwatched;
     let mut again = session::Document::begin(&scene, None, None, &Default::default(), &nobody).unwrap();
     let missing = session::replay(&mut again, &strokes).unwrap_err().to_string();
     assert!(
-        missing.contains("stroke 5") && missing.contains("Layer 1") && missing.contains("Paint"),
+        missing.contains("step 5") && missing.contains("Layer 1") && missing.contains("Paint"),
         "{missing}"
     );
 
+    let mut again = session::Document::begin(&scene, None, None, &Default::default(), &nobody).unwrap();
+    assert_eq!(session::replay(&mut again, &steps).unwrap(), 6);
+    assert!(again.map == document.map && again.layers == document.layers);
+
     // On a project that has the layer: the same bits, saved and opened as well.
     let mut blank = opened(&scene);
-    blank.apply(Command::Layer(session::LayerEdit::AddPaint)).unwrap();
+    blank.apply(Command::Layer(focus::LayerEdit::AddPaint)).unwrap();
     let project = folder.path().join("blank.fbrush");
     blank.apply(Command::SaveAs(project.clone())).unwrap();
     settle(&mut blank);
@@ -405,10 +412,10 @@ fn depth_curves_follow_the_camera_and_come_back_with_it() {
     tiny_glb::write(&scene);
     let mut session = opened(&scene);
     let blank = picture(&session);
-    session.apply(Command::Layer(session::LayerEdit::AddCurve)).unwrap();
+    session.apply(Command::Layer(focus::LayerEdit::AddCurve)).unwrap();
     let curve = focus::Curve::new([[2.5f64.ln(), 1.0], [4.0f64.ln(), 1.3]]).unwrap();
     let curve = focus::DepthCurve { curve, anchor: 1.0 };
-    session.apply(Command::Layer(session::LayerEdit::Curve(1, curve))).unwrap();
+    session.apply(Command::Layer(focus::LayerEdit::Curve(1, curve))).unwrap();
     settle(&mut session);
     let wall = session.pick(&session.picture_ray(ON_WALL).unwrap()).unwrap();
     assert!((session.focus_at(&wall).unwrap().t - 1.3).abs() < 1e-5, "the wall stands at 4");

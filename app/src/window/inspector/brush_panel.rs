@@ -134,9 +134,8 @@ fn mirror_row(ui: &mut Ui, document: &Document, brush: &mut Brush) {
             if response.on_hover_text(tip).changed() {
                 brush.mirror_center = if about { middle } else { [0.0; 3] };
             }
-            ui.label("")
         })
-        .inner
+        .response
     });
 }
 

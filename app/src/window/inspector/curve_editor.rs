@@ -7,9 +7,9 @@ use crate::window::tool_bar::signed_circle_px;
 use egui::{
     Align2, Color32, DragValue, FontId, PointerButton, Pos2, Rect, Sense, Shape, Stroke, Ui, pos2, vec2,
 };
-use focus::{Curve, DepthCurve};
+use focus::{Curve, DepthCurve, LayerEdit};
 use lens::Optics;
-use session::{Command, Document, LayerEdit};
+use session::{Command, Document};
 
 /// Height of the drawing, points.
 const HEIGHT: f32 = 130.0;

@@ -1,11 +1,11 @@
 //! The layers of focus, the topmost first.
 
 use super::curve_editor::curve_editor;
-use crate::window::Action;
 use crate::window::controls::{self, finish, row, rows};
+use crate::window::{Action, keys};
 use egui::{Button, ComboBox, Slider, TextEdit, Ui};
-use focus::{Blend, FocusLayer};
-use session::{Command, CommandId, Document, LayerEdit};
+use focus::{Blend, FocusLayer, LayerEdit};
+use session::{Command, CommandId, Document};
 
 /// The list of layers, and what can be changed of the one that is painted on.
 pub fn layers_panel(ui: &mut Ui, document: &Document, actions: &mut Vec<Action>) {
@@ -28,10 +28,8 @@ pub fn layers_panel(ui: &mut Ui, document: &Document, actions: &mut Vec<Action>)
     }
     ui.horizontal_wrapped(|ui| {
         let mut button = |id: CommandId, label: &str| {
-            let info = id.info();
-            let key = info.shortcut.map(|key| format!(" ({key})")).unwrap_or_default();
             let response = ui.add_enabled(is_layer_command_possible(id, document), Button::new(label));
-            let tip = format!("{}{key}", info.tooltip);
+            let tip = keys::tip(ui.ctx(), id);
             if response.on_hover_text(&tip).on_disabled_hover_text(tip).clicked() {
                 actions.push(id.into());
             }

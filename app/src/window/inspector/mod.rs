@@ -8,10 +8,12 @@ mod lens_panel;
 mod modelled_panel;
 mod scene_panel;
 mod shape_panel;
+mod tool_panel;
 
 pub use layers_panel::is_layer_command_possible;
+pub use tool_panel::selected;
 
-use super::{Action, ViewSettings, controls};
+use super::{Action, Tool, ViewSettings, controls};
 use egui::{CollapsingHeader, ScrollArea, Ui};
 use session::{CommandId, Document, Session, SurfaceHit};
 
@@ -27,6 +29,7 @@ impl Inspector {
         &mut self,
         ui: &mut Ui,
         session: &Session,
+        tool: Tool,
         settings: &mut ViewSettings,
         hover: Option<SurfaceHit>,
         actions: &mut Vec<Action>,
@@ -39,6 +42,11 @@ impl Inspector {
                 ui.weak("Nothing is open.");
                 return;
             };
+            if tool_panel::has_settings(tool) {
+                section(ui, tool.label(), true, |ui| {
+                    tool_panel::tool_panel(ui, document, tool, &mut settings.tools, actions);
+                });
+            }
             section(ui, "Lens", true, |ui| lens_panel::lens_panel(ui, document, actions));
             section(ui, "Focus", true, |ui| focus_panel::focus_panel(ui, document, actions));
             section(ui, "Layers", true, |ui| layers_panel::layers_panel(ui, document, actions));

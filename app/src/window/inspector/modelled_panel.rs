@@ -30,7 +30,7 @@ pub fn modelled_panel(ui: &mut Ui, session: &Session, document: &Document) {
 fn kinds(ui: &mut Ui, modelled: &Modelled) {
     egui::Grid::new("kinds").num_columns(4).spacing([10.0, 4.0]).striped(true).show(ui, |ui| {
         for (title, tip) in [
-            ("", "What is counted."),
+            ("kind", "What is counted."),
             ("texels", "Texels of the atlas; of a large atlas an estimate."),
             ("samples", "Pieces of surface that the picture is summed from."),
             ("memory", "What these samples take."),

@@ -2,11 +2,19 @@
 
 use super::graphics::{GraphicsError, guarded};
 use focus::FocusMap;
+use session::Document;
 use std::ops::Range;
 
+/// What is added to the anchor of what is frozen. Twin of the shader's.
+const FROZEN: f32 = 2.0;
+
 /// t and anchor a texel, as floats: t is too close to 1 for half floats to tell a pixel of blur.
+///
+/// What is frozen has 2 added to its anchor, which is at most 1.
 pub struct FocusTexture {
     texture: wgpu::Texture,
+    /// A flag a texel, row by row; none where everything may be painted.
+    frozen: Option<Vec<bool>>,
 }
 
 impl FocusTexture {
@@ -26,10 +34,37 @@ impl FocusTexture {
                 usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
                 view_formats: &[],
             });
-            Self { texture }
+            Self { texture, frozen: None }
         })?;
         texture.update(queue, map, 0..map.width(), 0..map.height());
         Ok(texture)
+    }
+
+    /// Shows what may not be painted.
+    pub fn freeze(&mut self, queue: &wgpu::Queue, document: &Document) {
+        let (map, canvas) = (&document.map, &document.stage.canvas);
+        self.frozen = document.selection.as_ref().map(|selection| {
+            let width = map.width() as usize;
+            let mut frozen = vec![false; width * map.height() as usize];
+            for (index, texel) in canvas.texels().iter().enumerate() {
+                if !selection.contains(index) {
+                    let own = [[texel.x, texel.y]];
+                    for [x, y] in own.iter().chain(canvas.gutters_of(index)) {
+                        frozen[*y as usize * width + *x as usize] = true;
+                    }
+                }
+            }
+            frozen
+        });
+        self.update(queue, map, 0..map.width(), 0..map.height());
+    }
+
+    /// t and anchor as the shader is told them.
+    fn shown(&self, map: &FocusMap, x: u32, y: u32) -> [f32; 2] {
+        let [t, anchor] = map.texel(x, y);
+        let place = y as usize * map.width() as usize + x as usize;
+        let is_frozen = self.frozen.as_ref().is_some_and(|frozen| frozen.get(place) == Some(&true));
+        [t, anchor + if is_frozen { FROZEN } else { 0.0 }]
     }
 
     /// Columns and rows.
@@ -51,7 +86,7 @@ impl FocusTexture {
         }
         let mut texels = Vec::with_capacity(columns.len() * rows.len());
         for y in rows.clone() {
-            texels.extend(columns.clone().map(|x| map.texel(x, y)));
+            texels.extend(columns.clone().map(|x| self.shown(map, x, y)));
         }
         queue.write_texture(
             wgpu::TexelCopyTextureInfo {

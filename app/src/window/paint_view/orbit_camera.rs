@@ -139,7 +139,7 @@ mod tests {
     #[test]
     fn ray_and_projection_invert() {
         let camera = camera();
-        let frame = project::ViewFrame { camera_to_world: camera.pose(), yfov: camera.yfov, aspect: 1.5 };
+        let frame = focus::ViewFrame { camera_to_world: camera.pose(), yfov: camera.yfov, aspect: 1.5 };
         // (0.65, 0.85) of the way from the upper left corner is (0.3, −0.7) from the middle.
         let (origin, direction) = frame.ray(DVec2::new(0.65, 0.85));
         let found = camera.project(origin + direction * 7.0, 1.5).unwrap();

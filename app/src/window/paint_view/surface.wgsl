@@ -61,16 +61,26 @@ fn surface_vertex(corner: Corner) -> Fragment {
     return out;
 }
 
-// t and anchor at an atlas position in texels, bilinear between texel centres.
-fn focus_at(position: vec2<f32>) -> vec2<f32> {
+// What is added to the anchor of what is frozen. Twin of focus_texture.rs.
+const FROZEN: f32 = 2.0;
+
+// t, anchor and 1 where frozen, of a texel.
+fn texel_at(at: vec2<i32>) -> vec3<f32> {
+    let texel = textureLoad(focus_map, at, 0).xy;
+    let frozen = step(0.75 * FROZEN, texel.y);
+    return vec3(texel.x, texel.y - FROZEN * frozen, frozen);
+}
+
+// t, anchor and how much is frozen at an atlas position in texels, bilinear between texel centres.
+fn focus_at(position: vec2<f32>) -> vec3<f32> {
     let at = position - 0.5;
     let corner = floor(at);
     let share = at - corner;
     let last = vec2<i32>(frame.look.zw) - 1;
     let low = clamp(vec2<i32>(corner), vec2(0), last);
     let high = clamp(vec2<i32>(corner) + 1, vec2(0), last);
-    let top = mix(textureLoad(focus_map, low, 0).xy, textureLoad(focus_map, vec2(high.x, low.y), 0).xy, share.x);
-    let bottom = mix(textureLoad(focus_map, vec2(low.x, high.y), 0).xy, textureLoad(focus_map, high, 0).xy, share.x);
+    let top = mix(texel_at(low), texel_at(vec2(high.x, low.y)), share.x);
+    let bottom = mix(texel_at(vec2(low.x, high.y)), texel_at(high), share.x);
     return mix(top, bottom, share.y);
 }
 
@@ -107,7 +117,8 @@ fn surface_fragment(in: Fragment) -> @location(0) vec4<f32> {
     let base = material.base_color * in.color * textureSample(base_texture, base_sampler, in.base_uv);
     let emitted = material.emissive.rgb * textureSample(emissive_texture, emissive_sampler, in.emissive_uv).rgb;
     let depth = dot(frame.shot_axis.xyz, in.position) + frame.shot_axis.w;
-    let circle_px = frame.optics.z * kappa(1.0 / max(depth, 1e-9), focus_at(in.atlas));
+    let focus = focus_at(in.atlas);
+    let circle_px = frame.optics.z * kappa(1.0 / max(depth, 1e-9), focus.xy);
     let circle_width = fwidth(circle_px);
     let facet = cross(dpdx(in.position), dpdy(in.position));
     if base.a < material.kind.y {
@@ -129,5 +140,8 @@ fn surface_fragment(in: Fragment) -> @location(0) vec4<f32> {
     let lines = max(max(contour(circle_px, circle_width, 1.0), contour(circle_px, circle_width, 4.0)),
         contour(circle_px, circle_width, 16.0));
     focus_color = mix(focus_color, vec3(0.05), 0.75 * lines * frame.look.y * seen);
-    return vec4(mix(surface, focus_color, frame.look.x), 1.0);
+    let color = mix(surface, focus_color, frame.look.x);
+    // What is frozen is darker, and striped.
+    let stripe = step(4.0, f32((u32(in.clip.x) + u32(in.clip.y)) % 8u));
+    return vec4(color * mix(1.0, mix(0.45, 0.7, stripe), focus.z), 1.0);
 }

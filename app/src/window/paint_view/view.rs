@@ -4,12 +4,13 @@ use super::{
     FocusTexture, GraphicsError, OrbitCamera, SurfaceFrame, SurfaceLook, SurfaceMesh, SurfaceRenderer,
 };
 use crate::window::brush_ring;
+use crate::window::navigation::{self, Motion};
 use crate::window::pointer::{Hand, StrokeInput};
 use crate::window::{Action, false_colour, theme};
-use egui::{Color32, PointerButton, Pos2, Rect, Response, Sense, Stroke, TextureId, Ui, pos2, vec2};
+use egui::{Color32, Pos2, Rect, Response, Sense, Stroke, TextureId, Ui, pos2, vec2};
+use focus::ViewFrame;
 use glam::{DVec2, DVec3};
 use lens::Camera;
-use project::ViewFrame;
 use session::{Document, Session, SurfaceHit, view_ray};
 use std::ops::Range;
 use std::sync::mpsc;
@@ -115,6 +116,13 @@ impl PaintView {
         self.revision += 1;
     }
 
+    /// Takes up another selection: what is frozen looks so.
+    pub fn selection_changed(&mut self, document: &Document) {
+        let (Some(renderer), Some(focus)) = (&self.renderer, &mut self.focus) else { return };
+        focus.freeze(renderer.device().1, document);
+        self.revision += 1;
+    }
+
     /// Whether the surface is drawn.
     pub fn is_ready(&self) -> bool {
         self.mesh.is_some() && self.texture.is_some()
@@ -188,7 +196,7 @@ impl PaintView {
         &mut self,
         ui: &mut Ui,
         session: &Session,
-        hand: Hand,
+        hand: &Hand,
         look: SurfaceLook,
         actions: &mut Vec<Action>,
     ) {
@@ -216,6 +224,7 @@ impl PaintView {
         if look.focus_share > 0.0 {
             legend(&painter, rect);
         }
+        self.stroke.paint(ui, rect);
         if let (Some(hit), Some(ring)) = (self.hover, hand.ring) {
             brush_ring::paint(&painter, &hit, ring, |point| self.screen_from_world(point));
         }
@@ -247,18 +256,14 @@ impl PaintView {
         }
     }
 
-    /// Middle drag or Alt+drag orbits, with Shift slides, with Ctrl comes nearer; the wheel comes nearer; two fingers do all.
+    /// Drags as the key map has them; the wheel comes nearer; two fingers do all.
     fn navigate(&mut self, ui: &Ui, response: &Response) {
-        let modifiers = ui.input(|input| input.modifiers);
-        let alt_drag = response.dragged_by(PointerButton::Primary) && modifiers.alt;
-        if response.dragged_by(PointerButton::Middle) || alt_drag {
-            let delta = DVec2::new(response.drag_delta().x as f64, response.drag_delta().y as f64);
-            if modifiers.shift {
-                self.camera.pan(delta, self.rect.height() as f64);
-            } else if modifiers.command {
-                self.camera.zoom(-delta.y / POINTS_PER_STEP * 2.0);
-            } else {
-                self.camera.orbit(delta);
+        if let Some((motion, delta)) = navigation::dragged(ui, response) {
+            let delta = DVec2::new(delta.x as f64, delta.y as f64);
+            match motion {
+                Motion::Orbit => self.camera.orbit(delta),
+                Motion::Slide => self.camera.pan(delta, self.rect.height() as f64),
+                Motion::Nearer => self.camera.zoom(-delta.y / POINTS_PER_STEP * 2.0),
             }
         }
         if response.contains_pointer() {

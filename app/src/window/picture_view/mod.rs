@@ -8,13 +8,14 @@ mod wipe;
 pub use shown::Shown;
 
 use super::brush_ring;
+use super::navigation::{self, Motion};
 use super::paint_view::hint;
 use super::pointer::{Hand, StrokeInput};
 use super::{Action, controls, theme};
 use egui::{PointerButton, Pos2, Rect, Response, Sense, Ui, Vec2, pos2, vec2};
+use focus::ViewFrame;
 use glam::{DVec2, DVec3};
 use lens::Camera;
-use project::ViewFrame;
 use session::{Command, PreviewActivity, PreviewKind, ReferenceKind, Session, SurfaceHit};
 use shown::Textures;
 use tone::Tone;
@@ -119,7 +120,7 @@ impl PictureView {
     }
 
     /// Draws the view into the rest of `ui` and turns the pointer into actions.
-    pub fn ui(&mut self, ui: &mut Ui, session: &Session, hand: Hand, stops: f32, actions: &mut Vec<Action>) {
+    pub fn ui(&mut self, ui: &mut Ui, session: &Session, hand: &Hand, stops: f32, actions: &mut Vec<Action>) {
         let (rect, response) =
             ui.allocate_exact_size(ui.available_size().max(vec2(8.0, 8.0)), Sense::click_and_drag());
         self.rect = rect;
@@ -149,6 +150,7 @@ impl PictureView {
             let position = |at: Pos2| picture_position(image, at);
             actions.extend(self.stroke.update(ui, &response, session, hand, frame, position));
         }
+        self.stroke.paint(ui, rect);
         let pointer = response.hover_pos().or_else(|| response.interact_pointer_pos());
         let pointer = pointer.filter(|at| image.contains(*at) && !is_wiping && !is_selecting);
         self.hover = pointer.and_then(|at| session.pick(&session.picture_ray(picture_position(image, at))?));
@@ -216,23 +218,25 @@ impl PictureView {
         is_shown && session.reference(kind).is_some() && !session.is_reference_current(kind)
     }
 
-    /// Middle drag (or Alt+drag) slides, the wheel comes nearer to what is under the pointer, a double click with the
+    /// Drags slide or come nearer as the key map has it, the wheel comes nearer to what is under the pointer, a double click with the
     /// middle button fits.
     fn navigate(&mut self, ui: &Ui, response: &Response, size: Vec2) {
         if response.double_clicked_by(PointerButton::Middle) {
             self.zoom = Zoom::Fit;
             return;
         }
-        let alt = ui.input(|input| input.modifiers.alt);
-        let sliding = response.dragged_by(PointerButton::Middle)
-            || (alt && response.dragged_by(PointerButton::Primary));
-        if sliding {
+        let dragged = navigation::dragged(ui, response);
+        if let Some((Motion::Orbit | Motion::Slide, delta)) = dragged {
             let image = self.place(size);
-            self.zoom = self.free(image.translate(response.drag_delta()), size);
+            self.zoom = self.free(image.translate(delta), size);
         }
-        let Some(pointer) = response.hover_pos() else { return };
-        let (scroll, pinch) = ui.input(|input| (input.smooth_scroll_delta().y, input.zoom_delta()));
-        let factor = (scroll / POINTS_PER_DOUBLING).exp2() * pinch;
+        let nearer = dragged.filter(|(motion, _)| *motion == Motion::Nearer).map_or(0.0, |(_, d)| -2.0 * d.y);
+        let Some(pointer) = response.hover_pos().or_else(|| response.interact_pointer_pos()) else { return };
+        let (scroll, pinch) = match response.contains_pointer() {
+            true => ui.input(|input| (input.smooth_scroll_delta().y, input.zoom_delta())),
+            false => (0.0, 1.0),
+        };
+        let factor = ((scroll + nearer) / POINTS_PER_DOUBLING).exp2() * pinch;
         if factor != 1.0 {
             let image = self.place(size);
             let scale = image.width() / size.x;

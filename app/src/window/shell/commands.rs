@@ -1,6 +1,7 @@
 //! What each command of the table does in the window.
 
 use super::Shell;
+use crate::window::brush_gesture::BrushNumber;
 use crate::window::file_dialog::Purpose;
 use crate::window::paint_view::PaintView;
 use crate::window::picture_view::TRUTH_SAMPLES;
@@ -8,9 +9,10 @@ use crate::window::tool_bar::{largest_radius, signed_circle_px};
 use crate::window::unsaved_question::Next;
 use crate::window::{Tool, ViewSettings, layout};
 use egui::Context;
-use focus::{Brush, BrushMode};
+use focus::{Brush, BrushMode, Combine, LayerEdit};
 use lens::{Exposure, FocusOffset};
-use session::{CameraEdit, Command, CommandId, FillRegion, LayerEdit, ReferenceKind};
+use project::SelectionShape;
+use session::{CameraEdit, Command, CommandId, FillRegion, KeyMap, ReferenceKind};
 
 /// What a key changes of the brush's size.
 const SIZE_STEP: f64 = 1.15;
@@ -48,21 +50,50 @@ impl Shell {
                 self.layout = layout::initial();
                 self.settings.inspector = true;
             }
-            CommandId::Brush => self.choose(Tool::Brush),
-            CommandId::Smooth => self.choose(Tool::Smooth),
-            CommandId::Sharpen => self.choose(Tool::Sharpen),
-            CommandId::Erase => self.choose(Tool::Reset),
-            CommandId::FillPart => self.choose(Tool::FillObject),
-            CommandId::FillMaterial => self.choose(Tool::FillMaterial),
-            CommandId::FillChart => self.choose(Tool::FillChart),
-            CommandId::FocusHere => self.choose(Tool::FocusHere),
-            CommandId::Pick => self.choose(Tool::Pick),
+            CommandId::KeysBlender => self.settings.key_map = KeyMap::Blender,
+            CommandId::KeysSubstance => self.settings.key_map = KeyMap::Substance,
+            CommandId::KeysKrita => self.settings.key_map = KeyMap::Krita,
+            CommandId::Brush
+            | CommandId::Smooth
+            | CommandId::Sharpen
+            | CommandId::Clone
+            | CommandId::Erase
+            | CommandId::FillPart
+            | CommandId::FillMaterial
+            | CommandId::FillChart
+            | CommandId::Gradient
+            | CommandId::SharpHere
+            | CommandId::SelectLasso
+            | CommandId::SelectBox
+            | CommandId::SelectObject
+            | CommandId::SelectMaterial
+            | CommandId::SelectChart
+            | CommandId::SelectFacing
+            | CommandId::SelectDepth
+            | CommandId::FocusHere
+            | CommandId::Pick => self.choose(id),
+            CommandId::SelectAll => {
+                self.apply(Command::Select(SelectionShape::Everything, Combine::Replace));
+            }
+            CommandId::InvertSelection => {
+                self.apply(Command::Select(SelectionShape::Inverse, Combine::Replace));
+            }
+            CommandId::MaskFromSelection => self.apply(Command::MaskFromSelection),
             CommandId::FillAll => {
                 if let Some(target) = self.session.document().map(|document| document.brush.target) {
                     self.apply(Command::Fill(FillRegion::All, target));
                 }
             }
             CommandId::ResetMap => self.apply(Command::ResetMap),
+            CommandId::BrushSize => self.set_brush_number(BrushNumber::Size, context),
+            CommandId::BrushStrength => self.set_brush_number(BrushNumber::Strength, context),
+            CommandId::BrushHardness => self.set_brush_number(BrushNumber::Hardness, context),
+            CommandId::BrushStronger => {
+                self.edit_brush(|brush, _| brush.strength = (brush.strength + 0.1).min(1.0));
+            }
+            CommandId::BrushWeaker => {
+                self.edit_brush(|brush, _| brush.strength = (brush.strength - 0.1).max(0.0));
+            }
             CommandId::BrushLarger => {
                 self.edit_brush(|brush, most| brush.radius = (brush.radius * SIZE_STEP).min(most))
             }
@@ -137,8 +168,15 @@ impl Shell {
         }
     }
 
-    fn choose(&mut self, tool: Tool) {
-        let Some(document) = self.session.document() else { return };
+    fn set_brush_number(&mut self, number: BrushNumber, context: &Context) {
+        if let Some(document) = self.session.document() {
+            self.gesture.begin(number, &document.brush, context);
+        }
+    }
+
+    /// Takes the tool of a command in hand.
+    fn choose(&mut self, id: CommandId) {
+        let (Some(document), Some(tool)) = (self.session.document(), Tool::of(id)) else { return };
         // Back from another tool's mode to one that paints the chosen focus.
         let own = matches!(document.brush.mode, BrushMode::Set | BrushMode::Add | BrushMode::Subtract);
         let mode = tool.mode(if own { document.brush.mode } else { BrushMode::Set });

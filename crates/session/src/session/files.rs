@@ -142,15 +142,15 @@ impl Session {
         Ok(())
     }
 
-    /// Writes the strokes of the history. Quick enough to wait for.
+    /// Writes what was painted in the history. Quick enough to wait for.
     pub(super) fn export_strokes(&mut self, path: &Path) -> Result<(), SessionError> {
         self.commit_stroke()?;
-        let strokes: Vec<_> = self.opened()?.undo.strokes().cloned().collect();
-        if strokes.is_empty() {
-            let what = "no strokes since the document was opened (paint first)";
+        let steps: Vec<_> = self.opened()?.undo.records().cloned().collect();
+        if steps.is_empty() {
+            let what = "nothing was painted since the document was opened (paint first)";
             return Err(SessionError::bad(path, what));
         }
-        project::write_strokes(path, &strokes)?;
+        project::write_strokes(path, &steps)?;
         self.events.push(crate::Event::Written(path.into()));
         Ok(())
     }

@@ -1,105 +1,128 @@
-//! Strokes and fills.
+//! Strokes, gradients, fills, selections and layers.
 
 use super::Session;
-use crate::painter::{Painter, paintable};
-use crate::{Event, FillRegion, LayerEdit, SessionError, Stage, StrokePoint, SurfaceHit};
-use focus::{Channels, Edit, FillTarget, FocusMap, LayerStack, fill};
-use lens::{Camera, FocusOffset};
+use crate::painter::{GradientInHand, Painter, Underway};
+use crate::{Event, FillRegion, SessionError, StrokePoint};
+use focus::{Combine, FillTarget, FocusMap, Gradient, LayerEdit};
+use lens::FocusOffset;
+use project::SelectionShape;
 
 impl Session {
     pub(super) fn begin_stroke(&mut self, point: StrokePoint) -> Result<(), SessionError> {
-        if self.stroke.is_some() {
-            self.commit_stroke()?;
-        }
-        self.stroke = Some(Painter::begin(self.opened()?, &point)?);
+        self.commit_stroke()?;
+        let painter = Painter::begin(self.opened()?, &point)?;
+        self.underway = Some(Underway::Stroke(Box::new(painter)));
         self.extend_stroke(point)
     }
 
     pub(super) fn extend_stroke(&mut self, point: StrokePoint) -> Result<(), SessionError> {
         let Some(document) = &mut self.document else { return Err(SessionError::NothingOpen) };
-        let Some(stroke) = &mut self.stroke else { return Ok(()) };
+        let Some(Underway::Stroke(stroke)) = &mut self.underway else { return Ok(()) };
         let changed = stroke.extend(document, &point);
         self.show_layers(Some(changed))
     }
 
+    /// Draws a gradient, or another one in the place of the one being drawn.
+    pub(super) fn drag_gradient(&mut self, gradient: Gradient) -> Result<(), SessionError> {
+        if let Some(Underway::Stroke(_)) = self.underway {
+            self.commit_stroke()?;
+        }
+        let Some(document) = &mut self.document else { return Err(SessionError::NothingOpen) };
+        match &mut self.underway {
+            Some(Underway::Gradient(drawn)) => drawn.change(document, gradient)?,
+            _ => {
+                let drawn = GradientInHand::begin(document, gradient)?;
+                self.underway = Some(Underway::Gradient(Box::new(drawn)));
+            }
+        }
+        self.show_layers(None)
+    }
+
+    /// Ends the stroke or the gradient that is going on.
     pub(super) fn commit_stroke(&mut self) -> Result<(), SessionError> {
-        let Some(stroke) = self.stroke.take() else { return Ok(()) };
-        if stroke.commit(self.opened()?) {
+        let Some(underway) = self.underway.take() else { return Ok(()) };
+        let document = self.opened()?;
+        let changed = match underway {
+            Underway::Stroke(stroke) => stroke.commit(document),
+            Underway::Gradient(gradient) => gradient.commit(document),
+        };
+        if changed {
             self.preview_thread.settle();
         }
         Ok(())
     }
 
+    /// Takes the stroke or the gradient back that is going on.
     pub(super) fn abort_stroke(&mut self) -> Result<(), SessionError> {
-        let Some(stroke) = self.stroke.take() else { return Ok(()) };
-        let changed = stroke.abort(self.opened()?);
-        self.show_layers(Some(changed))
+        let Some(underway) = self.underway.take() else { return Ok(()) };
+        let document = self.opened()?;
+        let changed = match underway {
+            Underway::Stroke(stroke) => Some(stroke.abort(document)),
+            Underway::Gradient(gradient) => {
+                gradient.abort(document);
+                None
+            }
+        };
+        self.show_layers(changed)
     }
 
     pub(super) fn fill(&mut self, region: FillRegion, focus: FocusOffset) -> Result<(), SessionError> {
-        let stage = self.opened()?.stage.clone();
-        let part_of = |hit: SurfaceHit| stage.scene.triangles[hit.point.triangle as usize].part;
-        let (name, target) = match region {
-            FillRegion::Node(hit) => {
-                ("Fill object", FillTarget::Node(stage.scene.parts[part_of(hit) as usize].node))
-            }
-            FillRegion::Part(hit) => ("Fill part", FillTarget::Part(part_of(hit))),
-            FillRegion::Material(hit) => {
-                ("Fill material", FillTarget::Material(stage.scene.parts[part_of(hit) as usize].material))
-            }
-            FillRegion::Chart(hit) => {
-                ("Fill chart", FillTarget::Chart(stage.atlas.chart_of[hit.point.triangle as usize]))
-            }
-            FillRegion::All => ("Fill everything", FillTarget::Everything),
-        };
-        self.fill_target(name, target, focus)
+        let targets = self.opened()?.targets_of(region);
+        self.fill_targets(targets, focus)
     }
 
-    pub(super) fn fill_target(
+    pub(super) fn fill_targets(
         &mut self,
-        name: &str,
-        target: FillTarget,
+        targets: Vec<FillTarget>,
         focus: FocusOffset,
     ) -> Result<(), SessionError> {
         self.commit_stroke()?;
-        let document = self.opened()?;
-        let channels = paintable(document.layers.active(), Channels::Both)?;
-        let canvas = document.stage.canvas.clone();
-        let map = &mut document.layers.active_mut().map;
-        let before = map.clone();
-        let changed = fill(map, &canvas, target, focus, channels)
-            .map_err(|error| SessionError::BadInput(error.to_string()))?;
-        let Some(edit) = Edit::between(name, &before, map) else { return Ok(()) };
-        document.undo.push_paint(document.layers.active_index(), edit);
-        document.revision += 1;
+        let changed = self.opened()?.fill(targets, focus)?;
         self.show_layers(Some(changed))
+    }
+
+    pub(super) fn select_region(&mut self, region: FillRegion, combine: Combine) -> Result<(), SessionError> {
+        let targets = self.opened()?.targets_of(region);
+        self.select(SelectionShape::Targets(targets), combine)
+    }
+
+    pub(super) fn select(&mut self, shape: SelectionShape, combine: Combine) -> Result<(), SessionError> {
+        self.commit_stroke()?;
+        if self.opened()?.select(shape, combine)? {
+            self.events.push(Event::SelectionChanged);
+        }
+        Ok(())
+    }
+
+    pub(super) fn mask_selected(&mut self) -> Result<(), SessionError> {
+        self.commit_stroke()?;
+        let changed = self.opened()?.mask_selected()?;
+        self.layers_changed(changed)
     }
 
     pub(super) fn reset_map(&mut self) -> Result<(), SessionError> {
         self.commit_stroke()?;
-        let [width, height] = self.opened()?.map.size();
-        let blank = FocusMap::new(width, height, FocusOffset::STANDARD);
-        self.change_layers("Reset all paint", false, |layers, _, _| {
-            *layers = LayerStack::of(blank);
-            Ok(())
-        })
+        let changed = self.opened()?.reset_map()?;
+        self.layers_changed(changed)
     }
 
     /// Puts a map in the place of the active layer's values, or above it where those come from a curve.
     pub(super) fn import_map(&mut self, map: FocusMap) -> Result<(), SessionError> {
-        self.change_layers("Import focus", false, |layers, stage, camera| {
+        self.commit_stroke()?;
+        let changed = self.opened()?.change_layers("Import focus", None, |layers, document| {
             if layers.active().curve.is_some() {
-                LayerEdit::AddPaint.apply(layers, stage, camera)?;
+                LayerEdit::AddPaint.apply(layers, &document.stage.canvas, &document.camera)?;
             }
             layers.active_mut().map = map;
             Ok(())
-        })
+        })?;
+        self.layers_changed(changed)
     }
 
     pub(super) fn edit_layers(&mut self, edit: LayerEdit) -> Result<(), SessionError> {
         self.commit_stroke()?;
-        let (name, joins) = (edit.name(), edit.joins_runs());
-        self.change_layers(name, joins, |layers, stage, camera| edit.apply(layers, stage, camera))
+        let changed = self.opened()?.edit_layers(edit)?;
+        self.layers_changed(changed)
     }
 
     pub(super) fn activate_layer(&mut self, index: usize) -> Result<(), SessionError> {
@@ -109,24 +132,10 @@ impl Session {
         Ok(())
     }
 
-    /// Changes the layers as one step of undo. A change that fails, or changes nothing, leaves no trace.
-    fn change_layers(
-        &mut self,
-        name: &'static str,
-        joins: bool,
-        change: impl FnOnce(&mut LayerStack, &Stage, &Camera) -> Result<(), SessionError>,
-    ) -> Result<(), SessionError> {
-        let document = self.opened()?;
-        let before = document.layers.clone();
-        let mut after = before.clone();
-        change(&mut after, &document.stage, &document.camera)?;
-        if after == before {
+    fn layers_changed(&mut self, changed: bool) -> Result<(), SessionError> {
+        if !changed {
             return Ok(());
         }
-        document.layers = after.clone();
-        document.curves_for = document.camera.camera_to_world;
-        document.undo.push_layers(name, before, after, joins);
-        document.revision += 1;
         self.events.push(Event::LayersChanged);
         self.show_layers(None)
     }

@@ -1,12 +1,13 @@
 //! A change of the layers of focus.
 
-use crate::{SessionError, Stage};
-use focus::{Blend, DepthCurve, FocusLayer, FocusMap, LayerStack};
+use crate::{Blend, Canvas, DepthCurve, FocusError, FocusLayer, FocusMap, LayerStack};
 use lens::Camera;
+use serde::{Deserialize, Serialize};
 
 /// A change of the layers of focus; layers are counted from the bottom. Each is one step of undo, a run of edits of
 /// one kind (a dragged slider) as well.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum LayerEdit {
     /// An empty layer to paint on, above the active one; it becomes the active one.
     AddPaint,
@@ -61,19 +62,20 @@ impl LayerEdit {
         }
     }
 
-    /// Whether edits of this kind in a row are one step of undo.
-    pub(crate) fn joins_runs(&self) -> bool {
-        matches!(self, Self::Rename(..) | Self::Opacity(..) | Self::Curve(..))
+    /// What is changed little by little: edits of the same thing in a row are one step of undo. `None` for an edit that is
+    /// a step of its own.
+    pub fn dragged(&self) -> Option<(&'static str, usize)> {
+        match self {
+            Self::Rename(index, _) | Self::Opacity(index, _) | Self::Curve(index, _) => {
+                Some((self.name(), *index))
+            }
+            _ => None,
+        }
     }
 
-    /// Does it.
-    pub(crate) fn apply(
-        self,
-        layers: &mut LayerStack,
-        stage: &Stage,
-        camera: &Camera,
-    ) -> Result<(), SessionError> {
-        let bad = |what: &str| Err(SessionError::BadInput(format!("layers: {what}")));
+    /// Does it. New depth curves begin from what `camera` sees of the canvas.
+    pub fn apply(self, layers: &mut LayerStack, canvas: &Canvas, camera: &Camera) -> Result<(), FocusError> {
+        let bad = |problem| Err(FocusError::BadLayerEdit { problem });
         match self {
             Self::AddPaint => {
                 let [width, height] = layers.size();
@@ -81,11 +83,11 @@ impl LayerEdit {
                 return inserted(layers, layer);
             }
             Self::AddCurve => {
-                let Some(curve) = first_curve(stage, camera) else {
+                let Some(curve) = first_curve(canvas, camera) else {
                     return bad("nothing stands before the camera (turn it toward the scene)");
                 };
                 let name = free_name(layers, "Depth curve");
-                let mut layer = FocusLayer::adjusted(name, curve, &stage.canvas, camera);
+                let mut layer = FocusLayer::adjusted(name, curve, canvas, camera);
                 layer.map.add_mask();
                 return inserted(layers, layer);
             }
@@ -135,7 +137,7 @@ impl LayerEdit {
                     return bad("only an adjustment layer has a curve (add one)");
                 }
                 layer.curve = Some(curve);
-                layer.evaluate(&stage.canvas, camera);
+                layer.evaluate(canvas, camera);
             }
             Self::AddMask(_) => layer.map.add_mask(),
             Self::InvertMask(_) => layer.map.invert_mask(),
@@ -146,12 +148,8 @@ impl LayerEdit {
     }
 }
 
-fn inserted(layers: &mut LayerStack, layer: FocusLayer) -> Result<(), SessionError> {
-    if layers.insert(layer) {
-        return Ok(());
-    }
-    let most = LayerStack::MOST_LAYERS;
-    Err(SessionError::BadInput(format!("layers: there are {most} already (remove one first)")))
+fn inserted(layers: &mut LayerStack, layer: FocusLayer) -> Result<(), FocusError> {
+    if layers.insert(layer) { Ok(()) } else { Err(FocusError::TooManyLayers) }
 }
 
 /// `wanted`, with the first number that no layer has yet.
@@ -163,8 +161,8 @@ fn free_name(layers: &LayerStack, wanted: &str) -> String {
 }
 
 /// Sharp from the nearest to the farthest thing, with a point to take hold of where the lens focuses.
-fn first_curve(stage: &Stage, camera: &Camera) -> Option<DepthCurve> {
-    let depths = stage.canvas.texels().iter().map(|texel| camera.camera_from_world(texel.position).z);
+fn first_curve(canvas: &Canvas, camera: &Camera) -> Option<DepthCurve> {
+    let depths = canvas.texels().iter().map(|texel| camera.camera_from_world(texel.position).z);
     let (near, far) = depths
         .filter(|depth| *depth > 0.0)
         .fold((f64::INFINITY, 0.0), |(near, far), depth| (depth.min(near), depth.max(far)));
@@ -172,5 +170,5 @@ fn first_curve(stage: &Stage, camera: &Camera) -> Option<DepthCurve> {
     let focus = camera.focus_distance;
     let points = curve.curve.points().iter().copied();
     let held = (focus > near * 1.05 && focus < far / 1.05).then_some([focus.ln(), 1.0]);
-    Some(DepthCurve { curve: focus::Curve::new(points.chain(held))?, ..curve })
+    Some(DepthCurve { curve: crate::Curve::new(points.chain(held))?, ..curve })
 }

@@ -1,0 +1,142 @@
+//! Tools that are dragged from one place of a view to another: gradients, and what may be painted.
+
+use super::tool_settings::ToolSettings;
+use super::{Action, Tool};
+use egui::{Color32, Modifiers, Painter, Pos2, Shape, Stroke};
+use focus::{Combine, Gradient, GradientLine, ViewFrame};
+use glam::DVec2;
+use project::SelectionShape;
+use session::{Command, Session, SurfaceHit, rectangle, view_ray};
+
+/// Less than this is a click and no drag, points.
+const LEAST_WAY: f32 = 3.0;
+
+/// How far depths of one plane may be apart by rounding, as a share of them: positions in files are 32-bit floats.
+const DEPTH_ROUNDING: f64 = 1e-6;
+
+/// A drag that goes on.
+pub struct Drag {
+    tool: Tool,
+    combine: Combine,
+    way: Vec<Pos2>,
+    /// The surfaces at both ends, where the tool asks for them.
+    hits: [Option<SurfaceHit>; 2],
+}
+
+/// The view that is dragged in.
+pub struct DragView<'a> {
+    /// What it is.
+    pub frame: ViewFrame,
+    /// From the screen to where in it that is.
+    pub position: &'a dyn Fn(Pos2) -> DVec2,
+}
+
+impl Drag {
+    /// Begins at a place.
+    pub fn begin(tool: Tool, modifiers: Modifiers, at: Pos2, session: &Session, view: &DragView<'_>) -> Self {
+        let hit = session.pick(&view_ray(&view.frame, (view.position)(at)));
+        Self { tool, combine: combine(modifiers), way: vec![at], hits: [hit; 2] }
+    }
+
+    /// Goes on to another place.
+    pub fn extend(
+        &mut self,
+        at: Pos2,
+        session: &Session,
+        settings: &ToolSettings,
+        view: &DragView<'_>,
+    ) -> Option<Action> {
+        if self.way.last() == Some(&at) {
+            return None;
+        }
+        if self.tool == Tool::SelectLasso || self.way.len() < 2 {
+            self.way.push(at);
+        } else {
+            self.way[1] = at;
+        }
+        let hit = session.pick(&view_ray(&view.frame, (view.position)(at)));
+        self.hits[1] = hit.or(self.hits[1]);
+        if self.tool != Tool::Gradient || self.length() < LEAST_WAY {
+            return None;
+        }
+        let line = match (settings.gradient.in_world, self.hits) {
+            (true, [Some(a), Some(b)]) => GradientLine::World([a.position, b.position]),
+            (true, _) => return None,
+            (false, _) => GradientLine::View(view.frame, self.ends().map(view.position)),
+        };
+        let brush = &session.document()?.brush;
+        let (from, to) = (brush.target, settings.gradient.to());
+        let gradient =
+            Gradient { shape: settings.gradient.shape, line, from, to, symmetry: brush.symmetry() };
+        gradient.is_valid().then(|| Command::DragGradient(gradient).into())
+    }
+
+    /// Ends it.
+    pub fn end(self, session: &Session, settings: &ToolSettings, view: &DragView<'_>) -> Option<Action> {
+        let (frame, through) = (view.frame, settings.select_through);
+        let shape = match self.tool {
+            Tool::Gradient => return Some(Command::CommitStroke.into()),
+            _ if self.length() < LEAST_WAY => return None,
+            Tool::SelectBox => rectangle(frame, self.ends().map(view.position), through),
+            Tool::SelectLasso => {
+                let points = self.way.iter().map(|&at| (view.position)(at)).collect();
+                SelectionShape::Outline { view: frame, points, through }
+            }
+            Tool::SelectDepth => {
+                let camera = &session.document()?.camera;
+                let [Some(a), Some(b)] = self.hits else { return None };
+                let [a, b] = [a, b].map(|hit| camera.camera_from_world(hit.position).z);
+                let axis = camera.world_direction(glam::DVec3::Z);
+                // What was picked belongs to it, however its depth is rounded.
+                let range = [a.min(b) * (1.0 - DEPTH_ROUNDING), a.max(b) * (1.0 + DEPTH_ROUNDING)];
+                SelectionShape::Depth { origin: camera.position(), axis, range }
+            }
+            _ => return None,
+        };
+        Some(Command::Select(shape, self.combine).into())
+    }
+
+    /// Draws it.
+    pub fn paint(&self, painter: &Painter) {
+        let dark = Stroke::new(3.0, Color32::from_black_alpha(150));
+        let light = Stroke::new(1.0, Color32::WHITE);
+        let [a, b] = self.ends();
+        for stroke in [dark, light] {
+            match self.tool {
+                Tool::SelectBox => {
+                    let kind = egui::StrokeKind::Middle;
+                    painter.rect_stroke(egui::Rect::from_two_pos(a, b), 0.0, stroke, kind);
+                }
+                Tool::SelectLasso => {
+                    painter.add(Shape::closed_line(self.way.clone(), stroke));
+                }
+                _ => {
+                    painter.line_segment([a, b], stroke);
+                }
+            }
+        }
+        if matches!(self.tool, Tool::Gradient | Tool::SelectDepth) {
+            painter.circle(a, 5.0, Color32::WHITE, Stroke::new(1.0, Color32::from_gray(20)));
+            painter.circle(b, 5.0, Color32::from_gray(20), light);
+        }
+    }
+
+    fn ends(&self) -> [Pos2; 2] {
+        [self.way[0], self.way[self.way.len() - 1]]
+    }
+
+    /// The farthest that it has been from its start.
+    fn length(&self) -> f32 {
+        self.way.iter().map(|at| at.distance(self.way[0])).fold(0.0, f32::max)
+    }
+}
+
+/// How a selection made with these keys held joins what was selected.
+pub fn combine(modifiers: Modifiers) -> Combine {
+    match (modifiers.shift, modifiers.command) {
+        (true, true) => Combine::Intersect,
+        (true, false) => Combine::Add,
+        (false, true) => Combine::Subtract,
+        (false, false) => Combine::Replace,
+    }
+}

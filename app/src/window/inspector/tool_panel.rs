@@ -1,0 +1,95 @@
+//! What the chosen tool can be set to, where that is not the brush.
+
+use crate::window::controls::{self, row, rows};
+use crate::window::keys;
+use crate::window::tool_settings::{GradientEnd, ToolSettings};
+use crate::window::{Action, Tool};
+use egui::{Button, ComboBox, DragValue, Ui};
+use focus::GradientShape;
+use session::{CommandId, Document};
+
+/// Whether the tool has anything to set here.
+pub fn has_settings(tool: Tool) -> bool {
+    tool == Tool::Gradient || tool.selects()
+}
+
+/// Gradients: shape, space, end. Selections: how they reach, and what is selected.
+pub fn tool_panel(
+    ui: &mut Ui,
+    document: &Document,
+    tool: Tool,
+    settings: &mut ToolSettings,
+    actions: &mut Vec<Action>,
+) {
+    if tool == Tool::Gradient {
+        rows(ui, "gradient", |ui| gradient_rows(ui, settings));
+        return;
+    }
+    rows(ui, "selection", |ui| {
+        let tip = "Let lasso and box reach surfaces that are hidden behind others.";
+        row(ui, "Through", tip, |ui| ui.checkbox(&mut settings.select_through, "hidden ones too"));
+        let tip = "The largest angle between what is clicked and what faces alike.";
+        row(ui, "Facing", tip, |ui| {
+            let value = DragValue::new(&mut settings.facing_degrees);
+            ui.add(value.range(0.0..=180.0).speed(0.5).suffix("°").max_decimals(0))
+        });
+        let tip = "How much of the surface may be painted; the rest is frozen.";
+        row(ui, "Selected", tip, |ui| ui.label(selected(document)));
+    });
+    ui.horizontal_wrapped(|ui| {
+        let commands = [CommandId::SelectAll, CommandId::InvertSelection, CommandId::MaskFromSelection];
+        for (id, label) in commands.into_iter().zip(["Everything", "Invert", "Make a mask of it"]) {
+            let possible = document.selection.is_some();
+            let response = ui.add_enabled(possible, Button::new(label));
+            let tip = keys::tip(ui.ctx(), id);
+            if response.on_hover_text(&tip).on_disabled_hover_text(tip).clicked() {
+                actions.push(id.into());
+            }
+        }
+    });
+}
+
+/// How much is selected, in words.
+pub fn selected(document: &Document) -> String {
+    let all = document.stage.canvas.texels().len();
+    match &document.selection {
+        None => "everything".into(),
+        Some(selection) => {
+            let share = selection.count() as f64 / all.max(1) as f64 * 100.0;
+            format!("{} % of all texels", controls::significant(share))
+        }
+    }
+}
+
+fn gradient_rows(ui: &mut Ui, settings: &mut ToolSettings) {
+    let gradient = &mut settings.gradient;
+    let tip = "Linear runs along the dragged line, radial around its start.";
+    row(ui, "Shape", tip, |ui| {
+        ui.horizontal(|ui| {
+            let linear = ui.selectable_value(&mut gradient.shape, GradientShape::Linear, "Linear");
+            ui.selectable_value(&mut gradient.shape, GradientShape::Radial, "Radial").on_hover_text(tip);
+            linear.on_hover_text(tip)
+        })
+        .inner
+    });
+    let tip = "Screen runs as one sees it in the view, world between the two surface points.";
+    row(ui, "Space", tip, |ui| {
+        ui.horizontal(|ui| {
+            let screen = ui.selectable_value(&mut gradient.in_world, false, "Screen");
+            ui.selectable_value(&mut gradient.in_world, true, "World").on_hover_text(tip);
+            screen.on_hover_text(tip)
+        })
+        .inner
+    });
+    let tip = "What the gradient leads to, from the chosen focus at its start.";
+    row(ui, "Leads to", tip, |ui| {
+        let combo = ComboBox::from_id_salt("gradient end").selected_text(gradient.end.name()).width(130.0);
+        combo
+            .show_ui(ui, |ui| {
+                for end in GradientEnd::ALL {
+                    ui.selectable_value(&mut gradient.end, end, end.name());
+                }
+            })
+            .response
+    });
+}

@@ -1,0 +1,79 @@
+//! Keys to commands, by the command table and the chosen key map.
+//!
+//! The map is kept in egui's context, so that every tooltip and menu can name the key of its command.
+
+use egui::{Context, Id, Key, KeyboardShortcut, Modifiers};
+use session::{COMMANDS, CommandId, KeyMap, Shortcut};
+
+/// Obeys a key map from now on.
+pub fn obey(context: &Context, map: KeyMap) {
+    context.data_mut(|data| data.insert_temp(Id::unique("key map"), map));
+}
+
+/// The key map that is obeyed.
+pub fn map(context: &Context) -> KeyMap {
+    context.data(|data| data.get_temp(Id::unique("key map"))).unwrap_or_default()
+}
+
+/// The key of a command as a person reads it; empty if it has none.
+pub fn text(context: &Context, id: CommandId) -> String {
+    map(context).shortcut(id).map(|key| key.to_string()).unwrap_or_default()
+}
+
+/// What a command does, with its key.
+pub fn tip(context: &Context, id: CommandId) -> String {
+    let key = map(context).shortcut(id).map(|key| format!(" ({key})")).unwrap_or_default();
+    format!("{}{key}", id.info().tooltip)
+}
+
+/// egui's form of a shortcut of the table.
+fn keyboard_shortcut(shortcut: Shortcut) -> Option<KeyboardShortcut> {
+    let mut modifiers = Modifiers::NONE;
+    modifiers.command = shortcut.command;
+    modifiers.shift = shortcut.shift;
+    modifiers.alt = shortcut.alt;
+    Some(KeyboardShortcut::new(modifiers, Key::from_name(shortcut.key)?))
+}
+
+/// The commands whose keys were pressed. Keys without Ctrl belong to a text field while one is typed into.
+pub fn pressed(context: &Context) -> Vec<CommandId> {
+    let (typing, map) = (context.text_edit_focused(), map(context));
+    let mut found = Vec::new();
+    // Those with more modifiers first: Ctrl+Shift+Z is not Ctrl+Z.
+    let mut rows: Vec<_> =
+        COMMANDS.iter().filter_map(|info| Some((info.id, map.shortcut(info.id)?))).collect();
+    rows.sort_by_key(|(_, key)| std::cmp::Reverse(key.command as u8 + key.shift as u8 + key.alt as u8));
+    context.input_mut(|input| {
+        for (id, shortcut) in rows {
+            let Some(key) = keyboard_shortcut(shortcut) else { continue };
+            if typing && (!shortcut.command || belongs_to_text(key.logical_key)) {
+                continue;
+            }
+            if input.consume_shortcut(&key) {
+                found.push(id);
+            }
+        }
+    });
+    found
+}
+
+/// Whether a text field has its own use for Ctrl and this key.
+fn belongs_to_text(key: Key) -> bool {
+    matches!(key, Key::A | Key::C | Key::V | Key::X | Key::Z | Key::Y)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_key_of_every_map_exists() {
+        for map in KeyMap::ALL {
+            for info in COMMANDS {
+                if let Some(shortcut) = map.shortcut(info.id) {
+                    assert!(keyboard_shortcut(shortcut).is_some(), "{}: no key {}", info.name, shortcut.key);
+                }
+            }
+        }
+    }
+}

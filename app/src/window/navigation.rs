@@ -1,0 +1,101 @@
+//! How views are moved: which button with which keys turns, slides or brings nearer, as the key map has it.
+//!
+//! In every map one button is enough (a pen has no more): Alt+drag and Space+drag move the view.
+
+use egui::{Context, Key, Modifiers, PointerButton, Response, Ui, Vec2};
+use session::KeyMap;
+
+/// What a drag does to a view.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Motion {
+    /// Turns it around its pivot.
+    Orbit,
+    /// Slides it.
+    Slide,
+    /// Brings it nearer, or farther away.
+    Nearer,
+}
+
+/// What a drag with a button does; none where it is not for the view.
+fn motion(map: KeyMap, button: PointerButton, modifiers: Modifiers, space: bool) -> Option<Motion> {
+    use Motion::{Nearer, Orbit, Slide};
+    let by_modifiers = |plain: Motion, shift: Motion, command: Motion| match modifiers {
+        Modifiers { command: true, .. } => command,
+        Modifiers { shift: true, .. } => shift,
+        _ => plain,
+    };
+    match (map, button) {
+        (KeyMap::Substance, PointerButton::Middle) if modifiers.alt => Some(Slide),
+        (KeyMap::Substance, PointerButton::Secondary) if modifiers.alt => Some(Nearer),
+        (KeyMap::Substance, PointerButton::Primary) if modifiers.alt && modifiers.command => Some(Slide),
+        (KeyMap::Krita, PointerButton::Middle) => Some(by_modifiers(Slide, Orbit, Nearer)),
+        (KeyMap::Krita, PointerButton::Primary) if space => Some(by_modifiers(Slide, Orbit, Nearer)),
+        (_, PointerButton::Middle) => Some(by_modifiers(Orbit, Slide, Nearer)),
+        (_, PointerButton::Primary) if modifiers.alt || space => Some(by_modifiers(Orbit, Slide, Nearer)),
+        _ => None,
+    }
+}
+
+/// Whether Space is held for moving the view, and not typed.
+fn holds_space(context: &Context) -> bool {
+    !context.text_edit_focused() && context.input(|input| input.key_down(Key::Space))
+}
+
+/// Whether the left button would move a view now, and not paint.
+pub fn claims_primary(context: &Context, modifiers: Modifiers) -> bool {
+    motion(super::keys::map(context), PointerButton::Primary, modifiers, holds_space(context)).is_some()
+}
+
+/// How a view is being dragged, and by how much since the last frame.
+pub fn dragged(ui: &Ui, response: &Response) -> Option<(Motion, Vec2)> {
+    let (map, space) = (super::keys::map(ui.ctx()), holds_space(ui.ctx()));
+    let modifiers = ui.input(|input| input.modifiers);
+    let buttons = [PointerButton::Middle, PointerButton::Secondary, PointerButton::Primary];
+    let held = buttons.into_iter().find(|button| response.dragged_by(*button))?;
+    Some((motion(map, held, modifiers, space)?, response.drag_delta()))
+}
+
+/// The gestures of a map, for the cheat sheet.
+pub fn gestures(map: KeyMap) -> [(&'static str, &'static str); 4] {
+    let [orbit, slide, nearer] = match map {
+        KeyMap::Blender => ["Middle drag", "Shift+middle drag", "Ctrl+middle drag"],
+        KeyMap::Substance => ["Alt+left drag, middle drag", "Alt+middle drag", "Alt+right drag"],
+        KeyMap::Krita => ["Shift+middle drag", "Middle drag, Space+drag", "Ctrl+middle drag"],
+    };
+    let pen = match map {
+        KeyMap::Krita => "turns (Alt), slides (Space), turns (Shift+Space) or nears (Ctrl+Space)",
+        KeyMap::Blender | KeyMap::Substance => "turns; with Shift slides; with Ctrl comes nearer",
+    };
+    [
+        (orbit, "turn the paint view; slide the picture"),
+        (slide, "slide either view"),
+        (nearer, "bring the view nearer"),
+        ("Alt+drag, Space+drag", pen),
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_map_has_every_motion_for_a_pen_and_paints_with_the_bare_button() {
+        let combinations = [Modifiers::NONE, Modifiers::SHIFT, Modifiers::COMMAND, Modifiers::ALT];
+        for map in KeyMap::ALL {
+            for modifiers in [Modifiers::NONE, Modifiers::SHIFT, Modifiers::COMMAND] {
+                assert_eq!(motion(map, PointerButton::Primary, modifiers, false), None, "{map:?}");
+            }
+            for wanted in [Motion::Orbit, Motion::Slide, Motion::Nearer] {
+                let reach = |space: bool| {
+                    let mut found = combinations.iter();
+                    found.any(|&keys| motion(map, PointerButton::Primary, keys, space) == Some(wanted))
+                };
+                assert!(reach(true), "{map:?} {wanted:?} by Space and one button");
+            }
+            assert_eq!(motion(map, PointerButton::Primary, Modifiers::ALT, false), Some(Motion::Orbit));
+        }
+        let alt = |button| motion(KeyMap::Substance, button, Modifiers::ALT, false);
+        assert_eq!(alt(PointerButton::Middle), Some(Motion::Slide));
+        assert_eq!(alt(PointerButton::Secondary), Some(Motion::Nearer));
+    }
+}

@@ -1,0 +1,167 @@
+//! Every command of the table runs; those that are steps of undo are taken back to the bit, the others leave nothing to
+//! take back.
+
+use crate::acting::Person;
+use crate::small_scene;
+use egui::{Key, Modifiers};
+use focus::{Combine, LayerEdit, LayerStack, Selection};
+use lens::{Camera, FocusOffset};
+use project::SelectionShape;
+use session::{COMMANDS, Command, CommandId, FillRegion};
+
+/// What undo is about.
+#[derive(Clone, PartialEq)]
+struct State {
+    layers: LayerStack,
+    map: focus::FocusMap,
+    camera: Camera,
+    selection: Option<Selection>,
+}
+
+fn state(person: &Person) -> State {
+    let document = person.document();
+    let mut layers = document.layers.clone();
+    // Which layer is painted on is no part of it.
+    layers.activate(0);
+    State {
+        layers,
+        map: document.map.clone(),
+        camera: document.camera.clone(),
+        selection: document.selection.clone(),
+    }
+}
+
+fn steps(person: &Person) -> usize {
+    person.document().undo_names().count()
+}
+
+/// A document in which every command can do something: three layers of which the middle one, masked, is painted on,
+/// something painted, and something selected.
+fn prepare(person: &mut Person) {
+    let shell = person.window.state_mut();
+    for _ in 0..2 {
+        shell.apply(Command::Layer(LayerEdit::AddPaint));
+        shell.apply(Command::Fill(FillRegion::All, FocusOffset::new(1.1, 1.0)));
+    }
+    shell.apply(Command::ActivateLayer(1));
+    let hit = |shell: &focus_brush::window::Shell| {
+        let session = shell.session();
+        session.pick(&session.picture_ray(glam::DVec2::new(0.25, 0.5)).unwrap()).unwrap()
+    };
+    let card = hit(shell);
+    shell.apply(Command::SelectRegion(FillRegion::Node(card), Combine::Replace));
+}
+
+#[test]
+fn every_command_runs_and_is_undone_or_has_nothing_to_undo() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("wall.glb");
+    small_scene::write(&file);
+    let mut person = Person::opens(&file);
+    prepare(&mut person);
+    for info in COMMANDS {
+        let id = info.id;
+        // These have tests of their own: they end the window, or open another document.
+        if matches!(id, CommandId::Quit | CommandId::Open | CommandId::OpenDemo) {
+            continue;
+        }
+        // A mask that is there cannot be added.
+        if id == CommandId::AddMask {
+            person.window.state_mut().apply(Command::Layer(LayerEdit::RemoveMask(1)));
+        }
+        // From where the shot camera stands already it would not move.
+        if id == CommandId::CameraFromView {
+            let context = person.window.ctx.clone();
+            person.window.state_mut().run(CommandId::FrameAll, &context);
+        }
+        let (before, count) = (state(&person), steps(&person));
+        let context = person.window.ctx.clone();
+        person.window.state_mut().run(id, &context);
+        person.window.run_steps(2);
+        if id.is_undoable() {
+            assert_eq!(steps(&person), count + 1, "{}: a step of undo", info.name);
+            let after = state(&person);
+            assert!(after != before, "{}: changes something", info.name);
+            person.window.state_mut().apply(Command::Undo);
+            assert!(state(&person) == before, "{}: undone", info.name);
+            person.window.state_mut().apply(Command::Redo);
+            assert!(state(&person) == after, "{}: done again", info.name);
+            person.window.state_mut().apply(Command::Undo);
+        } else if !matches!(id, CommandId::Undo | CommandId::Redo) {
+            assert!(state(&person) == before, "{}: changes nothing that could be undone", info.name);
+            assert_eq!(steps(&person), count, "{}: nothing to undo", info.name);
+        }
+        assert!(person.complaints().is_empty(), "{}: {:?}", info.name, person.complaints());
+        // Whatever it opened is closed again.
+        person.presses(Modifiers::NONE, Key::Escape);
+        if id == CommandId::AddMask {
+            person.window.state_mut().apply(Command::Layer(LayerEdit::AddMask(1)));
+        }
+        let shell = person.window.state_mut();
+        match id {
+            CommandId::Shortcuts | CommandId::About => shell.run(id, &context),
+            // Nothing is to hold the machine up.
+            CommandId::Bake | CommandId::RenderTruth => shell.apply(Command::CancelAll),
+            CommandId::LayerAbove | CommandId::LayerBelow => shell.apply(Command::ActivateLayer(1)),
+            CommandId::Undo => shell.apply(Command::Redo),
+            _ => {}
+        }
+    }
+    assert_eq!(person.document().layers.active_index(), 1);
+}
+
+#[test]
+fn a_hundred_edits_are_undone_and_done_again_to_the_bit() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("wall.glb");
+    small_scene::write(&file);
+    let mut person = Person::opens(&file);
+    let mut states = vec![state(&person)];
+    let rect = person.picture_rect();
+    for k in 0..100 {
+        let along = |m: f32| crate::acting::at(rect, 0.1 + 0.008 * k as f32 + m, 0.2 + 0.6 * m);
+        match k % 5 {
+            // By hand: strokes that overlap, the lens, another blur between.
+            0 | 1 => {
+                person.presses(Modifiers::NONE, if k % 2 == 0 { Key::Period } else { Key::Comma });
+                let path = [along(0.0), along(0.1), along(0.2)];
+                person.drags(&path);
+                person.lets_go(path[2]);
+            }
+            2 => person.presses(Modifiers::NONE, if k % 10 == 2 { Key::Plus } else { Key::Minus }),
+            3 => {
+                let normal = glam::DVec3::new(k as f64 % 2.0, 0.0, 1.0).normalize();
+                let half =
+                    SelectionShape::Depth { origin: glam::DVec3::ZERO, axis: normal, range: [-4.0, 9.0] };
+                let shape = if k % 10 == 3 { half } else { SelectionShape::Everything };
+                person.window.state_mut().apply(Command::Select(shape, Combine::Replace));
+            }
+            _ => {
+                let shell = person.window.state_mut();
+                shell.apply(Command::Fill(FillRegion::All, FocusOffset::new(1.0 + 1e-3 * k as f64, 0.5)));
+            }
+        }
+        if steps(&person) == states.len() {
+            states.push(state(&person));
+        }
+    }
+    let done = states.len() - 1;
+    assert!(done > 60, "{done} of the hundred changed something");
+    while states.len() <= 100 {
+        let opacity = 0.5 + 1e-3 * states.len() as f64;
+        person.window.state_mut().apply(Command::Layer(LayerEdit::Opacity(0, opacity)));
+        person.window.state_mut().apply(Command::FinishEdit);
+        states.push(state(&person));
+    }
+    assert_eq!(steps(&person), 100);
+    for expected in states.iter().rev().skip(1) {
+        person.presses(Modifiers::COMMAND, Key::Z);
+        assert!(state(&person) == *expected);
+    }
+    assert_eq!(person.document().undo_name(), None);
+    for expected in &states[1..] {
+        person.presses(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
+        assert!(state(&person) == *expected);
+    }
+    assert!(person.complaints().is_empty(), "{:?}", person.complaints());
+}

@@ -1,0 +1,134 @@
+//! Gradients: a focus that changes evenly along a line, over everything that may be painted.
+
+use crate::brush::FocusOffsetFields;
+use crate::dab::{over, write_channels};
+use crate::focus_map::texel_of;
+use crate::{Canvas, Changed, Channels, FocusError, FocusMap, Selection, Symmetry, ViewFrame};
+use glam::{DVec2, DVec3};
+use lens::FocusOffset;
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+
+/// How a gradient spreads from its line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum GradientShape {
+    /// The same across the line.
+    #[default]
+    Linear,
+    /// The same at one distance from the line's start.
+    Radial,
+}
+
+/// Where a gradient's line lies.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum GradientLine {
+    /// Between two points of the world.
+    World([DVec3; 2]),
+    /// Between two positions of a view ((0, 0) upper left, (1, 1) lower right), as one sees it.
+    View(ViewFrame, [DVec2; 2]),
+}
+
+/// A gradient.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Gradient {
+    /// How it spreads.
+    pub shape: GradientShape,
+    /// From where to where.
+    pub line: GradientLine,
+    /// The focus at the line's start, and before it.
+    #[serde(with = "FocusOffsetFields")]
+    pub from: FocusOffset,
+    /// The focus at the line's end, and beyond; where it is `None` the gradient fades into what is there.
+    #[serde(with = "optional")]
+    pub to: Option<FocusOffset>,
+    /// Repeated at these images.
+    #[serde(default)]
+    pub symmetry: Symmetry,
+}
+
+/// [t, anchor] or null.
+mod optional {
+    use lens::FocusOffset;
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    pub fn serialize<S: Serializer>(value: &Option<FocusOffset>, to: S) -> Result<S::Ok, S::Error> {
+        value.map(|value| [value.t, value.anchor]).serialize(to)
+    }
+
+    pub fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<Option<FocusOffset>, D::Error> {
+        let pair = Option::<[f64; 2]>::deserialize(from)?;
+        Ok(pair.map(|[t, anchor]| FocusOffset::new(t, anchor)))
+    }
+}
+
+impl Gradient {
+    /// Whether it can be drawn.
+    pub fn is_valid(&self) -> bool {
+        let line = match self.line {
+            GradientLine::World(ends) => ends.iter().all(|end| end.is_finite()) && ends[0] != ends[1],
+            GradientLine::View(view, ends) => {
+                view.is_valid() && ends.iter().all(|end| end.is_finite()) && ends[0] != ends[1]
+            }
+        };
+        line && self.symmetry.is_valid() && self.from.is_valid() && self.to.is_none_or(|to| to.is_valid())
+    }
+
+    /// How far along the gradient a world point lies: 0 at its start, 1 at its end, clamped; of several images the
+    /// nearest to the start. A point behind the eye of the gradient's view lies at its end.
+    pub fn along(&self, point: DVec3) -> f64 {
+        let images = self.symmetry.images();
+        images.iter().map(|image| self.along_one(image.original(point))).fold(1.0, f64::min)
+    }
+
+    fn along_one(&self, point: DVec3) -> f64 {
+        let (away, whole) = match self.line {
+            GradientLine::World([a, b]) => (point - a, b - a),
+            GradientLine::View(view, [a, b]) => {
+                let Some(at) = view.position(point) else { return 1.0 };
+                let square = DVec2::new(view.aspect, 1.0);
+                (((at - a) * square).extend(0.0), ((b - a) * square).extend(0.0))
+            }
+        };
+        let along = match self.shape {
+            GradientShape::Linear => away.dot(whole) / whole.length_squared(),
+            GradientShape::Radial => away.length() / whole.length(),
+        };
+        along.clamp(0.0, 1.0)
+    }
+}
+
+/// Draws a gradient over everything that is selected (`None`: everything). Returns what changed.
+pub fn draw_gradient(
+    map: &mut FocusMap,
+    canvas: &Canvas,
+    gradient: &Gradient,
+    channels: Channels,
+    selection: Option<&Selection>,
+) -> Result<Changed, FocusError> {
+    if !gradient.is_valid() {
+        return Err(FocusError::BadValue { entry: "gradient".to_string() });
+    }
+    if map.size() != canvas.size() {
+        return Err(FocusError::SizesDiffer { map: map.size(), canvas: canvas.size() });
+    }
+    let along: Vec<f64> = canvas.texels().par_iter().map(|texel| gradient.along(texel.position)).collect();
+    let from = texel_of(gradient.from);
+    let mut changed = Vec::new();
+    for (index, along) in along.into_iter().enumerate() {
+        if !selection.is_none_or(|selection| selection.contains(index)) {
+            continue;
+        }
+        let value = match gradient.to {
+            None => over(canvas.value(map, index), from, (1.0 - along) as f32),
+            Some(to) => {
+                let mix = |a: f64, b: f64| if along >= 1.0 { b } else { a + (b - a) * along };
+                let (t, anchor) = (mix(gradient.from.t, to.t), mix(gradient.from.anchor, to.anchor));
+                [t as f32, anchor as f32, 1.0]
+            }
+        };
+        write_channels(canvas, map, index, value, channels.touches(), &mut changed);
+    }
+    Ok(Changed::new(changed))
+}

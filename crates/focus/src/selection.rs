@@ -1,0 +1,137 @@
+//! What may be painted: a set of texels; all others are frozen.
+
+use crate::{Canvas, CanvasTexel};
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+
+/// Texels of a canvas that may be painted, at least one. Clones share their memory.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Selection {
+    /// A bit a texel, in the canvas's order.
+    words: Arc<[u64]>,
+    count: usize,
+    of: usize,
+}
+
+/// How a newly chosen set joins what was selected.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Combine {
+    /// Only the new.
+    #[default]
+    Replace,
+    /// Both.
+    Add,
+    /// Without the new.
+    Subtract,
+    /// What is in both.
+    Intersect,
+}
+
+impl Combine {
+    /// All, as a menu offers them.
+    pub const ALL: [Self; 4] = [Self::Replace, Self::Add, Self::Subtract, Self::Intersect];
+}
+
+impl Selection {
+    /// The texels that `chosen` lets through.
+    pub fn of(canvas: &Canvas, chosen: impl Fn(&CanvasTexel) -> bool) -> SelectionResult {
+        Self::from_bits(canvas.texels().iter().map(chosen))
+    }
+
+    fn from_bits(bits: impl ExactSizeIterator<Item = bool>) -> SelectionResult {
+        let of = bits.len();
+        let mut words = vec![0u64; of.div_ceil(64)];
+        let mut count = 0;
+        for (index, bit) in bits.enumerate() {
+            words[index / 64] |= u64::from(bit) << (index % 64);
+            count += usize::from(bit);
+        }
+        match count {
+            0 => SelectionResult::Nothing,
+            _ if count == of => SelectionResult::Everything,
+            _ => SelectionResult::Some(Self { words: words.into(), count, of }),
+        }
+    }
+
+    /// Whether the texel of this index may be painted.
+    pub fn contains(&self, index: usize) -> bool {
+        self.words[index / 64] >> (index % 64) & 1 == 1
+    }
+
+    /// How many texels it has.
+    pub fn count(&self) -> usize {
+        self.count
+    }
+
+    /// All others.
+    pub fn inverted(&self) -> SelectionResult {
+        Self::from_bits((0..self.of).map(|index| !self.contains(index)))
+    }
+
+    /// Memory, in bytes.
+    pub fn bytes(&self) -> usize {
+        size_of_val(&*self.words)
+    }
+}
+
+/// What choosing texels comes to.
+#[derive(Clone, Debug, PartialEq)]
+pub enum SelectionResult {
+    /// None.
+    Nothing,
+    /// All: nothing is frozen.
+    Everything,
+    /// These.
+    Some(Selection),
+}
+
+impl SelectionResult {
+    /// Joins newly chosen texels to a selection (`None` is everything), on a canvas of `of` texels.
+    pub fn joined_to(self, before: Option<&Selection>, combine: Combine, of: usize) -> Self {
+        let new = |index: usize| match &self {
+            Self::Nothing => false,
+            Self::Everything => true,
+            Self::Some(selection) => selection.contains(index),
+        };
+        let old = |index: usize| before.is_none_or(|selection| selection.contains(index));
+        match combine {
+            Combine::Replace => self,
+            // Where nothing is frozen there is nothing to add to: one begins with the new.
+            Combine::Add if before.is_none() => self,
+            Combine::Add => Selection::from_bits((0..of).map(|index| old(index) || new(index))),
+            Combine::Subtract => Selection::from_bits((0..of).map(|index| old(index) && !new(index))),
+            Combine::Intersect => Selection::from_bits((0..of).map(|index| old(index) && new(index))),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of(bits: [bool; 4]) -> SelectionResult {
+        Selection::from_bits(bits.into_iter())
+    }
+
+    #[test]
+    fn sets_join_as_sets_do() {
+        let old = of([true, true, false, false]);
+        let SelectionResult::Some(old) = old else { panic!("some") };
+        assert_eq!((old.count(), old.contains(1), old.contains(2)), (2, true, false));
+        let new = || of([false, true, true, false]);
+        let join = |combine| new().joined_to(Some(&old), combine, 4);
+        assert_eq!(join(Combine::Replace), new());
+        assert_eq!(join(Combine::Add), of([true, true, true, false]));
+        assert_eq!(join(Combine::Subtract), of([true, false, false, false]));
+        assert_eq!(join(Combine::Intersect), of([false, true, false, false]));
+        assert_eq!(old.inverted(), of([false, false, true, true]));
+        assert_eq!(new().joined_to(None, Combine::Add, 4), new());
+        assert_eq!(new().joined_to(None, Combine::Subtract, 4), of([true, false, false, true]));
+        assert_eq!(of([true; 4]), SelectionResult::Everything);
+        assert_eq!(
+            SelectionResult::Everything.joined_to(Some(&old), Combine::Subtract, 4),
+            SelectionResult::Nothing
+        );
+    }
+}

@@ -1,0 +1,115 @@
+//! Symmetry: what is painted at one place is painted at its images as well.
+
+use glam::{DMat3, DVec3};
+use serde::{Deserialize, Serialize};
+
+/// Mirrors and turns about a point, along the world's axes.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Symmetry {
+    /// Mirrored left and right (x), up and down (y), front and back (z); several at once give all combinations.
+    pub mirror: [bool; 3],
+    /// Images around the vertical through the centre, itself among them: 1 is none.
+    pub radial: u32,
+    /// What is mirrored and turned about, world.
+    pub center: [f64; 3],
+}
+
+impl Default for Symmetry {
+    /// None.
+    fn default() -> Self {
+        Self { mirror: [false; 3], radial: 1, center: [0.0; 3] }
+    }
+}
+
+/// One of the images of a symmetry.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SymmetryImage {
+    linear: DMat3,
+    center: DVec3,
+    is_identity: bool,
+}
+
+impl SymmetryImage {
+    /// The image of a point. The identity keeps it to the bit.
+    pub fn point(&self, point: DVec3) -> DVec3 {
+        if self.is_identity { point } else { self.center + self.linear * (point - self.center) }
+    }
+
+    /// The image of a direction.
+    pub fn direction(&self, direction: DVec3) -> DVec3 {
+        if self.is_identity { direction } else { self.linear * direction }
+    }
+
+    /// The point whose image this one is.
+    pub fn original(&self, image: DVec3) -> DVec3 {
+        let back = || self.center + self.linear.transpose() * (image - self.center);
+        if self.is_identity { image } else { back() }
+    }
+}
+
+impl Symmetry {
+    /// Images around the vertical that there may be.
+    pub const MOST_RADIAL: u32 = 64;
+
+    /// Whether there is any.
+    pub fn is_none(&self) -> bool {
+        self.mirror == [false; 3] && self.radial <= 1
+    }
+
+    /// Whether it can be used.
+    pub fn is_valid(&self) -> bool {
+        (1..=Self::MOST_RADIAL).contains(&self.radial) && self.center.iter().all(|x| x.is_finite())
+    }
+
+    /// All images, the thing itself first.
+    pub fn images(&self) -> Vec<SymmetryImage> {
+        let center = DVec3::from_array(self.center);
+        let turns = self.radial.clamp(1, Self::MOST_RADIAL);
+        let mut images: Vec<SymmetryImage> = Vec::new();
+        for turn in 0..turns {
+            let angle = std::f64::consts::TAU * turn as f64 / turns as f64;
+            for bits in 0..8u8 {
+                let flips = [0, 1, 2].map(|axis| bits >> axis & 1 == 1);
+                if (0..3).any(|axis| flips[axis] && !self.mirror[axis]) {
+                    continue;
+                }
+                let signs = DVec3::from_array(flips.map(|flipped| if flipped { -1.0 } else { 1.0 }));
+                let linear = DMat3::from_rotation_y(angle) * DMat3::from_diagonal(signs);
+                let is_identity = turn == 0 && bits == 0;
+                // A half turn is also the mirror image in x and z.
+                if images.iter().all(|image| !image.linear.abs_diff_eq(linear, 1e-9)) {
+                    images.push(SymmetryImage { linear, center, is_identity });
+                }
+            }
+        }
+        images
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn images_are_the_thing_itself_its_mirrors_and_its_turns_once_each() {
+        let center = [1.0, 2.0, 3.0];
+        let point = DVec3::new(1.5, 2.5, 3.25);
+        let images = |mirror, radial| {
+            let images = Symmetry { mirror, radial, center }.images();
+            for image in &images {
+                assert!(image.original(image.point(point)).distance(point) < 1e-12);
+            }
+            images.iter().map(|image| image.point(point)).collect::<Vec<_>>()
+        };
+        assert_eq!(images([false; 3], 1), [point]);
+        assert_eq!(images([true, false, false], 1), [point, DVec3::new(0.5, 2.5, 3.25)]);
+        let three = images([false; 3], 3);
+        assert_eq!(three.len(), 3);
+        let radius = |p: &DVec3| DVec3::new(p.x - 1.0, 0.0, p.z - 3.0).length();
+        assert!(three.iter().all(|p| (radius(p) - radius(&point)).abs() < 1e-12 && p.y == 2.5));
+        assert!(three[0].distance(three[1]) > 0.5);
+        assert_eq!(images([true, false, true], 2).len(), 4, "a half turn is both mirrors at once");
+        assert_eq!(images([true, true, true], 4).len(), 16);
+    }
+}
