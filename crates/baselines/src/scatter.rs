@@ -142,7 +142,7 @@ impl Thrown<'_> {
 fn sees(visibility: &Visibility, u: DVec2) -> bool {
     match visibility {
         Visibility::Open => true,
-        Visibility::Cells(words) => {
+        Visibility::Cells { words, .. } => {
             let side = Visibility::side_of(words);
             let cell = |u: f64| (((u + 1.0) / 2.0 * side as f64) as usize).min(side - 1);
             Visibility::row(words, cell(u.y)) >> cell(u.x) & 1 == 1

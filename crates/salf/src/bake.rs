@@ -11,8 +11,9 @@ use crate::margin::{painted_margin_px, standard_margin_px};
 use crate::occluders::{Footprint, Occluders};
 use crate::placement::Placement;
 use crate::sample::{Salf, Sample, Visibility};
+use crate::surface_patches;
 use crate::view::View;
-use crate::{surface_patches, visibility};
+use crate::visibility::{self, Patterns};
 use glam::DVec2;
 use lens::{Camera, FocusOffset};
 use progress::{Cancelled, Progress, Stage};
@@ -77,7 +78,8 @@ pub fn bake(
     let margin = standard_margin_px(tracer.scene(), &view).max(options.margin_px);
     let domain = Domain::new(camera.width, camera.height, margin);
     let placement = Placement::new(tracer.scene(), &view);
-    let baker = Baker { tracer, radiance, view: &view, placement: &placement };
+    let patterns = Patterns::new();
+    let baker = Baker { tracer, radiance, view: &view, placement: &placement, patterns: &patterns };
 
     let first_looks = each_row(&domain.block_rows(), &Stage::new(progress, 0.0, 0.4), |cells| {
         cells.iter().map(|&cell| baker.first_look(cell)).collect::<Vec<_>>()
@@ -97,7 +99,8 @@ pub fn bake(
     let triangles: Vec<u32> = placement.on_surface().collect();
     let chunks: Vec<_> = triangles.chunks(256).collect();
     rows.extend(each_row(&chunks, &Stage::new(progress, 0.95, 1.0), |chunk| {
-        let of = |&triangle: &u32| surface_patches::samples(tracer, radiance, &view, &domain, triangle);
+        let of =
+            |&triangle: &u32| surface_patches::samples(tracer, radiance, &view, &patterns, &domain, triangle);
         chunk.iter().flat_map(of).collect()
     })?);
 
@@ -129,6 +132,7 @@ struct Baker<'a> {
     radiance: &'a dyn Radiance,
     view: &'a View<'a>,
     placement: &'a Placement,
+    patterns: &'a Patterns,
 }
 
 impl Baker<'_> {
@@ -182,10 +186,10 @@ impl Baker<'_> {
     }
 
     fn partial_visibility(&self, cell: Cell, group: &Group, index: u32) -> Option<Visibility> {
-        let (tracer, view) = (self.tracer, self.view);
+        let Self { tracer, view, patterns, .. } = self;
         let corner = cell.corner.as_uvec2();
         let seed = [corner.x, corner.y.wrapping_add(index << 16)];
         let side = visibility::cells_a_side(view, group.mean_inverse_depth());
-        visibility::visibility(tracer, view, &group.members, side, seed, |_| true)
+        visibility::visibility(tracer, view, patterns, &group.members, side, seed, |_| true)
     }
 }

@@ -4,7 +4,7 @@
 //!
 //! ```text
 //! magic        8 bytes   "FBSALF\r\n"
-//! version      u32       1
+//! version      u32       2
 //! source       text      the scene or project it was baked from, as a path
 //! triangles    u32       of that scene: what surface addresses count in
 //! camera       see `write_camera`
@@ -15,7 +15,8 @@
 //!   tilt                  2 × f32
 //!   radiance              3 × f32
 //!   triangle              u32, 2³² − 1 for the background; else followed by barycentrics, 2 × f64
-//!   words                 u8: 0 open, else that many u64 of visibility cells (1 or 4)
+//!   words                 u8: 0 open, else that many u64 of visibility cells (1 or 4), followed by
+//!                         occluder_inverse_depth, f32
 //! checksum     32 bytes  SHA-256 of everything before
 //! ```
 //!
@@ -30,7 +31,7 @@ use std::io::{self, Read, Write};
 use std::sync::Arc;
 
 const MAGIC: &[u8; 8] = b"FBSALF\r\n";
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 const BACKGROUND: u32 = u32::MAX;
 /// More than any path takes.
 const LONGEST_TEXT: u32 = 1 << 16;
@@ -58,7 +59,7 @@ pub enum SalfFileError {
     #[error("not a .salf file (bake one with `focus-brush bake`)")]
     NotSalf,
     /// It is of another version.
-    #[error("version {0} of the .salf format is not known, only version 1 (bake it again)")]
+    #[error("version {0} of the .salf format is not known, only version {VERSION} (bake it again)")]
     Version(u32),
     /// It ends early.
     #[error("cut short (copy it again, or bake it again)")]
@@ -282,9 +283,10 @@ fn write_sample(to: &mut impl Write, sample: &Sample) -> io::Result<()> {
     }
     match visibility {
         Visibility::Open => to.write_all(&[0]),
-        Visibility::Cells(words) => {
+        Visibility::Cells { words, occluder_inverse_depth } => {
             to.write_all(&[words.len() as u8])?;
-            words.iter().try_for_each(|word| to.write_all(&word.to_le_bytes()))
+            words.iter().try_for_each(|word| to.write_all(&word.to_le_bytes()))?;
+            write_f32s(to, &[*occluder_inverse_depth])
         }
     }
 }
@@ -302,13 +304,19 @@ fn read_sample(from: &mut impl Read) -> Result<Sample, SalfFileError> {
         [0] => Visibility::Open,
         [count @ (1 | 4)] => {
             let words = (0..count).map(|_| Ok(u64::from_le_bytes(bytes(from)?)));
-            Visibility::Cells(words.collect::<Result<_, SalfFileError>>()?)
+            let words = words.collect::<Result<_, SalfFileError>>()?;
+            let [occluder_inverse_depth] = read_f32s(from)?;
+            Visibility::Cells { words, occluder_inverse_depth }
         }
         [count] => return Err(SalfFileError::Damaged(format!("{count} words of visibility"))),
     };
     let finite = [cx, cy, hx, hy, inverse_depth, weight, tx, ty, r, g, b].iter().all(|x| x.is_finite());
+    let occluded_somewhere = match visibility {
+        Visibility::Open => true,
+        Visibility::Cells { occluder_inverse_depth, .. } => occluder_inverse_depth.is_finite(),
+    };
     let addressed = surface.is_none_or(|point| point.barycentric.is_finite());
-    if !(finite && addressed) {
+    if !(finite && addressed && occluded_somewhere) {
         return Err(SalfFileError::Damaged("a sample that is not finite".into()));
     }
     Ok(Sample {
@@ -342,7 +350,10 @@ mod tests {
             tilt: Vec2::new(0.1, 0.2),
             radiance: Vec3::new(1.0, 2.0, 3.0),
             surface: Some(SurfacePoint { triangle: 6, barycentric: DVec2::new(0.1, 0.7) }),
-            visibility: Visibility::Cells(Box::new([1, 2, 3, u64::MAX])),
+            visibility: Visibility::Cells {
+                words: Box::new([1, 2, 3, u64::MAX]),
+                occluder_inverse_depth: 0.7,
+            },
         };
         let background =
             Sample { surface: None, visibility: Visibility::Open, inverse_depth: 0.0, ..on_surface.clone() };

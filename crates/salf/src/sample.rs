@@ -49,13 +49,18 @@ pub struct Sample {
 }
 
 /// What of the square aperture [−R, R]² a sample sees.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Visibility {
     /// All of it.
     Open,
-    /// n × n cells, a bit each, row 0 at v = −R, column 0 at u = −R; n is 8 (one word) or 16
-    /// (four words).
-    Cells(Box<[u64]>),
+    /// Part of it.
+    Cells {
+        /// n × n cells, a bit each, row 0 at v = −R, column 0 at u = −R; n is 8 (one word) or 16
+        /// (four words).
+        words: Box<[u64]>,
+        /// Mean 1/z of what hides the other cells; 0 if that is the sample's own slant.
+        occluder_inverse_depth: f32,
+    },
 }
 
 impl Visibility {
@@ -99,7 +104,7 @@ impl Salf {
                     statistics.open += 1;
                     statistics.open_bytes += size_of::<Sample>();
                 }
-                Visibility::Cells(words) => {
+                Visibility::Cells { words, .. } => {
                     statistics.partial += 1;
                     statistics.partial_bytes += size_of::<Sample>() + size_of_val(&**words);
                 }

@@ -10,7 +10,7 @@ use crate::jitter::jitter;
 use crate::layers::Member;
 use crate::sample::Sample;
 use crate::view::View;
-use crate::visibility;
+use crate::visibility::{self, Patterns};
 use glam::{DVec2, DVec3};
 use scene::SurfacePoint;
 use trace::{Radiance, Tracer};
@@ -50,6 +50,7 @@ pub fn samples(
     tracer: &Tracer,
     radiance: &dyn Radiance,
     view: &View,
+    patterns: &Patterns,
     domain: &Domain,
     triangle: u32,
 ) -> Vec<Sample> {
@@ -66,7 +67,7 @@ pub fn samples(
     for piece in split(whole, view, domain) {
         let point = SurfacePoint { triangle, barycentric: piece.barycentric.iter().sum::<DVec2>() / 3.0 };
         for side in [front, -front] {
-            samples.extend(patch(tracer, radiance, view, point, piece, side));
+            samples.extend(patch(tracer, radiance, view, patterns, point, piece, side));
         }
     }
     samples
@@ -77,6 +78,7 @@ fn patch(
     tracer: &Tracer,
     radiance: &dyn Radiance,
     view: &View,
+    patterns: &Patterns,
     point: SurfacePoint,
     piece: Piece,
     normal: DVec3,
@@ -103,7 +105,7 @@ fn patch(
     let cells = visibility::cells_a_side(view, inverse_depth);
     let seed = [point.triangle, (jitter(point.barycentric.x.to_bits() as u32, 0, 0)[0] * 1e9) as u32];
     let is_on_side = |u: DVec2| weight + tilt.dot(u) > 0.0;
-    let visibility = visibility::visibility(tracer, view, &members, cells, seed, is_on_side)?;
+    let visibility = visibility::visibility(tracer, view, patterns, &members, cells, seed, is_on_side)?;
     let rim = view.aperture_point(tilt.signum());
     Some(Sample {
         center: pixel.as_vec2(),

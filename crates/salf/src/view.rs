@@ -4,7 +4,7 @@ use crate::bake::BakeOptions;
 use glam::{DVec2, DVec3};
 use lens::{Camera, Optics};
 use scene::Scene;
-use trace::Ray;
+use trace::{Ray, Square};
 
 /// A camera with its axes in the world.
 pub struct View<'a> {
@@ -44,6 +44,12 @@ impl<'a> View<'a> {
     /// The world position of the aperture point R·u.
     pub fn aperture_point(&self, u: DVec2) -> DVec3 {
         self.eye + self.optics.aperture_radius * (u.x * self.right + u.y * self.up)
+    }
+
+    /// The square around the aperture.
+    pub fn aperture_square(&self) -> Square {
+        let radius = self.optics.aperture_radius;
+        Square { center: self.eye, right: radius * self.right, up: radius * self.up }
     }
 
     /// How the weight of a surface with `normal` through `point` changes over the aperture, as a share of its

@@ -4,7 +4,7 @@
 //! step tests four boxes side by side.
 
 use crate::local_space::{FAR_STRETCH, LocalRay};
-use glam::Vec4;
+use glam::{DVec3, Vec3, Vec4};
 use obvhs::BvhBuildParams;
 use obvhs::aabb::Aabb;
 use obvhs::bvh2::Bvh2;
@@ -74,6 +74,61 @@ impl Hierarchy {
         }
     }
 
+    /// Calls `visit` for the items of every leaf whose box reaches into `space`, nearer ones first by and large; `visit` returns whether to go on.
+    pub fn walk_within(&self, space: &Halfspaces, visit: impl FnMut(Range<usize>) -> bool) {
+        if self.stack_size <= SHALLOW_STACK {
+            self.walk_within_with(&mut [(0.0, 0); SHALLOW_STACK], space, visit);
+        } else {
+            self.walk_within_with(&mut vec![(0.0, 0); self.stack_size], space, visit);
+        }
+    }
+
+    #[inline(always)]
+    fn walk_within_with(
+        &self,
+        stack: &mut [(f32, u32)],
+        space: &Halfspaces,
+        mut visit: impl FnMut(Range<usize>) -> bool,
+    ) {
+        let mut waiting = usize::from(!self.nodes.is_empty());
+        while waiting > 0 {
+            waiting -= 1;
+            let node = &self.nodes[stack[waiting].1 as usize];
+            let [low, high] = node.sides[0];
+            let mut reached = low.cmple(high).bitmask();
+            for (normal, offset) in &space.planes[..space.count] {
+                let mut farthest = Vec4::splat(*offset);
+                for axis in 0..3 {
+                    farthest += node.sides[axis][usize::from(normal[axis] >= 0.0)] * normal[axis];
+                }
+                reached &= farthest.cmpge(Vec4::ZERO).bitmask();
+            }
+            let mut nearest = Vec4::ZERO;
+            for axis in 0..3 {
+                nearest += node.sides[axis][usize::from(space.toward[axis] < 0.0)] * space.toward[axis];
+            }
+            let nearest = nearest.to_array();
+            let base = waiting;
+            while reached != 0 {
+                let child = (reached.trailing_zeros() & 3) as usize;
+                reached &= reached - 1;
+                let (first, count) = (node.first[child], node.count[child]);
+                if count == 0 {
+                    // The nearest on top.
+                    let mut place = waiting;
+                    while place > base && stack[place - 1].0 < nearest[child] {
+                        stack[place] = stack[place - 1];
+                        place -= 1;
+                    }
+                    stack[place] = (nearest[child], first);
+                    waiting += 1;
+                } else if !visit(first as usize..(first + count) as usize) {
+                    return;
+                }
+            }
+        }
+    }
+
     #[inline(always)]
     fn walk_with(
         &self,
@@ -137,6 +192,38 @@ impl Hierarchy {
                 }
             }
         }
+    }
+}
+
+/// Half-spaces of local space; what lies in all of them, generously.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Halfspaces {
+    /// Normal and offset: n·x + offset ≥ 0 inside.
+    planes: [(Vec3, f32); Self::MOST],
+    count: usize,
+    /// What lies low along this is looked at first.
+    toward: Vec3,
+}
+
+impl Halfspaces {
+    const MOST: usize = 5;
+
+    /// What f32 may be wrong by, as a share of what is summed.
+    const SLACK: f64 = 1.0 / (1u32 << 20) as f64;
+
+    /// All of space; what lies low along `toward` is looked at first.
+    pub fn toward(toward: DVec3) -> Self {
+        Self { toward: toward.as_vec3(), ..Self::default() }
+    }
+
+    /// Adds the side on which `inside` lies of the plane through `on`. A normal of 0 adds nothing.
+    pub fn add(&mut self, normal: DVec3, on: DVec3, inside: DVec3) {
+        let Some(normal) = normal.try_normalize() else { return };
+        let normal = if normal.dot(inside - on) < 0.0 { -normal } else { normal };
+        let offset = -normal.dot(on);
+        let slack = Self::SLACK * (2.0 + offset.abs());
+        self.planes[self.count] = (normal.as_vec3(), (offset + slack) as f32);
+        self.count += 1;
     }
 }
 

@@ -2,13 +2,14 @@
 //!
 //! [`Tracer`] answers what a ray meets. Its way: a ray enters the f32 space of the boxes (`local_space`),
 //! walks the tree (`hierarchy`), meets triangles in f64 (`watertight`) whose points may be cut away
-//! (`presence`). [`truth`] sums such rays to the picture that everything else is measured against.
+//! (`presence`). What a point sees of a whole [`Square`] takes one walk (`sight`). [`truth`] sums such rays to the picture that everything else is measured against.
 
 mod hierarchy;
 mod local_space;
 mod presence;
 mod random;
 mod ray;
+mod sight;
 #[cfg(test)]
 mod test_scene;
 mod tracer;
@@ -16,6 +17,7 @@ pub mod truth;
 mod watertight;
 
 pub use ray::{Hit, Ray};
+pub use sight::{Places, Sight, Square, Viewpoint};
 pub use tracer::Tracer;
 
 use glam::{DVec3, Vec3};

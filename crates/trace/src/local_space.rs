@@ -59,9 +59,14 @@ impl LocalSpace {
         Self { center, scale }
     }
 
+    /// A position in this space.
+    pub fn position(&self, world: DVec3) -> DVec3 {
+        (world - self.center) * self.scale
+    }
+
     /// The box around a triangle.
     pub fn bounds(&self, corners: &[DVec3; 3]) -> Aabb {
-        let [a, b, c] = corners.map(|corner| (corner - self.center) * self.scale);
+        let [a, b, c] = corners.map(|corner| self.position(corner));
         let low = a.min(b).min(c) - BOX_PAD;
         let high = a.max(b).max(c) + BOX_PAD;
         Aabb::new(
@@ -79,7 +84,7 @@ impl LocalSpace {
             return None;
         }
         let direction = ray.direction / longest;
-        let origin = (ray.origin - self.center) * self.scale;
+        let origin = self.position(ray.origin);
         let to_scene =
             (-origin.dot(direction) - SCENE_RADIUS * direction.length()) / direction.length_squared();
         let start = to_scene.max(ray.t_min * scale);

@@ -3,9 +3,10 @@
 use crate::hierarchy::Hierarchy;
 use crate::local_space::LocalSpace;
 use crate::presence::is_there;
+use crate::sight::{Eye, Looking, Places, Sight, Square, Viewpoint};
 use crate::watertight::{ShearedRay, has_area, in_plane};
 use crate::{Hit, Ray};
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use scene::{Scene, SurfacePoint};
 use std::sync::Arc;
 
@@ -114,6 +115,54 @@ impl Tracer {
     /// Whether a ray meets any surface.
     pub fn any_hit(&self, ray: &Ray) -> bool {
         self.any(ray, |_| true)
+    }
+
+    /// Which of the `places` of a square something hides from a viewpoint: of each what [`Self::occluded`] (or, from
+    /// infinity, [`Self::any_hit`]) says of the ray to it, to the precision of f32 in u and v, for the cost of a few.
+    pub fn sight(&self, from: Viewpoint, square: &Square, places: &Places) -> Sight {
+        let (eye, skip) = match from {
+            Viewpoint::Surface(point) => (Eye::At(point.position(&self.scene)), Some(point.triangle)),
+            Viewpoint::Infinity(direction) => (Eye::Toward(direction.normalize_or_zero()), None),
+        };
+        let looking = Looking::new(eye, square, places);
+        let mut sight = Sight::default();
+        self.hierarchy.walk_within(&looking.shaft(&self.space), |leaf| {
+            for triangle in &self.triangles[leaf] {
+                if skip == Some(triangle.index) {
+                    continue;
+                }
+                let mut new = looking.newly_hidden(&triangle.corners, sight.hidden);
+                if new != 0 && triangle.may_be_transparent {
+                    new = self.opaque_of(triangle, &looking, places.of_bits(new));
+                }
+                if let Some((_, place)) = places.of_bits(new).next() {
+                    let inverse_distance = looking.inverse_distance(&triangle.corners, place);
+                    sight.inverse_distances += inverse_distance * f64::from(new.count_ones());
+                    sight.hidden |= new;
+                }
+            }
+            sight.hidden != places.all()
+        });
+        sight
+    }
+
+    /// Those places whose rays a triangle is there for.
+    #[cold]
+    fn opaque_of(
+        &self,
+        triangle: &LeafTriangle,
+        looking: &Looking,
+        places: impl Iterator<Item = (usize, DVec2)>,
+    ) -> u64 {
+        let is_opaque = |&(_, place): &(usize, DVec2)| {
+            let ray = looking.ray(place);
+            let crossing = ShearedRay::new(ray.origin, ray.direction).cross(&triangle.corners);
+            crossing.is_some_and(|crossing| {
+                let point = SurfacePoint { triangle: triangle.index, barycentric: crossing.barycentric };
+                is_there(&self.scene, point, &ray)
+            })
+        };
+        places.filter(is_opaque).map(|(index, _)| 1 << index).sum()
     }
 
     /// Whether a ray meets any triangle that `counts`.

@@ -176,7 +176,7 @@ impl Builder<'_> {
 fn leaf(sample: &Sample, index: u32, level: u8) -> Growing {
     let cells = match &sample.visibility {
         Visibility::Open => None,
-        Visibility::Cells(words) => Some(Cells::of(words)),
+        Visibility::Cells { words, .. } => Some(Cells::of(words)),
     };
     let node = Node {
         center: sample.center,

@@ -29,7 +29,10 @@ fn light_field() -> Arc<Salf> {
         let (x, y) = (index % camera.width, index / camera.width);
         let mixed = index.wrapping_mul(2654435761) >> 8;
         let visibility = match index % 3 {
-            0 => Visibility::Cells(Box::new([0x0123_4567_89AB_CDEF ^ mixed as u64])),
+            0 => Visibility::Cells {
+                words: Box::new([0x0123_4567_89AB_CDEF ^ mixed as u64]),
+                occluder_inverse_depth: 0.9,
+            },
             _ => Visibility::Open,
         };
         Sample {

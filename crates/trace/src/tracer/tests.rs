@@ -311,3 +311,77 @@ fn rays_a_second() {
         println!("{sum} rays met something");
     }
 }
+
+/// Places of a 7 × 9 grid, jittered.
+fn places(random: &mut Random) -> Vec<DVec2> {
+    let jittered = |k: u32| DVec2::new(f64::from(k % 7) + random.unit(), f64::from(k / 7) + random.unit());
+    (0..63).map(jittered).map(|p| 2.0 * p / DVec2::new(7.0, 9.0) - 1.0).collect()
+}
+
+#[test]
+fn sight_is_what_single_rays_see() {
+    let mut random = Random(5);
+    let (mut asked, mut hidden, mut wrong) = (0, 0, 0);
+    for (round, offset) in OFFSETS.into_iter().cycle().take(300).enumerate() {
+        let mut mesh = random_triangles(&mut random, 60, if round % 2 == 0 { 0.2 } else { 1.0 });
+        mesh.0.iter_mut().for_each(|p| *p += offset);
+        let tracer = Tracer::new(scene_of(&[(mesh, WHITE)]));
+        let right = random.direction();
+        let up = right.cross(random.direction()).normalize();
+        let square = Square { center: offset + 1.5 * random.in_cube(), right: 0.3 * right, up: 0.3 * up };
+        let found = places(&mut random);
+        let places = Places::new(&found);
+        let point = SurfacePoint { triangle: round as u32 % 60, barycentric: DVec2::splat(0.3) };
+        let direction = random.in_cube();
+        for infinite in [false, true] {
+            let viewpoint = if infinite { Viewpoint::Infinity(direction) } else { Viewpoint::Surface(point) };
+            let sight = tracer.sight(viewpoint, &square, &places);
+            for (k, &place) in found.iter().enumerate() {
+                let is_hidden = if infinite {
+                    tracer.any_hit(&ray(square.at(place), direction))
+                } else {
+                    tracer.occluded(point, square.at(place))
+                };
+                asked += 1;
+                hidden += u32::from(is_hidden);
+                wrong += u32::from(is_hidden != (sight.hidden >> k & 1 == 1));
+            }
+        }
+    }
+    assert!(hidden > asked / 10 && hidden < asked * 9 / 10, "{hidden} of {asked}");
+    assert!(wrong <= asked / 10_000, "{wrong} of {asked}: only rays that graze an edge may differ");
+}
+
+#[test]
+fn no_place_shows_between_triangles() {
+    let mut random = Random(6);
+    let tracer = Tracer::new(scene_of(&[
+        (sphere(DVec3::ZERO, 1.0, 12), WHITE),
+        (rectangle(DVec3::new(-0.1, -0.1, 0.0), 0.2 * DVec3::X, 0.2 * DVec3::Y), WHITE),
+    ]));
+    let inner = tracer.scene().triangles.len() as u32 - 1;
+    for _ in 0..2000 {
+        let toward = random.in_cube().normalize_or(DVec3::X);
+        let right = toward.any_orthonormal_vector() * 0.7;
+        let square = Square { center: 3.0 * toward, right, up: toward.cross(right) };
+        let places = Places::new(&places(&mut random));
+        let point = SurfacePoint { triangle: inner, barycentric: DVec2::new(random.unit(), 0.0) };
+        let sight = tracer.sight(Viewpoint::Surface(point), &square, &places);
+        assert_eq!(sight.hidden, places.all());
+        let distance = 63.0 / sight.inverse_distances;
+        assert!(distance > 1.9 && distance < 3.1, "{distance}");
+        let outside = tracer.sight(Viewpoint::Infinity(toward), &square, &places);
+        assert_eq!(outside.hidden, 0);
+    }
+}
+
+#[test]
+fn sight_goes_through_what_is_cut_away() {
+    let place = Places::new(&[DVec2::ZERO, DVec2::splat(0.5)]);
+    let square = Square { center: DVec3::new(0.0, 0.0, 5.0), right: 0.1 * DVec3::X, up: 0.1 * DVec3::Y };
+    let toward = Viewpoint::Surface(SurfacePoint { triangle: 4, barycentric: DVec2::splat(0.3) });
+    for (opacity, hidden) in [(0.4, 0), (0.6, 0b11)] {
+        let tracer = window(AlphaMode::Mask(0.5), opacity);
+        assert_eq!(tracer.sight(toward, &square, &place).hidden, hidden);
+    }
+}
