@@ -178,6 +178,17 @@ impl Nodes {
         &self.nodes[range.start as usize..range.end as usize]
     }
 
+    /// Whether a node that is drawn with a radius (1/4096 px) may light a pixel of the frame.
+    #[inline(always)]
+    pub fn may_reach_frame(&self, node: &SplatNode, radius: i32) -> bool {
+        let radius = radius.unsigned_abs() as i64;
+        (0..2).all(|k| {
+            // Coarse levels spread a little further.
+            let reach = radius + radius / 64 + 2 * node.half_size[k] as i64 + ((4 * PIXEL as i64) << node.level);
+            (node.center[k] as i64 - self.middle[k] as i64).abs() - (self.middle[k] as i64) <= reach
+        })
+    }
+
     /// What a node sees of the aperture; `None` if all.
     #[inline(always)]
     pub fn cells(&self, node: &SplatNode) -> Option<&Cells> {
