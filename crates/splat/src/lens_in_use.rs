@@ -82,6 +82,7 @@ pub struct Placed {
 const LARGEST_RADIUS: f64 = (1u32 << 30) as f64;
 
 /// A lens.
+#[derive(Clone, PartialEq)]
 pub struct LensInUse {
     pub optics: Optics,
     /// Whether every sample is drawn, as exactly as it can be.

@@ -184,7 +184,8 @@ impl Nodes {
         let radius = radius.unsigned_abs() as i64;
         (0..2).all(|k| {
             // Coarse levels spread a little further.
-            let reach = radius + radius / 64 + 2 * node.half_size[k] as i64 + ((4 * PIXEL as i64) << node.level);
+            let reach =
+                radius + radius / 64 + 2 * node.half_size[k] as i64 + ((4 * PIXEL as i64) << node.level);
             (node.center[k] as i64 - self.middle[k] as i64).abs() - (self.middle[k] as i64) <= reach
         })
     }

@@ -54,6 +54,8 @@ pub struct Splatter {
     sums: Sums,
     /// What each pixel's sums are multiplied by.
     shares: Vec<Share>,
+    /// The lens whose standard picture they are those of.
+    shares_of: Option<LensInUse>,
     picture: Picture,
 }
 
@@ -97,6 +99,7 @@ impl Splatter {
             paint: Paint::default(),
             sums: Sums::new([width, height], nodes.as_ref().is_some_and(|nodes| nodes.has_bright)),
             shares: vec![Share::NONE; width * height],
+            shares_of: None,
             picture: Picture::black(camera.width, camera.height),
             nodes,
             salf,
@@ -144,8 +147,7 @@ impl Splatter {
         progress: &dyn Progress,
     ) -> Result<(), SplatError> {
         self.take_up(camera);
-        let nodes = self.nodes.as_mut().ok_or(SplatError::Overflow)?;
-        nodes.rescale(Scale::FINEST);
+        let nodes = self.nodes.as_ref().ok_or(SplatError::Overflow)?;
         self.paint = Paint::look_up(nodes, &self.salf.samples, focus);
         self.sum(progress)
     }
@@ -153,9 +155,8 @@ impl Splatter {
     /// Sums the whole picture for another lens, with the focus of before.
     pub fn refocus(&mut self, camera: &Camera, progress: &dyn Progress) -> Result<(), SplatError> {
         self.take_up(camera);
-        let nodes = self.nodes.as_mut().ok_or(SplatError::Overflow)?;
+        let nodes = self.nodes.as_ref().ok_or(SplatError::Overflow)?;
         assert_eq!(self.paint.blocks.len(), nodes.blocks.len(), "refocus follows a render");
-        nodes.rescale(Scale::FINEST);
         self.sum(progress)
     }
 
@@ -165,45 +166,70 @@ impl Splatter {
         let stop = LensInUse::stop(&optics, baked_radius);
         if (&self.aperture.aperture, self.aperture.stop) != (&camera.aperture, stop) {
             self.aperture = ApertureInUse::new(&camera.aperture, stop, self.nodes.as_ref());
+            self.shares_of = None;
         }
         self.lens = LensInUse::new(optics, &self.aperture.stencils.shape, self.tolerance);
     }
 
-    /// Sums all, with coarser integers where the finest do not hold it.
+    /// Sums all and resolves the picture.
     fn sum(&mut self, progress: &dyn Progress) -> Result<(), SplatError> {
-        loop {
-            match self.try_sum(progress) {
-                Err(SplatError::Overflow) => {
-                    let nodes = self.nodes.as_mut().ok_or(SplatError::Overflow)?;
-                    let coarser = nodes.scale.coarser().ok_or(SplatError::Overflow)?;
-                    nodes.rescale(coarser);
-                }
+        let is_painted = !self.paint.is_standard();
+        let has_shares = self.shares_of.as_ref() == Some(&self.lens);
+        let standard = Stage::new(progress, 0.0, if is_painted { 0.5 } else { 1.0 });
+        let painted = Stage::new(progress, if has_shares { 0.0 } else { 0.5 }, 1.0);
+        if !has_shares {
+            self.shares_of = None;
+            self.in_finest_integers(|splatter| {
+                splatter.sum_nodes(&Paint::default(), &standard)?;
+                splatter.share_out()
+            })?;
+            self.shares_of = Some(self.lens.clone());
+        }
+        let rows = 0..self.salf.camera.height;
+        if !is_painted && !has_shares {
+            return self.resolve(rows);
+        }
+        self.in_finest_integers(|splatter| {
+            let paint = std::mem::take(&mut splatter.paint);
+            let summed = splatter.sum_nodes(&paint, &painted);
+            splatter.paint = paint;
+            summed?;
+            splatter.resolve(rows.clone())
+        })
+    }
+
+    /// Does `work` with the finest integers that hold its sums.
+    fn in_finest_integers(
+        &mut self,
+        work: impl Fn(&mut Self) -> Result<(), SplatError>,
+    ) -> Result<(), SplatError> {
+        let mut scale = Some(Scale::FINEST);
+        while let (Some(finest), Some(nodes)) = (scale, &mut self.nodes) {
+            nodes.rescale(finest);
+            match work(self) {
+                Err(SplatError::Overflow) => scale = finest.coarser(),
                 other => return other,
             }
         }
+        Err(SplatError::Overflow)
     }
 
-    fn try_sum(&mut self, progress: &dyn Progress) -> Result<(), SplatError> {
+    fn sum_nodes(&mut self, paint: &Paint, progress: &dyn Progress) -> Result<(), SplatError> {
         let nodes = self.nodes.as_ref().ok_or(SplatError::Overflow)?;
         let (aperture, lens) = (&self.aperture, &self.lens);
-        let scene = |paint| Scene { pen: aperture.pen(nodes, lens), lens, paint };
-        let is_painted = !self.paint.is_standard();
-        // Shares are those of the standard picture.
-        let unpainted = Paint::default();
-        let first = Stage::new(progress, 0.0, if is_painted { 0.5 } else { 1.0 });
-        self.sums.set(&scene(&unpainted), &first)?;
-        let width = self.salf.camera.width as usize;
-        let sums = &self.sums;
+        Ok(self.sums.set(&Scene { pen: aperture.pen(nodes, lens), lens, paint }, progress)?)
+    }
+
+    /// Reads the shares off the sums of the standard picture.
+    fn share_out(&mut self) -> Result<(), SplatError> {
+        let nodes = self.nodes.as_ref().ok_or(SplatError::Overflow)?;
+        let (sums, width) = (&self.sums, self.salf.camera.width as usize);
         let shares = self.shares.par_chunks_mut(RESOLVE_ROWS * width).enumerate();
         shares.try_for_each(|(chunk, shares)| {
             let rows = chunk_rows(chunk, shares.len() / width);
             shares.copy_from_slice(&sums.shares(nodes, rows)?);
-            Ok::<_, Overflow>(())
-        })?;
-        if is_painted {
-            self.sums.set(&scene(&self.paint), &Stage::new(progress, 0.5, 1.0))?;
-        }
-        self.resolve(0..self.salf.camera.height)
+            Ok(())
+        })
     }
 
     /// Moves the given samples to where `focus` now sends them. Returns the rows of the picture that changed.
@@ -259,9 +285,6 @@ impl Splatter {
 
     /// Sums all with the paint as it is.
     fn sum_again(&mut self) -> Result<Range<u32>, SplatError> {
-        if let Some(nodes) = &mut self.nodes {
-            nodes.rescale(Scale::FINEST);
-        }
         self.sum(&progress::Unwatched)?;
         Ok(0..self.salf.camera.height)
     }

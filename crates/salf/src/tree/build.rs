@@ -12,8 +12,11 @@ const SMOOTH: f32 = 0.5;
 /// Partly occluded nodes are joined if at most this share of the aperture's cells differs between each and most.
 const ALIKE: f32 = 0.3;
 
-/// Samples whose weight changes by more than this over the aperture, as a share of it, stay alone.
+/// Samples whose weight changes by more than this over the aperture, as a share of it, are edge-on.
 const STEEP: f32 = 0.75;
+
+/// Edge-on nodes are joined if their weights over the aperture, as shares of the largest, differ by at most this.
+const ALIKE_WEIGHTS: f32 = 0.5;
 
 pub fn build(salf: &Salf, highlight: f32) -> Tree {
     let grid = Grid::new(salf);
@@ -69,6 +72,13 @@ struct Cells {
     is_coarse: bool,
 }
 
+impl Growing {
+    /// See [`Cells::sent`].
+    fn sent(&self) -> f32 {
+        self.cells.as_ref().map_or(0.0, |cells| cells.sent(&self.node))
+    }
+}
+
 struct Builder<'a> {
     salf: &'a Salf,
     grid: &'a Grid,
@@ -106,8 +116,7 @@ impl Builder<'_> {
     fn stays_alone(&self, node: &Node) -> bool {
         let cell = (1 << node.level) as f32;
         node.radiance.max_element() > self.highlight
-            || node.tilt.abs().element_sum() > STEEP * node.weight
-            || node.half_size.max_element() > cell / 2.0
+            || !is_edge_on(node) && node.half_size.max_element() > cell / 2.0
             || 1 << node.level >= BLOCK_PX
     }
 
@@ -146,6 +155,7 @@ impl Builder<'_> {
         let apart = (a.node.inverse_depth - b.node.inverse_depth).abs() * self.parallax_px;
         let is_smooth = b.node.level < level && apart <= SMOOTH * (1 << level) as f32;
         is_smooth
+            && weigh_alike(&a.node, &b.node)
             && match (&a.cells, &b.cells) {
                 (None, None) => true,
                 (Some(a), Some(b)) => a.distance(b) <= ALIKE,
@@ -155,8 +165,16 @@ impl Builder<'_> {
 
     fn parent(&mut self, level: u8, children: Vec<usize>) -> usize {
         let members: Vec<&Growing> = children.iter().map(|&index| &self.arena[index]).collect();
-        let node = mean(level, &members);
+        let mut node = mean(level, &members);
         let cells = members[0].cells.is_some().then(|| most(&members));
+        if let Some(cells) = cells.as_ref().filter(|_| is_edge_on(&node)) {
+            // Their weights are cut off where they would be negative: sums of them are not quite linear.
+            let sent: f32 = members.iter().map(|member| member.sent()).sum();
+            let sends = cells.sent(&node);
+            let scale = if sends > 0.0 { sent / sends } else { 0.0 };
+            node.weight *= scale;
+            node.tilt *= scale;
+        }
         self.arena.push(Growing { node, cells, children });
         self.arena.len() - 1
     }
@@ -171,6 +189,25 @@ impl Builder<'_> {
         }
         nodes[place].end = nodes.len() as u32;
     }
+}
+
+/// Whether the plane of a node's surface passes by the aperture so closely that its weight changes much over it.
+fn is_edge_on(node: &Node) -> bool {
+    node.tilt.abs().element_sum() > STEEP * node.weight
+}
+
+/// What a node counts for among others: its weight, or if it is edge-on the largest toward any aperture point.
+fn largest_weight(node: &Node) -> f32 {
+    if is_edge_on(node) { node.weight.abs() + node.tilt.abs().element_sum() } else { node.weight }
+}
+
+/// Whether the weights of two nodes change over the aperture about alike.
+fn weigh_alike(a: &Node, b: &Node) -> bool {
+    if !is_edge_on(a) && !is_edge_on(b) {
+        return true;
+    }
+    let relative = |node: &Node| Vec3::new(node.weight, node.tilt.x, node.tilt.y) / largest_weight(node);
+    (relative(a) - relative(b)).abs().element_sum() <= ALIKE_WEIGHTS
 }
 
 fn leaf(sample: &Sample, index: u32, level: u8) -> Growing {
@@ -197,22 +234,22 @@ fn leaf(sample: &Sample, index: u32, level: u8) -> Growing {
 /// The node that stands for `members`.
 fn mean(level: u8, members: &[&Growing]) -> Node {
     let nodes = || members.iter().map(|growing| &growing.node);
-    let weight: f32 = nodes().map(|node| node.weight).sum();
-    let center = nodes().map(|node| node.weight * node.center).sum::<Vec2>() / weight;
+    let total: f32 = nodes().map(largest_weight).sum();
+    let center = nodes().map(|node| largest_weight(node) * node.center).sum::<Vec2>() / total;
     let variance = |node: &Node| node.half_size * node.half_size / 3.0 + (node.center - center).powf(2.0);
-    let variance = nodes().map(|node| node.weight * variance(node)).sum::<Vec2>() / weight;
+    let variance = nodes().map(|node| largest_weight(node) * variance(node)).sum::<Vec2>() / total;
     let low = nodes().map(|n| n.inverse_depth - n.inverse_depth_spread / 2.0).fold(f32::INFINITY, f32::min);
     let high =
         nodes().map(|n| n.inverse_depth + n.inverse_depth_spread / 2.0).fold(f32::NEG_INFINITY, f32::max);
-    let inverse_depth = nodes().map(|node| node.weight * node.inverse_depth).sum::<f32>() / weight;
+    let inverse_depth = nodes().map(|node| largest_weight(node) * node.inverse_depth).sum::<f32>() / total;
     Node {
         center,
         half_size: (3.0 * variance).map(f32::sqrt),
         inverse_depth,
         inverse_depth_spread: 2.0 * (high - inverse_depth).max(inverse_depth - low),
-        weight,
+        weight: nodes().map(|node| node.weight).sum(),
         tilt: nodes().map(|node| node.tilt).sum(),
-        radiance: nodes().map(|node| node.weight * node.radiance).sum::<Vec3>() / weight,
+        radiance: nodes().map(|node| largest_weight(node) * node.radiance).sum::<Vec3>() / total,
         level,
         visibility: NodeVisibility::Open,
         end: 0,
@@ -266,6 +303,13 @@ impl Cells {
             [a, b, c, d] => Self { words: [a, b, c, d], is_coarse: false },
             _ => unreachable!("a visibility has one word or four"),
         }
+    }
+
+    /// The sum over the cells of the weight that a node has toward them.
+    fn sent(&self, node: &Node) -> f32 {
+        let cell = |k: usize| Vec2::new((k % 16) as f32 + 0.5, (k / 16) as f32 + 0.5) / 8.0 - 1.0;
+        let is_seen = |k: &usize| self.words[k / 64] >> (k % 64) & 1 == 1;
+        (0..256).filter(is_seen).map(|k| (node.weight + node.tilt.dot(cell(k))).max(0.0)).sum()
     }
 
     /// The share of cells that differ.

@@ -1,0 +1,362 @@
+//! What of a square a point sees: the shadow rays to many places of it, all at once.
+//!
+//! From a point P the place U of the square lies behind a triangle q₀q₁q₂ if
+//!
+//! ```text
+//! s·(U − P)·(q₁×q₂) ≥ 0,  s·(U − P)·(q₂×q₀) ≥ 0,  s·(U − P)·(q₀×q₁) ≥ 0,  s·((U − P)·n − n·q₀) > 0
+//! ```
+//!
+//! with corners relative to P, n the triangle's normal and s the sign of n·q₀: the ray passes within its three edges, and
+//! U lies beyond its plane. All four are linear in U, and so in the coordinates u, v of the square: a triangle is set up
+//! once and tried on all places with two multiplications each. Two triangles that share an edge have exactly opposite
+//! functions there, so that no ray passes between them. Toward a point at infinity the same holds with its direction.
+
+use crate::Ray;
+use crate::hierarchy::Halfspaces;
+use crate::local_space::LocalSpace;
+use crate::watertight::in_plane;
+use glam::{DVec2, DVec3, Vec4};
+use scene::SurfacePoint;
+
+/// A square of points in the world: `center` + u·`right` + v·`up`, u and v in [−1, 1].
+#[derive(Clone, Copy, Debug)]
+pub struct Square {
+    /// Its middle.
+    pub center: DVec3,
+    /// To the middle of its side at u = 1; its length is half a side.
+    pub right: DVec3,
+    /// To the middle of its side at v = 1; at a right angle to `right`, and as long.
+    pub up: DVec3,
+}
+
+impl Square {
+    /// The world position of a place.
+    pub fn at(&self, place: DVec2) -> DVec3 {
+        self.center + place.x * self.right + place.y * self.up
+    }
+
+    fn corners(&self) -> [DVec3; 4] {
+        [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)].map(|(u, v)| self.at(DVec2::new(u, v)))
+    }
+
+    fn axis(&self) -> DVec3 {
+        self.right.cross(self.up).normalize_or_zero()
+    }
+}
+
+/// Places on a square, up to 64.
+#[derive(Clone, Debug, Default)]
+pub struct Places {
+    /// By fours; what the last four do not use is at the square's middle.
+    coordinates: Vec<[Vec4; 2]>,
+    count: usize,
+}
+
+/// A box of places.
+#[derive(Clone, Copy, Debug)]
+struct Bounds {
+    low: [f32; 2],
+    high: [f32; 2],
+}
+
+impl Bounds {
+    const ALL: Self = Self { low: [f32::NEG_INFINITY; 2], high: [f32::INFINITY; 2] };
+
+    /// Whether it has nothing of the square.
+    fn is_outside(&self) -> bool {
+        (0..2).any(|k| self.low[k] > 1.0 || self.high[k] < -1.0)
+    }
+}
+
+impl Places {
+    /// As many as fit into a word.
+    pub const MOST: usize = 64;
+
+    /// From their coordinates in [−1, 1].
+    ///
+    /// # Panics
+    /// If there are more than [`Self::MOST`].
+    pub fn new(places: &[DVec2]) -> Self {
+        assert!(places.len() <= Self::MOST, "at most {} places", Self::MOST);
+        let four = |four: &[DVec2]| {
+            let of = |axis: usize| {
+                Vec4::from_array(std::array::from_fn(|k| four.get(k).map_or(0.0, |p| p[axis] as f32)))
+            };
+            [of(0), of(1)]
+        };
+        Self { coordinates: places.chunks(4).map(four).collect(), count: places.len() }
+    }
+
+    /// A bit for each of them.
+    pub fn all(&self) -> u64 {
+        if self.count == 0 { 0 } else { u64::MAX >> (Self::MOST - self.count) }
+    }
+
+    /// How many there are.
+    #[allow(clippy::len_without_is_empty, reason = "nobody asks for no places")]
+    pub fn len(&self) -> usize {
+        self.count
+    }
+
+    /// The coordinates of the place at `index`, as they are used: in f32.
+    pub fn at(&self, index: usize) -> DVec2 {
+        let [u, v] = self.coordinates[index / 4];
+        DVec2::new(f64::from(u[index % 4]), f64::from(v[index % 4]))
+    }
+}
+
+/// Where a square is looked at from.
+#[derive(Clone, Copy, Debug)]
+pub enum Viewpoint {
+    /// A point on a surface, which does not hide the square itself.
+    Surface(SurfacePoint),
+    /// Infinitely far in this direction from the square.
+    Infinity(DVec3),
+}
+
+/// What of the places of a square is seen.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Sight {
+    /// A bit for each place that something hides.
+    pub hidden: u64,
+    /// 1/distance from the square's plane to what hides them, summed over the hidden places.
+    pub inverse_distances: f64,
+}
+
+/// A linear function of u and v.
+#[derive(Clone, Copy)]
+struct Linear([f32; 3]);
+
+impl Linear {
+    /// a·u + b·v + c, scaled.
+    fn new(a: f64, b: f64, c: f64) -> Self {
+        // The scale is that of the function with the opposite sign too.
+        let largest = a.abs().max(b.abs()).max(c.abs());
+        let scale = if largest > 0.0 { 1.0 / largest } else { 0.0 };
+        Self([a, b, c].map(|part| (part * scale) as f32))
+    }
+
+    #[inline(always)]
+    fn of(self, [u, v]: [Vec4; 2]) -> Vec4 {
+        let [a, b, c] = self.0.map(Vec4::splat);
+        (a * u + b * v) + c
+    }
+}
+
+/// The places behind a triangle: where its edges' functions are not negative, and that of its plane is positive.
+struct Shadow {
+    edges: [Linear; 3],
+    beyond: Linear,
+}
+
+/// A viewpoint in the world.
+#[derive(Clone, Copy)]
+pub(crate) enum Eye {
+    /// A point.
+    At(DVec3),
+    /// A direction.
+    Toward(DVec3),
+}
+
+/// A viewpoint and the square it looks at.
+pub(crate) struct Looking<'a> {
+    eye: Eye,
+    square: &'a Square,
+    places: &'a Places,
+    /// The square's axis, away from the viewpoint.
+    axis: DVec3,
+    /// `right` and `up` over the squares of their lengths: what measures u and v.
+    per_right: DVec3,
+    per_up: DVec3,
+}
+
+impl<'a> Looking<'a> {
+    pub fn new(eye: Eye, square: &'a Square, places: &'a Places) -> Self {
+        let axis = square.axis();
+        let away = match eye {
+            Eye::At(point) => square.center - point,
+            Eye::Toward(direction) => -direction,
+        };
+        let per = |side: DVec3| side / side.length_squared();
+        Self {
+            eye,
+            square,
+            places,
+            axis: if axis.dot(away) < 0.0 { -axis } else { axis },
+            per_right: per(square.right),
+            per_up: per(square.up),
+        }
+    }
+
+    /// The part of the world between the two, generously, and the direction in which it widens.
+    pub fn shaft(&self, space: &LocalSpace) -> Halfspaces {
+        let corners = self.square.corners().map(|corner| space.position(corner));
+        let center = space.position(self.square.center);
+        let mut shaft = Halfspaces::toward(self.axis);
+        for k in 0..4 {
+            let (a, b) = (corners[k], corners[(k + 1) % 4]);
+            let (on, normal) = match self.eye {
+                Eye::At(point) => {
+                    let point = space.position(point);
+                    (point, (a - point).cross(b - point))
+                }
+                Eye::Toward(direction) => (a, direction.cross(b - a)),
+            };
+            shaft.add(normal, on, center);
+        }
+        shaft.add(self.axis, center, center - self.axis);
+        shaft
+    }
+
+    /// The ray to a place of the square.
+    pub fn ray(&self, place: DVec2) -> Ray {
+        let place = self.square.at(place);
+        match self.eye {
+            Eye::At(origin) => Ray { origin, direction: place - origin, t_min: 0.0, t_max: 1.0, skip: None },
+            Eye::Toward(direction) => {
+                Ray { origin: place, direction, t_min: 0.0, t_max: f64::INFINITY, skip: None }
+            }
+        }
+    }
+
+    /// Where a triangle's corners lie on the square, as the viewpoint sees them.
+    #[inline(always)]
+    fn bounds(&self, corners: &[DVec3; 3]) -> Bounds {
+        /// More than rounding makes of coordinates near the square.
+        const SLACK: f64 = 1e-5;
+        let mut bounds = Bounds { low: [f32::INFINITY; 2], high: [f32::NEG_INFINITY; 2] };
+        for &corner in corners {
+            let from_center = match self.eye {
+                Eye::At(point) => {
+                    let (to_corner, to_square) = (corner - point, self.square.center - point);
+                    let depth = self.axis.dot(to_corner);
+                    let distance = self.axis.dot(to_square);
+                    // Nearly beside the viewpoint, or behind it.
+                    if depth <= 1e-9 * distance {
+                        return Bounds::ALL;
+                    }
+                    to_corner * (distance / depth) - to_square
+                }
+                Eye::Toward(direction) => {
+                    let from_center = corner - self.square.center;
+                    from_center - direction * (self.axis.dot(from_center) / self.axis.dot(direction))
+                }
+            };
+            for (k, per) in [self.per_right, self.per_up].into_iter().enumerate() {
+                let at = per.dot(from_center);
+                bounds.low[k] = bounds.low[k].min((at - SLACK) as f32);
+                bounds.high[k] = bounds.high[k].max((at + SLACK) as f32);
+            }
+        }
+        bounds
+    }
+
+    #[inline(always)]
+    fn shadow(&self, corners: &[DVec3; 3]) -> Option<Shadow> {
+        let Square { center, right, up } = *self.square;
+        match self.eye {
+            Eye::At(point) => {
+                let [a, b, c] = corners.map(|corner| corner - point);
+                let to_square = center - point;
+                let normal = (b - a).cross(c - a);
+                let height = normal.dot(a);
+                let sign = height.signum();
+                let linear = |n: DVec3, offset: f64| {
+                    Linear::new(sign * n.dot(right), sign * n.dot(up), sign * (n.dot(to_square) - offset))
+                };
+                let edges = [linear(b.cross(c), 0.0), linear(c.cross(a), 0.0), linear(a.cross(b), 0.0)];
+                (height != 0.0).then(|| Shadow { edges, beyond: linear(normal, height) })
+            }
+            Eye::Toward(direction) => {
+                let [a, b, c] = corners.map(|corner| corner - center);
+                let normal = (b - a).cross(c - a);
+                let facing = normal.dot(direction);
+                let sign = facing.signum();
+                let edge = |from: DVec3, to: DVec3| {
+                    let along = direction.cross(to - from);
+                    let offset = direction.dot(from.cross(to));
+                    Linear::new(sign * along.dot(right), sign * along.dot(up), sign * offset)
+                };
+                let beyond =
+                    Linear::new(-sign * normal.dot(right), -sign * normal.dot(up), sign * normal.dot(a));
+                (facing != 0.0).then(|| Shadow { edges: [edge(b, c), edge(c, a), edge(a, b)], beyond })
+            }
+        }
+    }
+
+    /// Those of the places that a triangle hides and that are not `hidden` yet.
+    #[inline(always)]
+    pub fn newly_hidden(&self, corners: &[DVec3; 3], hidden: u64) -> u64 {
+        let bounds = self.bounds(corners);
+        if bounds.is_outside() {
+            return 0;
+        }
+        let near = self.places.within(&bounds) & !hidden;
+        if near == 0 {
+            return 0;
+        }
+        let Some(shadow) = self.shadow(corners) else { return 0 };
+        let bits = self.places.behind(&shadow, near);
+        // A line that starts in a plane does not meet it again.
+        let starts_there = match self.eye {
+            Eye::At(point) => bits != 0 && in_plane(corners, point),
+            Eye::Toward(_) => false,
+        };
+        if starts_there { 0 } else { bits }
+    }
+
+    /// 1/distance from the square's plane to where the ray to `place` meets a triangle's plane.
+    pub fn inverse_distance(&self, corners: &[DVec3; 3], place: DVec2) -> f64 {
+        let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+        let place = self.square.at(place);
+        // From the place, toward the viewpoint.
+        let direction = match self.eye {
+            Eye::At(point) => point - place,
+            Eye::Toward(direction) => direction,
+        };
+        let t = normal.dot(corners[0] - place) / normal.dot(direction);
+        1.0 / (t * self.axis.dot(direction)).abs()
+    }
+}
+
+impl Places {
+    /// Those in a box.
+    #[inline(always)]
+    fn within(&self, bounds: &Bounds) -> u64 {
+        let [low_u, low_v] = bounds.low.map(Vec4::splat);
+        let [high_u, high_v] = bounds.high.map(Vec4::splat);
+        let mut bits = 0;
+        for (chunk, [u, v]) in self.coordinates.iter().enumerate() {
+            let within = u.cmpge(low_u) & u.cmple(high_u) & v.cmpge(low_v) & v.cmple(high_v);
+            bits |= u64::from(within.bitmask()) << (4 * chunk);
+        }
+        bits & self.all()
+    }
+
+    /// Those of `bits` that lie in a shadow.
+    #[inline(always)]
+    fn behind(&self, shadow: &Shadow, bits: u64) -> u64 {
+        let [a, b, c] = shadow.edges;
+        let (mut found, mut left) = (0, bits);
+        while left != 0 {
+            let chunk = left.trailing_zeros() / 4;
+            let at = self.coordinates[chunk as usize];
+            let within = a.of(at).min(b.of(at)).min(c.of(at)).cmpge(Vec4::ZERO);
+            let behind = within & shadow.beyond.of(at).cmpgt(Vec4::ZERO);
+            found |= u64::from(behind.bitmask()) << (4 * chunk);
+            left &= !(0b1111 << (4 * chunk));
+        }
+        found & bits
+    }
+}
+
+impl Places {
+    /// The place of each bit.
+    pub(crate) fn of_bits(&self, mut bits: u64) -> impl Iterator<Item = (usize, DVec2)> + '_ {
+        std::iter::from_fn(move || {
+            let index = (bits != 0).then(|| bits.trailing_zeros() as usize)?;
+            bits &= bits - 1;
+            Some((index, self.at(index)))
+        })
+    }
+}
