@@ -5,7 +5,7 @@ use crate::layers::Member;
 use crate::sample::Visibility;
 use crate::view::View;
 use glam::DVec2;
-use trace::{Places, Tracer, Viewpoint};
+use trace::{Places, RecentOccluders, Tracer, Viewpoint};
 
 /// Cells a side for a point of inverse depth `inverse_depth`.
 pub fn cells_a_side(view: &View, inverse_depth: f64) -> usize {
@@ -53,8 +53,8 @@ fn cell_of(side: usize, asked: usize, k: usize) -> (usize, usize) {
     (2 * (k / half) + asked / 2, 2 * (k % half) + asked % 2)
 }
 
-/// The cells of the aperture that a patch sees: one jittered ray each, from four of its members in turn. `None` if the
-/// first of them sees none: of a patch of which a fiftieth is visible, that is so in one case of four.
+/// The cells of the aperture that a patch sees: one jittered ray each, from four of its members in turn. `None` if it sees
+/// none.
 ///
 /// `is_on_side` tells which aperture points lie on the side of the surface that the patch stands for.
 pub fn visibility(
@@ -71,6 +71,7 @@ pub fn visibility(
     let pattern = patterns.of(side, (picks[2] * Patterns::COUNT as f64) as usize);
     let mut words = vec![0u64; side * side / 64];
     let (mut hidden, mut inverse_distances) = (0, 0.0);
+    let mut occluders = RecentOccluders::default();
     for (asked, places) in pattern.iter().enumerate() {
         let pick = (asked as f64 + picks[asked % 2]) / ASKED as f64;
         let member = &members[(pick * members.len() as f64) as usize];
@@ -78,10 +79,7 @@ pub fn visibility(
             Some(point) => Viewpoint::Surface(point),
             None => Viewpoint::Infinity(view.chief_ray(member.pixel).direction),
         };
-        let sight = tracer.sight(viewpoint, &square, places);
-        if asked == 0 && sight.hidden == places.all() {
-            return None;
-        }
+        let sight = tracer.sight(viewpoint, &square, places, &mut occluders);
         hidden += sight.hidden.count_ones();
         inverse_distances += sight.inverse_distances;
         for k in (0..places.len()).filter(|&k| sight.hidden >> k & 1 == 0 && is_on_side(places.at(k))) {

@@ -13,8 +13,8 @@
 //! with `open` and `partial` the coverage of the *standard* picture by either kind. A ray's share does not depend on
 //! paint: paint that moves other rays to or from q leaves it as it is. Painted samples are summed with the visibility of
 //! their cells as it stands. What then still keeps the standard picture's coverage from 1, the ripple of finite samples,
-//! is taken out by `even`, which is 1 to within two
-//! per cent. Where anything is painted it is 1: coverage then has a shape of its own, and no light is made or lost.
+//! is taken out by `even`, which is 1 to within a
+//! tenth: a pixel that lacks more has a hole. Where anything is painted it is 1: coverage then has a shape of its own, and no light is made or lost.
 
 /// A pixel's factors.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,7 +36,7 @@ impl Share {
     pub fn of(open: f32, partial: f32) -> Self {
         const LARGEST: f32 = 8.0;
         const LEAST_PARTIAL: f32 = 1e-3;
-        const RIPPLE: f32 = 0.02;
+        const RIPPLE: f32 = 0.1;
         let share = if partial < LEAST_PARTIAL { 1.0 } else { ((1.0 - open) / partial).clamp(0.0, LARGEST) };
         let covered = open + share * partial;
         let even = if (covered - 1.0).abs() <= RIPPLE { 1.0 / covered } else { 1.0 };

@@ -17,7 +17,7 @@ pub mod truth;
 mod watertight;
 
 pub use ray::{Hit, Ray};
-pub use sight::{Places, Sight, Square, Viewpoint};
+pub use sight::{Places, RecentOccluders, Sight, Square, Viewpoint};
 pub use tracer::Tracer;
 
 use glam::{DVec3, Vec3};

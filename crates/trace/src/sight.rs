@@ -114,6 +114,11 @@ pub enum Viewpoint {
     Infinity(DVec3),
 }
 
+/// What hid something from the last viewpoint: likely to hide much from the next one nearby. What is seen does not depend
+/// on it, only how fast that is known (and whose distance is taken where one occluder stands behind another).
+#[derive(Clone, Debug, Default)]
+pub struct RecentOccluders(pub(crate) Vec<u32>);
+
 /// What of the places of a square is seen.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Sight {

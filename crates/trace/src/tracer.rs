@@ -3,7 +3,7 @@
 use crate::hierarchy::Hierarchy;
 use crate::local_space::LocalSpace;
 use crate::presence::is_there;
-use crate::sight::{Eye, Looking, Places, Sight, Square, Viewpoint};
+use crate::sight::{Eye, Looking, Places, RecentOccluders, Sight, Square, Viewpoint};
 use crate::watertight::{ShearedRay, has_area, in_plane};
 use crate::{Hit, Ray};
 use glam::{DVec2, DVec3};
@@ -119,30 +119,44 @@ impl Tracer {
 
     /// Which of the `places` of a square something hides from a viewpoint: of each what [`Self::occluded`] (or, from
     /// infinity, [`Self::any_hit`]) says of the ray to it, to the precision of f32 in u and v, for the cost of a few.
-    pub fn sight(&self, from: Viewpoint, square: &Square, places: &Places) -> Sight {
+    ///
+    /// `occluders` remembers what was in the way: it is tried first, and holds what was met afterwards.
+    pub fn sight(
+        &self,
+        from: Viewpoint,
+        square: &Square,
+        places: &Places,
+        occluders: &mut RecentOccluders,
+    ) -> Sight {
         let (eye, skip) = match from {
             Viewpoint::Surface(point) => (Eye::At(point.position(&self.scene)), Some(point.triangle)),
             Viewpoint::Infinity(direction) => (Eye::Toward(direction.normalize_or_zero()), None),
         };
         let looking = Looking::new(eye, square, places);
         let mut sight = Sight::default();
-        self.hierarchy.walk_within(&looking.shaft(&self.space), |leaf| {
-            for triangle in &self.triangles[leaf] {
-                if skip == Some(triangle.index) {
-                    continue;
-                }
-                let mut new = looking.newly_hidden(&triangle.corners, sight.hidden);
-                if new != 0 && triangle.may_be_transparent {
-                    new = self.opaque_of(triangle, &looking, places.of_bits(new));
-                }
-                if let Some((_, place)) = places.of_bits(new).next() {
-                    let inverse_distance = looking.inverse_distance(&triangle.corners, place);
-                    sight.inverse_distances += inverse_distance * f64::from(new.count_ones());
-                    sight.hidden |= new;
-                }
+        let hide = |sight: &mut Sight, place: usize| {
+            let triangle = &self.triangles[place];
+            if skip == Some(triangle.index) {
+                return false;
             }
-            sight.hidden != places.all()
-        });
+            let mut new = looking.newly_hidden(&triangle.corners, sight.hidden);
+            if new != 0 && triangle.may_be_transparent {
+                new = self.opaque_of(triangle, &looking, places.of_bits(new));
+            }
+            if let Some((_, place)) = places.of_bits(new).next() {
+                let inverse_distance = looking.inverse_distance(&triangle.corners, place);
+                sight.inverse_distances += inverse_distance * f64::from(new.count_ones());
+                sight.hidden |= new;
+            }
+            new != 0
+        };
+        occluders.0.retain(|&place| hide(&mut sight, place as usize));
+        if sight.hidden != places.all() {
+            self.hierarchy.walk_within(&looking.shaft(&self.space), |leaf| {
+                occluders.0.extend(leaf.filter(|&place| hide(&mut sight, place)).map(|place| place as u32));
+                sight.hidden != places.all()
+            });
+        }
         sight
     }
 

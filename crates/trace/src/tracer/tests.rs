@@ -331,11 +331,12 @@ fn sight_is_what_single_rays_see() {
         let square = Square { center: offset + 1.5 * random.in_cube(), right: 0.3 * right, up: 0.3 * up };
         let found = places(&mut random);
         let places = Places::new(&found);
+        let mut occluders = RecentOccluders::default();
         let point = SurfacePoint { triangle: round as u32 % 60, barycentric: DVec2::splat(0.3) };
         let direction = random.in_cube();
         for infinite in [false, true] {
             let viewpoint = if infinite { Viewpoint::Infinity(direction) } else { Viewpoint::Surface(point) };
-            let sight = tracer.sight(viewpoint, &square, &places);
+            let sight = tracer.sight(viewpoint, &square, &places, &mut occluders);
             for (k, &place) in found.iter().enumerate() {
                 let is_hidden = if infinite {
                     tracer.any_hit(&ray(square.at(place), direction))
@@ -359,6 +360,7 @@ fn no_place_shows_between_triangles() {
         (sphere(DVec3::ZERO, 1.0, 12), WHITE),
         (rectangle(DVec3::new(-0.1, -0.1, 0.0), 0.2 * DVec3::X, 0.2 * DVec3::Y), WHITE),
     ]));
+    let mut occluders = RecentOccluders::default();
     let inner = tracer.scene().triangles.len() as u32 - 1;
     for _ in 0..2000 {
         let toward = random.in_cube().normalize_or(DVec3::X);
@@ -366,11 +368,11 @@ fn no_place_shows_between_triangles() {
         let square = Square { center: 3.0 * toward, right, up: toward.cross(right) };
         let places = Places::new(&places(&mut random));
         let point = SurfacePoint { triangle: inner, barycentric: DVec2::new(random.unit(), 0.0) };
-        let sight = tracer.sight(Viewpoint::Surface(point), &square, &places);
+        let sight = tracer.sight(Viewpoint::Surface(point), &square, &places, &mut occluders);
         assert_eq!(sight.hidden, places.all());
         let distance = 63.0 / sight.inverse_distances;
         assert!(distance > 1.9 && distance < 3.1, "{distance}");
-        let outside = tracer.sight(Viewpoint::Infinity(toward), &square, &places);
+        let outside = tracer.sight(Viewpoint::Infinity(toward), &square, &places, &mut occluders);
         assert_eq!(outside.hidden, 0);
     }
 }
@@ -382,6 +384,6 @@ fn sight_goes_through_what_is_cut_away() {
     let toward = Viewpoint::Surface(SurfacePoint { triangle: 4, barycentric: DVec2::splat(0.3) });
     for (opacity, hidden) in [(0.4, 0), (0.6, 0b11)] {
         let tracer = window(AlphaMode::Mask(0.5), opacity);
-        assert_eq!(tracer.sight(toward, &square, &place).hidden, hidden);
+        assert_eq!(tracer.sight(toward, &square, &place, &mut RecentOccluders::default()).hidden, hidden);
     }
 }
