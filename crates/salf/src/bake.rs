@@ -29,7 +29,7 @@ pub struct BakeOptions {
     /// may give. What the standard picture needs is always sampled.
     pub margin_px: f64,
     /// How large a cell of a partly visible aperture may be on the picture, px, where 16 cells a side allow it: up to
-    /// eight times this circle of confusion, samples have 8 cells a side. Smaller is more exact and slower.
+    /// twice this circle of confusion, samples have 8 cells a side. Smaller is more exact and takes more memory.
     pub tolerance_px: f64,
 }
 

@@ -10,7 +10,7 @@ use trace::{Places, RecentOccluders, Tracer, Viewpoint};
 /// Cells a side for a point of inverse depth `inverse_depth`.
 pub fn cells_a_side(view: &View, inverse_depth: f64) -> usize {
     let kappa = view.optics.standard_kappa(inverse_depth);
-    if view.optics.circle_of_confusion_px(kappa) <= 8.0 * view.tolerance_px { 8 } else { 16 }
+    if view.optics.circle_of_confusion_px(kappa) <= 2.0 * view.tolerance_px { 8 } else { 16 }
 }
 
 /// Points of a patch that are asked; each for every second cell of every second row.
