@@ -16,6 +16,15 @@ use std::path::PathBuf;
 pub struct Arguments {
     /// Opens the window with this scene (.glb, .gltf) or project (.fbrush); without one, with the demo.
     pub file: Option<PathBuf>,
+    /// Plays what was recorded (`Export strokes…`) in the window
+    #[arg(long, value_name = "STROKES.json")]
+    pub replay: Option<PathBuf>,
+    /// Writes how long every point of the played strokes took to be seen, as JSON, and closes the window
+    #[arg(long, value_name = "FILE.json", requires = "replay")]
+    pub trace: Option<PathBuf>,
+    /// Longest side of the live picture in pixels, instead of the setting
+    #[arg(long, value_name = "PX", value_parser = clap::value_parser!(u32).range(16..=8192))]
+    pub preview_size: Option<u32>,
     /// What to do without a window.
     #[command(subcommand)]
     pub command: Option<Subcommand>,

@@ -26,7 +26,6 @@ use clap::error::ErrorKind;
 use console::Console;
 use failure::Failure;
 use session::InputKind;
-use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::Mutex;
 
@@ -43,11 +42,12 @@ pub fn run() -> ExitCode {
         Err(error) => return usage(&error),
     };
     hush_panics();
-    let outcome = match arguments.command {
+    let outcome = match arguments {
         // The window's event loop must have the main thread.
-        None => session::guarded("the window", || Ok(open_window(arguments.file)))
-            .unwrap_or_else(|e| Err(e.into())),
-        Some(command) => on_a_large_stack(move || dispatch(command)),
+        Arguments { command: None, .. } => {
+            session::guarded("the window", || Ok(open_window(arguments))).unwrap_or_else(|e| Err(e.into()))
+        }
+        Arguments { command: Some(command), .. } => on_a_large_stack(move || dispatch(command)),
     };
     match outcome {
         Ok(()) => ExitCode::SUCCESS,
@@ -76,7 +76,12 @@ fn dispatch(command: Subcommand) -> Result<(), Failure> {
     }
 }
 
-fn open_window(file: Option<PathBuf>) -> Result<(), Failure> {
+fn open_window(arguments: Arguments) -> Result<(), Failure> {
+    let Arguments { file, replay, trace, preview_size, command: _ } = arguments;
+    let replay = replay.map(|recording| project::read_strokes(&recording)).transpose()?;
+    if let Some(trace) = &trace {
+        shot::check_folder(trace)?;
+    }
     if let Some(file) = &file {
         InputKind::of(file)?;
         if !file.exists() {
@@ -89,7 +94,11 @@ fn open_window(file: Option<PathBuf>) -> Result<(), Failure> {
         let what = "no window: neither DISPLAY nor WAYLAND_DISPLAY is set";
         return Err(Failure::bad(format!("{what} (start it on a desktop, or use `focus-brush render`)")));
     }
-    window::run(window::WindowOptions { file, unwrap, ..Default::default() }).map_err(|error| {
+    // What is measured does not depend on what the window was like when it was last closed.
+    let remember = trace.is_none();
+    let options =
+        window::WindowOptions { file, unwrap, replay, trace, preview_size, remember, ..Default::default() };
+    window::run(options).map_err(|error| {
         let why = format!("{error:#}").replace('\n', " ");
         Failure::bad(format!("no window: {why} (`focus-brush doctor` says what is missing)"))
     })

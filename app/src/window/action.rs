@@ -1,6 +1,6 @@
 //! What panels and views ask for. They read the document and emit; the shell carries out.
 
-use session::{Command, CommandId};
+use session::{Command, CommandId, SurfaceHit};
 use std::path::PathBuf;
 
 /// A wish of a panel or a view.
@@ -14,6 +14,8 @@ pub enum Action {
     Open(PathBuf),
     /// Asks for the picture of an aperture mask, then uses it.
     ChooseMask,
+    /// Shows what of the aperture a point sees.
+    Inspect(SurfaceHit),
     /// A sentence for the user: something cannot be done.
     Complain(String),
 }

@@ -45,6 +45,7 @@ fn begins_group(id: CommandId) -> bool {
             | PictureFit
             | ShowFocus
             | ResetLayout
+            | NextToneCurve
             | KeysBlender
             | SelectAll
             | FillPart
@@ -90,8 +91,8 @@ fn with_what(name: &str, what: Option<&str>) -> String {
 pub fn is_possible(id: CommandId, state: &MenuState<'_>) -> bool {
     use CommandId::*;
     match id {
-        Open | OpenDemo | Quit | ResetLayout | KeysBlender | KeysSubstance | KeysKrita | Palette
-        | Shortcuts | About => true,
+        Open | OpenDemo | Quit | ResetLayout | NextToneCurve | LightOrDark | ScaleUp | ScaleDown
+        | KeysBlender | KeysSubstance | KeysKrita | Palette | Shortcuts | About => true,
         SelectAll | InvertSelection | MaskFromSelection => {
             state.document.is_some_and(|document| document.selection.is_some())
         }

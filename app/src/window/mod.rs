@@ -3,8 +3,10 @@
 //! * [`Shell`]: the application: one frame from top to bottom, what the commands do.
 //! * `paint_view`: the scene in 3D in the colours of its blur. `picture_view`: the refocused picture.
 //!   Both are painted on by the same pointer code.
+//! * `drawer`: the atlas, the aperture view and the histogram, beneath the views.
 //! * `inspector`, `tool_bar`, `menu_bar`, `status_line`: read the document and emit [`Action`]s.
 //! * `palette`, `keys`, `help`, `menu_bar`: views of the one command table in `session`.
+//! * `player`: a recording played in the window, timed.
 //! * `pointer`, `drag_tool`, `brush_gesture`, `navigation`: what pointer and pen do.
 //! * `file_dialog`, `unsaved_question`, `toasts`: what the window asks and tells.
 
@@ -12,8 +14,10 @@ mod action;
 mod brush_gesture;
 mod brush_ring;
 mod controls;
+mod curve_stroke;
 pub(crate) mod demo;
 mod drag_tool;
+mod drawer;
 mod false_colour;
 mod file_dialog;
 mod focus_slider;
@@ -26,6 +30,7 @@ mod navigation;
 mod paint_view;
 mod palette;
 mod picture_view;
+mod player;
 mod pointer;
 mod shell;
 mod status_line;
@@ -39,6 +44,7 @@ mod view_header;
 mod view_settings;
 
 pub use action::Action;
+pub use drawer::{Drawer, Drawn};
 pub use paint_view::PaintView;
 pub use picture_view::{PictureView, Shown};
 pub use shell::Shell;
@@ -64,6 +70,10 @@ pub struct WindowOptions {
     pub unwrap: atlas::UnwrapOptions,
     /// Whether the system is asked for its file dialogs; else paths are typed.
     pub system_dialogs: bool,
+    /// What is played once the file is open.
+    pub replay: Option<Vec<project::RecordedStep>>,
+    /// Where the times of what is played are written; the window then closes.
+    pub trace: Option<PathBuf>,
 }
 
 impl Default for WindowOptions {
@@ -75,6 +85,8 @@ impl Default for WindowOptions {
             preview_size: None,
             unwrap: atlas::UnwrapOptions::default(),
             system_dialogs: system_dialogs(),
+            replay: None,
+            trace: None,
         }
     }
 }

@@ -3,6 +3,7 @@
 //! A stroke is told in the view's own terms: where in it the pen is. So it can be recorded and painted again.
 
 use super::brush_ring::BrushRing;
+use super::curve_stroke::CurveStroke;
 use super::drag_tool::{Drag, DragView, combine};
 use super::tool_settings::ToolSettings;
 use super::{Action, Tool, navigation};
@@ -37,6 +38,8 @@ pub struct StrokeInput {
     painting: bool,
     /// The drag of a tool that is dragged.
     drag: Option<Drag>,
+    /// The curve that is being laid out.
+    curve: CurveStroke,
     /// Where cloning takes the focus from, until the first stroke says where it goes.
     clone_from: Option<DVec3>,
     /// Where the brush is: on the string behind the pointer.
@@ -89,6 +92,11 @@ impl StrokeInput {
             }
             return actions;
         }
+        if hand.tool == Tool::Curve {
+            self.end_curve(ui, response, point, &mut actions);
+        } else {
+            self.curve.give_up();
+        }
         if self.painting && !session.is_painting() {
             // Taken back meanwhile, by Esc or undo: the rest of the drag paints nothing.
             self.painting = false;
@@ -102,7 +110,9 @@ impl StrokeInput {
             response.request_focus();
             let tool = hand.tool;
             let hit = || session.pick(&view_ray(&frame, position(at)));
-            if tool == Tool::Clone && modifiers.command {
+            if tool == Tool::Curve {
+                self.curve.add(at);
+            } else if tool == Tool::Clone && modifiers.command {
                 self.clone_from = hit().map(|hit| hit.position).or(self.clone_from);
             } else if tool.paints() {
                 let mut brush = document.brush.clone();
@@ -167,11 +177,32 @@ impl StrokeInput {
 }
 
 impl StrokeInput {
+    /// Ends a curve by Enter or a double click: a stroke along it; Esc gives it up.
+    fn end_curve(
+        &mut self,
+        ui: &Ui,
+        response: &Response,
+        point: impl Fn(Pos2) -> StrokePoint,
+        actions: &mut Vec<Action>,
+    ) {
+        let pressed = |key| ui.input(|input| input.key_pressed(key));
+        if pressed(egui::Key::Escape) {
+            self.curve.give_up();
+        }
+        if !self.curve.is_empty() && (pressed(egui::Key::Enter) || response.double_clicked()) {
+            let way = self.curve.finish();
+            actions.extend(way.first().map(|&at| Command::BeginStroke(point(at)).into()));
+            actions.extend(way.iter().skip(1).map(|&at| Command::ExtendStroke(point(at)).into()));
+            actions.push(Command::CommitStroke.into());
+        }
+    }
+
     /// Draws the drag that goes on.
     pub fn paint(&self, ui: &Ui, clip: egui::Rect) {
         if let Some(drag) = &self.drag {
             drag.paint(&ui.painter_at(clip));
         }
+        self.curve.paint(&ui.painter_at(clip), ui.input(|input| input.pointer.hover_pos()));
     }
 }
 
@@ -201,6 +232,9 @@ fn click(
     combine: Combine,
 ) -> Option<Action> {
     let select = |region| Command::SelectRegion(region, combine);
+    if tool == Tool::Inspect {
+        return Some(Action::Inspect(hit));
+    }
     let command = match tool {
         Tool::FillObject => Command::Fill(FillRegion::Node(hit), target),
         Tool::FillMaterial => Command::Fill(FillRegion::Material(hit), target),

@@ -12,6 +12,7 @@ mod commands;
 use super::brush_gesture::BrushGesture;
 use super::brush_ring::BrushRing;
 
+use super::drawer::{Drawer, Drawn};
 use super::file_dialog::{FileDialog, Purpose};
 use super::help::Help;
 use super::inspector::Inspector;
@@ -20,6 +21,7 @@ use super::menu_bar::{MenuState, is_possible, menu_bar};
 use super::paint_view::PaintView;
 use super::palette::Palette;
 use super::picture_view::{PictureView, Shown};
+use super::player::Player;
 use super::pointer::Hand;
 use super::status_line::{Hover, StatusNotes, status_line};
 use super::toasts::{Severity, Toasts};
@@ -54,6 +56,7 @@ pub struct Shell {
     paint: PaintView,
     picture: PictureView,
     inspector: Inspector,
+    drawer: Drawer,
     toasts: Toasts,
     palette: Palette,
     help: Help,
@@ -70,12 +73,15 @@ pub struct Shell {
     opening: Option<PathBuf>,
     /// When the picture began to be summed, in the window's time.
     drawing_since: Option<f64>,
+    player: Option<Player>,
+    /// Where the player's times go.
+    trace: Option<PathBuf>,
 }
 
 impl Shell {
     /// The window's application, with the file of `options` (or the demo) being opened.
     pub fn new(creation: &CreationContext<'_>, options: WindowOptions) -> Result<Self, SessionError> {
-        theme::apply(&creation.egui_ctx);
+        theme::prepare(&creation.egui_ctx);
         let stored =
             |key| creation.storage.filter(|_| options.remember).and_then(|storage| storage.get_string(key));
         let settings: ViewSettings =
@@ -98,6 +104,7 @@ impl Shell {
             paint: PaintView::new(state),
             picture: PictureView::default(),
             inspector: Inspector::default(),
+            drawer: Drawer::default(),
             toasts: Toasts::default(),
             palette: Palette::default(),
             help: Help::default(),
@@ -112,6 +119,8 @@ impl Shell {
             showing_demo: false,
             opening: None,
             drawing_since: None,
+            player: options.replay.map(Player::new),
+            trace: options.trace,
         };
         match options.file {
             Some(file) => shell.open(file),
@@ -139,6 +148,11 @@ impl Shell {
     /// How things are shown.
     pub fn settings(&self) -> &ViewSettings {
         &self.settings
+    }
+
+    /// The drawer beneath the views.
+    pub fn drawer(&self) -> &Drawer {
+        &self.drawer
     }
 
     /// The chosen tool.
@@ -319,6 +333,7 @@ impl Shell {
     fn document_opened(&mut self, context: &Context) {
         self.tool = Tool::Brush;
         self.picture.opened();
+        self.drawer.opened();
         let opening = self.opening.take();
         if let Some(document) = self.session.document() {
             self.paint.opened(document, context);
@@ -433,8 +448,38 @@ impl Shell {
                 Action::Do(command) => self.apply(*command),
                 Action::Open(path) => self.ask_then(Next::Open(path), context),
                 Action::ChooseMask => self.ask_for(Purpose::ApertureMask, context),
+                Action::Inspect(hit) => {
+                    self.drawer.inspect(hit);
+                    self.settings.drawer = Some(Drawn::Aperture);
+                }
                 Action::Complain(text) => self.toasts.error(text),
             }
+        }
+    }
+
+    /// Plays on what is being played.
+    fn play(&mut self, context: &Context) {
+        let Some(mut player) = self.player.take() else { return };
+        context.request_repaint();
+        match player.play(&mut self.session) {
+            Ok(true) => self.player = Some(player),
+            Ok(false) => self.played(&player, context),
+            Err(error) => self.toasts.error(error.to_string()),
+        }
+    }
+
+    /// All was played: its times are written, and the window closes, if that was asked for.
+    fn played(&mut self, player: &Player, context: &Context) {
+        let Some(file) = self.trace.take() else { return };
+        let text = player.trace(&self.session).map(|trace| format!("{trace:#}\n"));
+        let written = text
+            .and_then(|text| std::fs::write(&file, text).map_err(|error| SessionError::io(&file, &error)));
+        match written {
+            Ok(()) => {
+                self.may_close = true;
+                context.send_viewport_cmd(ViewportCommand::Close);
+            }
+            Err(error) => self.toasts.error(error.to_string()),
         }
     }
 
@@ -475,14 +520,19 @@ impl Shell {
         Some(BrushRing { radius: brush.radius, hardness: brush.hardness, circle_px })
     }
 
-    fn views(&mut self, ui: &mut Ui, actions: &mut Vec<Action>) {
-        let hand = Hand {
+    /// What the user holds.
+    fn hand(&self) -> Hand {
+        Hand {
             tool: self.tool,
             settings: self.settings.tools.clone(),
             is_busy: self.gesture.has_input(),
             ring: self.ring(),
             string: self.settings.stabiliser,
-        };
+        }
+    }
+
+    fn views(&mut self, ui: &mut Ui, actions: &mut Vec<Action>) {
+        let hand = self.hand();
         let Self { layout, paint, picture, session, settings, .. } = self;
         let mut panes = Panes {
             pane_ui: |ui: &mut Ui, pane: Pane| {
@@ -490,7 +540,7 @@ impl Shell {
                 let dragged = view_header(ui, pane, session, HeaderState { settings, picture }, actions);
                 match pane {
                     Pane::Paint => paint.ui(ui, session, &hand, settings.look(), actions),
-                    Pane::Picture => picture.ui(ui, session, &hand, settings.display_stops, actions),
+                    Pane::Picture => picture.ui(ui, session, &hand, settings.display(), actions),
                 }
                 dragged
             },
@@ -530,6 +580,7 @@ fn own_folder() -> PathBuf {
 impl eframe::App for Shell {
     fn logic(&mut self, context: &Context, _frame: &mut Frame) {
         self.take_events(context);
+        self.play(context);
         self.guard_close(context);
         self.update_title(context);
     }
@@ -538,6 +589,7 @@ impl eframe::App for Shell {
         let context = ui.ctx().clone();
         let mut actions = Vec::new();
         keys::obey(&context, self.settings.key_map);
+        theme::choose(&context, self.settings.light_theme, self.settings.scale);
         self.dropped_files(&context);
         self.keys(&context, &mut actions);
         Panel::top("menu").show(ui, |ui| {
@@ -564,6 +616,11 @@ impl eframe::App for Shell {
                 },
             );
         }
+        if let Some(shown) = self.settings.drawer {
+            let panel = Panel::bottom("drawer").resizable(true).default_size(210.0).size_range(110.0..=520.0);
+            let hand = self.hand();
+            panel.show(ui, |ui| self.drawer.ui(ui, &self.session, shown, &hand, &mut actions));
+        }
         let bare = egui::Frame::new().fill(ui.visuals().extreme_bg_color);
         CentralPanel::default().frame(bare).show(ui, |ui| self.views(ui, &mut actions));
         self.first_hint(&context);
@@ -573,6 +630,9 @@ impl eframe::App for Shell {
         self.help.show(&context, &self.adapter);
         self.answer_questions(&context);
         self.toasts.show(&context);
+        if let Some(player) = &mut self.player {
+            player.shown(&self.session);
+        }
         self.perform(actions, &context);
         // While work goes on, its progress is shown four times a second.
         if !self.session.jobs().is_empty() {

@@ -1,6 +1,6 @@
 //! The look: neutral greys without any colour near the picture, so that the eye judges the picture alone.
 
-use egui::{Color32, CornerRadius, Stroke, Visuals};
+use egui::{Color32, CornerRadius, Stroke, Theme, Visuals};
 
 /// Text that warns.
 pub const WARNING: Color32 = Color32::from_rgb(232, 190, 110);
@@ -9,52 +9,105 @@ pub const ERROR: Color32 = Color32::from_rgb(240, 140, 120);
 /// Surroundings of the picture: the grey that pictures are judged against.
 pub const SURROUNDINGS: Color32 = Color32::from_gray(48);
 
-/// Sets colours and spacing.
-pub fn apply(context: &egui::Context) {
-    context.set_theme(egui::Theme::Dark);
-    context.set_visuals_of(egui::Theme::Dark, visuals());
-    context.style_mut_of(egui::Theme::Dark, |style| {
-        style.spacing.item_spacing = egui::vec2(6.0, 5.0);
-        style.spacing.button_padding = egui::vec2(6.0, 2.0);
-        style.spacing.slider_width = 150.0;
-        style.interaction.tooltip_delay = 0.4;
-        style.url_in_tooltip = true;
-    });
+/// Sets colours and spacing of both themes.
+pub fn prepare(context: &egui::Context) {
+    // The scale is a setting of its own, with keys in the command table.
+    context.options_mut(|options| options.zoom_with_keyboard = false);
+    for (theme, visuals) in [(Theme::Dark, dark()), (Theme::Light, light())] {
+        context.set_visuals_of(theme, visuals);
+        context.style_mut_of(theme, |style| {
+            style.spacing.item_spacing = egui::vec2(6.0, 5.0);
+            style.spacing.button_padding = egui::vec2(6.0, 2.0);
+            style.spacing.slider_width = 150.0;
+            style.interaction.tooltip_delay = 0.4;
+            style.url_in_tooltip = true;
+        });
+    }
 }
 
-fn visuals() -> Visuals {
-    let mut visuals = Visuals::dark();
+/// Takes a theme and a size of text and controls.
+pub fn choose(context: &egui::Context, light: bool, scale: f32) {
+    context.set_theme(if light { Theme::Light } else { Theme::Dark });
+    context.set_zoom_factor(scale.clamp(0.5, 3.0));
+}
+
+/// Greys from window to text, and the two colours of messages.
+struct Greys {
+    panel: u8,
+    window: u8,
+    inset: u8,
+    faint: u8,
+    outline: u8,
+    selected: [u8; 2],
+    /// Fill and text of what is still, can be used, is under the pointer, is pressed, and is open.
+    widgets: [[u8; 2]; 5],
+    messages: [Color32; 2],
+}
+
+fn dark() -> Visuals {
+    let greys = Greys {
+        panel: 38,
+        window: 44,
+        inset: 24,
+        faint: 43,
+        outline: 56,
+        selected: [96, 250],
+        widgets: [[38, 190], [58, 215], [74, 245], [92, 255], [52, 230]],
+        messages: [WARNING, ERROR],
+    };
+    visuals(Visuals::dark(), &greys)
+}
+
+fn light() -> Visuals {
+    let greys = Greys {
+        panel: 214,
+        window: 224,
+        inset: 240,
+        faint: 208,
+        outline: 176,
+        selected: [150, 0],
+        widgets: [[214, 50], [196, 25], [182, 0], [164, 0], [204, 15]],
+        messages: [Color32::from_rgb(122, 80, 0), Color32::from_rgb(160, 30, 10)],
+    };
+    visuals(Visuals::light(), &greys)
+}
+
+fn visuals(mut visuals: Visuals, greys: &Greys) -> Visuals {
     let grey = Color32::from_gray;
-    visuals.panel_fill = grey(38);
-    visuals.window_fill = grey(44);
-    visuals.extreme_bg_color = grey(24);
-    visuals.faint_bg_color = grey(43);
-    visuals.window_stroke = Stroke::new(1.0, grey(70));
+    visuals.panel_fill = grey(greys.panel);
+    visuals.window_fill = grey(greys.window);
+    visuals.extreme_bg_color = grey(greys.inset);
+    visuals.faint_bg_color = grey(greys.faint);
+    visuals.window_stroke = Stroke::new(1.0, grey(greys.outline));
     visuals.window_corner_radius = CornerRadius::same(4);
     visuals.menu_corner_radius = CornerRadius::same(4);
-    visuals.selection.bg_fill = grey(96);
-    visuals.selection.stroke = Stroke::new(1.0, grey(250));
-    visuals.hyperlink_color = grey(225);
-    visuals.warn_fg_color = WARNING;
-    visuals.error_fg_color = ERROR;
+    visuals.selection.bg_fill = grey(greys.selected[0]);
+    visuals.selection.stroke = Stroke::new(1.0, grey(greys.selected[1]));
+    visuals.hyperlink_color = grey(greys.widgets[1][1]);
+    [visuals.warn_fg_color, visuals.error_fg_color] = greys.messages;
     visuals.slider_trailing_fill = true;
     let widgets = &mut visuals.widgets;
-    for (widget, fill, text) in [
-        (&mut widgets.noninteractive, 38, 190),
-        (&mut widgets.inactive, 58, 215),
-        (&mut widgets.hovered, 74, 245),
-        (&mut widgets.active, 92, 255),
-        (&mut widgets.open, 52, 230),
-    ] {
+    let kinds = [
+        &mut widgets.noninteractive,
+        &mut widgets.inactive,
+        &mut widgets.hovered,
+        &mut widgets.active,
+        &mut widgets.open,
+    ];
+    for (widget, [fill, text]) in kinds.into_iter().zip(greys.widgets) {
         widget.bg_fill = grey(fill);
         widget.weak_bg_fill = grey(fill);
         widget.fg_stroke = Stroke::new(1.0, grey(text));
         widget.corner_radius = CornerRadius::same(3);
         widget.expansion = 0.0;
     }
-    widgets.noninteractive.bg_stroke = Stroke::new(1.0, grey(56));
+    widgets.noninteractive.bg_stroke = Stroke::new(1.0, grey(greys.outline));
     widgets.inactive.bg_stroke = Stroke::NONE;
-    widgets.hovered.bg_stroke = Stroke::new(1.0, grey(110));
-    widgets.active.bg_stroke = Stroke::new(1.0, grey(150));
+    let between = |share: f32| {
+        let [low, high] = [greys.panel as f32, greys.widgets[1][1] as f32];
+        grey((low + (high - low) * share) as u8)
+    };
+    widgets.hovered.bg_stroke = Stroke::new(1.0, between(0.4));
+    widgets.active.bg_stroke = Stroke::new(1.0, between(0.63));
     visuals
 }

@@ -9,6 +9,8 @@ pub enum Tool {
     /// Strokes that set, add or subtract the chosen focus.
     #[default]
     Brush,
+    /// Clicks lay out a curve along which a stroke runs.
+    Curve,
     /// Strokes that even out.
     Smooth,
     /// Strokes that make ramps into steps.
@@ -45,12 +47,14 @@ pub enum Tool {
     FocusHere,
     /// A click takes the focus from there.
     Pick,
+    /// A click looks at the aperture from there.
+    Inspect,
 }
 
 impl Tool {
     /// Those in the tool bar, left to right: families, of which the chosen one is shown, the first otherwise.
-    pub const BAR: [&[Tool]; 8] = [
-        &[Tool::Brush],
+    pub const BAR: [&[Tool]; 9] = [
+        &[Tool::Brush, Tool::Curve],
         &[Tool::Smooth, Tool::Sharpen],
         &[Tool::Clone],
         &[Tool::Reset],
@@ -65,13 +69,15 @@ impl Tool {
             Tool::SelectFacing,
             Tool::SelectDepth,
         ],
-        &[Tool::FocusHere, Tool::Pick],
+        &[Tool::FocusHere],
+        &[Tool::Pick, Tool::Inspect],
     ];
 
     /// The command that chooses it.
     pub fn command(self) -> CommandId {
         match self {
             Tool::Brush => CommandId::Brush,
+            Tool::Curve => CommandId::CurveBrush,
             Tool::Smooth => CommandId::Smooth,
             Tool::Sharpen => CommandId::Sharpen,
             Tool::Clone => CommandId::Clone,
@@ -90,6 +96,7 @@ impl Tool {
             Tool::SelectDepth => CommandId::SelectDepth,
             Tool::FocusHere => CommandId::FocusHere,
             Tool::Pick => CommandId::Pick,
+            Tool::Inspect => CommandId::Inspect,
         }
     }
 
@@ -102,6 +109,7 @@ impl Tool {
     pub fn label(self) -> &'static str {
         match self {
             Tool::Brush => "Brush",
+            Tool::Curve => "Curve",
             Tool::Smooth => "Smooth",
             Tool::Sharpen => "Sharpen",
             Tool::Clone => "Clone",
@@ -120,6 +128,7 @@ impl Tool {
             Tool::SelectDepth => "Select depth",
             Tool::FocusHere => "Focus here",
             Tool::Pick => "Pick",
+            Tool::Inspect => "Aperture from here",
         }
     }
 
@@ -165,6 +174,9 @@ impl Tool {
             Tool::Brush => {
                 "Drag in either view to paint the chosen focus. Shift+click draws a straight line, Esc takes a stroke back."
             }
+            Tool::Curve => {
+                "Click points in one view: a stroke runs through them. Enter or a double click ends it, Esc gives it up."
+            }
             Tool::Smooth => "Drag in either view to even out the focus.",
             Tool::Sharpen => "Drag in either view to turn soft changes of focus into hard ones.",
             Tool::Clone => {
@@ -186,6 +198,7 @@ impl Tool {
             }
             Tool::SelectDepth => "Drag from the nearest to the farthest thing that may be painted.",
             Tool::FocusHere => "Click in either view to focus the lens there.",
+            Tool::Inspect => "Click in either view to see the aperture as that point sees it.",
             Tool::Pick => "Click in either view to take the focus from there.",
         }
     }

@@ -1,6 +1,8 @@
 //! How things are shown. Kept between runs, not part of any document.
 
+use super::drawer::Drawn;
 use super::paint_view::SurfaceLook;
+use super::picture_view::{Display, ToneCurve};
 use super::tool_settings::ToolSettings;
 use serde::{Deserialize, Serialize};
 use session::KeyMap;
@@ -19,10 +21,18 @@ pub struct ViewSettings {
     pub contours: bool,
     /// Whether the inspector is shown.
     pub inspector: bool,
+    /// What the drawer shows; none while it is folded away.
+    pub drawer: Option<Drawn>,
     /// The longest side that the preview is drawn at, px.
     pub preview_size: u32,
     /// Exposure of the display, stops.
     pub display_stops: f32,
+    /// What the display makes of light brighter than white.
+    pub tone_curve: ToneCurve,
+    /// Dark on light instead of light on dark.
+    pub light_theme: bool,
+    /// Size of text and controls: 1 is the system's own.
+    pub scale: f32,
     /// Length of the string by which the pointer pulls the brush, points: 0 is none, more is steadier.
     pub stabiliser: f32,
     /// Whose keys and mouse buttons are obeyed.
@@ -42,8 +52,12 @@ impl Default for ViewSettings {
             focus_share: look.focus_share,
             contours: look.contours,
             inspector: true,
+            drawer: None,
             preview_size: 640,
             display_stops: 0.0,
+            tone_curve: ToneCurve::default(),
+            light_theme: false,
+            scale: 1.0,
             stabiliser: 0.0,
             key_map: KeyMap::default(),
             tools: ToolSettings::default(),
@@ -57,6 +71,11 @@ impl ViewSettings {
     /// The paint view's look.
     pub fn look(&self) -> SurfaceLook {
         SurfaceLook { focus_share: self.focus_share, contours: self.contours }
+    }
+
+    /// How pictures are put on screen.
+    pub fn display(&self) -> Display {
+        Display { stops: self.display_stops, curve: self.tone_curve }
     }
 
     /// Notes that a file was opened or saved.

@@ -182,6 +182,29 @@ fn selections_by_object_facing_and_depth_and_a_mask_of_them() {
 }
 
 #[test]
+fn a_curve_through_clicked_points_is_one_stroke() {
+    let (mut person, _folder) = opened();
+    let (rect, target) = (person.picture_rect(), person.document().brush.target);
+    person.presses(Modifiers::SHIFT, Key::B);
+    for (x, y) in [(0.55, 0.2), (0.7, 0.8), (0.9, 0.2)] {
+        person.clicks(at(rect, x, y));
+        person.window.run_steps(8);
+    }
+    assert_eq!(person.document().undo_name(), None, "nothing is painted yet");
+    person.presses(Modifiers::NONE, Key::Enter);
+    person.waits();
+    assert_eq!(person.document().undo_names().collect::<Vec<_>>(), ["Brush stroke"]);
+    for (x, y) in [(0.55, 0.2), (0.7, 0.8), (0.9, 0.2)] {
+        assert!((focus_at(&person, x, y).t - target.t).abs() < 1e-4, "through {x} {y}");
+    }
+    assert_eq!(focus_at(&person, 0.72, 0.2), FocusOffset::STANDARD, "but not straight across");
+    person.clicks(at(rect, 0.6, 0.9));
+    person.presses(Modifiers::NONE, Key::Escape);
+    person.presses(Modifiers::NONE, Key::Enter);
+    assert_eq!(person.document().undo_names().count(), 1, "given up");
+}
+
+#[test]
 fn cloning_paints_the_focus_of_another_place() {
     let (mut person, _folder) = opened();
     let rect = person.picture_rect();

@@ -10,4 +10,5 @@ mod dragging;
 mod key_maps;
 mod layers;
 mod painting;
+mod panels;
 mod small_scene;

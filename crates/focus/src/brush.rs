@@ -1,6 +1,6 @@
 //! The brush: what a dab does to the texels under it.
 
-use crate::Symmetry;
+use crate::{Curve, Symmetry};
 use lens::FocusOffset;
 use serde::{Deserialize, Serialize};
 
@@ -12,6 +12,9 @@ pub struct Brush {
     pub radius: f64,
     /// The share of the radius within which a dab has its full strength, in [0, 1]; beyond it fades smoothly.
     pub hardness: f64,
+    /// Where it is drawn: the share of a dab's strength, in [0, 1], over the distance as a share of the radius. Then the
+    /// hardness does not count.
+    pub drawn_falloff: Option<Curve>,
     /// The most that a stroke (or, where dabs build up, a dab) does, in [0, 1].
     pub strength: f64,
     /// The share of that which one dab does, in (0, 1]: below 1 a stroke builds up where dabs overlap.
@@ -107,6 +110,7 @@ impl Default for Brush {
         Self {
             radius: 0.1,
             hardness: 0.5,
+            drawn_falloff: None,
             strength: 1.0,
             flow: 1.0,
             spacing: 0.25,
@@ -133,6 +137,9 @@ impl Brush {
         match () {
             _ if !(self.radius > 0.0 && self.radius.is_finite()) => Some("radius must be above 0 and finite"),
             _ if !unit.contains(&self.hardness) => Some("hardness must be in [0, 1]"),
+            _ if self.drawn_falloff.as_ref().is_some_and(|curve| !is_falloff(curve)) => {
+                Some("drawn_falloff must be a curve within [0, 1]")
+            }
             _ if !unit.contains(&self.strength) => Some("strength must be in [0, 1]"),
             _ if !(self.flow > 0.0 && self.flow <= 1.0) => Some("flow must be above 0 and at most 1"),
             _ if !(0.01..=10.0).contains(&self.spacing) => Some("spacing must be in [0.01, 10]"),
@@ -164,11 +171,13 @@ impl Brush {
         }
     }
 
-    /// The share of a dab's strength at `distance` (a share of the radius): 1 up to the hardness, then
-    /// smoothly (3s² − 2s³) down to 0 at the rim.
+    /// The share of a dab's strength at `distance` (a share of the radius): as it is drawn, or 1 up to the hardness, then
+    /// smoothly (3s² − 2s³) down to 0 at the rim. 0 beyond it.
     pub fn falloff(&self, distance: f64) -> f64 {
         if distance > 1.0 {
             0.0
+        } else if let Some(curve) = &self.drawn_falloff {
+            curve.at(distance)
         } else if distance <= self.hardness {
             1.0
         } else {
@@ -191,6 +200,11 @@ impl Brush {
     pub fn strength_at(&self, pen: PenSample) -> f64 {
         self.strength * response(self.pressure_to_strength, pen)
     }
+}
+
+/// Whether a curve stays within [0, 1]: a curve never swings beyond its points.
+fn is_falloff(curve: &Curve) -> bool {
+    curve.is_valid() && curve.points().iter().all(|[_, share]| (0.0..=1.0).contains(share))
 }
 
 /// 1 at full pressure, 1 − `share` at none.

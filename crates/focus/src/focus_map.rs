@@ -4,6 +4,7 @@ use crate::tile_grid::TileGrid;
 use crate::{Canvas, Selection};
 use glam::DVec2;
 use lens::FocusOffset;
+use std::sync::Arc;
 
 /// The painted focus map: t and anchor over the atlas, and the background's focus. Texels that no surface
 /// covers hold dilated values.
@@ -174,6 +175,15 @@ impl FocusMap {
         bounds(within(1, height).flat_map(|y| columns.clone().map(move |x| self.texel(x, y))))
     }
 
+    /// Whether this is a snapshot of another map, or the other way round, and neither was written since. Quick: where both
+    /// were written alike it says no.
+    pub fn shares_tiles_with(&self, other: &Self) -> bool {
+        let pairs = || self.texels.tiles().iter().zip(other.texels.tiles());
+        self.size() == other.size()
+            && self.background == other.background
+            && pairs().all(|(a, b)| Arc::ptr_eq(a, b))
+    }
+
     /// Whether all numbers are usable: t finite, anchor and mask in [0, 1].
     pub fn is_valid(&self) -> bool {
         let unit = 0.0..=1.0;
@@ -214,7 +224,6 @@ pub(crate) fn bilinear([a, b, c, d]: [[f32; 2]; 4], f: DVec2) -> FocusOffset {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::sync::Arc;
 
     #[test]
     fn rows_come_back_and_snapshots_stay() {
@@ -231,6 +240,7 @@ mod tests {
         let shared =
             map.texels.tiles().iter().zip(snapshot.texels.tiles()).filter(|(a, b)| Arc::ptr_eq(a, b));
         assert_eq!(shared.count(), 3 * 2 - 1);
+        assert!(map.shares_tiles_with(&map.clone()) && !map.shares_tiles_with(&snapshot));
     }
 
     #[test]

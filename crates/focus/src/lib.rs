@@ -10,7 +10,7 @@
 //! * [`LayerEdit`]: a change of the layers, as data.
 //! * [`fill`]: the same value over a node, part, material or chart. [`Gradient`]: one that changes along a line.
 //! * [`Selection`]: what may be painted. [`Symmetry`]: where else everything is painted.
-//! * [`Edit`]: what undo takes back and redo makes again.
+//! * [`Edit`]: what undo takes back and redo makes again. [`Thumbnail`]: a small picture of a change.
 
 mod bake;
 mod blend;
@@ -36,6 +36,7 @@ mod source;
 mod stroke;
 mod symmetry;
 mod texel_tree;
+mod thumbnail;
 mod tile_grid;
 mod view_frame;
 
@@ -59,5 +60,6 @@ pub use selection::{Combine, Selection, SelectionResult};
 pub use source::{Focus, FocusSource};
 pub use stroke::{Stroke, SurfaceHit};
 pub use symmetry::{Symmetry, SymmetryImage};
+pub use thumbnail::{Thumbnail, ThumbnailCell};
 pub use tile_grid::TILE_SIDE;
 pub use view_frame::ViewFrame;

@@ -154,6 +154,26 @@ fn radial_symmetry_turns_strokes_about_the_vertical() {
 }
 
 #[test]
+fn a_drawn_falloff_is_followed_to_the_rim() {
+    let canvas = strip();
+    // A ring: nothing in the middle, all half way out, nothing at the rim.
+    let ring = focus::Curve::new([[0.0, 0.0], [0.5, 1.0], [1.0, 0.0]]).unwrap();
+    let drawn = Brush { drawn_falloff: Some(ring.clone()), radius: 0.4, ..brush(BrushMode::Set) };
+    let mut map = blank();
+    let mut stroke = Stroke::begin(&map, canvas.clone(), drawn.clone()).unwrap();
+    stroke.extend(&mut map, hit(1.0, 0.5), PenSample::default());
+    for texel in canvas.texels().iter().filter(|texel| texel.normal == Vec3::Z) {
+        let distance = texel.position.distance(DVec3::new(1.0, 0.5, 0.0)) / 0.4;
+        let expected = if distance <= 1.0 { 1.0 + 0.5 * ring.at(distance) } else { 1.0 };
+        assert!((map.at(texel.x, texel.y).t - expected).abs() < 1e-5, "{distance}");
+    }
+    let beyond = focus::Curve::new([[0.0, 1.5]]);
+    assert!(Brush { drawn_falloff: beyond, ..drawn.clone() }.problem().is_some());
+    let text = serde_json::to_string(&drawn).unwrap();
+    assert_eq!(serde_json::from_str::<Brush>(&text).unwrap(), drawn);
+}
+
+#[test]
 fn cloning_takes_what_stood_there_when_the_stroke_began() {
     let canvas = strip();
     let mut map = blank();

@@ -4,7 +4,7 @@ use crate::{CameraEdit, JobId, JobStatus, ReferenceKind, SurfaceHit};
 use focus::{Brush, Combine, Gradient, LayerEdit, ViewFrame};
 use glam::DVec2;
 use lens::{Exposure, FocusOffset};
-use project::SelectionShape;
+use project::{RecordedStep, SelectionShape};
 use std::ops::Range;
 use std::path::PathBuf;
 use trace::Ray;
@@ -35,6 +35,10 @@ pub enum Command {
     Undo,
     /// Does again what was taken back.
     Redo,
+    /// Goes to where this many steps of the history are done, by undo or redo.
+    GoTo(usize),
+    /// Does a recorded step, as a step of undo. The brush stays what it is.
+    Do(RecordedStep),
 
     /// Changes the camera. Edits of one field in a row are one step of undo until [`Command::FinishEdit`].
     Camera(CameraEdit),

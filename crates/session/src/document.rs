@@ -1,10 +1,10 @@
 //! What is open: the scene, its focus and its camera.
 
 use crate::input::{CameraChoice, Input, InputKind};
-use crate::undo::Undo;
+use crate::undo::{HistoryStep, Undo};
 use crate::{SessionError, Stage, Steps};
 use atlas::UnwrapOptions;
-use focus::{Brush, Changed, FocusMap, FocusRecipe, LayerStack, RecipeEntry, Selection};
+use focus::{Brush, Changed, FocusMap, FocusRecipe, LayerStack, RecipeEntry, Selection, Thumbnail};
 use lens::{Camera, Exposure};
 use project::{FocusFile, NamedCamera, ProjectFile};
 use scene::{Scene, SceneCamera};
@@ -40,6 +40,8 @@ pub struct Document {
     template: ProjectFile,
     /// Steps of undo and redo.
     pub(crate) undo: Undo,
+    /// The map after the latest step.
+    pictured: FocusMap,
     /// Counts changes of what is saved.
     pub(crate) revision: u64,
     /// The revision that the project file holds.
@@ -172,6 +174,7 @@ impl Document {
         Ok(Self {
             stage: Arc::new(stage),
             layers,
+            pictured: map.clone(),
             map,
             curves_for: input.camera.camera_to_world,
             camera: input.camera.clone(),
@@ -242,6 +245,22 @@ impl Document {
     /// What redo would do again.
     pub fn redo_name(&self) -> Option<&str> {
         self.undo.redo_name()
+    }
+
+    /// The history, oldest step first: what is done, then what was taken back and can be done again.
+    pub fn history(&self) -> impl Iterator<Item = HistoryStep<'_>> {
+        self.undo.steps()
+    }
+
+    /// Adds a picture of what it changed to the step that was just taken, if it was of paint.
+    pub(crate) fn picture_step(&mut self) {
+        self.undo.picture(Thumbnail::between(&self.pictured, &self.map));
+        self.pictured = self.map.clone();
+    }
+
+    /// A step was taken back, or done again.
+    pub(crate) fn stepped(&mut self) {
+        self.pictured = self.map.clone();
     }
 
     /// All that can be undone, oldest first.

@@ -14,6 +14,8 @@
 //! ```
 
 mod aov;
+mod aperture_image;
+mod blur_histogram;
 mod camera_edit;
 mod command;
 mod command_table;
@@ -42,7 +44,9 @@ mod unwrapped;
 mod verification;
 
 pub use aov::Aov;
+pub use aperture_image::{ApertureCell, ApertureImage};
 pub use baselines::{FirstHits, LayeredOptions, ScatterOptions, ViewsOptions};
+pub use blur_histogram::BlurHistogram;
 pub use camera_edit::CameraEdit;
 pub use command::{Command, Event, FillRegion, StrokePoint, StrokeTarget};
 pub use command_table::{COMMANDS, CommandId, CommandInfo, Menu, Shortcut};
@@ -63,5 +67,6 @@ pub use session::{Session, SessionOptions};
 pub use stage::{Stage, load_scene};
 pub use steps::Steps;
 pub use trace::truth::Region;
+pub use undo::HistoryStep;
 pub use unwrapped::write_unwrapped;
 pub use verification::{Verification, VerifiedError};

@@ -131,7 +131,7 @@ pub fn replay(document: &mut Document, steps: &[RecordedStep]) -> Result<usize, 
 }
 
 /// Does one recorded step. Whether it changed anything.
-fn redo(document: &mut Document, step: &RecordedStep) -> Result<bool, SessionError> {
+pub(crate) fn redo(document: &mut Document, step: &RecordedStep) -> Result<bool, SessionError> {
     let before = document.undo.names().count();
     match step {
         RecordedStep::Stroke(stroke) => {

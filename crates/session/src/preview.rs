@@ -42,6 +42,8 @@ pub struct Preview {
     pub seconds: f64,
     /// What the light field holds; nothing for a pinhole picture.
     pub modelled: Modelled,
+    /// How many changes of the map it has seen, as [`crate::Session::map_serial`] counts them.
+    pub map_serial: u64,
     /// Which of the session's documents it shows.
     pub(crate) generation: u64,
 }
@@ -92,8 +94,8 @@ pub(crate) struct Wishes {
     /// Another scene, and which of the session's documents it is.
     pub stage: Option<(Arc<Stage>, u64)>,
     pub camera: Option<Camera>,
-    /// A snapshot of the map; `changed` is what is new in it.
-    pub map: Option<FocusMap>,
+    /// A snapshot of the map and how many changes it holds; `changed` is what is new in it.
+    pub map: Option<(FocusMap, u64)>,
     pub changed: Changes,
     /// The light field is to be made anew.
     pub bake: bool,
@@ -234,7 +236,7 @@ impl PreviewThread {
     }
 
     /// Another scene, with its focus.
-    pub fn set_stage(&self, stage: (Arc<Stage>, u64), map: FocusMap, camera: Camera) {
+    pub fn set_stage(&self, stage: (Arc<Stage>, u64), map: (FocusMap, u64), camera: Camera) {
         self.shared.post(true, |wishes| {
             wishes.stage = Some(stage);
             (wishes.camera, wishes.map) = (Some(camera), Some(map));
@@ -252,8 +254,8 @@ impl PreviewThread {
         });
     }
 
-    /// Another state of the map; `changed` is what is new in it.
-    pub fn set_map(&self, map: FocusMap, changed: &Changes) {
+    /// Another state of the map, with how many changes it holds; `changed` is what is new in it.
+    pub fn set_map(&self, map: (FocusMap, u64), changed: &Changes) {
         self.shared.post(false, |wishes| {
             wishes.map = Some(map);
             wishes.changed.join(changed);

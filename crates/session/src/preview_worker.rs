@@ -34,6 +34,8 @@ pub(crate) struct Worker {
     stage: Option<Arc<Stage>>,
     camera: Option<Camera>,
     map: Option<Arc<FocusMap>>,
+    /// How many changes the map holds.
+    map_serial: u64,
     coarse: Option<LightField>,
     fine: Option<LightField>,
     /// Whether the fine light field's picture has not been shown yet.
@@ -61,6 +63,7 @@ impl Worker {
             stage: None,
             camera: None,
             map: None,
+            map_serial: 0,
             coarse: None,
             fine: None,
             is_new: false,
@@ -172,7 +175,9 @@ impl Worker {
         // A stroke that goes on is no time for more.
         self.is_settled = wishes.settle || (self.is_settled && wishes.map.is_none());
         self.camera = wishes.camera.or(self.camera.take());
-        self.map = wishes.map.map(Arc::new).or(self.map.take());
+        if let Some((map, serial)) = wishes.map {
+            (self.map, self.map_serial) = (Some(Arc::new(map)), serial);
+        }
         for field in [&mut self.coarse, &mut self.fine].into_iter().flatten() {
             field.note(&wishes.changed);
         }
@@ -266,6 +271,7 @@ impl Worker {
             camera: camera.clone(),
             seconds,
             modelled,
+            map_serial: self.map_serial,
             generation: self.generation,
         });
     }

@@ -20,6 +20,7 @@ use atlas::UnwrapOptions;
 use focus::{Changed, FillTarget};
 use glam::DVec2;
 use lens::{Camera, FocusOffset};
+use std::cmp::Ordering;
 use std::path::PathBuf;
 use std::sync::{Arc, mpsc};
 use std::time::{Duration, Instant};
@@ -101,6 +102,8 @@ pub struct Session {
     preview_camera: Option<Camera>,
     /// The newest preview that was seen, of whatever document.
     seen_preview: u64,
+    /// Counts changes of the map that were shown to the preview.
+    map_serial: u64,
     recovery: Recovery,
     /// The pictures to compare with, one of a kind.
     references: Vec<Reference>,
@@ -132,6 +135,7 @@ impl Session {
             preview: None,
             preview_camera: None,
             seen_preview: 0,
+            map_serial: 0,
             recovery: Recovery::default(),
             references: Vec::new(),
             reference_jobs: Vec::new(),
@@ -155,6 +159,11 @@ impl Session {
     /// The last good picture.
     pub fn preview(&self) -> Option<&Preview> {
         self.preview.as_ref()
+    }
+
+    /// How many changes of the map there were: a preview that has seen as many shows it as it is.
+    pub fn map_serial(&self) -> u64 {
+        self.map_serial
     }
 
     /// What the preview is being drawn as.
@@ -240,7 +249,7 @@ impl Session {
                 let camera = self.scaled_camera(&document.camera);
                 self.preview_camera = Some(camera.clone());
                 let stage = (document.stage.clone(), self.generation);
-                self.preview_thread.set_stage(stage, document.map.clone(), camera);
+                self.preview_thread.set_stage(stage, (document.map.clone(), self.map_serial), camera);
                 self.events.push(Event::Opened);
                 self.events.extend(document.warnings.iter().cloned().map(Event::Notice));
                 // What was restored is in its file already; a document as saved has none.
@@ -282,6 +291,8 @@ impl Session {
             Command::OpenTemplate(path) => self.open_template(path),
             Command::Undo => self.step_back(),
             Command::Redo => self.step_forward(),
+            Command::GoTo(steps) => self.go_to(steps),
+            Command::Do(step) => self.do_step(&step),
             Command::Camera(edit) => self.edit_camera(edit),
             Command::FinishEdit => {
                 self.opened()?.undo.finish_run();
@@ -410,7 +421,25 @@ impl Session {
         self.after_step(done)
     }
 
+    /// Takes steps back, or does them again, until this many are done.
+    fn go_to(&mut self, steps: usize) -> Result<(), SessionError> {
+        loop {
+            let done = self.opened()?.undo.names().count();
+            match done.cmp(&steps) {
+                Ordering::Greater => self.step_back()?,
+                Ordering::Less if self.opened()?.redo_name().is_some() => self.step_forward()?,
+                _ => return Ok(()),
+            }
+        }
+    }
+
     fn after_step(&mut self, step: Option<Undone>) -> Result<(), SessionError> {
+        self.show_step(step)?;
+        self.opened()?.stepped();
+        Ok(())
+    }
+
+    fn show_step(&mut self, step: Option<Undone>) -> Result<(), SessionError> {
         match step {
             None => Ok(()),
             Some(Undone::Camera) => {
@@ -469,6 +498,16 @@ impl Session {
         self.show_paint(changed, background)
     }
 
+    /// Shows the whole map in the views.
+    fn show_everything(&mut self) -> Result<(), SessionError> {
+        let map = self.opened()?.map.clone();
+        self.map_serial += 1;
+        self.events.push(Event::MapChanged(0..map.width(), 0..map.height()));
+        self.preview_thread.set_map((map, self.map_serial), &Changes::Everything);
+        self.preview_thread.settle();
+        Ok(())
+    }
+
     /// Shows changed texels in the views.
     fn show_paint(&mut self, changed: Changed, background: bool) -> Result<(), SessionError> {
         if changed.is_empty() && !background {
@@ -477,7 +516,8 @@ impl Session {
         let [columns, rows] = changed.bounds();
         let map = self.opened()?.map.clone();
         let changes = if background { Changes::Everything } else { Changes::Texels(changed.texels) };
-        self.preview_thread.set_map(map, &changes);
+        self.map_serial += 1;
+        self.preview_thread.set_map((map, self.map_serial), &changes);
         if self.underway.is_none() {
             self.preview_thread.settle();
         }

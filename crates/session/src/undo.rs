@@ -1,6 +1,6 @@
 //! Undo and redo of paint, selection and lens in the order in which they happened.
 
-use focus::{Edit, LayerStack, Selection};
+use focus::{Edit, LayerStack, Selection, Thumbnail};
 use lens::Camera;
 use project::RecordedStep;
 use std::collections::VecDeque;
@@ -37,21 +37,17 @@ struct Step {
     change: Change,
     /// What was done, as data, where it can be done again.
     record: Option<Box<RecordedStep>>,
+    /// What it changed, where that is paint.
+    thumbnail: Option<Thumbnail>,
     /// Memory that it keeps alive.
     bytes: usize,
 }
 
 impl Step {
     fn new(name: String, change: Change, record: Option<RecordedStep>) -> Self {
-        let mut step = Self { name, change, record: record.map(Box::new), bytes: 0 };
-        step.weigh();
-        step
-    }
-
-    /// Takes stock of its memory.
-    fn weigh(&mut self) {
-        let record = self.record.as_ref().map_or(0, |record| record.bytes());
-        self.bytes = size_of::<Self>() + self.name.len() + self.change.bytes() + record;
+        let record_bytes = record.as_ref().map_or(0, RecordedStep::bytes);
+        let bytes = size_of::<Self>() + name.len() + change.bytes() + record_bytes;
+        Self { name, change, record: record.map(Box::new), thumbnail: None, bytes }
     }
 }
 
@@ -66,6 +62,23 @@ pub(crate) enum Undone {
     Camera,
     /// What may be painted.
     Selection,
+}
+
+/// A step of the history, as a list shows it.
+#[derive(Clone, Copy, Debug)]
+pub struct HistoryStep<'a> {
+    /// What was done.
+    pub name: &'a str,
+    /// What it changed of the focus map, if anything.
+    pub thumbnail: Option<&'a Thumbnail>,
+    /// Whether it is done, or was taken back and can be done again.
+    pub is_done: bool,
+}
+
+impl<'a> HistoryStep<'a> {
+    fn of(step: &'a Step, is_done: bool) -> Self {
+        Self { name: &step.name, thumbnail: step.thumbnail.as_ref(), is_done }
+    }
 }
 
 /// What the steps change.
@@ -165,8 +178,23 @@ impl Undo {
         self.bytes -= self.undone.drain(..).map(|step| step.bytes).sum::<usize>();
         self.bytes += step.bytes;
         self.done.push_back(step);
+        self.forget_beyond_budget();
+    }
+
+    fn forget_beyond_budget(&mut self) {
         while self.bytes > self.budget_bytes && self.done.len() > 1 {
             self.bytes -= self.done.pop_front().map_or(0, |step| step.bytes);
+        }
+    }
+
+    /// Adds a picture to the latest step.
+    pub fn picture(&mut self, thumbnail: Thumbnail) {
+        if let Some(step) = self.done.back_mut() {
+            let before = step.thumbnail.as_ref().map_or(0, Thumbnail::bytes);
+            step.bytes = step.bytes - before + thumbnail.bytes();
+            self.bytes = self.bytes - before + thumbnail.bytes();
+            step.thumbnail = Some(thumbnail);
+            self.forget_beyond_budget();
         }
     }
 
@@ -235,6 +263,12 @@ impl Undo {
     /// All steps that can be taken back, oldest first.
     pub fn names(&self) -> impl Iterator<Item = &str> {
         self.done.iter().map(|step| &*step.name)
+    }
+
+    /// All steps, oldest first: what they are called, what they changed, and whether they are done.
+    pub fn steps(&self) -> impl Iterator<Item = HistoryStep<'_>> {
+        let done = self.done.iter().map(|step| HistoryStep::of(step, true));
+        done.chain(self.undone.iter().rev().map(|step| HistoryStep::of(step, false)))
     }
 
     /// Memory that the steps keep alive, and how much they may.

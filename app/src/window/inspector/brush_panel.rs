@@ -1,5 +1,6 @@
 //! The brush's shape and manner.
 
+use super::falloff_editor::{falloff_choice, falloff_editor};
 use crate::window::controls::{self, format_number, proportional, row, rows};
 use crate::window::tool_bar::{HARDNESS_TIP, SIZE_TIP, STRENGTH_TIP, largest_radius, push_brush};
 use crate::window::{Action, ViewSettings};
@@ -35,8 +36,11 @@ pub fn brush_panel(
             "The share of the strength that one dab does: below 1 a stroke builds up where dabs overlap.";
         row(ui, "Flow", tip, |ui| ui.add(Slider::new(&mut brush.flow, 0.01..=1.0).max_decimals(2)));
         row(ui, "Hardness", HARDNESS_TIP, |ui| {
-            ui.add(Slider::new(&mut brush.hardness, 0.0..=1.0).max_decimals(2))
+            let drawn = brush.drawn_falloff.is_some();
+            ui.add_enabled(!drawn, Slider::new(&mut brush.hardness, 0.0..=1.0).max_decimals(2))
         });
+        let tip = "How strength falls from the middle to the rim: by the hardness, or as you draw it.";
+        row(ui, "Falloff", tip, |ui| falloff_choice(ui, &mut brush));
         let tip = "Distance between dabs as a share of the radius.";
         row(ui, "Spacing", tip, |ui| {
             ui.add(DragValue::new(&mut brush.spacing).range(0.01..=10.0).speed(0.005).max_decimals(2))
@@ -85,8 +89,14 @@ pub fn brush_panel(
             )
         });
     });
+    falloff_editor(ui, &mut brush);
     rows(ui, "brush manner", |ui| {
         mirror_row(ui, document, &mut brush);
+        let tip =
+            "How often every stroke is painted around the vertical through the mirror's middle; 1 is once.";
+        row(ui, "Radial", tip, |ui| {
+            ui.add(DragValue::new(&mut brush.radial).range(1..=focus::Symmetry::MOST_RADIAL).speed(0.05))
+        });
         let tip =
             "The pointer pulls the brush by a string of this length: the longer, the steadier the line.";
         row(ui, "Stabiliser", tip, |ui| {
@@ -124,7 +134,7 @@ fn mirror_row(ui: &mut Ui, document: &Document, brush: &mut Brush) {
                 let response = ui.toggle_value(&mut brush.mirror[axis], name).on_hover_text(tip);
                 controls::named(&response, &format!("Mirror {name}"));
             }
-            let is_on = brush.mirror != [false; 3];
+            let is_on = !brush.symmetry().is_none();
             if was_off && is_on && brush.mirror_center == [0.0; 3] {
                 brush.mirror_center = middle;
             }

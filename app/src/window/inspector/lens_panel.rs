@@ -2,6 +2,7 @@
 
 use super::shape_panel::shape_panel;
 use crate::window::controls::{self, finish, format_number, proportional, row, rows};
+use crate::window::picture_view::ToneCurve;
 use crate::window::{Action, ViewSettings};
 use egui::{Button, ComboBox, DragValue, Ui};
 use lens::Exposure;
@@ -193,6 +194,19 @@ pub fn picture_panel(
         row(ui, "Display", "Brightness of the screen only; exported pictures do not change.", |ui| {
             let value = DragValue::new(&mut settings.display_stops).speed(0.02).range(-10.0..=10.0);
             ui.add(value.suffix(" stops").max_decimals(2))
+        });
+
+        let tip = "What becomes of light brighter than white on the screen; exported pictures do not change.";
+        row(ui, "Tone mapping", tip, |ui| {
+            let combo = ComboBox::from_id_salt("tone mapping").selected_text(settings.tone_curve.name());
+            combo
+                .width(110.0)
+                .show_ui(ui, |ui| {
+                    for curve in ToneCurve::ALL {
+                        ui.selectable_value(&mut settings.tone_curve, curve, curve.name());
+                    }
+                })
+                .response
         });
 
         let tip = "Longest side of the live picture: smaller is faster. Exports are always at full size.";

@@ -2,7 +2,9 @@
 
 mod brush_panel;
 mod curve_editor;
+mod falloff_editor;
 mod focus_panel;
+mod history_panel;
 mod layers_panel;
 mod lens_panel;
 mod modelled_panel;
@@ -13,9 +15,9 @@ mod tool_panel;
 pub use layers_panel::is_layer_command_possible;
 pub use tool_panel::selected;
 
-use super::{Action, Tool, ViewSettings, controls};
+use super::{Action, Tool, ViewSettings};
 use egui::{CollapsingHeader, ScrollArea, Ui};
-use session::{CommandId, Document, Session, SurfaceHit};
+use session::{Session, SurfaceHit};
 
 /// What the inspector keeps between frames.
 #[derive(Default)]
@@ -58,7 +60,7 @@ impl Inspector {
             section(ui, "What was modelled", false, |ui| {
                 modelled_panel::modelled_panel(ui, session, document)
             });
-            section(ui, "History", false, |ui| history(ui, document, actions));
+            section(ui, "History", false, |ui| history_panel::history_panel(ui, document, actions));
         });
     }
 }
@@ -68,31 +70,4 @@ fn section(ui: &mut Ui, title: &str, open: bool, add: impl FnOnce(&mut Ui)) {
         add(ui);
         ui.add_space(6.0);
     });
-}
-
-/// The steps that can be taken back, the latest on top; a click takes back all down to it.
-fn history(ui: &mut Ui, document: &Document, actions: &mut Vec<Action>) {
-    let names: Vec<&str> = document.undo_names().collect();
-    if names.is_empty() {
-        ui.weak("Nothing to take back.");
-    }
-    ScrollArea::vertical().id_salt("history").max_height(160.0).min_scrolled_height(120.0).show(ui, |ui| {
-        for (back, name) in names.iter().rev().enumerate() {
-            let text = format!("{}  {name}", names.len() - back);
-            let tip = if back == 0 {
-                "Take this back.".into()
-            } else {
-                format!("Take this and the {back} after it back.")
-            };
-            if controls::list_row(ui, false, &text).on_hover_text(tip).clicked() {
-                actions.extend((0..=back).map(|_| Action::from(CommandId::Undo)));
-            }
-        }
-    });
-    if let Some(name) = document.redo_name() {
-        let redo = ui.button(format!("Redo: {name}")).on_hover_text(CommandId::Redo.info().tooltip);
-        if redo.clicked() {
-            actions.push(CommandId::Redo.into());
-        }
-    }
 }

@@ -2,10 +2,12 @@
 
 mod shown;
 mod tone;
+mod tone_curve;
 mod verify;
 mod wipe;
 
 pub use shown::Shown;
+pub use tone_curve::ToneCurve;
 
 use super::brush_ring;
 use super::navigation::{self, Motion};
@@ -18,6 +20,7 @@ use glam::{DVec2, DVec3};
 use lens::Camera;
 use session::{Command, PreviewActivity, PreviewKind, ReferenceKind, Session, SurfaceHit};
 use shown::Textures;
+pub use tone::Display;
 use tone::Tone;
 use verify::Verify;
 use wipe::Wipe;
@@ -120,7 +123,14 @@ impl PictureView {
     }
 
     /// Draws the view into the rest of `ui` and turns the pointer into actions.
-    pub fn ui(&mut self, ui: &mut Ui, session: &Session, hand: &Hand, stops: f32, actions: &mut Vec<Action>) {
+    pub fn ui(
+        &mut self,
+        ui: &mut Ui,
+        session: &Session,
+        hand: &Hand,
+        display: Display,
+        actions: &mut Vec<Action>,
+    ) {
         let (rect, response) =
             ui.allocate_exact_size(ui.available_size().max(vec2(8.0, 8.0)), Sense::click_and_drag());
         self.rect = rect;
@@ -130,7 +140,7 @@ impl PictureView {
         let size = vec2(document.camera.width as f32, document.camera.height as f32);
         self.navigate(ui, &response, size);
         self.image = self.place(size);
-        let tone = Tone { exposure: document.exposure, stops };
+        let tone = Tone { exposure: document.exposure, display };
         self.paint_picture(ui, session, tone, self.shown, rect);
         let painter = ui.painter_at(rect);
         let mut is_wiping = false;

@@ -1,5 +1,6 @@
-//! From linear radiance to the screen: exposure, display gain, clamp, sRGB encoding.
+//! From linear radiance to the screen: exposure, display gain, tone curve, clamp, sRGB encoding.
 
+use super::tone_curve::ToneCurve;
 use egui::Color32;
 use lens::{Exposure, Picture};
 use rayon::prelude::*;
@@ -21,8 +22,17 @@ static ENCODED: LazyLock<Vec<u8>> = LazyLock::new(|| {
 pub struct Tone {
     /// Conserved or normalised.
     pub exposure: Exposure,
-    /// Gain of the display, stops; no part of the picture.
+    /// What is no part of the picture.
+    pub display: Display,
+}
+
+/// How the screen shows any picture.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub struct Display {
+    /// Gain, stops.
     pub stops: f32,
+    /// What becomes of light brighter than white.
+    pub curve: ToneCurve,
 }
 
 /// One channel on screen; what is no number is black.
@@ -32,14 +42,14 @@ fn encoded(linear: f32) -> u8 {
 
 /// The picture as the screen shows it, row by row.
 pub fn to_screen(picture: &Picture, tone: Tone) -> Vec<Color32> {
-    let gain = tone.stops.exp2();
+    let gain = tone.display.stops.exp2();
     let pixel = |(rgb, &coverage): (&[f32; 3], &f32)| {
         let scale = match tone.exposure {
             Exposure::Conserve => gain,
             Exposure::Normalise if coverage > 0.0 => gain / coverage,
             Exposure::Normalise => 0.0,
         };
-        let [r, g, b] = rgb.map(|c| encoded(c * scale));
+        let [r, g, b] = tone.display.curve.map(rgb.map(|c| c * scale)).map(encoded);
         Color32::from_rgb(r, g, b)
     };
     picture.radiance.par_iter().zip(&picture.coverage).with_min_len(1 << 14).map(pixel).collect()
@@ -49,12 +59,16 @@ pub fn to_screen(picture: &Picture, tone: Tone) -> Vec<Color32> {
 mod tests {
     use super::*;
 
+    fn shown_at(exposure: Exposure, stops: f32) -> Tone {
+        Tone { exposure, display: Display { stops, curve: ToneCurve::Clip } }
+    }
+
     #[test]
     fn black_grey_and_white_are_encoded() {
         let mut picture = Picture::black(5, 1);
         picture.radiance = vec![[0.0; 3], [0.2140; 3], [1.0; 3], [7.0; 3], [f32::NAN; 3]];
         picture.coverage = vec![1.0; 5];
-        let tone = Tone { exposure: Exposure::Conserve, stops: 0.0 };
+        let tone = shown_at(Exposure::Conserve, 0.0);
         let shown: Vec<u8> = to_screen(&picture, tone).iter().map(|c| c.r()).collect();
         assert_eq!(shown[0], 0);
         assert!(shown[1].abs_diff(127) <= 1, "{}", shown[1]);
@@ -66,10 +80,10 @@ mod tests {
         let mut picture = Picture::black(2, 1);
         picture.radiance = vec![[0.5; 3], [0.25; 3]];
         picture.coverage = vec![2.0, 0.0];
-        let shown = to_screen(&picture, Tone { exposure: Exposure::Normalise, stops: 0.0 });
+        let shown = to_screen(&picture, shown_at(Exposure::Normalise, 0.0));
         assert_eq!(shown[1], Color32::BLACK, "what nothing covers is black");
-        let conserved = to_screen(&picture, Tone { exposure: Exposure::Conserve, stops: 1.0 });
-        assert_eq!(shown[0], to_screen(&picture, Tone { exposure: Exposure::Conserve, stops: -1.0 })[0]);
+        let conserved = to_screen(&picture, shown_at(Exposure::Conserve, 1.0));
+        assert_eq!(shown[0], to_screen(&picture, shown_at(Exposure::Conserve, -1.0))[0]);
         assert_eq!(conserved[0].r(), 255);
     }
 }

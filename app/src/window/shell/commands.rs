@@ -7,12 +7,15 @@ use crate::window::paint_view::PaintView;
 use crate::window::picture_view::TRUTH_SAMPLES;
 use crate::window::tool_bar::{largest_radius, signed_circle_px};
 use crate::window::unsaved_question::Next;
-use crate::window::{Tool, ViewSettings, layout};
+use crate::window::{Drawn, Tool, ViewSettings, layout};
 use egui::Context;
 use focus::{Brush, BrushMode, Combine, LayerEdit};
 use lens::{Exposure, FocusOffset};
 use project::SelectionShape;
 use session::{CameraEdit, Command, CommandId, FillRegion, KeyMap, ReferenceKind};
+
+/// How large the contents of the window may be drawn.
+const SCALES: [f32; 8] = [0.75, 0.9, 1.0, 1.1, 1.25, 1.5, 1.75, 2.0];
 
 /// What a key changes of the brush's size.
 const SIZE_STEP: f64 = 1.15;
@@ -49,11 +52,20 @@ impl Shell {
             CommandId::ResetLayout => {
                 self.layout = layout::initial();
                 self.settings.inspector = true;
+                self.settings.drawer = None;
             }
+            CommandId::ShowAtlas => self.toggle_drawer(Drawn::Atlas),
+            CommandId::ShowAperture => self.toggle_drawer(Drawn::Aperture),
+            CommandId::ShowHistogram => self.toggle_drawer(Drawn::Histogram),
+            CommandId::NextToneCurve => self.settings.tone_curve = self.settings.tone_curve.next(),
+            CommandId::LightOrDark => self.settings.light_theme = !self.settings.light_theme,
+            CommandId::ScaleUp => self.rescale(1),
+            CommandId::ScaleDown => self.rescale(-1),
             CommandId::KeysBlender => self.settings.key_map = KeyMap::Blender,
             CommandId::KeysSubstance => self.settings.key_map = KeyMap::Substance,
             CommandId::KeysKrita => self.settings.key_map = KeyMap::Krita,
             CommandId::Brush
+            | CommandId::CurveBrush
             | CommandId::Smooth
             | CommandId::Sharpen
             | CommandId::Clone
@@ -71,7 +83,8 @@ impl Shell {
             | CommandId::SelectFacing
             | CommandId::SelectDepth
             | CommandId::FocusHere
-            | CommandId::Pick => self.choose(id),
+            | CommandId::Pick
+            | CommandId::Inspect => self.choose(id),
             CommandId::SelectAll => {
                 self.apply(Command::Select(SelectionShape::Everything, Combine::Replace));
             }
@@ -166,6 +179,18 @@ impl Shell {
         if let Some(document) = self.session.document() {
             act(&mut self.paint, document);
         }
+    }
+
+    /// Shows something in the drawer, or folds it away.
+    fn toggle_drawer(&mut self, drawn: Drawn) {
+        self.settings.drawer = if self.settings.drawer == Some(drawn) { None } else { Some(drawn) };
+    }
+
+    /// Draws the contents larger or smaller, a step of [`SCALES`] up or down.
+    fn rescale(&mut self, step: isize) {
+        let at = SCALES.partition_point(|scale| *scale < self.settings.scale - 1e-3);
+        let next = at.saturating_add_signed(step).min(SCALES.len() - 1);
+        self.settings.scale = SCALES[next];
     }
 
     fn set_brush_number(&mut self, number: BrushNumber, context: &Context) {

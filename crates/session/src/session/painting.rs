@@ -1,11 +1,11 @@
 //! Strokes, gradients, fills, selections and layers.
 
 use super::Session;
-use crate::painter::{GradientInHand, Painter, Underway};
+use crate::painter::{GradientInHand, Painter, Underway, redo};
 use crate::{Event, FillRegion, SessionError, StrokePoint};
 use focus::{Combine, FillTarget, FocusMap, Gradient, LayerEdit};
 use lens::FocusOffset;
-use project::SelectionShape;
+use project::{RecordedStep, SelectionShape};
 
 impl Session {
     pub(super) fn begin_stroke(&mut self, point: StrokePoint) -> Result<(), SessionError> {
@@ -47,6 +47,7 @@ impl Session {
             Underway::Gradient(gradient) => gradient.commit(document),
         };
         if changed {
+            document.picture_step();
             self.preview_thread.settle();
         }
         Ok(())
@@ -77,8 +78,29 @@ impl Session {
         focus: FocusOffset,
     ) -> Result<(), SessionError> {
         self.commit_stroke()?;
-        let changed = self.opened()?.fill(targets, focus)?;
-        self.show_layers(Some(changed))
+        let document = self.opened()?;
+        let revision = document.revision;
+        let changed = document.fill(targets, focus)?;
+        self.show_layers(Some(changed))?;
+        let document = self.opened()?;
+        if document.revision != revision {
+            document.picture_step();
+        }
+        Ok(())
+    }
+
+    /// Does a recorded step, as a step of undo.
+    pub(super) fn do_step(&mut self, step: &RecordedStep) -> Result<(), SessionError> {
+        self.commit_stroke()?;
+        let document = self.opened()?;
+        let brush = document.brush.clone();
+        let changed = redo(document, step);
+        document.brush = brush;
+        if changed? {
+            document.picture_step();
+            self.events.extend([Event::LayersChanged, Event::SelectionChanged]);
+        }
+        self.show_everything()
     }
 
     pub(super) fn select_region(&mut self, region: FillRegion, combine: Combine) -> Result<(), SessionError> {
@@ -137,6 +159,8 @@ impl Session {
             return Ok(());
         }
         self.events.push(Event::LayersChanged);
-        self.show_layers(None)
+        self.show_layers(None)?;
+        self.opened()?.picture_step();
+        Ok(())
     }
 }

@@ -1,0 +1,110 @@
+//! The aperture as one point of the scene sees it: what it sends where, what stands between, and how that lands in the
+//! picture.
+
+use crate::window::controls::{self, row, rows};
+use crate::window::{Action, keys};
+use egui::{Color32, Mesh, Rect, Shape, Stroke, Ui, pos2, vec2};
+use glam::DVec3;
+use session::{ApertureImage, CommandId, Session, SurfaceHit};
+
+/// The view's state between frames.
+#[derive(Default)]
+pub struct ApertureView {
+    point: Option<SurfaceHit>,
+    image: Option<ApertureImage>,
+    /// What the image was made for.
+    made_for: Option<(DVec3, lens::Camera, lens::FocusOffset)>,
+}
+
+impl ApertureView {
+    /// Takes a point to look from.
+    pub fn inspect(&mut self, hit: SurfaceHit) {
+        self.point = Some(hit);
+    }
+
+    /// What the point sees.
+    pub fn image(&self) -> Option<&ApertureImage> {
+        self.image.as_ref()
+    }
+
+    /// Draws the aperture and what is known of the point.
+    pub fn ui(&mut self, ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+        let Some(document) = session.document() else { return };
+        let wants = CommandId::Inspect;
+        let Some(hit) = self.point else {
+            ui.weak("Choose a point of the scene: this shows what of the aperture it sees, and what it sends there.");
+            if ui.button("Choose a point").on_hover_text(keys::tip(ui.ctx(), wants)).clicked() {
+                actions.push(wants.into());
+            }
+            return;
+        };
+        let focus = session.focus_at(&hit).unwrap_or(lens::FocusOffset::STANDARD);
+        let made_for = (hit.position, document.camera.clone(), focus);
+        if self.made_for.as_ref() != Some(&made_for) {
+            self.image = session.aperture_image(&hit);
+            self.made_for = Some(made_for);
+        }
+        let Some(image) = &self.image else {
+            ui.weak("A pinhole, or a point behind the camera: there is no aperture to see.");
+            return;
+        };
+        ui.horizontal_top(|ui| {
+            let side = ui.available_height().clamp(60.0, 320.0);
+            let (rect, response) = ui.allocate_exact_size(vec2(side, side), egui::Sense::hover());
+            paint(ui, rect, image, 1.0);
+            let tip = "The aperture from behind the camera, as this point sees it: hatched where something stands \
+                       between, dark where the aperture's shape is closed.";
+            response.on_hover_text(tip);
+            let (rect, response) = ui.allocate_exact_size(vec2(side, side), egui::Sense::hover());
+            // Where it lands: turned by half a turn for near blur.
+            paint(ui, rect, image, if image.circle_px < 0.0 { -1.0 } else { 1.0 });
+            response.on_hover_text("The same as it lands in the picture: turned by half a turn for near blur.");
+            rows(ui, "aperture", |ui| {
+                let mut line = |label: &str, tip: &str, value: String| {
+                    row(ui, label, tip, |ui| ui.label(value));
+                };
+                let seen = format!("{:.0} %", image.visible_share() * 100.0);
+                line("Sees", "How much of the open aperture the point sees.", seen);
+                line("Depth", "Axial depth in the shot camera.", controls::length(image.depth));
+                let circle = controls::circle(image.circle_px);
+                line("Lands as", "Its circle of confusion on the full-size picture.", circle);
+                let focus = format!("t {:.4}, anchor {:.2}", image.focus.t, image.focus.anchor);
+                line("Painted", "The focus of the point.", focus);
+            });
+            if ui.button("Another point").on_hover_text(keys::tip(ui.ctx(), wants)).clicked() {
+                actions.push(wants.into());
+            }
+        });
+    }
+}
+
+/// Draws the cells, turned by half a turn where `sign` is −1.
+fn paint(ui: &Ui, rect: Rect, image: &ApertureImage, sign: f32) {
+    let painter = ui.painter_at(rect);
+    painter.rect_filled(rect, 2.0, Color32::from_gray(16));
+    let brightest = image.cells.iter().flat_map(|cell| cell.radiance).fold(0.0f32, f32::max);
+    let gain = if brightest > 1.0 { 1.0 / brightest } else { 1.0 };
+    let cell_side = rect.width() / image.side as f32;
+    let mut mesh = Mesh::default();
+    for (k, cell) in image.cells.iter().enumerate().filter(|(_, cell)| cell.transmission > 0.0) {
+        let [column, row] = [k % image.side, k / image.side];
+        let middle = vec2(column as f32 + 0.5, row as f32 + 0.5) * cell_side - rect.size() / 2.0;
+        let place = Rect::from_center_size(rect.center() + middle * sign, vec2(cell_side, cell_side));
+        let color = if cell.is_seen {
+            let [r, g, b] = cell.radiance.map(|c| encoded(c * gain));
+            Color32::from_rgb(r, g, b)
+        } else {
+            Color32::from_gray(if (column + row) % 4 < 2 { 52 } else { 34 })
+        };
+        mesh.add_colored_rect(place, color.gamma_multiply(0.35 + 0.65 * cell.transmission));
+    }
+    painter.add(Shape::mesh(mesh));
+    let middle = Stroke::new(1.0, Color32::from_white_alpha(40));
+    painter.line_segment([pos2(rect.left(), rect.center().y), pos2(rect.right(), rect.center().y)], middle);
+    painter.line_segment([pos2(rect.center().x, rect.top()), pos2(rect.center().x, rect.bottom())], middle);
+}
+
+/// sRGB encoding of one channel.
+fn encoded(linear: f32) -> u8 {
+    egui::ecolor::gamma_u8_from_linear_f32(linear)
+}

@@ -1,0 +1,212 @@
+//! The history, the drawer beneath the views, the look of the window, a recording played in it.
+
+use crate::acting::{Person, at, color_at};
+use crate::small_scene;
+use egui::{Key, Modifiers};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+use focus_brush::window::{Shell, WindowOptions};
+use lens::FocusOffset;
+use project::{RecordedFill, RecordedStep, RecordedStroke};
+use session::{Command, CommandId, FillRegion};
+
+fn opened() -> (Person, tempfile::TempDir) {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("wall.glb");
+    small_scene::write(&file);
+    (Person::opens(&file), folder)
+}
+
+impl Person {
+    /// Clicks a step of the history.
+    fn goes_to(&mut self, step: &str) {
+        self.scrolls_to(step);
+        self.window.get_by_label(step).click_accesskit();
+        self.window.run_steps(2);
+        self.waits();
+    }
+
+    fn does(&mut self, id: CommandId) {
+        let context = self.window.ctx.clone();
+        self.window.state_mut().run(id, &context);
+        self.window.run_steps(3);
+    }
+}
+
+#[test]
+fn the_history_shows_what_changed_and_a_click_goes_there() {
+    let (mut person, _folder) = opened();
+    let blank = person.document().map.clone();
+    for _ in 0..6 {
+        person.presses(Modifiers::NONE, Key::Period);
+    }
+    let rect = person.picture_rect();
+    person.clicks(at(rect, 0.75, 0.5));
+    let one = person.document().map.clone();
+    person.window.state_mut().apply(Command::Fill(FillRegion::All, FocusOffset::SHARP));
+    person.presses(Modifiers::NONE, Key::Plus);
+    person.waits();
+    let history: Vec<_> = person.document().history().map(|step| step.name.to_string()).collect();
+    assert_eq!(history, ["Brush stroke", "Fill everything", "f-number"]);
+    let share = |person: &Person, step: usize| {
+        let picture = person.document().history().nth(step).unwrap().thumbnail.cloned();
+        picture.map(|picture| picture.cells().iter().filter(|cell| cell.changed > 0.0).count())
+    };
+    let (stroke, fill) = (share(&person, 0).unwrap(), share(&person, 1).unwrap());
+    assert!(stroke > 0 && fill > 4 * stroke, "a stroke changes little, a fill much: {stroke} {fill}");
+    assert_eq!(share(&person, 2), None, "the lens is no paint");
+
+    person.scrolls_to("History");
+    person.window.get_all_by_label("History").last().unwrap().click();
+    person.window.run_steps(20);
+    person.goes_to("1  Brush stroke");
+    person.waits();
+    assert!(person.document().map == one, "{:?}", person.document().undo_names().collect::<Vec<_>>());
+    assert_eq!(person.document().history().filter(|step| step.is_done).count(), 1);
+    person.goes_to("0  As opened");
+    assert_eq!(person.document().undo_name(), None);
+    assert!(person.document().map == blank);
+    person.goes_to("3  f-number");
+    assert_eq!(person.document().history().filter(|step| step.is_done).count(), 3);
+    assert_eq!(person.document().redo_name(), None);
+    assert!(person.complaints().is_empty(), "{:?}", person.complaints());
+}
+
+#[test]
+fn the_atlas_is_painted_on_in_2d() {
+    let (mut person, _folder) = opened();
+    for _ in 0..12 {
+        person.presses(Modifiers::NONE, Key::Period);
+    }
+    let (map, target) = (person.document().map.clone(), person.document().brush.target);
+    person.presses(Modifiers::NONE, Key::F7);
+    person.window.run_steps(30);
+    // The place of a texel of the card on screen.
+    let document = person.document();
+    let card = document.stage.canvas.texels().iter().find(|texel| texel.position.z > -3.0).unwrap();
+    let chart = &document.stage.atlas.charts[card.chart as usize];
+    let middle = [0, 1].map(|axis| (chart.bounds[axis].start + chart.bounds[axis].end) as f32 / 2.0);
+    let [width, height] = document.map.size().map(|side| side as f32);
+    let place = at(person.shell().drawer().atlas_rect(), middle[0] / width, middle[1] / height);
+    person.window.remove_cursor();
+    person.window.run_steps(2);
+    let before = person.window.render().unwrap();
+    person.paints(&[place, place + egui::vec2(2.0, 1.0), place + egui::vec2(4.0, 2.0)]);
+    assert_ne!(person.document().map, map);
+    let painted = person.document().map.at(middle[0] as u32, middle[1] as u32);
+    assert!((painted.t - target.t).abs() < 1e-4, "{painted:?}");
+    person.window.remove_cursor();
+    person.window.run_steps(2);
+    let after = person.window.render().unwrap();
+    let (old, new) = (color_at(&before, place), color_at(&after, place));
+    assert!(old != new && new[2] > new[0], "far blur is blue in the atlas too: {old:?} {new:?}");
+    person.presses(Modifiers::COMMAND, Key::Z);
+    person.waits();
+    assert_eq!(person.document().map, map);
+    person.presses(Modifiers::NONE, Key::F7);
+    assert!(person.window.query_by_label("Atlas view").is_none(), "folded away");
+    assert!(person.complaints().is_empty(), "{:?}", person.complaints());
+}
+
+#[test]
+fn the_aperture_as_a_point_sees_it() {
+    let (mut person, _folder) = opened();
+    let rect = person.picture_rect();
+    person.presses(Modifiers::NONE, Key::Q);
+    person.clicks(at(rect, 0.25, 0.5));
+    person.window.run_steps(20);
+    let image = person.shell().drawer().aperture_image().expect("the card's").clone();
+    assert_eq!(image.visible_share(), 1.0, "nothing stands before the card");
+    assert!((image.depth - 2.0).abs() < 1e-6 && image.circle_px < 0.0, "nearer than the focus");
+    // A disc: its corners are closed.
+    assert!(image.cells[0].transmission == 0.0 && image.cells[16 * 32 + 16].transmission == 1.0);
+    // The wall just beside the card's outline, seen past it by part of the aperture: look for it along a row.
+    let session = person.shell().session();
+    let shares: Vec<f64> = (0..400)
+        .filter_map(|k| {
+            let ray = session.picture_ray(glam::DVec2::new(0.2 + 0.001 * k as f64, 0.5))?;
+            let hit = session.pick(&ray).filter(|hit| hit.position.z < -4.0)?;
+            Some(session.aperture_image(&hit)?.visible_share())
+        })
+        .collect();
+    assert!(shares.iter().any(|share| *share > 0.2 && *share < 0.8), "half hidden beside the outline");
+    assert_eq!(shares[shares.len() - 1], 1.0, "and free further on");
+    assert!(person.window.query_all_by_label_contains("100 %").next().is_some());
+
+    person.presses(Modifiers::NONE, Key::F9);
+    person.window.run_steps(5);
+    assert!(person.window.query_by_label_contains("of the picture is sharper than 1 px").is_some());
+    let histogram = person.shell().session().blur_histogram([48, 32]).unwrap();
+    assert!(histogram.quantile(0.0).unwrap() < -1.0, "the card is near");
+    assert!(histogram.sharper_than(1.0) > 0.5, "the wall is in focus");
+    assert!(person.complaints().is_empty(), "{:?}", person.complaints());
+}
+
+#[test]
+fn the_window_can_be_light_and_twice_as_large_and_tones_are_mapped() {
+    let (mut person, _folder) = opened();
+    let corner = egui::pos2(700.0, 10.0);
+    person.window.run_steps(2);
+    let dark = color_at(&person.window.render().unwrap(), corner);
+    let white = at(person.picture_rect(), 0.9, 0.9);
+    let clipped = color_at(&person.window.render().unwrap(), white);
+    person.presses(Modifiers::NONE, Key::T);
+    person.window.run_steps(2);
+    let neutral = color_at(&person.window.render().unwrap(), white);
+    assert_ne!(clipped, neutral, "another tone");
+    person.does(CommandId::LightOrDark);
+    let light = color_at(&person.window.render().unwrap(), corner);
+    assert!(light[0] > dark[0] + 100.0, "{light:?} {dark:?}");
+    for _ in 0..8 {
+        person.presses(Modifiers::COMMAND, Key::Plus);
+    }
+    person.window.run_steps(10);
+    assert_eq!(person.window.ctx.zoom_factor(), 2.0);
+    // All of the window is still inside it.
+    let whole = person.window.ctx.content_rect();
+    for rect in [person.paint_rect(), person.picture_rect()] {
+        assert!(whole.contains_rect(rect) && rect.width() > 40.0, "{rect:?} in {whole:?}");
+    }
+    for _ in 0..8 {
+        person.presses(Modifiers::COMMAND, Key::Minus);
+    }
+    assert_eq!(person.window.ctx.zoom_factor(), 0.75);
+}
+
+#[test]
+fn a_recording_is_played_in_the_window_and_timed() {
+    let folder = tempfile::tempdir().unwrap();
+    let (file, trace) = (folder.path().join("wall.glb"), folder.path().join("trace.json"));
+    small_scene::write(&file);
+    let view = focus::ViewFrame { camera_to_world: glam::DMat4::IDENTITY, yfov: 0.7, aspect: 1.5 };
+    let brush = focus::Brush { radius: 0.2, target: FocusOffset::new(1.02, 1.0), ..Default::default() };
+    let points = (0..40).map(|k| [0.5 + 0.01 * k as f64, 0.8, 1.0]).collect();
+    let stroke = RecordedStroke { layer: "Paint".into(), brush, view, points };
+    let targets = vec![focus::FillTarget::Node(1)];
+    let fill = RecordedFill { layer: "Paint".into(), targets, focus: FocusOffset::SHARP };
+    let steps = vec![RecordedStep::Fill(fill), RecordedStep::Stroke(stroke)];
+    let options = WindowOptions {
+        file: Some(file),
+        demo: false,
+        remember: false,
+        preview_size: Some(120),
+        system_dialogs: false,
+        replay: Some(steps),
+        trace: Some(trace.clone()),
+        ..WindowOptions::default()
+    };
+    let builder = Harness::builder().with_size([900.0, 600.0]).wgpu();
+    let window = builder.build_eframe(move |creation| Shell::new(creation, options).unwrap());
+    let mut person = Person { window };
+    person.wait_until("the trace is written", |_| trace.is_file());
+    let names: Vec<_> = person.document().undo_names().map(str::to_string).collect();
+    assert_eq!(names, ["Fill object", "Brush stroke"]);
+    let text = std::fs::read_to_string(&trace).unwrap();
+    let told: serde_json::Value = serde_json::from_str(&text).unwrap();
+    let picture = &told["point_to_picture_ms"];
+    assert!(picture["count"].as_u64() > Some(5), "{told}");
+    let number = |key: &str| picture[key].as_f64().unwrap();
+    assert!(number("median") > 0.0 && number("median") <= number("p99"), "{told}");
+    assert!(told["error_against_exact"]["psnr"].as_f64() > Some(35.0), "{told}");
+    assert!(person.complaints().is_empty(), "{:?}", person.complaints());
+}

@@ -1,0 +1,84 @@
+//! What of the aperture a surface point sees, and what it sends there: the light field at one point, cell by cell.
+
+use crate::render::light;
+use crate::{Session, SurfaceHit};
+use glam::{DVec2, DVec3};
+use lens::FocusOffset;
+use rayon::prelude::*;
+use trace::Radiance;
+
+/// The image of the aperture as one surface point sees it, by rays.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ApertureImage {
+    /// The point, world.
+    pub position: DVec3,
+    /// Rows and columns of cells over the square [−R, R]².
+    pub side: usize,
+    /// The cells: row 0 at v = +R, column 0 at u = −R, as seen from behind the camera.
+    pub cells: Vec<ApertureCell>,
+    /// Depth of the point in the shot camera.
+    pub depth: f64,
+    /// The focus of the point.
+    pub focus: FocusOffset,
+    /// Its defocus κ: how this image is scaled where it lands in the picture.
+    pub kappa: f64,
+    /// Its signed circle of confusion, px: negative lands turned by half a turn.
+    pub circle_px: f64,
+}
+
+/// A cell of the aperture.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ApertureCell {
+    /// How much of it the aperture's shape lets through, in [0, 1].
+    pub transmission: f32,
+    /// Whether the point sees its middle.
+    pub is_seen: bool,
+    /// Linear RGB radiance from the point to its middle; black where it is not seen.
+    pub radiance: [f32; 3],
+}
+
+impl ApertureImage {
+    /// Rows and columns of cells.
+    pub const SIDE: usize = 32;
+
+    /// The share of the open aperture that the point sees, in [0, 1].
+    pub fn visible_share(&self) -> f64 {
+        let sum = |cells: &mut dyn Iterator<Item = &ApertureCell>| {
+            cells.map(|cell| f64::from(cell.transmission)).sum::<f64>()
+        };
+        let open = sum(&mut self.cells.iter());
+        if open > 0.0 { sum(&mut self.cells.iter().filter(|cell| cell.is_seen)) / open } else { 0.0 }
+    }
+}
+
+impl Session {
+    /// The aperture as a surface point sees it. A thousand rays: quick enough to wait for. `None` where nothing is open,
+    /// the aperture is a pinhole, or the point stands behind it.
+    pub fn aperture_image(&self, hit: &SurfaceHit) -> Option<ApertureImage> {
+        let document = self.document()?;
+        let (camera, tracer) = (&document.camera, &document.stage.tracer);
+        let (radius, depth) = (camera.aperture_radius, camera.camera_from_world(hit.position).z);
+        if radius <= 0.0 || depth <= 0.0 {
+            return None;
+        }
+        let light = light(tracer, camera);
+        let side = ApertureImage::SIDE;
+        let cell = |index: usize| {
+            let [row, column] = [index / side, index % side].map(|k| (k as f64 + 0.5) / side as f64);
+            let u = DVec2::new(2.0 * column - 1.0, 1.0 - 2.0 * row);
+            let eye = camera.world_from_camera((u * radius).extend(0.0));
+            let is_seen = !tracer.occluded(hit.point, eye);
+            ApertureCell {
+                transmission: camera.aperture.transmission(u) as f32,
+                is_seen,
+                radiance: if is_seen { light.toward(hit.point, eye).to_array() } else { [0.0; 3] },
+            }
+        };
+        let cells = (0..side * side).into_par_iter().map(cell).collect();
+        let focus = self.focus_at(hit)?;
+        let optics = camera.optics();
+        let kappa = optics.kappa(1.0 / depth, focus);
+        let circle_px = 2.0 * optics.splat_radius_px(kappa);
+        Some(ApertureImage { position: hit.position, side, cells, depth, focus, kappa, circle_px })
+    }
+}
