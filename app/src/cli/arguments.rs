@@ -250,6 +250,10 @@ pub struct ReportArguments {
     /// Run the numerically hard cases as well: hard.json, and a table on the page
     #[arg(long)]
     pub hard: bool,
+    /// Measure the splat engine alone instead: times at every tolerance with their errors, 1920x1080 unless --size says
+    /// otherwise
+    #[arg(long, conflicts_with_all = ["hard", "spp", "quick"])]
+    pub engine: bool,
     /// Write what was done as JSON to stdout
     #[arg(long)]
     pub json: bool,

@@ -24,6 +24,9 @@ pub fn run(arguments: &ReportArguments, console: &Console) -> Result<(), Failure
         unwrap: unwrap_options(None),
     };
     let note = |line: &str| console.note(line);
+    if arguments.engine {
+        return run_engine(arguments, &options, console);
+    }
     let report = report::run(&requests(arguments)?, &options, &arguments.output, console, &note)?;
     let wrong = report.hard.iter().flatten().filter(|outcome| !(outcome.pass && outcome.control_fails));
     let failed: Vec<&str> = wrong.map(|outcome| outcome.case.as_str()).collect();
@@ -48,6 +51,35 @@ pub fn run(arguments: &ReportArguments, console: &Console) -> Result<(), Failure
         return Err(Failure::partly(format!("{}: {what} (see its `expected` and `found`)", table.display())));
     }
     Ok(())
+}
+
+/// Measures the engine alone.
+fn run_engine(
+    arguments: &ReportArguments,
+    options: &ReportOptions,
+    console: &Console,
+) -> Result<(), Failure> {
+    let note = |line: &str| console.note(line);
+    let report = report::run_engine(&requests(arguments)?, options, &arguments.output, console, &note)?;
+    let broken: Vec<_> = report.checks.iter().filter(|check| !check.holds).collect();
+    if arguments.json {
+        say_json(&json!({
+            "files": report.files,
+            "measurements": report.records.len(),
+            "checks": report.checks,
+            "machine": report.machine,
+        }));
+    } else {
+        report.files.iter().for_each(|file| console.note(&format!("wrote {}", file.display())));
+    }
+    match broken.first() {
+        None => Ok(()),
+        Some(check) => {
+            let about = arguments.output.join("about.json");
+            let what = format!("{}: does not hold: {}", check.scene, check.what);
+            Err(Failure::partly(format!("{}: {what} (see its `checks`)", about.display())))
+        }
+    }
 }
 
 /// The scenes that were named; without any the demo, unless the hard cases were asked for.

@@ -10,6 +10,8 @@
 //! hard.json     the hard cases, if they were asked for
 //! ```
 //!
+//! [`run_engine`] measures the splat engine alone, against its own converged picture.
+//!
 //! The road of the data: `subject` opens a scene with its camera and focuses, `plan` lists what to measure, `reference`
 //! makes the ground truth of each picture with its own error, `contender` draws and is timed, `store` keeps every finished
 //! measurement at once (so that a run that was stopped goes on where it was), `findings` draws conclusions, `page` and
@@ -17,6 +19,7 @@
 
 mod contender;
 mod default_lens;
+mod engine;
 mod fields;
 mod findings;
 mod fingerprint;
@@ -42,6 +45,7 @@ mod tables;
 mod write;
 
 pub use contender::Contender;
+pub use engine::{Check, EngineRecord, EngineReport, run_engine};
 pub use machine::Machine;
 pub use options::{ReportOptions, SceneRequest};
 pub use record::{Record, Series};

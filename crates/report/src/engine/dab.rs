@@ -1,0 +1,46 @@
+//! Painting while the picture is watched: what one dab costs.
+
+use lens::FocusOffset;
+use salf::Salf;
+use scene::{SurfaceField, SurfacePoint};
+use std::collections::HashSet;
+use std::sync::Arc;
+
+/// Samples of a dab.
+const SAMPLES: usize = 5000;
+
+/// A focus with a dab on it: the samples at some points are blurred.
+pub struct Dabbed {
+    focus: Arc<dyn SurfaceField<FocusOffset> + Send>,
+    points: HashSet<[u64; 3]>,
+    /// The samples that it covers.
+    pub samples: Vec<u32>,
+}
+
+impl Dabbed {
+    /// A dab on the samples of surfaces nearest to the picture's middle.
+    pub fn new(salf: &Salf, focus: Arc<dyn SurfaceField<FocusOffset> + Send>) -> Self {
+        let middle = glam::Vec2::new(salf.camera.width as f32, salf.camera.height as f32) / 2.0;
+        let samples = &salf.samples;
+        let on_surfaces = (0..samples.len() as u32).filter(|&k| samples[k as usize].surface.is_some());
+        let mut nearest: Vec<u32> = on_surfaces.collect();
+        let distance = |k: &u32| samples[*k as usize].center.distance_squared(middle);
+        nearest.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
+        nearest.truncate(SAMPLES);
+        let points = nearest.iter().filter_map(|&k| samples[k as usize].surface.map(key)).collect();
+        Self { focus, points, samples: nearest }
+    }
+}
+
+fn key(point: SurfacePoint) -> [u64; 3] {
+    [point.triangle.into(), point.barycentric.x.to_bits(), point.barycentric.y.to_bits()]
+}
+
+impl SurfaceField<FocusOffset> for Dabbed {
+    fn at(&self, point: SurfacePoint) -> FocusOffset {
+        if self.points.contains(&key(point)) { FocusOffset::new(1.03, 1.0) } else { self.focus.at(point) }
+    }
+    fn at_infinity(&self) -> FocusOffset {
+        self.focus.at_infinity()
+    }
+}

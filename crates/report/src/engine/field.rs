@@ -1,0 +1,142 @@
+//! One light field under one focus, at every tolerance.
+
+use crate::engine::compare::{Band, compare};
+use crate::engine::dab::Dabbed;
+use crate::engine::dense::dense_seconds;
+use crate::engine::{Check, EngineRecord, Measured};
+use crate::stopwatch::{median, timed};
+use lens::{FocusOffset, Picture};
+use salf::Salf;
+use scene::SurfaceField;
+use session::{SessionError, Steps};
+use splat::{Splatter, Tolerance};
+use std::sync::Arc;
+use std::time::Instant;
+
+/// Shares of a circle of confusion of 16 px that a node's side may have, from the converged picture on.
+pub const SHARES: [f64; 6] = [0.0, 1.0 / 16.0, 1.0 / 8.0, 1.0 / 4.0, 1.0 / 2.0, 1.0];
+
+/// How often a dab is painted and taken back.
+const DABS: usize = 21;
+
+/// A light field to measure.
+pub struct Field {
+    /// What it is called.
+    pub scene: String,
+    /// What it is focused by.
+    pub what: &'static str,
+    pub salf: Arc<Salf>,
+    pub focus: Arc<dyn SurfaceField<FocusOffset> + Send>,
+    pub band: Band,
+    /// The circle of confusion it is named for, px.
+    pub coc_px: f64,
+    /// Whether to time dense scatter: all samples are unpainted and see the whole disc.
+    pub with_dense: bool,
+    /// Whether to paint dabs.
+    pub with_dab: bool,
+}
+
+impl Field {
+    /// Measures it at every tolerance.
+    pub fn measure(
+        &self,
+        measured: &mut Measured,
+        steps: &dyn Steps,
+        note: &dyn Fn(&str),
+    ) -> Result<(), SessionError> {
+        let mut keep = |record: EngineRecord| {
+            note(&record.line());
+            measured.records.push(record);
+        };
+        let copy = measured.copy;
+        let start = Instant::now();
+        let mut splatter = Splatter::new(self.salf.clone());
+        keep(self.record("hierarchy", copy, start.elapsed().as_secs_f64(), &splatter));
+        let mut converged: Option<Picture> = None;
+        for share in SHARES {
+            splatter.set_tolerance(Tolerance { share_of_circle: share });
+            let camera = &self.salf.camera;
+            let progress = steps.begin("splatting");
+            splatter.render(camera, &*self.focus, &*progress)?;
+            let drawn = timed(|| Ok(splatter.refocus(camera, &*progress)?))?;
+            let mut record = self.record("full_splat", copy, drawn.seconds, &splatter);
+            record.tolerance = Some(share);
+            match &converged {
+                None => converged = Some(splatter.picture().clone()),
+                Some(converged) => {
+                    let found = compare(splatter.picture(), converged, &self.band);
+                    record.psnr = Some(found.psnr);
+                    record.band_psnr = found.band_psnr;
+                    record.band_coverage_rms = found.band_coverage_rms;
+                }
+            }
+            keep(record);
+        }
+        if self.with_dense {
+            let mut record = self.record("full_splat", copy, dense_seconds(&self.salf), &splatter);
+            (record.renderer, record.bytes) = ("dense_scatter".into(), 0);
+            keep(record);
+        }
+        if self.with_dab {
+            let (record, holds) = self.dab(&mut splatter, copy, steps)?;
+            keep(record);
+            let what = format!("{}: a dab equals a render from scratch, bit for bit, and shows", self.what);
+            measured.checks.push(Check { scene: self.scene.clone(), what, holds });
+        }
+        let what = format!("{}: one thread draws the picture of many, bit for bit", self.what);
+        let holds = self.is_same_with_one_thread(&mut splatter, steps)?;
+        measured.checks.push(Check { scene: self.scene.clone(), what, holds });
+        Ok(())
+    }
+
+    fn record(&self, what: &str, copy: f64, seconds: f64, splatter: &Splatter) -> EngineRecord {
+        let what = if self.what.is_empty() { what.into() } else { format!("{what}, {}", self.what) };
+        let mut record = EngineRecord::of(&self.scene, &what, &self.salf, copy, seconds);
+        record.coc_px = self.coc_px;
+        record.bytes = splatter.bytes().iter().sum::<usize>() as u64;
+        record
+    }
+
+    /// Paints a dab and takes it back, again and again, at the tolerance of viewing.
+    fn dab(
+        &self,
+        splatter: &mut Splatter,
+        copy: f64,
+        steps: &dyn Steps,
+    ) -> Result<(EngineRecord, bool), SessionError> {
+        let camera = &self.salf.camera;
+        let progress = steps.begin("painting");
+        splatter.set_tolerance(Tolerance::VIEWING);
+        splatter.render(camera, &*self.focus, &*progress)?;
+        let before = splatter.picture().clone();
+        let dabbed = Dabbed::new(&self.salf, self.focus.clone());
+        let mut times = Vec::new();
+        for k in 0..DABS {
+            let focus: &dyn SurfaceField<FocusOffset> = if k % 2 == 0 { &dabbed } else { &*self.focus };
+            let start = Instant::now();
+            splatter.update(focus, &dabbed.samples)?;
+            times.push(start.elapsed().as_secs_f64());
+        }
+        let mut record = self.record("dab", copy, median(&mut times), splatter);
+        record.tolerance = Some(Tolerance::VIEWING.share_of_circle);
+        let after = splatter.picture().clone();
+        splatter.render(camera, &dabbed, &*progress)?;
+        Ok((record, &after == splatter.picture() && after != before))
+    }
+
+    fn is_same_with_one_thread(
+        &self,
+        splatter: &mut Splatter,
+        steps: &dyn Steps,
+    ) -> Result<bool, SessionError> {
+        let camera = &self.salf.camera;
+        let progress = steps.begin("splatting");
+        splatter.set_tolerance(Tolerance::VIEWING);
+        splatter.render(camera, &*self.focus, &*progress)?;
+        let many = splatter.picture().clone();
+        let alone = rayon::ThreadPoolBuilder::new().num_threads(1).build();
+        let alone = alone.map_err(|error| SessionError::Internal(format!("no thread: {error}")))?;
+        alone.install(|| splatter.refocus(camera, &*progress))?;
+        Ok(&many == splatter.picture())
+    }
+}

@@ -1,0 +1,130 @@
+//! How fast the splat engine is, and how far off it is at that: `focus-brush report --engine`.
+//!
+//! Fields of samples that are made up, each a case of its own, and light fields of scenes are splatted at every tolerance;
+//! each picture is compared with the converged one, as a whole and beside outlines, and each time with that of copying
+//! one frame in the same run.
+
+mod compare;
+mod dab;
+mod dense;
+mod field;
+mod frame_copy;
+mod record;
+mod synthetic;
+mod write;
+
+pub use record::EngineRecord;
+
+use crate::machine::Machine;
+use crate::options::{ReportOptions, SceneRequest};
+use crate::subject::Subject;
+use field::Field;
+use frame_copy::copy_seconds;
+use session::{RenderOptions, SessionError, Steps, bake};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::Instant;
+use trace::Tracer;
+
+/// What was measured of the engine.
+#[derive(Clone, Debug)]
+pub struct EngineReport {
+    /// The measurements.
+    pub records: Vec<EngineRecord>,
+    /// What must hold whatever the speed, and whether it does.
+    pub checks: Vec<Check>,
+    /// Where it ran.
+    pub machine: Machine,
+    /// Files that were written.
+    pub files: Vec<PathBuf>,
+}
+
+/// Something that must hold.
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+pub struct Check {
+    /// The scene.
+    pub scene: String,
+    /// What must hold.
+    pub what: String,
+    /// Whether it does.
+    pub holds: bool,
+}
+
+/// Measures pictures of `size` and writes `report.json`, `engine.md` and `about.json` into `folder`.
+pub fn run_engine(
+    requests: &[SceneRequest],
+    options: &ReportOptions,
+    folder: &Path,
+    steps: &dyn Steps,
+    note: &dyn Fn(&str),
+) -> Result<EngineReport, SessionError> {
+    let [width, height] = options.size.unwrap_or([1920, 1080]);
+    let copy = copy_seconds(width as usize * height as usize);
+    let mut measured = Measured { copy, records: Vec::new(), checks: Vec::new() };
+    note(&format!("copying one frame of {width} × {height} takes {:.2} ms", copy * 1e3));
+    for field in synthetic::fields([width, height]) {
+        field.measure(&mut measured, steps, note)?;
+    }
+    synthetic::sweep_circles([width, height], &mut measured, steps, note)?;
+    synthetic::sweep_sizes([width, height], &mut measured, steps, note)?;
+    for request in requests {
+        let options = ReportOptions { size: Some([width, height]), ..options.clone() };
+        let subject = Subject::open(request, &options, steps)?;
+        measure_scene(&subject, &mut measured, steps, note)?;
+    }
+    let Measured { records, checks, .. } = measured;
+    let mut report = EngineReport { records, checks, machine: Machine::here(), files: Vec::new() };
+    report.files = write::write(&report, copy, folder)?;
+    Ok(report)
+}
+
+/// What has been found so far.
+struct Measured {
+    /// Seconds to copy one frame.
+    copy: f64,
+    records: Vec<EngineRecord>,
+    checks: Vec<Check>,
+}
+
+/// Bakes a scene's light field and measures it under each focus.
+fn measure_scene(
+    subject: &Subject,
+    measured: &mut Measured,
+    steps: &dyn Steps,
+    note: &dyn Fn(&str),
+) -> Result<(), SessionError> {
+    let painted = &subject.focuses.last().expect("every subject has a painted focus").focus;
+    let tolerance_px = RenderOptions::default().tolerance_px;
+    let start = Instant::now();
+    let salf = Arc::new(bake(&subject.tracer, &subject.camera, painted, tolerance_px, steps)?);
+    let seconds = start.elapsed().as_secs_f64();
+    let mut record = EngineRecord::of(&subject.name, "bake", &salf, measured.copy, seconds);
+    record.bytes = salf.statistics().bytes as u64;
+    note(&record.line());
+    measured.records.push(record);
+    let band = compare::Band::of_scene(&subject.tracer, &subject.camera);
+    for named in &subject.focuses {
+        let field = Field {
+            scene: subject.name.clone(),
+            what: named.name,
+            salf: salf.clone(),
+            focus: Arc::new(named.focus.clone()),
+            band: band.clone(),
+            coc_px: circle_of_confusion_px(&subject.tracer, &subject.camera),
+            with_dense: false,
+            with_dab: true,
+        };
+        field.measure(measured, steps, note)?;
+    }
+    Ok(())
+}
+
+/// The circle of confusion that 99 % of the picture stays below under the standard lens, px.
+fn circle_of_confusion_px(tracer: &Tracer, camera: &lens::Camera) -> f64 {
+    let optics = camera.optics();
+    let circle =
+        |inverse_depth: f32| optics.circle_of_confusion_px(optics.standard_kappa(inverse_depth.into()));
+    let mut circles: Vec<f64> = compare::inverse_depths(tracer, camera).into_iter().map(circle).collect();
+    circles.sort_by(f64::total_cmp);
+    circles.get(circles.len() * 99 / 100).copied().unwrap_or(0.0)
+}

@@ -1,0 +1,79 @@
+//! One measurement of the engine, as written to `report.json`.
+
+use salf::Salf;
+use serde::Serialize;
+
+/// A time with its error. Pictures are compared with the converged splat of the same light field, on linear values clipped
+/// to [0, 1].
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct EngineRecord {
+    /// The scene, or the made-up field.
+    pub scene: String,
+    /// What was timed.
+    pub what: String,
+    /// What drew.
+    pub renderer: String,
+    /// Where it ran.
+    pub backend: String,
+    /// Threads that worked.
+    pub threads: u32,
+    /// Columns and rows, px.
+    pub size: [u32; 2],
+    /// Samples of the light field.
+    pub samples: u64,
+    /// The largest circle of confusion of a field; of a scene the one that 99 % of the picture stays below. px.
+    pub coc_px: f64,
+    /// A node may be drawn as one where its side is this share of a 16 px circle of confusion; 0: every sample is drawn.
+    pub tolerance: Option<f64>,
+    /// Median time, ms.
+    pub ms_median: f64,
+    /// The same in times of copying one frame.
+    pub frame_copies: f64,
+    /// Against the converged picture, dB.
+    pub psnr: Option<f64>,
+    /// The same within 6 px of outlines, dB; none where there are none.
+    pub band_psnr: Option<f64>,
+    /// Root mean square difference of the coverage within 6 px of outlines.
+    pub band_coverage_rms: Option<f64>,
+    /// Bytes of the samples, or of the hierarchy over them and the sums.
+    pub bytes: u64,
+}
+
+impl EngineRecord {
+    /// A time with nothing to compare it with.
+    pub(super) fn of(scene: &str, what: &str, salf: &Salf, copy: f64, seconds: f64) -> Self {
+        Self {
+            scene: scene.into(),
+            what: what.into(),
+            renderer: "splat".into(),
+            backend: "cpu".into(),
+            threads: rayon::current_num_threads() as u32,
+            size: [salf.camera.width, salf.camera.height],
+            samples: salf.samples.len() as u64,
+            coc_px: 0.0,
+            tolerance: None,
+            ms_median: seconds * 1e3,
+            frame_copies: seconds / copy,
+            psnr: None,
+            band_psnr: None,
+            band_coverage_rms: None,
+            bytes: 0,
+        }
+    }
+
+    /// It in a line.
+    pub(super) fn line(&self) -> String {
+        let decibels =
+            |name: &str, value: Option<f64>| value.map_or(String::new(), |v| format!(", {name}{v:.1} dB"));
+        format!(
+            "{} {}{}: {:.1} ms = {:.1} F{}{}",
+            self.scene,
+            self.what,
+            self.tolerance.map_or(String::new(), |t| format!(" at {t}")),
+            self.ms_median,
+            self.frame_copies,
+            decibels("", self.psnr),
+            decibels("outlines ", self.band_psnr),
+        )
+    }
+}

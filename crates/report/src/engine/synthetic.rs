@@ -1,0 +1,223 @@
+//! Light fields that are made up: a case each, whose circles of confusion are known.
+
+use crate::engine::compare::Band;
+use crate::engine::field::Field;
+use crate::engine::{EngineRecord, Measured};
+use crate::stopwatch::timed;
+use glam::{Vec2, Vec3};
+use lens::{Camera, FocusOffset};
+use salf::{Salf, Sample, Visibility};
+use scene::{SurfaceField, SurfacePoint};
+use session::{SessionError, Steps};
+use splat::{Splatter, Tolerance};
+use std::sync::Arc;
+
+/// Nothing is painted.
+struct Unpainted;
+
+impl SurfaceField<FocusOffset> for Unpainted {
+    fn at(&self, _point: SurfacePoint) -> FocusOffset {
+        FocusOffset::STANDARD
+    }
+    fn at_infinity(&self) -> FocusOffset {
+        FocusOffset::STANDARD
+    }
+}
+
+/// A camera focused at infinity: what is there is sharp, and the circle of confusion grows with 1/z.
+fn camera([width, height]: [u32; 2]) -> Camera {
+    Camera { width, height, focus_distance: f64::INFINITY, aperture_radius: 0.1, ..Camera::default() }
+}
+
+/// 1/z where the circle of confusion is `diameter` px wide.
+fn inverse_depth(camera: &Camera, diameter: f64) -> f32 {
+    (diameter / 2.0 / camera.optics().splat_radius_px(1.0).abs()) as f32
+}
+
+/// Some colour: four pixels a tile, all different.
+fn radiance(x: i32, y: i32) -> Vec3 {
+    let hash = |k: u32| {
+        let mixed =
+            ((x >> 1) as u32).wrapping_mul(0x9E37_79B1) ^ ((y >> 1) as u32).wrapping_mul(0x85EB_CA77) ^ k;
+        let mixed = (mixed ^ mixed >> 15).wrapping_mul(0x2C1B_3C6D);
+        ((mixed ^ mixed >> 13) & 0xFFFF) as f32 / 65536.0
+    };
+    Vec3::new(0.1 + 0.8 * hash(1), 0.1 + 0.8 * hash(2), 0.1 + 0.8 * hash(3))
+}
+
+fn sample(x: i32, y: i32, inverse_depth: f32, visibility: Visibility) -> Sample {
+    Sample {
+        center: Vec2::new(x as f32 + 0.5, y as f32 + 0.5),
+        half_size: Vec2::splat(0.5),
+        inverse_depth,
+        weight: 1.0,
+        tilt: Vec2::ZERO,
+        radiance: radiance(x, y),
+        surface: None,
+        visibility,
+    }
+}
+
+/// A sample a pixel of the frame and of its margin, where `of` gives them.
+fn salf(camera: &Camera, margin_px: u32, of: impl Fn(i32, i32, &mut Vec<Sample>)) -> Arc<Salf> {
+    let margin_px = margin_px.next_multiple_of(16);
+    let margin = margin_px as i32;
+    let mut samples = Vec::new();
+    for y in -margin..camera.height as i32 + margin {
+        for x in -margin..camera.width as i32 + margin {
+            of(x, y, &mut samples);
+        }
+    }
+    Arc::new(Salf { camera: camera.clone(), margin_px, samples })
+}
+
+/// A plane whose circle of confusion is `diameter` px wide.
+fn plane(size: [u32; 2], diameter: f64) -> Arc<Salf> {
+    let camera = camera(size);
+    let depth = inverse_depth(&camera, diameter);
+    salf(&camera, (diameter / 2.0).ceil() as u32, |x, y, samples| {
+        samples.push(sample(x, y, depth, Visibility::Open));
+    })
+}
+
+/// Circles of confusion from 0 to 80 px, left to right, behind a near half-plane with an upright edge.
+fn ramp(size: [u32; 2]) -> (Arc<Salf>, i32) {
+    const WIDEST: f64 = 80.0;
+    const OCCLUDER: f64 = 140.0;
+    let camera = camera(size);
+    let edge = size[0] as i32 * 2 / 3;
+    let occluder = inverse_depth(&camera, OCCLUDER);
+    let made = salf(&camera, (OCCLUDER / 2.0) as u32, |x, y, samples| {
+        if x >= edge {
+            samples.push(sample(x, y, occluder, Visibility::Open));
+        }
+        let diameter = WIDEST * (f64::from(x) / f64::from(size[0])).clamp(0.0, 1.0);
+        // From x the aperture point u sees past the edge if x + reach·u < edge.
+        let reach = (OCCLUDER - diameter) / 2.0;
+        let last = (f64::from(edge) - f64::from(x) - 0.5) / reach;
+        if last <= -1.0 {
+            return;
+        }
+        let visibility = if last >= 1.0 {
+            Visibility::Open
+        } else {
+            let columns = ((last + 1.0) * 8.0).round() as u32;
+            let row = ((1u64 << columns) - 1) & 0xFFFF;
+            let words = vec![row | row << 16 | row << 32 | row << 48; 4];
+            Visibility::Cells { words: words.into(), occluder_inverse_depth: occluder }
+        };
+        if visibility != (Visibility::Cells { words: [0; 4].into(), occluder_inverse_depth: occluder }) {
+            samples.push(sample(x, y, inverse_depth(&camera, diameter), visibility));
+        }
+    });
+    (made, edge)
+}
+
+/// The five fields.
+pub fn fields(size: [u32; 2]) -> impl Iterator<Item = Field> {
+    let (width, height) = (size[0] as usize, size[1] as usize);
+    let planes =
+        [("in focus", 0.0), ("circle 10 px", 10.0), ("circle 40 px", 40.0), ("circle 150 px", 150.0)];
+    let planes =
+        planes.into_iter().map(move |(name, coc_px)| (name, coc_px, plane(size, coc_px), Band::default()));
+    let ramp = std::iter::once_with(move || {
+        let (salf, edge) = ramp(size);
+        let is_edge = |x: usize, _| x as i32 + 1 == edge;
+        ("ramp behind an edge", 80.0, salf, Band::around(width, height, is_edge))
+    });
+    planes.chain(ramp).map(|(name, coc_px, salf, band)| Field {
+        scene: name.into(),
+        what: "",
+        with_dense: salf.samples.iter().all(|sample| sample.visibility == Visibility::Open),
+        salf,
+        focus: Arc::new(Unpainted),
+        band,
+        coc_px,
+        with_dab: false,
+    })
+}
+
+/// Cost against the circle of confusion, at the tolerance of viewing.
+pub fn sweep_circles(
+    size: [u32; 2],
+    measured: &mut Measured,
+    steps: &dyn Steps,
+    note: &dyn Fn(&str),
+) -> Result<(), SessionError> {
+    for diameter in [0.0, 1.0, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0, 24.0, 32.0, 48.0, 64.0, 100.0, 150.0] {
+        time_plane(size, diameter, "against circle", measured, steps, note)?;
+    }
+    Ok(())
+}
+
+/// Cost against the number of samples, which is that of pixels.
+pub fn sweep_sizes(
+    [width, height]: [u32; 2],
+    measured: &mut Measured,
+    steps: &dyn Steps,
+    note: &dyn Fn(&str),
+) -> Result<(), SessionError> {
+    for share in [0.25f64, 0.5, 0.75, 1.0] {
+        let size = [width, height].map(|side| (f64::from(side) * share.sqrt()).round() as u32);
+        time_plane(size, 10.0, "against size", measured, steps, note)?;
+    }
+    Ok(())
+}
+
+fn time_plane(
+    size: [u32; 2],
+    diameter: f64,
+    what: &str,
+    measured: &mut Measured,
+    steps: &dyn Steps,
+    note: &dyn Fn(&str),
+) -> Result<(), SessionError> {
+    let salf = plane(size, diameter);
+    let mut splatter = Splatter::new(salf.clone());
+    splatter.set_tolerance(Tolerance::VIEWING);
+    let progress = steps.begin("splatting");
+    splatter.render(&salf.camera, &Unpainted, &*progress)?;
+    let drawn = timed(|| Ok(splatter.refocus(&salf.camera, &*progress)?))?;
+    let mut record =
+        EngineRecord::of(&format!("plane, circle {diameter} px"), what, &salf, measured.copy, drawn.seconds);
+    record.coc_px = diameter;
+    record.tolerance = Some(Tolerance::VIEWING.share_of_circle);
+    record.bytes = splatter.bytes().iter().sum::<usize>() as u64;
+    note(&record.line());
+    measured.records.push(record);
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn planes_have_the_circles_they_are_named_for() {
+        for field in fields([64, 36]) {
+            let optics = field.salf.camera.optics();
+            let circle =
+                |s: &Sample| optics.circle_of_confusion_px(optics.standard_kappa(s.inverse_depth.into()));
+            let widest =
+                field.salf.samples.iter().filter(|s| s.center.x < 42.0).map(circle).fold(0.0, f64::max);
+            let expected = if field.scene.starts_with("ramp") { 80.0 * 41.0 / 64.0 } else { field.coc_px };
+            assert!((widest - expected).abs() < 1e-3 * expected.max(1.0), "{}: {widest}", field.scene);
+            let pixels = 64 * 36;
+            assert!(field.salf.samples.len() >= pixels);
+        }
+    }
+
+    #[test]
+    fn the_ramp_covers_the_picture_once() {
+        let (salf, edge) = ramp([96, 48]);
+        let mut splatter = Splatter::new(salf.clone());
+        splatter.render(&salf.camera, &Unpainted, &progress::Unwatched).unwrap();
+        let row = &splatter.picture().coverage[24 * 96..25 * 96];
+        // Beside the edge the aperture's cells are what limits it.
+        for (x, covered) in row.iter().enumerate() {
+            let far = (x as i32 - edge).abs() > 3;
+            assert!((covered - 1.0).abs() < if far { 0.02 } else { 0.2 }, "{x}: {covered}");
+        }
+        assert!(salf.samples.iter().any(|sample| sample.visibility != Visibility::Open));
+    }
+}
