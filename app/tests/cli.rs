@@ -36,6 +36,8 @@ impl Workplace {
         Command::new(env!("CARGO_BIN_EXE_focus-brush"))
             .args(arguments.split_whitespace())
             .current_dir(&self.folder)
+            // Graphics drivers complain on stderr where there is none.
+            .env("XDG_RUNTIME_DIR", self.folder.path())
             .output()
             .unwrap()
     }
@@ -271,6 +273,23 @@ fn scenes_are_unwrapped_and_told_about() {
 }
 
 #[test]
+fn the_card_makes_the_picture_of_the_processor() {
+    let place = Workplace::new();
+    let adapters = place.json("doctor --json")["adapters"].as_array().unwrap().len();
+    if adapters == 0 {
+        eprintln!("SKIPPED: no graphics adapter");
+        place.fails("render quads.glb -o x.exr --backend gpu", 5, &["GPU"]);
+        return;
+    }
+    let made = place.json("render quads.glb -o gpu.exr --size 64x48 --backend gpu --json");
+    assert_eq!(made["backend"], "gpu");
+    let made = place.json("render quads.glb -o cpu.exr --size 64x48 --backend cpu --json");
+    assert_eq!(made["backend"], "cpu");
+    let [gpu, cpu] = ["gpu.exr", "cpu.exr"].map(|file| std::fs::read(place.path(file)).unwrap());
+    assert!(gpu == cpu, "the same bytes");
+}
+
+#[test]
 fn mistakes_are_one_line_and_the_right_code() {
     let place = Workplace::new();
     place.fails("render", 2, &["--help"]);
@@ -278,7 +297,8 @@ fn mistakes_are_one_line_and_the_right_code() {
     place.fails("render quads.glb -o x.exr --aov z", 2, &["coverage"]);
     place.fails("render quads.glb -o x.bmp", 2, &["x.bmp"]);
     place.fails("export quads.glb", 2, &[]);
-    place.fails("render quads.glb -o x.exr --backend gpu", 5, &["GPU"]);
+    place.fails("render quads.glb -o x.exr --adapter no-such-card", 5, &["GPU", "no-such-card"]);
+    place.fails("render quads.glb -o x.exr --backend gpu --renderer truth", 5, &["GPU", "truth"]);
     place.fails("render none.glb -o x.exr", 3, &["none.glb"]);
     place.fails("info none.txt", 3, &["none.txt"]);
     place.fails("none.glb", 3, &["none.glb"]);

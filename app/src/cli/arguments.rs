@@ -173,9 +173,13 @@ pub struct RenderArguments {
     /// picture by depth, the same in layers, shifted pinhole views, or every ray of the light field thrown at one pixel
     #[arg(long, value_name = "NAME", default_value = "splat", value_parser = renderer_parser())]
     pub renderer: Renderer,
-    /// Where the splat runs; there is no GPU backend yet, so auto is cpu
+    /// Where the splat runs; the picture is the same. auto: on a graphics card if there is one, and on the processor rather
+    /// than on a card that is one in software
     #[arg(long, value_enum, default_value_t = BackendName::Auto)]
     pub backend: BackendName,
+    /// Only a graphics adapter whose name contains this, also one in software (focus-brush doctor lists them)
+    #[arg(long, value_name = "NAME")]
+    pub adapter: Option<String>,
     /// How coarse, in pixels, the light field may be: what partly hidden points see of the aperture, and which samples
     /// are joined where they are out of focus. Smaller is more exact and slower; 0 joins none (default: 2 for the first, 0
     /// for the second)

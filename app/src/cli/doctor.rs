@@ -4,10 +4,7 @@ use super::arguments::DoctorArguments;
 use super::console::{say, say_json};
 use super::failure::Failure;
 use serde_json::json;
-use std::future::Future;
 use std::path::{Path, PathBuf};
-use std::pin::pin;
-use std::task::{Context, Poll, Waker};
 
 /// A shared library that the window loads, and the Debian package it comes with.
 struct Library {
@@ -33,7 +30,7 @@ const DRIVERS: &str = "mesa-vulkan-drivers";
 
 /// Tells what of the machine the program can use, what is missing and how to get it.
 pub fn run(arguments: &DoctorArguments) -> Result<(), Failure> {
-    let adapters = adapters();
+    let adapters = splat::adapters();
     let missing: Vec<&Library> = if cfg!(target_os = "linux") {
         LIBRARIES.iter().filter(|library| !is_installed(library.file)).collect()
     } else {
@@ -52,8 +49,8 @@ pub fn run(arguments: &DoctorArguments) -> Result<(), Failure> {
         say_json(&json!({
             "version": env!("CARGO_PKG_VERSION"),
             "threads": threads,
-            "adapters": adapters.iter().map(|(name, kind, backend)| json!({
-                "name": name, "kind": kind, "backend": backend,
+            "adapters": adapters.iter().map(|adapter| json!({
+                "name": adapter.name, "kind": adapter.kind, "backend": adapter.interface, "used": adapter.is_used,
             })).collect::<Vec<_>>(),
             "missing_libraries": missing.iter().map(|library| library.file).collect::<Vec<_>>(),
             "display": display.map(|name| json!({ name: std::env::var(name).unwrap_or_default() })),
@@ -64,12 +61,20 @@ pub fn run(arguments: &DoctorArguments) -> Result<(), Failure> {
         return Ok(());
     }
     say(format!("Focus Brush {}", env!("CARGO_PKG_VERSION")));
-    say(format!("  processor    {threads} threads: every picture is computed here"));
+    let used = adapters.iter().find(|adapter| adapter.is_used);
+    let sums = used.map_or("every picture is computed here", |_| "light fields are baked here");
+    say(format!("  processor    {threads} threads: {sums}"));
     if adapters.is_empty() {
         say(format!("  graphics     no adapter (the window needs one: {DRIVERS} has one in software)"));
     }
-    for (name, kind, backend) in &adapters {
-        say(format!("  graphics     {name} ({kind}, {backend})"));
+    for adapter in &adapters {
+        let splat::AdapterDescription { name, kind, interface, is_used } = adapter;
+        let use_of_it = match (is_used, &**kind) {
+            (true, _) => "pictures are summed here",
+            (false, "cpu") => "in software: only with render --backend gpu",
+            (false, _) => "only with render --adapter",
+        };
+        say(format!("  graphics     {name} ({kind}, {interface}): {use_of_it}"));
     }
     match missing.as_slice() {
         [] => say("  libraries    all there"),
@@ -96,28 +101,6 @@ pub fn run(arguments: &DoctorArguments) -> Result<(), Failure> {
         say(format!("to get what is missing: {cure}"));
     }
     Ok(())
-}
-
-/// Name, kind and backend of every graphics adapter.
-fn adapters() -> Vec<(String, String, String)> {
-    // OpenGL is left out: the window does not draw with it, and asking for it makes drivers chatter on stderr.
-    let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
-    descriptor.backends = wgpu::Backends::PRIMARY;
-    let instance = wgpu::Instance::new(descriptor);
-    let found = ready(instance.enumerate_adapters(wgpu::Backends::PRIMARY)).unwrap_or_default();
-    let described = found.iter().map(|adapter| {
-        let info = adapter.get_info();
-        (info.name, format!("{:?}", info.device_type).to_lowercase(), info.backend.to_string())
-    });
-    described.collect()
-}
-
-/// The value of a future that is ready at once, as those of native adapters are.
-fn ready<T>(future: impl Future<Output = T>) -> Option<T> {
-    match pin!(future).poll(&mut Context::from_waker(Waker::noop())) {
-        Poll::Ready(value) => Some(value),
-        Poll::Pending => None,
-    }
 }
 
 /// Whether the dynamic linker would find `file` in one of its usual folders.

@@ -11,18 +11,15 @@ use session::{
     Aov, Input, LayeredOptions, RenderOptions, Rendered, Renderer, ScatterOptions, SessionError,
     ViewsOptions, render_input,
 };
-use splat::Tolerance;
+use splat::{BackendChoice, Gpu, Tolerance};
 use std::time::Instant;
 use trace::truth::{Estimator, Sampler, TruthOptions};
 
 /// Renders a picture and writes it.
 pub fn run(arguments: &RenderArguments, console: &Console) -> Result<(), Failure> {
     let renderer = arguments.renderer;
-    if arguments.backend == BackendName::Gpu {
-        let what = renderer.name();
-        let message = format!("--renderer {what} has no GPU backend yet (use --backend cpu or auto)");
-        return Err(SessionError::GpuAbsent(message).into());
-    }
+    let gpu = gpu(arguments)?;
+    let card = gpu.as_ref().map(|gpu| gpu.name().to_owned());
     check_output(arguments)?;
 
     let start = Instant::now();
@@ -35,6 +32,7 @@ pub fn run(arguments: &RenderArguments, console: &Console) -> Result<(), Failure
     let options = RenderOptions {
         tolerance_px: arguments.tolerance.unwrap_or(default.tolerance_px),
         splat_tolerance: arguments.tolerance.map_or(default.splat_tolerance, Tolerance::px),
+        gpu,
         renderer,
         truth: truth_options(arguments),
         layered: LayeredOptions { layers: arguments.layers },
@@ -45,6 +43,10 @@ pub fn run(arguments: &RenderArguments, console: &Console) -> Result<(), Failure
     let Rendered { picture, layers, cost, warnings } =
         render_input(&input, &camera, &focus, &options, console)?;
     console.warn(&warnings);
+    let card = card.filter(|_| cost.is_on_gpu);
+    if arguments.backend == BackendName::Gpu && card.is_none() {
+        console.note("the GPU does not hold this picture, or was lost: it was summed on the processor");
+    }
 
     let exposure = match arguments.exposure {
         None => input.exposure(),
@@ -60,7 +62,8 @@ pub fn run(arguments: &RenderArguments, console: &Console) -> Result<(), Failure
             "input": arguments.file,
             "files": files,
             "renderer": renderer.name(),
-            "backend": "cpu",
+            "backend": if card.is_some() { "gpu" } else { "cpu" },
+            "adapter": card,
             "width": camera.width,
             "height": camera.height,
             "exposure": format!("{exposure:?}").to_lowercase(),
@@ -91,6 +94,25 @@ pub fn run(arguments: &RenderArguments, console: &Console) -> Result<(), Failure
         files.iter().for_each(|file| console.note(&format!("wrote {}", file.display())));
     }
     Ok(())
+}
+
+/// The graphics card to sum on; none for the processor.
+fn gpu(arguments: &RenderArguments) -> Result<Option<Gpu>, Failure> {
+    let is_asked_for = arguments.backend == BackendName::Gpu || arguments.adapter.is_some();
+    if arguments.renderer != Renderer::Splat {
+        let message = format!(
+            "--renderer {} has no GPU backend (use --backend cpu or auto)",
+            arguments.renderer.name()
+        );
+        return if is_asked_for { Err(SessionError::GpuAbsent(message).into()) } else { Ok(None) };
+    }
+    let choice = match arguments.backend {
+        BackendName::Auto => BackendChoice::Auto,
+        BackendName::Gpu => BackendChoice::Gpu,
+        BackendName::Cpu => BackendChoice::Cpu,
+    };
+    let opened = Gpu::open(choice, arguments.adapter.as_deref());
+    Ok(opened.map_err(|absent| SessionError::GpuAbsent(absent.to_string()))?)
 }
 
 fn truth_options(arguments: &RenderArguments) -> TruthOptions {

@@ -7,7 +7,7 @@ use focus::Focus;
 use lens::{Camera, Picture};
 use progress::Progress;
 use salf::BakeOptions;
-use splat::{SplatError, Splatter, Tolerance};
+use splat::{BackendChoice, Gpu, SplatError, Splatter, Tolerance};
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -104,6 +104,8 @@ impl LightField {
             splatter: {
                 let mut splatter = Splatter::new(salf);
                 splatter.set_tolerance(Tolerance::VIEWING);
+                // Without a card, or one that works, the processor sums.
+                splatter.use_gpu(Gpu::open(BackendChoice::Auto, None).ok().flatten());
                 splatter
             },
             summed: None,

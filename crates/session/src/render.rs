@@ -11,7 +11,7 @@ use project::Layer;
 use salf::{BakeOptions, Salf, SalfStatistics};
 use serde::Serialize;
 use slf::{DirectLight, DirectLightOptions};
-use splat::{Splatter, Tolerance};
+use splat::{Gpu, Splatter, Tolerance};
 use std::sync::Arc;
 use std::time::Instant;
 use trace::Tracer;
@@ -82,6 +82,8 @@ pub struct RenderOptions {
     pub tolerance_px: f64,
     /// How coarse its splat may be.
     pub splat_tolerance: Tolerance,
+    /// The graphics card that the splat is summed on; none for the processor. The picture is the same.
+    pub gpu: Option<Gpu>,
     /// How [`Renderer::Layers`] cuts the picture.
     pub layered: LayeredOptions,
     /// What [`Renderer::Views`] captures.
@@ -99,6 +101,7 @@ impl Default for RenderOptions {
             truth: TruthOptions { samples_per_pixel: 64, ..TruthOptions::default() },
             tolerance_px: BakeOptions::TOLERANCE_PX,
             splat_tolerance: Tolerance::NONE,
+            gpu: None,
             layered: LayeredOptions::default(),
             views: ViewsOptions::default(),
             scatter: ScatterOptions::default(),
@@ -139,6 +142,8 @@ pub struct RenderCost {
     pub salf_bytes: usize,
     /// How far outside the frame was sampled, px.
     pub margin_px: u32,
+    /// Whether the picture was summed on a graphics card.
+    pub is_on_gpu: bool,
 }
 
 impl RenderCost {
@@ -283,7 +288,9 @@ fn sum_light_field(
     } else {
         let mut splatter = Splatter::new(salf);
         splatter.set_tolerance(options.splat_tolerance);
+        splatter.use_gpu(options.gpu.clone());
         splatter.render(camera, focus, &*steps.begin("splatting"))?;
+        cost.is_on_gpu = splatter.gpu().is_some();
         splatter.picture().clone()
     };
     cost.picture_seconds = start.elapsed().as_secs_f64();

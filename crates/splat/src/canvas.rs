@@ -18,21 +18,15 @@ pub const PIXEL: i32 = 1 << POSITION_BITS;
 
 /// An integer that differences are summed in.
 pub trait Word: Copy + Default + PartialEq + Send + Sync {
-    /// Of a wide integer, its lower bits.
-    fn of(value: i64) -> Self;
     /// As a wide integer.
     fn wide(self) -> i64;
     /// The sum, wrapping.
     fn plus(self, other: Self) -> Self;
-    /// ⌊self·(4096 − fraction)/4096⌋ and what that leaves of self ≥ 0, both times `sign`.
-    fn split(self, fraction: i32, sign: i64) -> [Self; 2];
+    /// ⌊value·(4096 − fraction)/4096⌋ and what that leaves of it, both times `sign`; of a value that fits.
+    fn split(value: u64, fraction: u32, sign: i32) -> [Self; 2];
 }
 
 impl Word for i32 {
-    #[inline(always)]
-    fn of(value: i64) -> Self {
-        value as i32
-    }
     #[inline(always)]
     fn wide(self) -> i64 {
         self as i64
@@ -42,21 +36,14 @@ impl Word for i32 {
         self.wrapping_add(other)
     }
     #[inline(always)]
-    fn split(self, fraction: i32, sign: i64) -> [Self; 2] {
-        let rest = PIXEL - fraction;
-        // In two parts, each of which fits into 32 bits.
-        let (high, low) = (self >> POSITION_BITS, self & (PIXEL - 1));
-        let near = high.wrapping_mul(rest).wrapping_add((low * rest) >> POSITION_BITS);
-        let sign = sign as i32;
-        [near.wrapping_mul(sign), self.wrapping_sub(near).wrapping_mul(sign)]
+    fn split(value: u64, fraction: u32, sign: i32) -> [Self; 2] {
+        // Both factors have 32 bits.
+        let near = ((value & u32::MAX as u64) * (PIXEL as u32 - fraction) as u64) >> POSITION_BITS;
+        [(near as i32).wrapping_mul(sign), (value as i32).wrapping_sub(near as i32).wrapping_mul(sign)]
     }
 }
 
 impl Word for i64 {
-    #[inline(always)]
-    fn of(value: i64) -> Self {
-        value
-    }
     #[inline(always)]
     fn wide(self) -> i64 {
         self
@@ -66,9 +53,9 @@ impl Word for i64 {
         self.wrapping_add(other)
     }
     #[inline(always)]
-    fn split(self, fraction: i32, sign: i64) -> [Self; 2] {
-        let near = (self * (PIXEL - fraction) as i64) >> POSITION_BITS;
-        [sign * near, sign * (self - near)]
+    fn split(value: u64, fraction: u32, sign: i32) -> [Self; 2] {
+        let near = (value * (PIXEL as u32 - fraction) as u64) >> POSITION_BITS;
+        [sign as i64 * near as i64, sign as i64 * (value - near) as i64]
     }
 }
 
@@ -114,6 +101,14 @@ impl<W: Word> Level<W> {
         let place = (row + 1) as usize;
         let line = &self.cells[place * self.stride()..(place + 1) * self.stride()];
         self.touched[place].then_some((line, self.totals[place]))
+    }
+}
+
+#[cfg(test)]
+impl<W: Word> Level<W> {
+    /// All pixels, border included, and the totals of the rows.
+    pub fn all(&self) -> (&[Pixel<W>], &[i64]) {
+        (&self.cells, &self.totals)
     }
 }
 
@@ -200,13 +195,13 @@ impl<W: Word> Canvas<'_, W> {
 impl<W: Word> Rows<'_, W> {
     /// A position (1/4096 px) no further outside than needs be told apart.
     #[inline(always)]
-    pub fn clamped(&self, x: i64) -> i32 {
-        x.clamp(-4 * PIXEL as i64, (self.width as i64 + 4) << POSITION_BITS) as i32
+    pub fn clamped(&self, x: i32) -> i32 {
+        x.clamp(-4 * PIXEL, (self.width as i32 + 4) << POSITION_BITS)
     }
 
-    /// Adds (`sign` 1) or takes away (−1) light from `start` to `end` (1/4096 px) of a row: `value` ≥ 0 a pixel.
+    /// Adds (`sign` 1) or takes away (−1) light from `start` to `end` (1/4096 px) of a row: `value` a pixel.
     #[inline(always)]
-    pub fn add_run(&mut self, row: i32, start: i32, end: i32, value: [i64; 4], sign: i64) {
+    pub fn add_run(&mut self, row: i32, start: i32, end: i32, value: [u64; 4], sign: i32) {
         let stride = self.width + 3;
         let last = stride as i32 - 1;
         let place = (row - self.first) as usize;
@@ -214,11 +209,11 @@ impl<W: Word> Rows<'_, W> {
         let mut total = 0;
         for (at, sign) in [(start, sign), (end, -sign)] {
             // The border is column 0.
-            let (column, fraction) = ((at >> POSITION_BITS) + 1, at & (PIXEL - 1));
+            let (column, fraction) = ((at >> POSITION_BITS) + 1, (at & (PIXEL - 1)) as u32);
             let (first, second) = (column.clamp(0, last), (column + 1).clamp(0, last));
             let (mut near, mut far) = ([W::default(); 4], [W::default(); 4]);
             for c in 0..4 {
-                [near[c], far[c]] = W::of(value[c]).split(fraction, sign);
+                [near[c], far[c]] = W::split(value[c], fraction, sign);
             }
             add(&mut line[first as usize], &near);
             add(&mut line[second as usize], &far);

@@ -1,9 +1,9 @@
 //! Drawing a node: the aperture's image, thrown by its footprint.
 //!
-//! Everything here is integer arithmetic, so that any machine draws the same bits. A node far out of focus is a stencil of
-//! the aperture on its level, one nearly in focus a box of the same mean and variance. Levels blur what is drawn on them
-//! (a pixel's box, and the upsampling), and a footprint is itself a blur; stencils are made smaller or larger so that the
-//! variance on the picture is that of footprint and aperture together.
+//! Everything here is integer arithmetic of 32 bits ([`crate::fixed`]), so that any machine, and any graphics card, draws
+//! the same bits. A node far out of focus is a stencil of the aperture on its level, one nearly in focus a box of the same
+//! mean and variance. Levels blur what is drawn on them (a pixel's box, and the upsampling), and a footprint is itself a
+//! blur; stencils are made smaller or larger so that the variance on the picture is that of footprint and aperture together.
 
 mod boxes;
 mod image;
@@ -12,20 +12,22 @@ mod seen_runs;
 mod stencilled;
 
 pub use image::WHOLE;
+pub use seen_runs::SeenRun;
 
 use crate::canvas::{Canvas, PIXEL, POSITION_BITS, Rows, Word};
+use crate::fixed::mul_shift;
 use crate::lens_in_use::Placed;
 use crate::nodes::{Cells, Nodes, ONE, SplatNode};
 use crate::seen::Seen;
 use crate::stencil::Stencils;
 use boxes::BoxPart;
-use image::{Image, seed};
+use image::{Image, Light, seed};
 
 /// Aperture images of a smaller standard deviation, px, are boxes.
 const BOX_DEVIATION_PX: f64 = 0.75;
 
 /// Smaller changes of a node's weight over the aperture, as a share of it in 1/16384, only move its image.
-const EVEN: i64 = ONE as i64 / 40;
+const EVEN: i32 = ONE / 40;
 
 /// What nodes are drawn with.
 pub struct Pen<'a> {
@@ -34,24 +36,46 @@ pub struct Pen<'a> {
     pub seen: &'a [Seen],
     /// The lens's aperture radius as a share of the baked one, in 1/16384.
     pub stop: i32,
-    variance: [i64; 2],
+    /// Its reciprocal, in 1/16384.
+    pub per_stop: u32,
+    /// √3 standard deviations of the shape along each axis, times 65536: half a box as wide.
+    pub half: [u32; 2],
     /// By what the tilt over the baked aperture moves the mean aperture point of the lens.
-    tilt_shift: [i64; 2],
-    mean: [i64; 2],
+    pub tilt_shift: [i32; 2],
+    pub mean: [i32; 2],
     /// What levels blur too much, as squares of a stencil's radius: by level, (1/4096 px of the level)².
     too_blurred: [i64; salf::tree::LEVELS],
     /// 16384 over the mean variance.
     per_variance: i64,
     /// Aperture images of a smaller radius, 1/4096 px, are boxes.
-    box_radius: i64,
+    pub box_radius: u32,
     /// Parts of the aperture whose images are boxes.
-    parts: Vec<BoxPart>,
-    /// From which |radius| on, 1/4096 px, stencils follow boxes, and to which they mix.
-    stencil_radius: i64,
+    pub parts: Vec<BoxPart>,
+    /// From which |radius| on, 1/4096 px, stencils follow boxes; at twice that they are alone.
+    pub stencil_radius: u32,
+    /// 2³² over it.
+    pub per_stencil_radius: u32,
 }
 
 /// What a node sees that sees all.
-const ALL: Cells = [u16::MAX; 16];
+pub const ALL: Cells = [u16::MAX; 16];
+
+/// A form that a node, or a part of its light, is drawn in; shares are times 2²⁴.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Form {
+    /// One box.
+    Box,
+    /// A box for each part of the aperture, with this share of the light.
+    Parts(u32),
+    /// The aperture's image, with this share of the light.
+    Image(u32),
+    /// The same where the weight changes over the aperture.
+    Tilted(u32),
+    /// The box of what is seen of the aperture.
+    SeenBox,
+    /// The image of what is seen of it.
+    Seen,
+}
 
 impl<'a> Pen<'a> {
     pub fn new(
@@ -63,31 +87,36 @@ impl<'a> Pen<'a> {
     ) -> Self {
         let shape = &stencils.shape;
         let variance = (shape.variance.x + shape.variance.y) / 2.0;
-        let fixed = |x: f64| (x * ONE as f64).round() as i64;
+        let fixed = |x: f64| (x * ONE as f64).round() as i32;
+        let half = |variance: f64| ((3.0 * variance).sqrt() * 65536.0).round() as u32;
         // On level ℓ the picture gets the variance σ²r'² + (4^ℓ/3 − 1/4) px² and should get σ²r² + footprint + 1/12.
         let too_blurred = std::array::from_fn(|level| {
             let side_squared = 4f64.powi(level as i32);
             ((1.0 / 3.0 - 1.0 / (3.0 * side_squared)) / variance * (PIXEL as f64).powi(2)).round() as i64
         });
         let parts = stencils.parts[usize::from(is_exact)].iter().map(|part| BoxPart {
-            share: (part.share * WHOLE as f64).round() as i64,
+            share: (part.share * WHOLE as f64).round() as u32,
             mean: part.mean.to_array().map(fixed),
             variance: part.variance.to_array().map(fixed),
+            half: part.variance.to_array().map(half),
         });
         let deviations =
-            |factor: f64| (factor * BOX_DEVIATION_PX / variance.sqrt() * PIXEL as f64).ceil() as i64;
+            |factor: f64| (factor * BOX_DEVIATION_PX / variance.sqrt() * PIXEL as f64).ceil() as u32;
+        let (stop, stencil_radius) = (fixed(stop), deviations(if is_exact { 2.0 } else { 1.0 }));
         Self {
             nodes,
             stencils,
             seen,
-            stop: fixed(stop) as i32,
-            variance: shape.variance.to_array().map(fixed),
-            tilt_shift: (shape.variance * stop).to_array().map(fixed),
+            stop,
+            per_stop: (1 << 28) / stop.max(1) as u32,
+            half: shape.variance.to_array().map(half),
+            tilt_shift: (shape.variance * stop as f64 / ONE as f64).to_array().map(fixed),
             mean: shape.mean.to_array().map(fixed),
             too_blurred,
             per_variance: (ONE as f64 / variance).round() as i64,
             parts: parts.collect(),
-            stencil_radius: deviations(if is_exact { 2.0 } else { 1.0 }),
+            stencil_radius,
+            per_stencil_radius: u32::MAX / stencil_radius,
             box_radius: deviations(1.0),
         }
     }
@@ -100,14 +129,15 @@ impl<'a> Pen<'a> {
         light: [f32; 4],
         placed: Placed,
         canvas: &mut Canvas<W>,
-        sign: i64,
+        found: &mut Vec<SeenRun>,
+        sign: i32,
     ) {
         let node = &self.nodes.nodes[index as usize];
         if placed.is_split {
-            return self.draw_split(index, light, placed, canvas, sign);
+            return self.draw_split(index, light, placed, canvas, found, sign);
         }
         let rows = &mut canvas.levels[node.level as usize];
-        self.draw_whole(index, node, light, placed, rows, sign);
+        self.draw_whole(index, node, light, placed, rows, found, sign);
     }
 
     /// A sample of a large cell, as samples of a pixel each.
@@ -118,20 +148,29 @@ impl<'a> Pen<'a> {
         light: [f32; 4],
         placed: Placed,
         canvas: &mut Canvas<W>,
-        sign: i64,
+        found: &mut Vec<SeenRun>,
+        sign: i32,
     ) {
         let node = &self.nodes.nodes[index as usize];
-        let count = 1 << node.level;
-        let half_size = [node.half_size[0] >> node.level, node.half_size[1] >> node.level]
-            .map(|half| half.max(PIXEL as u16 / 32));
-        let offset = |k: i32, axis: usize| (2 * k + 1 - count) * half_size[axis] as i32;
-        for (y, x) in (0..count * count).map(|k| (k / count, k % count)) {
-            let center = [node.center[0] + offset(x, 0), node.center[1] + offset(y, 1)];
-            let part = SplatNode { center, half_size, level: 0, ..*node };
-            self.draw_whole(index, &part, light, placed, &mut canvas.levels[0], sign);
+        for piece in node.pieces() {
+            self.draw_whole(index, &piece, light, placed, &mut canvas.levels[0], found, sign);
         }
     }
 
+    /// The image of a node that was placed.
+    #[inline(always)]
+    pub fn image<'n>(&self, node: &'n SplatNode, light: [f32; 4], placed: Placed) -> Image<'n> {
+        Image {
+            node,
+            center: [node.center[0] >> node.level, node.center[1] >> node.level],
+            radius: placed.radius / (1 << node.level),
+            light: Light::of(light),
+            share: WHOLE,
+            dither: seed(node, self.nodes.middle),
+        }
+    }
+
+    #[allow(clippy::too_many_arguments, reason = "all of them are the inner loop's, inlined")]
     #[inline(always)]
     fn draw_whole<W: Word>(
         &self,
@@ -140,61 +179,93 @@ impl<'a> Pen<'a> {
         light: [f32; 4],
         placed: Placed,
         rows: &mut Rows<W>,
-        sign: i64,
+        found: &mut Vec<SeenRun>,
+        sign: i32,
     ) {
-        let mut image = Image {
+        let image = self.image(node, light, placed);
+        self.forms(
             node,
-            center: [node.center[0] >> node.level, node.center[1] >> node.level],
-            radius: placed.radius / (1 << node.level),
-            light: [light[0] as i64, light[1] as i64, light[2] as i64, light[3] as i64],
-            share: WHOLE,
-            dither: seed(node, self.nodes.middle),
-        };
-        let tilt = node.tilt[0].abs() as i64 + node.tilt[1].abs() as i64;
-        let is_even = tilt < EVEN;
-        let radius = placed.radius.unsigned_abs() as i64;
-        match self.nodes.cells(node) {
-            None => {
-                let far = if node.level > 0 { 1 << 16 } else { self.part_of_stencil(radius) };
-                if far == 0 && is_even && radius < self.box_radius / 2 {
-                    image.lean(node, self.tilt_shift);
-                    image.shift(self.mean);
-                    return self.draw_box(&image, node.half_size, self.variance, rows, sign);
+            placed.radius,
+            #[inline(always)]
+            |form| {
+                let mut image = Image { ..image };
+                match form {
+                    Form::Box => {
+                        image.lean(node, self.tilt_shift);
+                        image.shift(self.mean);
+                        self.draw_box(&image, node.half_size.map(u32::from), self.half, rows, sign);
+                    }
+                    Form::Parts(share) => {
+                        image.share = share;
+                        self.draw_parts(&image, placed.depth_share, rows, sign);
+                    }
+                    Form::Image(share) => {
+                        image.share = share;
+                        image.lean(node, self.tilt_shift);
+                        self.draw_image(&mut image, None, rows, found, sign);
+                    }
+                    Form::Tilted(share) => {
+                        self.draw_image(&mut image, Some((&ALL, share)), rows, found, sign)
+                    }
+                    Form::SeenBox => {
+                        let seen = &self.seen[index as usize];
+                        image.shift(seen.mean.map(i32::from));
+                        image.share = seen.share;
+                        self.draw_box(&image, node.half_size.map(u32::from), self.half, rows, sign);
+                    }
+                    Form::Seen => {
+                        self.draw_image(&mut image, Some(self.seen_of(index, node)), rows, found, sign);
+                    }
                 }
-                if far < 1 << 16 {
-                    let near = Image { share: WHOLE - (far << 8), ..image };
-                    self.draw_parts(&near, placed.depth_share, rows, sign);
-                }
-                image.share = far << 8;
-                if far > 0 && is_even {
-                    image.lean(node, self.tilt_shift);
-                    self.draw_image(&mut image, None, rows, sign);
-                } else if far > 0 {
-                    let lean = node.tilt[0] as i64 * self.mean[0] + node.tilt[1] as i64 * self.mean[1];
-                    let share = ((far << 8) * (((node.base as i64) << 14) + lean)) >> 28;
-                    self.draw_image(&mut image, Some((&ALL, share as u32)), rows, sign);
-                }
-            }
-            Some(cells) if node.level > 0 || radius >= self.box_radius => {
-                let share = self.seen[index as usize].share;
-                self.draw_image(&mut image, Some((cells, share)), rows, sign);
-            }
-            Some(_) => {
-                let seen = &self.seen[index as usize];
-                image.shift([seen.mean[0] as i64, seen.mean[1] as i64]);
-                image.share = seen.share as i64;
-                self.draw_box(&image, node.half_size, self.variance, rows, sign);
-            }
+            },
+        );
+    }
+
+    /// What a partly occluded node sees, and its share (times 2²⁴) of the light.
+    #[inline(always)]
+    pub fn seen_of(&self, index: u32, node: &SplatNode) -> (&Cells, u32) {
+        (self.nodes.cells(node).unwrap_or(&ALL), self.seen[index as usize].share)
+    }
+
+    /// Calls `visit` with the forms that a node of this signed radius (1/4096 px) is drawn in.
+    #[inline(always)]
+    pub fn forms(&self, node: &SplatNode, radius: i32, mut visit: impl FnMut(Form)) {
+        let radius = radius.unsigned_abs();
+        if !node.is_open() {
+            let is_box = node.level == 0 && radius < self.box_radius;
+            return if is_box { visit(Form::SeenBox) } else { visit(Form::Seen) };
+        }
+        let is_even = node.tilt[0].abs() as i32 + (node.tilt[1].abs() as i32) < EVEN;
+        let far = if node.level > 0 { 1 << 16 } else { self.part_of_stencil(radius) };
+        if far == 0 && is_even && radius < self.box_radius / 2 {
+            return visit(Form::Box);
+        }
+        if far < 1 << 16 {
+            visit(Form::Parts(WHOLE - (far << 8)));
+        }
+        if far > 0 && is_even {
+            visit(Form::Image(far << 8));
+        } else if far > 0 {
+            let lean = node.tilt[0] as i32 * self.mean[0] + node.tilt[1] as i32 * self.mean[1];
+            let weight = (((node.base as i32) << 14) + lean).max(0);
+            visit(Form::Tilted(mul_shift(far << 8, weight as u32, 28)));
         }
     }
 
     /// How much of a node's light is drawn as a stencil, times 65536; the rest is boxes. Where one form follows the
     /// other on a surface they mix, for they differ a little.
     #[inline(always)]
-    fn part_of_stencil(&self, radius: i64) -> i64 {
-        let part = (((radius - self.stencil_radius) << 16) / self.stencil_radius).clamp(0, 1 << 16);
+    fn part_of_stencil(&self, radius: u32) -> u32 {
+        const ONE: u32 = 1 << 16;
+        if radius <= self.stencil_radius {
+            return 0;
+        }
+        if radius - self.stencil_radius >= self.stencil_radius {
+            return ONE;
+        }
+        let part = mul_shift(radius - self.stencil_radius, self.per_stencil_radius, 16);
         // Smoothly, or the coverage would show where it begins.
-        (((part * part) >> 16) * ((3 << 16) - 2 * part)) >> 16
+        mul_shift(mul_shift(part, part, 16), 3 * ONE - 2 * part, 16)
     }
 
     /// The rows of a picture of `height` rows that a node's light may reach.

@@ -78,8 +78,11 @@ pub struct Placed {
     pub is_split: bool,
 }
 
-/// Larger aperture images, 1/4096 px, are taken as this large: none of their light is in the picture.
-const LARGEST_RADIUS: f64 = (1u32 << 30) as f64;
+/// Larger aperture images, 1/4096 px, are taken as this large: next to none of their light is in the picture.
+const LARGEST_RADIUS: f64 = (1u32 << 29) as f64;
+
+/// Defocus that changes faster with depth than the unpainted, by this factor (times 16384), is drawn as if it did not.
+const LARGEST_DEPTH_SHARE: f32 = ((1u32 << 17) - 1) as f32;
 
 /// A lens.
 #[derive(Clone, PartialEq)]
@@ -129,7 +132,12 @@ impl LensInUse {
         let radius = radius.clamp(-LARGEST_RADIUS, LARGEST_RADIUS).round_ties_even() as i32;
         let depth_share = focus.t * (1.0 - focus.anchor) * ONE as f32;
         let is_split = node.is_leaf && node.level > 0 && !self.is_far_out(node, radius);
-        Placed { radius, depth_share: depth_share.clamp(-1e9, 1e9) as i32, is_standard, is_split }
+        Placed {
+            radius,
+            depth_share: depth_share.clamp(-LARGEST_DEPTH_SHARE, LARGEST_DEPTH_SHARE) as i32,
+            is_standard,
+            is_split,
+        }
     }
 
     /// Whether an aperture image of this radius, 1/4096 px, is large enough for a node's side.

@@ -16,6 +16,9 @@
 
 mod canvas;
 mod draw;
+mod fixed;
+mod gpu;
+
 mod lens_in_use;
 mod nodes;
 mod paint;
@@ -28,6 +31,7 @@ mod stencil;
 mod sums;
 mod widest;
 
+pub use gpu::{AdapterDescription, BackendChoice, Gpu, GpuAbsent, adapters};
 pub use lens_in_use::Tolerance;
 pub use nodes::QUANTUM;
 pub use splatter::{SplatError, Splatter};

@@ -1,6 +1,6 @@
 //! The light field's hierarchy in the integers of the sum.
 
-use crate::canvas::{PIXEL, Pixel};
+use crate::canvas::PIXEL;
 use rayon::prelude::*;
 use salf::tree::{LEVELS, Node, NodeVisibility, Tree};
 use salf::{Salf, Visibility};
@@ -80,6 +80,17 @@ impl SplatNode {
     #[inline(always)]
     pub fn is_open(&self) -> bool {
         self.cells == OPEN
+    }
+
+    /// A sample of a large cell as samples of a pixel each.
+    pub fn pieces(&self) -> impl Iterator<Item = Self> + '_ {
+        let count = 1 << self.level;
+        let half_size = self.half_size.map(|half| (half >> self.level).max(PIXEL as u16 / 32));
+        let offset = move |k: i32, axis: usize| (2 * k + 1 - count) * half_size[axis] as i32;
+        (0..count * count).map(move |k| {
+            let center = [self.center[0] + offset(k % count, 0), self.center[1] + offset(k / count, 1)];
+            Self { center, half_size, level: 0, ..*self }
+        })
     }
 }
 
@@ -161,6 +172,13 @@ impl Nodes {
             node.light = node.light.map(|value| value * factor);
         }
         self.scale = scale;
+    }
+
+    /// The light that a bright node adds to the sum of ordinary ones: its coverage.
+    #[inline(always)]
+    pub fn dim_coverage(&self, node: &SplatNode) -> [f32; 4] {
+        let finer = self.scale.dim_bits - self.scale.bright_bits;
+        [0.0, 0.0, 0.0, node.light[3] * (finer as f32).exp2()]
     }
 
     /// Bytes in memory.
@@ -267,6 +285,3 @@ fn convert(node: &Node, scale: Scale) -> Option<SplatNode> {
         is_leaf: node.sample.is_some(),
     })
 }
-
-/// Red, green, blue and coverage, in quanta.
-pub type Light = Pixel<i64>;

@@ -1,5 +1,7 @@
 //! The aperture's shape, cut finely: what stencils are made from.
 
+use crate::fixed::mul_shift;
+use crate::nodes::ONE;
 use glam::DVec2;
 use lens::{Aperture, ApertureShape, Run};
 
@@ -9,6 +11,10 @@ const FINE_ROWS: usize = 512;
 /// An aperture of radius 1, v up.
 pub struct Shape {
     rows: Vec<Vec<Run>>,
+    /// The same in integers, one row after another.
+    pub runs: Vec<ShapeRun>,
+    /// Where each row's begin, and the end of the last.
+    pub firsts: Vec<u32>,
     /// Whether it is a picture, whose rows may be open in several places.
     pub is_picture: bool,
     /// Open area over [−1, 1]², weighted by transmission.
@@ -17,6 +23,25 @@ pub struct Shape {
     pub mean: DVec2,
     /// Its variance along each axis.
     pub variance: DVec2,
+}
+
+/// A run of a shape's row in integers.
+#[derive(Clone, Copy, Debug)]
+pub struct ShapeRun {
+    /// The u of its ends, times 2²⁴.
+    pub start: i32,
+    /// See `start`.
+    pub end: i32,
+    /// Times 65536.
+    pub transmission: u32,
+}
+
+impl ShapeRun {
+    fn new(run: &Run) -> Self {
+        let fixed = |u: f64| (u * (1 << 24) as f64).round() as i32;
+        let transmission = (run.transmission * 65536.0).round() as u32;
+        Self { start: fixed(run.start), end: fixed(run.end), transmission }
+    }
 }
 
 impl Shape {
@@ -34,7 +59,13 @@ impl Shape {
             square += share * (middle * middle + DVec2::new(width, height).powf(2.0) / 12.0);
         }
         let is_picture = matches!(aperture.shape, ApertureShape::Mask(_));
-        Self { rows, is_picture, open_area, mean, variance: square - mean * mean }
+        let runs = rows.iter().flatten().map(ShapeRun::new).collect();
+        let starts = rows.iter().scan(0, |next, row| {
+            *next += row.len() as u32;
+            Some(*next)
+        });
+        let firsts = std::iter::once(0).chain(starts).collect();
+        Self { rows, runs, firsts, is_picture, open_area, mean, variance: square - mean * mean }
     }
 
     /// Its parts in a grid of `side` × `side` cells of [−1, 1]², those without light left out.
@@ -61,10 +92,12 @@ impl Shape {
         &self.rows
     }
 
-    /// The row that v in [−1, 1] lies in.
-    pub fn row_at(&self, v: f64) -> &[Run] {
-        let count = self.rows.len();
-        &self.rows[(((v + 1.0) / 2.0 * count as f64) as usize).min(count - 1)]
+    /// The runs of the row that v (times 16384) lies in.
+    #[inline(always)]
+    pub fn at(&self, v: i32) -> &[ShapeRun] {
+        let count = self.firsts.len() as u32 - 1;
+        let row = mul_shift((v + ONE).max(0) as u32, count, 15).min(count - 1) as usize;
+        &self.runs[self.firsts[row] as usize..self.firsts[row + 1] as usize]
     }
 
     /// Share of the open area in each of 16 × 16 cells of the square of `side` ≥ 1 around it, row 0 at its lowest v, with

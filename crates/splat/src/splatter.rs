@@ -1,5 +1,7 @@
 //! The picture as a running integer sum that single samples can leave and enter.
 
+mod on_card;
+
 use crate::draw::Pen;
 use crate::lens_in_use::{LensInUse, Placed, Tolerance};
 use crate::nodes::{Nodes, Scale};
@@ -11,6 +13,7 @@ use crate::shape::Shape;
 use crate::stencil::Stencils;
 use crate::sums::{DrawnNodes, RESOLVE_ROWS, Scene, Sums};
 use lens::{Aperture, Camera, FocusOffset, Picture};
+use on_card::Card;
 use progress::{Cancelled, Progress, Stage};
 use rayon::prelude::*;
 use salf::Salf;
@@ -57,6 +60,7 @@ pub struct Splatter {
     /// The lens whose standard picture they are those of.
     shares_of: Option<LensInUse>,
     picture: Picture,
+    card: Card,
 }
 
 /// What depends on the aperture's shape, and on how far it is stopped down from the baked one.
@@ -101,6 +105,7 @@ impl Splatter {
             shares: vec![Share::NONE; width * height],
             shares_of: None,
             picture: Picture::black(camera.width, camera.height),
+            card: Card::default(),
             nodes,
             salf,
         }
@@ -121,9 +126,10 @@ impl Splatter {
         &self.picture
     }
 
-    /// Bytes of the hierarchy and of the sums; the light field's own are not among them.
+    /// Bytes of the hierarchy and of the sums, a card's among them; the light field's own are not.
     pub fn bytes(&self) -> [usize; 2] {
-        [self.nodes.as_ref().map_or(0, Nodes::bytes), self.sums.bytes()]
+        let [nodes, sums] = self.card.bytes();
+        [nodes + self.nodes.as_ref().map_or(0, Nodes::bytes), sums + self.sums.bytes()]
     }
 
     /// What the picture is drawn with: samples where they are nearly in focus, fewer nodes where they are not.
@@ -167,12 +173,22 @@ impl Splatter {
         if (&self.aperture.aperture, self.aperture.stop) != (&camera.aperture, stop) {
             self.aperture = ApertureInUse::new(&camera.aperture, stop, self.nodes.as_ref());
             self.shares_of = None;
+            self.card.forget_aperture();
         }
         self.lens = LensInUse::new(optics, &self.aperture.stencils.shape, self.tolerance);
     }
 
-    /// Sums all and resolves the picture.
+    /// Sums all and resolves the picture; on the processor once the card is lost.
     fn sum(&mut self, progress: &dyn Progress) -> Result<(), SplatError> {
+        self.take_up_card();
+        let summed = self.sum_all(progress);
+        if !self.drop_lost_card() {
+            return summed;
+        }
+        self.sum_all(progress)
+    }
+
+    fn sum_all(&mut self, progress: &dyn Progress) -> Result<(), SplatError> {
         let is_painted = !self.paint.is_standard();
         let has_shares = self.shares_of.as_ref() == Some(&self.lens);
         let standard = Stage::new(progress, 0.0, if is_painted { 0.5 } else { 1.0 });
@@ -215,6 +231,9 @@ impl Splatter {
     }
 
     fn sum_nodes(&mut self, paint: &Paint, progress: &dyn Progress) -> Result<(), SplatError> {
+        if let Some(summed) = self.sum_nodes_on_card(paint, progress) {
+            return summed;
+        }
         let nodes = self.nodes.as_ref().ok_or(SplatError::Overflow)?;
         let (aperture, lens) = (&self.aperture, &self.lens);
         Ok(self.sums.set(&Scene { pen: aperture.pen(nodes, lens), lens, paint }, progress)?)
@@ -222,6 +241,9 @@ impl Splatter {
 
     /// Reads the shares off the sums of the standard picture.
     fn share_out(&mut self) -> Result<(), SplatError> {
+        if let Some(shared_out) = self.share_out_on_card() {
+            return shared_out;
+        }
         let nodes = self.nodes.as_ref().ok_or(SplatError::Overflow)?;
         let (sums, width) = (&self.sums, self.salf.camera.width as usize);
         let shares = self.shares.par_chunks_mut(RESOLVE_ROWS * width).enumerate();
@@ -261,8 +283,6 @@ impl Splatter {
             }
         }
         let pen = aperture.pen(nodes, lens);
-        self.sums.add(&pen, &removed, -1);
-        self.sums.add(&pen, &added, 1);
         let mut rows = height..0;
         for &(index, placed) in removed.iter().chain(&added) {
             let reached = pen.rows(index, placed, height);
@@ -276,11 +296,29 @@ impl Splatter {
         if was_standard != self.paint.is_standard() {
             rows = 0..height;
         }
-        match self.resolve(rows.clone()) {
+        match self.change([&removed, &added], rows.clone()) {
             Ok(()) => Ok(rows),
             Err(SplatError::Overflow) => self.sum_again(),
+            Err(_) if self.drop_lost_card() => self.sum_again(),
             Err(other) => Err(other),
         }
+    }
+
+    /// Takes the first nodes away from the sums, adds the others, and makes rows of the picture.
+    fn change(
+        &mut self,
+        [removed, added]: [&[(u32, Placed)]; 2],
+        rows: Range<u32>,
+    ) -> Result<(), SplatError> {
+        if let Some(changed) = self.change_on_card([removed, added]) {
+            changed?;
+        } else {
+            let nodes = self.nodes.as_ref().ok_or(SplatError::Overflow)?;
+            let pen = self.aperture.pen(nodes, &self.lens);
+            self.sums.add(&pen, removed, -1);
+            self.sums.add(&pen, added, 1);
+        }
+        self.resolve(rows)
     }
 
     /// Sums all with the paint as it is.
@@ -291,10 +329,13 @@ impl Splatter {
 
     /// Integrates `rows` of the sums to the picture.
     fn resolve(&mut self, rows: Range<u32>) -> Result<(), SplatError> {
-        let nodes = self.nodes.as_ref().ok_or(SplatError::Overflow)?;
         if rows.is_empty() {
             return Ok(());
         }
+        if let Some(resolved) = self.resolve_on_card(rows.clone()) {
+            return resolved;
+        }
+        let nodes = self.nodes.as_ref().ok_or(SplatError::Overflow)?;
         let width = self.salf.camera.width as usize;
         // The same chunks whatever rows are asked for.
         let chunks = rows.start as usize / RESOLVE_ROWS..(rows.end as usize).div_ceil(RESOLVE_ROWS);

@@ -48,7 +48,20 @@ pub struct Stencils {
     /// Its parts, few and many.
     pub parts: [Vec<Part>; 2],
     /// Far (upright) radii, then near ones.
-    tables: [Vec<OnceLock<[Stencil; PHASES]>>; 2],
+    table: Vec<OnceLock<[Stencil; PHASES]>>,
+}
+
+/// The stencils of one signed radius.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Place {
+    pub index: usize,
+}
+
+impl Place {
+    /// A number for each stencil.
+    pub fn with_phase(self, phase: usize) -> u32 {
+        (self.index * PHASES + phase) as u32
+    }
 }
 
 /// Bits behind the point of the table's radii.
@@ -59,7 +72,7 @@ const MANTISSA_BITS: u32 = 8;
 
 /// The place of a radius (1/256 px, ≥ 0) in the table: a float of eight bits, rounded.
 #[inline(always)]
-fn index_of(radius: u32) -> usize {
+const fn index_of(radius: u32) -> usize {
     let octave = (radius | 1).ilog2().saturating_sub(MANTISSA_BITS);
     let steps = (radius + (1 << octave) / 2) >> octave;
     // Rounding up to the next octave is its first place.
@@ -77,29 +90,46 @@ fn radius_at(index: usize) -> f64 {
 }
 
 impl Stencils {
+    /// Places of the table.
+    pub const PLACES: usize = 2 * (index_of((LARGEST_RADIUS_PX as u32) << RADIUS_BITS) + 1);
+    /// Stencils of a place.
+    pub const PHASES: usize = PHASES;
+
     pub fn new(shape: Shape) -> Self {
-        let places = index_of((LARGEST_RADIUS_PX as u32) << RADIUS_BITS) + 1;
-        let table = || (0..places).map(|_| OnceLock::new()).collect();
         let parts = [2, 4].map(|side| shape.parts(side));
-        Self { shape, parts, tables: [table(), table()] }
+        Self { shape, parts, table: (0..Self::PLACES).map(|_| OnceLock::new()).collect() }
     }
 
     /// The stencil of a signed radius (1/4096 px, at most [`LARGEST_RADIUS_PX`]) for a centre at the height `y` (1/4096 px),
     /// and the pixel row of that centre.
     #[inline(always)]
     pub fn at(&self, radius: i32, y: i32) -> (&Stencil, i32) {
-        let table = &self.tables[usize::from(radius < 0)];
+        let (place, phase, row) = self.place(radius, y);
+        (&self.at_place(place)[phase], row)
+    }
+
+    /// Where in the table [`Self::at`] looks: place, phase, and the pixel row of the centre.
+    #[inline(always)]
+    pub fn place(&self, radius: i32, y: i32) -> (Place, usize, i32) {
         // Rounded to the table's bits.
         let shift = POSITION_BITS - RADIUS_BITS;
         let index = index_of((radius.unsigned_abs() + (1 << shift) / 2) >> shift);
-        let stencils = table[index].get_or_init(|| {
-            let radius_px = radius_at(index) * if radius < 0 { -1.0 } else { 1.0 };
-            std::array::from_fn(|phase| self.cut(radius_px, phase as f64 / PHASES as f64))
-        });
         let step = PIXEL / PHASES as i32;
         let rounded = y + step / 2;
         let phase = (rounded & (PIXEL - 1)) as usize / step as usize;
-        (&stencils[phase], rounded >> POSITION_BITS)
+        let turned = if radius < 0 { Self::PLACES / 2 } else { 0 };
+        (Place { index: turned + index }, phase, rounded >> POSITION_BITS)
+    }
+
+    /// The stencils of a place, cut when they are first asked for.
+    #[inline(always)]
+    pub fn at_place(&self, place: Place) -> &[Stencil; PHASES] {
+        self.table[place.index].get_or_init(|| {
+            let half = Self::PLACES / 2;
+            let radius_px =
+                if place.index < half { radius_at(place.index) } else { -radius_at(place.index - half) };
+            std::array::from_fn(|phase| self.cut(radius_px, phase as f64 / PHASES as f64))
+        })
     }
 
     /// Cuts the shape to pixel rows: `radius_px` signed, the centre at `phase` of its pixel.

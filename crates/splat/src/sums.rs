@@ -1,7 +1,7 @@
 //! All nodes of a light field, summed band by band of the picture.
 
 use crate::canvas::{Accumulator, Canvas};
-use crate::draw::Pen;
+use crate::draw::{Pen, SeenRun};
 use crate::lens_in_use::{LensInUse, NodeFocus, Placed};
 use crate::nodes::{Nodes, SplatNode};
 use crate::paint::Paint;
@@ -37,6 +37,8 @@ pub struct Sums {
 struct SumCanvas<'a> {
     dim: Canvas<'a, i32>,
     bright: Option<Canvas<'a, i64>>,
+    /// Room to work in.
+    found: Vec<SeenRun>,
 }
 
 impl Sum {
@@ -50,11 +52,14 @@ impl Sum {
     fn bands(&mut self, rows: i32) -> Vec<SumCanvas<'_>> {
         let mut bright = self.bright.as_mut().map(|bright| bright.bands(rows).into_iter());
         let dim = self.dim.bands(rows).into_iter();
-        dim.map(|dim| SumCanvas { dim, bright: bright.as_mut().and_then(Iterator::next) }).collect()
+        let canvas =
+            |dim| SumCanvas { dim, bright: bright.as_mut().and_then(Iterator::next), found: Vec::new() };
+        dim.map(canvas).collect()
     }
 
     fn canvas(&mut self) -> SumCanvas<'_> {
-        SumCanvas { dim: self.dim.canvas(), bright: self.bright.as_mut().map(Accumulator::canvas) }
+        let bright = self.bright.as_mut().map(Accumulator::canvas);
+        SumCanvas { dim: self.dim.canvas(), bright, found: Vec::new() }
     }
 
     fn bytes(&self) -> usize {
@@ -87,22 +92,15 @@ impl SumCanvas<'_> {
     }
 
     #[inline(always)]
-    fn draw(&mut self, pen: &Pen, index: u32, node: &SplatNode, placed: Placed, sign: i64) {
+    fn draw(&mut self, pen: &Pen, index: u32, node: &SplatNode, placed: Placed, sign: i32) {
         // All coverage is summed alike, so that how bright a sample is leaves no trace in it.
+        let found = &mut self.found;
         match &mut self.bright {
             Some(bright) if node.is_bright => {
-                let coverage = node.light[3];
-                pen.draw(index, node.light, placed, bright, sign);
-                let finer = pen.nodes.scale.dim_bits - pen.nodes.scale.bright_bits;
-                pen.draw(
-                    index,
-                    [0.0, 0.0, 0.0, coverage * (finer as f32).exp2()],
-                    placed,
-                    &mut self.dim,
-                    sign,
-                );
+                pen.draw(index, node.light, placed, bright, found, sign);
+                pen.draw(index, pen.nodes.dim_coverage(node), placed, &mut self.dim, found, sign);
             }
-            _ => pen.draw(index, node.light, placed, &mut self.dim, sign),
+            _ => pen.draw(index, node.light, placed, &mut self.dim, found, sign),
         }
     }
 }
@@ -204,7 +202,7 @@ impl Sums {
     }
 
     /// Adds (`sign` 1) nodes, or takes them away (−1).
-    pub fn add(&mut self, pen: &Pen, drawn: &[(u32, Placed)], sign: i64) {
+    pub fn add(&mut self, pen: &Pen, drawn: &[(u32, Placed)], sign: i32) {
         let (mut free, mut sharing) = (self.free.canvas(), self.sharing.canvas());
         with_widest_instructions(
             #[inline(always)]
@@ -245,7 +243,7 @@ impl Sums {
 
 /// Whether a node shares what open samples leave.
 #[inline(always)]
-fn is_sharing(node: &SplatNode, placed: Placed) -> bool {
+pub fn is_sharing(node: &SplatNode, placed: Placed) -> bool {
     placed.is_standard && !node.is_open()
 }
 

@@ -1,11 +1,40 @@
 //! A node's image before it is drawn: where, how large, how bright.
 
 use crate::canvas::POSITION_BITS;
-use crate::nodes::{Light, ONE, SplatNode};
-use crate::stencil::HEIGHT_BITS;
+use crate::fixed::{mul_shift, signed_mul_shift};
+use crate::nodes::SplatNode;
 
 /// All of the light, as a share.
-pub const WHOLE: i64 = 1 << 24;
+pub const WHOLE: u32 = 1 << 24;
+
+/// Red, green, blue and coverage: `mantissa`·2^`exponent` quanta. The largest mantissa has 31 bits.
+#[derive(Clone, Copy, Debug)]
+pub struct Light {
+    pub mantissa: [u32; 4],
+    pub exponent: i32,
+}
+
+impl Light {
+    /// Of finite numbers ≥ 0.
+    #[inline(always)]
+    pub fn of(light: [f32; 4]) -> Self {
+        let bits = light.map(f32::to_bits);
+        let top = bits[0].max(bits[1]).max(bits[2]).max(bits[3]) >> 23;
+        let mantissa = bits.map(|bits| {
+            // Subnormal numbers are nothing.
+            let is_normal = bits >> 23 > 0;
+            let mantissa = if is_normal { (bits & 0x7F_FFFF) | 0x80_0000 } else { 0 };
+            (mantissa << 7) >> (top - (bits >> 23)).min(31)
+        });
+        Self { mantissa, exponent: top as i32 - 157 }
+    }
+
+    /// The shift that takes a mantissa times a height with `bits` bits behind the point to quanta.
+    #[inline(always)]
+    pub fn shift(&self, bits: u32) -> u32 {
+        (bits as i32 - self.exponent).clamp(0, 63) as u32
+    }
+}
 
 /// A node's image on its level: centre and signed radius, 1/4096 px of the level.
 pub struct Image<'a> {
@@ -14,7 +43,7 @@ pub struct Image<'a> {
     pub radius: i32,
     pub light: Light,
     /// How much of the light is drawn, times 2²⁴.
-    pub share: i64,
+    pub share: u32,
     /// Where its dither starts.
     pub dither: u32,
 }
@@ -22,35 +51,28 @@ pub struct Image<'a> {
 impl Image<'_> {
     /// Moves the centre by what the node's tilt moves its light's mean aperture point.
     #[inline(always)]
-    pub fn lean(&mut self, node: &SplatNode, tilt_shift: [i64; 2]) {
-        let moved = |k: usize| (node.tilt[k] as i64 * tilt_shift[k]) >> 14;
-        self.shift([moved(0), moved(1)]);
+    pub fn lean(&mut self, node: &SplatNode, tilt_shift: [i32; 2]) {
+        self.shift([0, 1].map(|k| (node.tilt[k] as i32 * tilt_shift[k]) >> 14));
     }
 
     /// Moves the centre to that of the light whose mean aperture point is `mean` (1/16384).
     #[inline(always)]
-    pub fn shift(&mut self, mean: [i64; 2]) {
-        let radius = self.radius as i64;
-        // Rounded alike for either sign.
-        let (x, y) = (radius * mean[0] / ONE as i64, radius * mean[1] / ONE as i64);
+    pub fn shift(&mut self, mean: [i32; 2]) {
+        let [x, y] = mean.map(|mean| signed_mul_shift(self.radius, mean, 14));
         // Pixel rows go down, v goes up.
-        self.center = [self.center[0].saturating_add(x as i32), self.center[1].saturating_sub(y as i32)];
+        self.center = [self.center[0].wrapping_add(x), self.center[1].wrapping_sub(y)];
     }
 
-    /// The light of a pixel, rounded up or down at random so that the mean is kept.
+    /// The light of a pixel of `height` (see [`Light::shift`]), rounded up or down at random so that the mean is kept.
     #[inline(always)]
-    pub fn value(&self, height: i64, bits: u32, row: i32) -> Light {
+    pub fn value(&self, height: u32, shift: u32, row: i32) -> [u64; 4] {
         // By the row from the centre's, so that a frame's crop has the same bits.
         let row = (row - (self.center[1] >> POSITION_BITS)) as u32;
-        let dither = self.dither.wrapping_add(row.wrapping_mul(0x9E37_79B1));
-        let dither = (dither ^ dither >> 15).wrapping_mul(0x2C1B_3C6D) as i64 >> (32 - HEIGHT_BITS);
-        let dither = dither << (bits - HEIGHT_BITS);
-        let height = (height * self.share) >> 24;
-        let mut value = self.light;
-        for light in &mut value {
-            *light = (*light * height + dither) >> bits;
-        }
-        value
+        let hash = self.dither.wrapping_add(row.wrapping_mul(0x9E37_79B1));
+        let hash = (hash ^ hash >> 15).wrapping_mul(0x2C1B_3C6D) as u64;
+        let dither = (hash << shift.saturating_sub(32)) >> 32u32.saturating_sub(shift);
+        let height = mul_shift(height, self.share, 24) as u64;
+        self.light.mantissa.map(|mantissa| (mantissa as u64 * height + dither) >> shift)
     }
 }
 
@@ -59,4 +81,21 @@ impl Image<'_> {
 pub fn seed(node: &SplatNode, middle: [i32; 2]) -> u32 {
     let [x, y] = [(node.center[0] - middle[0]) as u32, (node.center[1] - middle[1]) as u32];
     (x.wrapping_mul(0x9E37_79B1) ^ y.wrapping_mul(0x85EB_CA77) ^ node.level as u32).wrapping_mul(0xC2B2_AE3D)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn light_keeps_its_value() {
+        for light in [[1.0f32, 0.5, 3.0, 1.0], [0.0, 1e-3, 4e6, 1.0], [0.0; 4], [1e14, 1.0, 7.0, 9.0]] {
+            let found = Light::of(light);
+            let top = light.into_iter().fold(0.0, f32::max) as f64;
+            for (wanted, mantissa) in light.into_iter().zip(found.mantissa) {
+                let apart = mantissa as f64 * (found.exponent as f64).exp2() - wanted as f64;
+                assert!(apart.abs() <= top * (-30f64).exp2(), "{light:?} {found:?}");
+            }
+        }
+    }
 }

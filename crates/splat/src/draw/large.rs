@@ -3,15 +3,95 @@
 use crate::canvas::{PIXEL, POSITION_BITS, Rows, Word};
 use crate::draw::Pen;
 use crate::draw::image::Image;
+use crate::draw::seen_runs::{Row, SeenRuns};
+use crate::fixed::{Divisor, mul_shift, signed_mul_shift};
 use crate::nodes::{Cells, ONE};
+use crate::stencil::HEIGHT_BITS;
 
 /// The light of larger images, in pixel rows, is what their area says; that of smaller ones what their rows say.
-const MOST_ROWS: i64 = 1 << 12;
+const MOST_ROWS: i32 = 1 << 12;
 
-/// Bits behind the point of the heights of large images.
-const LARGE_HEIGHT_BITS: u32 = 36;
+/// How much light a large image has in a pixel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Large {
+    /// In a pixel where the aperture is clear, times 2 to `height_bits`.
+    pub height: u32,
+    pub height_bits: u32,
+    /// How much of the light is drawn, times 2²⁴.
+    pub share: u32,
+}
+
+/// The rows of a large image.
+struct LargeRows {
+    center: [i32; 2],
+    radius: i32,
+    per_radius: Divisor,
+    first: i32,
+    last: i32,
+}
+
+impl LargeRows {
+    #[inline(always)]
+    fn new(image: &Image) -> Self {
+        let size = image.radius.abs().max(PIXEL);
+        Self {
+            center: image.center,
+            radius: if image.radius < 0 { -size } else { size },
+            per_radius: Divisor::new(size as u32),
+            first: (image.center[1] - size) >> POSITION_BITS,
+            last: (image.center[1] + size) >> POSITION_BITS,
+        }
+    }
+
+    /// The lens's v at a row's middle, times 16384; pixel rows go down, v goes up.
+    #[inline(always)]
+    fn v(&self, row: i32) -> i32 {
+        let v = self.per_radius.divide(self.center[1].wrapping_sub((row << POSITION_BITS) + PIXEL / 2));
+        if self.radius < 0 { -v } else { v }
+    }
+
+    /// Where light that crosses the aperture from u to u' (times 2²⁴) lands.
+    #[inline(always)]
+    fn span(&self, from: i32, to: i32) -> [i32; 2] {
+        let [a, b] = [from, to].map(|u| self.center[0] + signed_mul_shift(self.radius, u, 24));
+        [a.min(b), a.max(b)]
+    }
+}
 
 impl Pen<'_> {
+    /// How much light an image has in a pixel: `share` in all, of what `cells` let through.
+    pub fn large(&self, image: &Image, cells: Option<(&Cells, u32)>) -> Large {
+        let (lines, seen) = (LargeRows::new(image), SeenRuns::new(self, image));
+        // Pixels of a transmission of 1: of the rows as they are asked, while these are few.
+        let area = if lines.last - lines.first <= MOST_ROWS {
+            let mut area = 0.0;
+            for row in lines.first..=lines.last {
+                let v = lines.v(row);
+                for run in self.stencils.shape.at(v) {
+                    let mut add = |start: i32, end: i32, weight: i32| {
+                        area +=
+                            end.wrapping_sub(start) as u32 as f64 * weight as f64 * run.transmission as f64;
+                    };
+                    let span = lines.span(run.start, run.end);
+                    match cells {
+                        None => add(span[0], span[1], ONE),
+                        Some((cells, _)) => seen.of_row(image, cells, Row { row, v }, span, add),
+                    }
+                }
+            }
+            area / (ONE as f64 * PIXEL as f64 * 65536.0)
+        } else {
+            (lines.radius as f64 / PIXEL as f64).powi(2) * self.stencils.shape.open_area
+        };
+        let area = area.max(1.0);
+        let height_bits = HEIGHT_BITS + area.log2() as u32;
+        let share = match cells {
+            Some((_, share)) if lines.last - lines.first <= MOST_ROWS => share,
+            _ => image.share,
+        };
+        Large { height: ((1u64 << height_bits) as f64 / area).round() as u32, height_bits, share }
+    }
+
     /// An image too large for a stencil: each pixel row is looked up in the shape.
     #[cold]
     pub fn draw_large<W: Word>(
@@ -19,55 +99,24 @@ impl Pen<'_> {
         image: &mut Image,
         cells: Option<(&Cells, u32)>,
         rows: &mut Rows<W>,
-        sign: i64,
+        sign: i32,
     ) {
-        let (radius, center) = (image.radius as i64, image.center.map(i64::from));
-        let first = (center[1] - radius.abs()) >> POSITION_BITS;
-        let last = (center[1] + radius.abs()) >> POSITION_BITS;
-        // The runs of a row with their transmission.
-        let runs_of = |row: i64| {
-            let v = (center[1] - ((row << POSITION_BITS) + PIXEL as i64 / 2)) as f64 / radius as f64;
-            let runs = self.stencils.shape.row_at(v).iter().map(move |run| {
-                let [a, b] = [run.start, run.end].map(|u| center[0] + (u * radius as f64).round() as i64);
-                ([a.min(b), a.max(b)], run.transmission)
-            });
-            ((v * ONE as f64) as i32, runs)
-        };
-        // Light a pixel, for a transmission of 1: of the rows as they are asked, while these are few.
-        let area = if last - first <= MOST_ROWS {
-            let mut area = 0.0;
-            for row in first..=last {
-                let (v, runs) = runs_of(row);
-                for (span, transmission) in runs {
-                    let mut add = |start: i64, end: i64, weight: i64| {
-                        area += (end - start) as f64 * weight as f64 * transmission;
-                    };
-                    match cells {
-                        None => add(span[0], span[1], ONE as i64),
-                        Some((cells, _)) => self.seen_runs(image, cells, row as i32, v, span, add),
-                    }
-                }
-            }
-            image.share = cells.map_or(image.share, |(_, share)| share as i64);
-            area / (ONE as f64 * PIXEL as f64)
-        } else {
-            (radius as f64 / PIXEL as f64).powi(2) * self.stencils.shape.open_area
-        };
-        let height = (1u64 << LARGE_HEIGHT_BITS) as f64 / area.max(1.0);
-        for row in first.max(rows.first as i64)..=last.min(rows.end as i64 - 1) {
-            let (v, runs) = runs_of(row);
-            for (span, transmission) in runs {
-                let height = (height * transmission) as i64;
+        let large = self.large(image, cells);
+        image.share = large.share;
+        let shift = image.light.shift(large.height_bits);
+        let (lines, seen) = (LargeRows::new(image), SeenRuns::new(self, image));
+        for row in lines.first.max(rows.first)..=lines.last.min(rows.end - 1) {
+            let v = lines.v(row);
+            for run in self.stencils.shape.at(v) {
+                let height = mul_shift(large.height, run.transmission, 16);
+                let span = lines.span(run.start, run.end);
+                let mut add = |start: i32, end: i32, weight: i32| {
+                    let value = image.value(mul_shift(height, weight as u32, 14), shift, row);
+                    rows.add_run(row, rows.clamped(start), rows.clamped(end), value, sign);
+                };
                 match cells {
-                    None => {
-                        let value = image.value(height, LARGE_HEIGHT_BITS, row as i32);
-                        let [start, end] = span.map(|x| rows.clamped(x));
-                        rows.add_run(row as i32, start, end, value, sign);
-                    }
-                    Some((cells, _)) => {
-                        let height = (height, LARGE_HEIGHT_BITS);
-                        self.add_seen(image, cells, row as i32, v, span, height, rows, sign);
-                    }
+                    None => add(span[0], span[1], ONE),
+                    Some((cells, _)) => seen.of_row(image, cells, Row { row, v }, span, add),
                 }
             }
         }

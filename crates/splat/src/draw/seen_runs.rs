@@ -1,102 +1,134 @@
 //! What of a pixel row the occluders let through.
 
-use crate::canvas::{POSITION_BITS, Rows, Word};
+use crate::canvas::POSITION_BITS;
 use crate::draw::Pen;
 use crate::draw::image::Image;
+use crate::fixed::{Divisor, signed_mul_shift};
 use crate::nodes::{Cells, ONE};
 
-/// The parts of a run whose weight changes along it, by that change.
-fn parts_of(tilt: i64) -> i64 {
+/// A part of a pixel row that is let through, of `height` a pixel.
+#[derive(Clone, Copy, Debug)]
+pub struct SeenRun {
+    pub row: i32,
+    /// From where, 1/4096 px.
+    pub start: i32,
+    /// To where.
+    pub end: i32,
+    pub height: u32,
+}
+
+/// A pixel row of an image: where, and the lens's v at its middle, times 16384.
+#[derive(Clone, Copy)]
+pub struct Row {
+    pub row: i32,
+    pub v: i32,
+}
+
+/// The halvings into parts of a run whose weight changes along it, by that change.
+fn halvings(tilt: i32) -> u32 {
     match tilt.abs() {
-        tilt if tilt < ONE as i64 / 10 => 1,
-        tilt if tilt < ONE as i64 / 3 => 2,
-        _ => 4,
+        tilt if tilt < ONE / 10 => 0,
+        tilt if tilt < ONE / 3 => 1,
+        _ => 2,
     }
 }
 
-impl Pen<'_> {
-    /// Adds the parts of a row's span that `cells` let through, of a `height` with so many bits behind the point.
-    #[allow(clippy::too_many_arguments)]
+/// ⌊x·factor / 2^`shift`⌋ for |factor| < 2^`shift`, where x·factor may not fit.
+#[inline(always)]
+fn part(x: i32, factor: i32, shift: u32) -> i32 {
+    (x >> shift) * factor + (((x & ((1 << shift) - 1)) * factor) >> shift)
+}
+
+/// The height of a pixel row in units of the image's radius, times 16384, counts as at most this.
+const TALLEST_ROW: u32 = 1 << 16;
+
+/// Radii of the baked aperture's image, 1/4096 px, count as at least this: so small, its cells are not told apart.
+const SMALLEST_REACH: u64 = 1 << 8;
+
+/// And as at most this.
+const LARGEST_REACH: u64 = 1 << 30;
+
+/// How an image's rows meet its cells.
+pub struct SeenRuns {
+    /// A pixel row's height, as the lens's v.
+    pixel: i32,
+    stop: i32,
+    /// The radius of the baked aperture's image.
+    reach: i32,
+    per_reach: Divisor,
+    is_turned: bool,
+}
+
+impl SeenRuns {
     #[inline(always)]
-    pub fn add_seen<W: Word>(
-        &self,
-        image: &Image,
-        cells: &Cells,
-        row: i32,
-        v: i32,
-        span: [i64; 2],
-        (height, bits): (i64, u32),
-        rows: &mut Rows<W>,
-        sign: i64,
-    ) {
-        self.seen_runs(image, cells, row, v, span, |start, end, weight| {
-            let value = image.value((height * weight) >> 14, bits, row);
-            rows.add_run(row, rows.clamped(start), rows.clamped(end), value, sign);
-        });
+    pub fn new(pen: &Pen, image: &Image) -> Self {
+        let radius = image.radius.unsigned_abs();
+        let reach = ((radius as u64 * pen.per_stop as u64) >> 14).clamp(SMALLEST_REACH, LARGEST_REACH) as u32;
+        Self {
+            pixel: ((1u32 << 26) / radius.max(1)).min(TALLEST_ROW) as i32,
+            stop: pen.stop,
+            reach: reach as i32,
+            per_reach: Divisor::new(reach),
+            is_turned: image.radius < 0,
+        }
     }
 
     /// Calls `emit` with start, end (1/4096 px) and weight (1/16384) of the parts of a row's span that `cells` let through.
     #[inline(always)]
-    pub fn seen_runs(
+    pub fn of_row(
         &self,
         image: &Image,
         cells: &Cells,
-        row: i32,
-        v: i32,
-        span: [i64; 2],
-        mut emit: impl FnMut(i64, i64, i64),
+        Row { row, v }: Row,
+        span: [i32; 2],
+        mut emit: impl FnMut(i32, i32, i32),
     ) {
         // A pixel row may lie across several rows of cells: each splat takes one of them, each row its own.
         let from_center = (row - (image.center[1] >> POSITION_BITS)) as u32;
         let jitter = (image.dither ^ from_center.wrapping_mul(0x85EB_CA77)).wrapping_mul(0xC2B2_AE35) >> 18;
-        let pixel = (ONE << POSITION_BITS) as i64 / (image.radius.unsigned_abs().max(1) as i64);
-        let jittered = v as i64 + ((pixel * (jitter as i64 - ONE as i64 / 2)) >> 14);
-        let of_baked = (jittered * self.stop as i64) >> 14;
-        let cell_row = ((of_baked + ONE as i64) >> 11).clamp(0, 15);
+        let jittered = v + ((self.pixel * (jitter as i32 - ONE / 2)) >> 14);
+        let of_baked = (jittered * self.stop) >> 14;
+        let cell_row = ((of_baked + ONE) >> 11).clamp(0, 15);
         let mut bits = cells[cell_row as usize] as u32;
-        if image.radius < 0 {
+        if self.is_turned {
             // u grows to the left.
             bits = u32::from((bits as u16).reverse_bits());
         }
-        // The baked aperture's image.
-        let reach = (((image.radius.unsigned_abs() as i64) << 14) / self.stop.max(1) as i64).max(1);
         // The outermost cells hold all that the blur of the footprint throws beyond them.
-        let edge = |cell: i64| match cell {
-            0 => i64::MIN,
-            16 => i64::MAX,
-            _ => image.center[0] as i64 + ((reach * (cell - 8)) >> 3),
+        let edge = |cell: u32| match cell {
+            0 => i32::MIN,
+            16 => i32::MAX,
+            _ => image.center[0].wrapping_add(part(self.reach, cell as i32 - 8, 3)),
         };
-        let tilt = [image.node.tilt[0] as i64, image.node.tilt[1] as i64];
-        let is_even = tilt == [0, 0] && image.node.base == ONE as i16;
+        let tilt = image.node.tilt.map(i32::from);
+        let is_even = tilt == [0, 0] && image.node.base as i32 == ONE;
         // Not the jittered row: weights are smooth.
-        let base = image.node.base as i64 + ((tilt[1] * ((v as i64 * self.stop as i64) >> 14)) >> 14);
-        let signed_reach = if image.radius < 0 { -reach } else { reach };
+        let base = image.node.base as i32 + ((tilt[1] * ((v * self.stop) >> 14)) >> 14);
         while bits != 0 {
             let start = bits.trailing_zeros();
-            let length = (bits >> start).trailing_ones();
-            bits &= !(((1u32 << length) - 1) << start);
-            let [from, to] = [start as i64, (start + length) as i64];
-            let (from_x, to_x) = (edge(from).max(span[0]), edge(to).min(span[1]));
-            if from_x >= to_x {
+            let end = start + (bits >> start).trailing_ones();
+            bits &= u32::MAX << end;
+            let (from, to) = (edge(start).max(span[0]), edge(end).min(span[1]));
+            if from >= to {
                 continue;
             }
             if is_even {
-                emit(from_x, to_x, ONE as i64);
+                emit(from, to, ONE);
                 continue;
             }
-            let parts = parts_of(tilt[0]);
-            for part in 0..parts {
-                let start = from_x + (to_x - from_x) * part / parts;
-                let end = from_x + (to_x - from_x) * (part + 1) / parts;
+            let (shift, width) = (halvings(tilt[0]), to.wrapping_sub(from));
+            for at in 0..1 << shift {
+                let [start, end] = [at, at + 1].map(|k| from.wrapping_add(part(width, k, shift)));
                 // The baked aperture's u in the middle, and half the part's width.
-                let middle = ((start + end - 2 * image.center[0] as i64) << 13) / signed_reach;
-                let half = ((end - start) << 13) / reach;
-                let weight = base + ((tilt[0] * middle) >> 14);
+                let middle = self.per_reach.divide(((start >> 1) + (end >> 1)).wrapping_sub(image.center[0]));
+                let half = self.per_reach.divide(end.wrapping_sub(start) >> 1);
+                let toward = if self.is_turned { -tilt[0] } else { tilt[0] };
+                let weight = base + ((toward * middle) >> 14);
                 if weight > 0 {
                     // Within the part the light leans toward where the weight is.
-                    let lean = tilt[0] * ((half * half) >> 14) / (3 * weight);
-                    let moved = (lean.clamp(-half, half) * signed_reach) >> 14;
-                    emit(start + moved, end + moved, weight);
+                    let lean = (toward * ((half * half) >> 14) / (3 * weight)).clamp(-half, half);
+                    let moved = signed_mul_shift(self.reach, lean, 14);
+                    emit(start.wrapping_add(moved), end.wrapping_add(moved), weight);
                 }
             }
         }

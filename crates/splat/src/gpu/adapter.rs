@@ -1,0 +1,137 @@
+//! Which graphics card there is, and whether it is worth using.
+
+use crate::gpu::Gpu;
+use wgpu::{Adapter, Backends, DeviceType, Instance};
+
+/// What sums are to be made on.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum BackendChoice {
+    /// A graphics card if there is one; the processor rather than a card that is one in software.
+    #[default]
+    Auto,
+    /// The processor.
+    Cpu,
+    /// Any adapter, also one in software.
+    Gpu,
+}
+
+/// An adapter, in words.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct AdapterDescription {
+    /// What its driver calls it.
+    pub name: String,
+    /// Discrete, integrated, virtual or CPU.
+    pub kind: String,
+    /// The interface it is reached by.
+    pub interface: String,
+    /// Whether [`BackendChoice::Auto`] would use it.
+    pub is_used: bool,
+}
+
+/// Why pictures cannot be summed on a graphics card.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum GpuAbsent {
+    /// There is none.
+    #[error(
+        "no GPU was found (install a Vulkan driver; the package mesa-vulkan-drivers has one in software)"
+    )]
+    NoAdapter,
+    /// None of that name.
+    #[error("no GPU's name contains \"{0}\" (focus-brush doctor lists what there is)")]
+    NoneOfThatName(String),
+    /// It does not work.
+    #[error("the GPU {name} cannot be used: {why} (use --backend cpu)")]
+    Unusable {
+        /// What its driver calls it.
+        name: String,
+        /// What it said.
+        why: String,
+    },
+}
+
+/// All adapters, the one that would be used first.
+pub fn adapters() -> Vec<AdapterDescription> {
+    let found = ranked(&instance(), None);
+    let described = found.iter().enumerate().map(|(rank, adapter)| {
+        let info = adapter.get_info();
+        AdapterDescription {
+            kind: kind(info.device_type).to_owned(),
+            interface: info.backend.to_string(),
+            is_used: rank == 0 && info.device_type != DeviceType::Cpu,
+            name: info.name,
+        }
+    });
+    described.collect()
+}
+
+impl Gpu {
+    /// The card that `choice` wants; none where that is the processor. With `named` only adapters count whose name
+    /// contains it, and then also those in software.
+    ///
+    /// # Errors
+    /// Where a card was asked for, by choice or by name, and none can be used.
+    pub fn open(choice: BackendChoice, named: Option<&str>) -> Result<Option<Self>, GpuAbsent> {
+        if choice == BackendChoice::Cpu {
+            return Ok(None);
+        }
+        let is_asked_for = choice == BackendChoice::Gpu || named.is_some();
+        if !is_asked_for && !may_have_card() {
+            return Ok(None);
+        }
+        let Some(adapter) = ranked(&instance(), named).into_iter().next() else {
+            return match (is_asked_for, named) {
+                (false, _) => Ok(None),
+                (true, Some(name)) => Err(GpuAbsent::NoneOfThatName(name.to_owned())),
+                (true, None) => Err(GpuAbsent::NoAdapter),
+            };
+        };
+        if !is_asked_for && adapter.get_info().device_type == DeviceType::Cpu {
+            return Ok(None);
+        }
+        match Self::new(&adapter) {
+            Ok(gpu) => Ok(Some(gpu)),
+            Err(why) if is_asked_for => Err(GpuAbsent::Unusable { name: adapter.get_info().name, why }),
+            Err(_) => Ok(None),
+        }
+    }
+}
+
+/// Whether the machine may have a card at all. Where it has none, drivers need not be woken, which takes a while and lets
+/// some of them complain on stderr.
+fn may_have_card() -> bool {
+    let devices = ["/dev/dri", "/dev/nvidiactl", "/dev/kfd", "/dev/dxg"];
+    !cfg!(target_os = "linux") || devices.iter().any(|device| std::path::Path::new(device).exists())
+}
+
+/// Without OpenGL: asking for it makes drivers chatter on stderr.
+fn instance() -> Instance {
+    let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
+    descriptor.backends = Backends::PRIMARY;
+    Instance::new(descriptor)
+}
+
+/// Adapters whose name contains `named`, the fastest kind first.
+fn ranked(instance: &Instance, named: Option<&str>) -> Vec<Adapter> {
+    let mut found = pollster::block_on(instance.enumerate_adapters(Backends::PRIMARY));
+    found.retain(|adapter| {
+        named.is_none_or(|named| adapter.get_info().name.to_lowercase().contains(&named.to_lowercase()))
+    });
+    found.sort_by_key(|adapter| match adapter.get_info().device_type {
+        DeviceType::DiscreteGpu => 0,
+        DeviceType::IntegratedGpu => 1,
+        DeviceType::VirtualGpu => 2,
+        DeviceType::Other => 3,
+        DeviceType::Cpu => 4,
+    });
+    found
+}
+
+fn kind(of: DeviceType) -> &'static str {
+    match of {
+        DeviceType::DiscreteGpu => "discrete",
+        DeviceType::IntegratedGpu => "integrated",
+        DeviceType::VirtualGpu => "virtual",
+        DeviceType::Other => "other",
+        DeviceType::Cpu => "cpu",
+    }
+}

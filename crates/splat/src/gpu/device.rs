@@ -1,0 +1,101 @@
+//! A graphics card in use.
+
+use crate::gpu::passes::Passes;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use wgpu::{Adapter, Device, Limits, Queue};
+
+/// The card is gone, or refuses to work on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Lost;
+
+/// A graphics card to sum on. Copies share it.
+#[derive(Clone)]
+pub struct Gpu(Arc<Card>);
+
+impl std::fmt::Debug for Gpu {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "Gpu({})", self.0.name)
+    }
+}
+
+struct Card {
+    device: Device,
+    queue: Queue,
+    name: String,
+    is_lost: Arc<AtomicBool>,
+    passes: Passes,
+}
+
+impl Gpu {
+    /// Takes an adapter into use.
+    ///
+    /// # Errors
+    /// What the driver said.
+    pub(super) fn new(adapter: &Adapter) -> Result<Self, String> {
+        let most = adapter.limits();
+        let limits = Limits {
+            // Large pictures where the card holds them; portable limits otherwise.
+            max_storage_buffer_binding_size: most.max_storage_buffer_binding_size,
+            max_buffer_size: most.max_buffer_size,
+            ..Limits::default()
+        };
+        let descriptor = wgpu::DeviceDescriptor {
+            label: Some("splat"),
+            required_limits: limits,
+            ..wgpu::DeviceDescriptor::default()
+        };
+        let requested = pollster::block_on(adapter.request_device(&descriptor));
+        let (device, queue) = requested.map_err(|error| error.to_string())?;
+        let is_lost = Arc::new(AtomicBool::new(false));
+        let (by_loss, by_error) = (is_lost.clone(), is_lost.clone());
+        device.set_device_lost_callback(move |_, _| by_loss.store(true, Ordering::SeqCst));
+        // Whatever it does not do, the processor does.
+        device.on_uncaptured_error(Arc::new(move |_| by_error.store(true, Ordering::SeqCst)));
+        let scope = device.push_error_scope(wgpu::ErrorFilter::Validation);
+        let passes = Passes::new(&device);
+        if let Some(error) = pollster::block_on(scope.pop()) {
+            return Err(error.to_string());
+        }
+        let name = adapter.get_info().name;
+        Ok(Self(Arc::new(Card { device, queue, name, is_lost, passes })))
+    }
+
+    /// What its driver calls it.
+    pub fn name(&self) -> &str {
+        &self.0.name
+    }
+
+    /// Whether it no longer works.
+    pub fn is_lost(&self) -> bool {
+        self.0.is_lost.load(Ordering::SeqCst)
+    }
+
+    /// Gives the device back at once, as a driver does that crashes: what is summed on it goes on on the processor.
+    pub fn destroy(&self) {
+        self.0.device.destroy();
+    }
+
+    pub(super) fn device(&self) -> &Device {
+        &self.0.device
+    }
+
+    pub(super) fn queue(&self) -> &Queue {
+        &self.0.queue
+    }
+
+    pub(super) fn passes(&self) -> &Passes {
+        &self.0.passes
+    }
+
+    /// The largest buffer that a pass can see whole.
+    pub(super) fn largest_binding(&self) -> u64 {
+        let limits = self.0.device.limits();
+        limits.max_storage_buffer_binding_size.min(limits.max_buffer_size)
+    }
+
+    /// An error if it is lost.
+    pub(super) fn check(&self) -> Result<(), Lost> {
+        if self.is_lost() { Err(Lost) } else { Ok(()) }
+    }
+}

@@ -1,0 +1,570 @@
+// Drawing placed nodes onto the accumulators: the twin of ../draw.rs and of what lies in ../draw, term by term.
+// A thread draws one record. Accumulators are added to atomically; integers make the order irrelevant.
+
+struct Level {
+    width: i32,
+    height: i32,
+    // Words of the accumulator before its pixels, and before its totals.
+    pixels: u32,
+    totals: u32,
+}
+
+struct Part {
+    share: u32,
+    mean: vec2<i32>,
+    variance: vec2<i32>,
+    half: vec2<u32>,
+}
+
+struct Pen {
+    middle: vec2<i32>,
+    stop: i32,
+    per_stop: u32,
+    half: vec2<u32>,
+    tilt_shift: vec2<i32>,
+    mean: vec2<i32>,
+    stencil_radius: u32,
+    per_stencil_radius: u32,
+    // Rows of the shape, and where its runs begin.
+    shape_rows: u32,
+    shape_runs: u32,
+    // What the light's exponent gains in the ordinary sum: that of ordinary nodes, and of the coverage of bright ones.
+    dim_exponent: i32,
+    coverage_exponent: i32,
+    part_count: u32,
+    levels: array<Level, 5>,
+    // Share, mean, variance, half.
+    parts: array<Part, 16>,
+}
+
+// The nodes of a chunk, ten words each: see `words_of_node` in scene.rs.
+@group(0) @binding(0) var<storage, read> nodes: array<u32>;
+// What partly occluded nodes see, ten words each: 16 rows of cells, share, mean.
+@group(0) @binding(1) var<storage, read> cells: array<u32>;
+// Pen, the aperture's rows, and stencils; see `Shapes` in shapes.rs.
+@group(0) @binding(2) var<storage, read> pen: Pen;
+@group(0) @binding(3) var<storage, read> shape: array<u32>;
+@group(0) @binding(4) var<storage, read> stencils: array<u32>;
+@group(0) @binding(5) var<storage, read> records: array<u32>;
+@group(0) @binding(6) var<storage, read_write> free: array<atomic<u32>>;
+@group(0) @binding(7) var<storage, read_write> sharing: array<atomic<u32>>;
+@group(0) @binding(8) var<uniform> batch: vec4<u32>;
+
+// Whether the accumulators hold 64 bits.
+override IS_WIDE: bool = false;
+// Which records are drawn: boxes, images, images through cells, large images.
+override KIND: u32 = 0u;
+
+const POSITION_BITS: u32 = 12u;
+const PIXEL: i32 = 4096;
+const ONE: i32 = 16384;
+const WHOLE: u32 = 16777216u;
+const HEIGHT_BITS: u32 = 24u;
+const LARGEST_HALF: u32 = 40960u;
+const SMALLEST_HALF: u32 = 128u;
+const LARGEST_SCALE: u32 = 4u;
+const TALLEST_ROW: u32 = 65536u;
+const SMALLEST_REACH: u32 = 256u;
+const LARGEST_REACH: u32 = 1073741824u;
+const PHASE_STEP: i32 = 128;
+const OPEN: u32 = 0xFFFFFFFFu;
+const SLOTS: u32 = 8u;
+
+const FORM_BOX: u32 = 0u;
+const FORM_PARTS: u32 = 1u;
+const FORM_IMAGE: u32 = 2u;
+const FORM_TILTED: u32 = 3u;
+const FORM_SEEN_BOX: u32 = 4u;
+const FORM_SEEN: u32 = 5u;
+
+const KIND_BOXES: u32 = 0u;
+const KIND_IMAGES: u32 = 1u;
+const KIND_SEEN: u32 = 2u;
+const KIND_LARGE: u32 = 3u;
+
+struct Node {
+    center: vec2<i32>,
+    half_size: vec2<u32>,
+    level: u32,
+    base: i32,
+    tilt: vec2<i32>,
+    cells: u32,
+}
+
+struct Image {
+    node: Node,
+    center: vec2<i32>,
+    radius: i32,
+    mantissa: vec4<u32>,
+    exponent: i32,
+    share: u32,
+    dither: u32,
+    // Which accumulator, and whether light is taken away.
+    is_sharing: bool,
+    is_removed: bool,
+    slot: u32,
+}
+
+fn low_half(word: u32) -> i32 {
+    return (bitcast<i32>(word) << 16u) >> 16u;
+}
+
+fn high_half(word: u32) -> i32 {
+    return bitcast<i32>(word) >> 16u;
+}
+
+// Accumulators
+
+fn add_word(is_sharing: bool, at: u32, value: u32) -> u32 {
+    if is_sharing {
+        return atomicAdd(&sharing[at], value);
+    }
+    return atomicAdd(&free[at], value);
+}
+
+fn add_wide(is_sharing: bool, at: u32, value: vec2<u32>) {
+    let before = add_word(is_sharing, at, value.x);
+    let high = value.y + select(0u, 1u, before + value.x < before);
+    if high != 0u {
+        add_word(is_sharing, at + 1u, high);
+    }
+}
+
+// Light of `near` and `far` at one end of a run, of either sign; returns the coverage that it throws at the row.
+fn add_end(image: ptr<function, Image>, line: u32, last: i32, at: i32, value: array<vec2<u32>, 4>, is_negative: bool) -> vec2<u32> {
+    let column = (at >> POSITION_BITS) + 1;
+    let rest = u32(PIXEL - (at & (PIXEL - 1)));
+    let first = clamp(column, 0, last);
+    let second = clamp(column + 1, 0, last);
+    let is_sharing = (*image).is_sharing;
+    var total = vec2<u32>(0u, 0u);
+    for (var c = 0u; c < 4u; c += 1u) {
+        var near: vec2<u32>;
+        var far: vec2<u32>;
+        if IS_WIDE {
+            near = wide_right(wide_times(value[c], rest), POSITION_BITS);
+            far = wide_sum(value[c], wide_negative(near));
+        } else {
+            near = vec2<u32>(mul_shift(value[c].x, rest, POSITION_BITS), 0u);
+            far = vec2<u32>(value[c].x - near.x, 0u);
+        }
+        if c == 3u {
+            total = wide_sum(wide_times(near, u32(last - first)), wide_times(far, u32(last - second)));
+        }
+        if is_negative {
+            near = wide_negative(near);
+            far = wide_negative(far);
+        }
+        if IS_WIDE {
+            if any(near != vec2<u32>()) {
+                add_wide(is_sharing, line + u32(first) * 8u + 2u * c, near);
+            }
+            if any(far != vec2<u32>()) {
+                add_wide(is_sharing, line + u32(second) * 8u + 2u * c, far);
+            }
+        } else {
+            if near.x != 0u {
+                add_word(is_sharing, line + u32(first) * 4u + c, near.x);
+            }
+            if far.x != 0u {
+                add_word(is_sharing, line + u32(second) * 4u + c, far.x);
+            }
+        }
+    }
+    if is_negative {
+        return wide_negative(total);
+    }
+    return total;
+}
+
+fn add_run(image: ptr<function, Image>, row: i32, start: i32, end: i32, value: array<vec2<u32>, 4>) {
+    let level = pen.levels[(*image).node.level];
+    let stride = u32(level.width + 3);
+    let last = level.width + 2;
+    let place = u32(row + 1);
+    let words = select(4u, 8u, IS_WIDE);
+    let line = level.pixels + place * stride * words;
+    let is_removed = (*image).is_removed;
+    let begun = add_end(image, line, last, start, value, is_removed);
+    let ended = add_end(image, line, last, end, value, !is_removed);
+    let total = wide_sum(begun, ended);
+    if any(total != vec2<u32>()) {
+        add_wide((*image).is_sharing, level.totals + 2u * (place * SLOTS + (*image).slot), total);
+    }
+}
+
+fn clamped(image: ptr<function, Image>, x: i32) -> i32 {
+    let level = pen.levels[(*image).node.level];
+    return clamp(x, -4 * PIXEL, (level.width + 4) << POSITION_BITS);
+}
+
+// Images
+
+fn seed(node: Node) -> u32 {
+    let x = bitcast<u32>(node.center.x - pen.middle.x);
+    let y = bitcast<u32>(node.center.y - pen.middle.y);
+    return ((x * 0x9E3779B1u) ^ (y * 0x85EBCA77u) ^ node.level) * 0xC2B2AE3Du;
+}
+
+fn shift_to(image: ptr<function, Image>, mean: vec2<i32>) {
+    let x = signed_mul_shift((*image).radius, mean.x, 14u);
+    let y = signed_mul_shift((*image).radius, mean.y, 14u);
+    (*image).center += vec2<i32>(x, -y);
+}
+
+fn lean(image: ptr<function, Image>) {
+    shift_to(image, ((*image).node.tilt * pen.tilt_shift) >> vec2<u32>(14u));
+}
+
+fn light_shift(image: ptr<function, Image>, bits: u32) -> u32 {
+    return u32(clamp(i32(bits) - (*image).exponent, 0, 63));
+}
+
+fn value_of(image: ptr<function, Image>, height: u32, share: u32, shift: u32, row: i32) -> array<vec2<u32>, 4> {
+    let from_center = bitcast<u32>(row - ((*image).center.y >> POSITION_BITS));
+    var hash = (*image).dither + from_center * 0x9E3779B1u;
+    hash = (hash ^ (hash >> 15u)) * 0x2C1B3C6Du;
+    var dither: vec2<u32>;
+    if shift >= 32u {
+        let more = shift - 32u;
+        dither = vec2<u32>(hash << more, select(hash >> ((32u - more) & 31u), 0u, more == 0u));
+    } else {
+        dither = vec2<u32>(select(hash >> ((32u - shift) & 31u), 0u, shift == 0u), 0u);
+    }
+    let shared_height = mul_shift(height, share, 24u);
+    var value: array<vec2<u32>, 4>;
+    for (var c = 0u; c < 4u; c += 1u) {
+        value[c] = wide_right(wide_sum(wide_product((*image).mantissa[c], shared_height), dither), shift);
+    }
+    return value;
+}
+
+// Boxes
+
+fn draw_box(image: ptr<function, Image>, half_size: vec2<u32>, of_aperture: vec2<u32>) {
+    let radius = u32(abs((*image).radius));
+    let half_x = max(hypotenuse(half_size.x, mul_shift(radius, of_aperture.x, 16u)), SMALLEST_HALF);
+    let half_y = max(hypotenuse(half_size.y, mul_shift(radius, of_aperture.y, 16u)), SMALLEST_HALF);
+    let center = (*image).center;
+    let top = center.y - i32(half_y);
+    let bottom = center.y + i32(half_y);
+    let level = pen.levels[(*image).node.level];
+    let first = max(top >> POSITION_BITS, -1);
+    let last = min((bottom - 1) >> POSITION_BITS, level.height);
+    if first > last {
+        return;
+    }
+    let across = reciprocal_of(half_x);
+    let down = reciprocal_of(half_y);
+    let density = mul_shift(across.value, (*image).share, 26u);
+    let shift = light_shift(image, HEIGHT_BITS);
+    for (var row = first; row <= last; row += 1) {
+        let overlap = u32(min(bottom, (row + 1) << POSITION_BITS) - max(top, row << POSITION_BITS));
+        let share = mul_shift(overlap, down.value, down.bits + 1u);
+        let height = mul_shift(share, density, across.bits + 25u);
+        let value = value_of(image, height, WHOLE, shift, row);
+        add_run(image, row, center.x - i32(half_x), center.x + i32(half_x), value);
+    }
+}
+
+fn stretched(half_size: u32, tilt: i32, mean: i32, depth_share: i32) -> u32 {
+    let slope = (tilt * depth_share) >> 14u;
+    let factor = u32(max(abs(ONE + ((slope * mean) >> 14u)), ONE / 16));
+    return min(mul_shift(half_size, factor, 14u), LARGEST_HALF);
+}
+
+fn draw_parts(image: ptr<function, Image>, depth_share: i32) {
+    let node = (*image).node;
+    let tilt = (node.tilt * pen.stop) >> vec2<u32>(14u);
+    for (var index = 0u; index < pen.part_count; index += 1u) {
+        let of_part = pen.parts[index];
+        let exact = (node.base << 10u) + ((tilt.x * of_part.mean.x + tilt.y * of_part.mean.y) >> 4u);
+        let weight = exact >> 10u;
+        if weight <= 0 {
+            continue;
+        }
+        var part = *image;
+        part.share = mul_shift(mul_shift((*image).share, of_part.share, 24u), u32(exact), 24u);
+        part.dither = (*image).dither + index;
+        shift_to(&part, of_part.mean + tilt * of_part.variance / vec2<i32>(weight));
+        let half_x = stretched(node.half_size.x, tilt.x, of_part.mean.x, depth_share);
+        let half_y = stretched(node.half_size.y, tilt.y, of_part.mean.y, depth_share);
+        draw_box(&part, vec2<u32>(half_x, half_y), of_part.half);
+    }
+}
+
+fn part_of_stencil(radius: u32) -> u32 {
+    if radius <= pen.stencil_radius {
+        return 0u;
+    }
+    if radius - pen.stencil_radius >= pen.stencil_radius {
+        return 65536u;
+    }
+    let part = mul_shift(radius - pen.stencil_radius, pen.per_stencil_radius, 16u);
+    return mul_shift(mul_shift(part, part, 16u), 3u * 65536u - 2u * part, 16u);
+}
+
+// What cells let through
+
+struct SeenRuns {
+    pixel: i32,
+    reach: i32,
+    per_reach: Divisor,
+    is_turned: bool,
+    // Where the cells lie in `cells`; OPEN for all.
+    cells: u32,
+}
+
+fn seen_runs_of(image: ptr<function, Image>, cells: u32) -> SeenRuns {
+    let radius = u32(abs((*image).radius));
+    let wide = wide_right(wide_product(radius, pen.per_stop), 14u);
+    let reach = clamp(select(wide.x, LARGEST_REACH, wide.y > 0u), SMALLEST_REACH, LARGEST_REACH);
+    let pixel = i32(min((1u << 26u) / max(radius, 1u), TALLEST_ROW));
+    return SeenRuns(pixel, i32(reach), divisor_of(reach), (*image).radius < 0, cells);
+}
+
+fn part_of(x: i32, factor: i32, shift: u32) -> i32 {
+    return (x >> shift) * factor + (((x & ((1 << shift) - 1)) * factor) >> shift);
+}
+
+fn edge(seen: SeenRuns, center: i32, cell: u32) -> i32 {
+    if cell == 0u {
+        return i32(-2147483647 - 1);
+    }
+    if cell == 16u {
+        return 2147483647;
+    }
+    return center + part_of(seen.reach, i32(cell) - 8, 3u);
+}
+
+// Adds what is let through of a row's span; with `is_found` only finds how much it is, times 2²⁴ over 2^`finer`.
+fn seen_row(
+    image: ptr<function, Image>, seen: SeenRuns, row: i32, v: i32, span: vec2<i32>, height: u32, shift: u32, finer: u32, is_found: bool,
+) -> u32 {
+    let node = (*image).node;
+    let center = (*image).center;
+    let from_center = bitcast<u32>(row - (center.y >> POSITION_BITS));
+    let jitter = i32((((*image).dither ^ (from_center * 0x85EBCA77u)) * 0xC2B2AE35u) >> 18u);
+    let jittered = v + ((seen.pixel * (jitter - ONE / 2)) >> 14u);
+    let of_baked = (jittered * pen.stop) >> 14u;
+    let cell_row = u32(clamp((of_baked + ONE) >> 11u, 0, 15));
+    var bits = 0xFFFFu;
+    if seen.cells != OPEN {
+        bits = (cells[seen.cells + cell_row / 2u] >> (16u * (cell_row % 2u))) & 0xFFFFu;
+    }
+    if seen.is_turned {
+        bits = reverseBits(bits) >> 16u;
+    }
+    let is_even = all(node.tilt == vec2<i32>()) && node.base == ONE;
+    let base = node.base + ((node.tilt.y * ((v * pen.stop) >> 14u)) >> 14u);
+    let toward = select(node.tilt.x, -node.tilt.x, seen.is_turned);
+    let steep = abs(node.tilt.x);
+    let halvings = select(select(2u, 1u, steep < ONE / 3), 0u, steep < ONE / 10);
+    var passing = 0u;
+    while bits != 0u {
+        let start = countTrailingZeros(bits);
+        let end = start + countTrailingZeros(~(bits >> start));
+        bits &= 0xFFFFFFFFu << end;
+        let begins = max(edge(seen, center.x, start), span.x);
+        let ends = min(edge(seen, center.x, end), span.y);
+        if begins >= ends {
+            continue;
+        }
+        let shift_of_part = select(halvings, 0u, is_even);
+        let width = ends - begins;
+        for (var at = 0; at < (1 << shift_of_part); at += 1) {
+            var from_x = begins + part_of(width, at, shift_of_part);
+            var to_x = begins + part_of(width, at + 1, shift_of_part);
+            var weight = ONE;
+            if !is_even {
+                let middle = divide(seen.per_reach, (from_x >> 1u) + (to_x >> 1u) - center.x);
+                let half = divide(seen.per_reach, (to_x - from_x) >> 1u);
+                weight = base + ((toward * middle) >> 14u);
+                if weight <= 0 {
+                    continue;
+                }
+                let leaning = clamp(toward * ((half * half) >> 14u) / (3 * weight), -half, half);
+                let moved = signed_mul_shift(seen.reach, leaning, 14u);
+                from_x += moved;
+                to_x += moved;
+            }
+            let weighted = mul_shift(height, u32(weight), 14u);
+            if is_found {
+                passing += mul_shift(u32(to_x - from_x), weighted, finer);
+            } else {
+                let value = value_of(image, weighted, (*image).share, shift, row);
+                add_run(image, row, clamped(image, from_x), clamped(image, to_x), value);
+            }
+        }
+    }
+    return passing;
+}
+
+// Stencils: a table of (first run, runs, bits of the heights), then runs of four words.
+
+fn draw_image(image: ptr<function, Image>, place: u32, cells: u32, share: u32) {
+    let first_run = stencils[2u * place];
+    let count = stencils[2u * place + 1u] & 0xFFFFu;
+    let height_bits = stencils[2u * place + 1u] >> 16u;
+    let base = ((*image).center.y + PHASE_STEP / 2) >> POSITION_BITS;
+    let level = pen.levels[(*image).node.level];
+    let shift = light_shift(image, height_bits);
+    let center = (*image).center.x;
+    if KIND == KIND_IMAGES {
+        for (var k = 0u; k < count; k += 1u) {
+            let at = first_run + 4u * k;
+            let row = base + high_half(stencils[at + 3u]);
+            if row >= -1 && row <= level.height {
+                let value = value_of(image, stencils[at + 2u], (*image).share, shift, row);
+                let start = center + bitcast<i32>(stencils[at]);
+                let end = center + bitcast<i32>(stencils[at + 1u]);
+                add_run(image, row, start, end, value);
+            }
+        }
+    } else {
+        let finer = POSITION_BITS + height_bits - HEIGHT_BITS;
+        let seen = seen_runs_of(image, cells);
+        var passing = 0u;
+        for (var pass_number = 0u; pass_number < 2u; pass_number += 1u) {
+            for (var k = 0u; k < count; k += 1u) {
+                let at = first_run + 4u * k;
+                let row = base + high_half(stencils[at + 3u]);
+                let v = low_half(stencils[at + 3u]);
+                let span = vec2<i32>(center + bitcast<i32>(stencils[at]), center + bitcast<i32>(stencils[at + 1u]));
+                let is_found = pass_number == 0u;
+                if is_found || (row >= -1 && row <= level.height) {
+                    passing += seen_row(image, seen, row, v, span, stencils[at + 2u], shift, finer, is_found);
+                }
+            }
+            (*image).share = ratio(share, passing, LARGEST_SCALE);
+        }
+    }
+}
+
+// Large images; `height`, its bits and the share were found when the list was made.
+
+fn draw_large(image: ptr<function, Image>, height_of_clear: u32, height_bits: u32, cells: u32) {
+    let size = max(abs((*image).radius), PIXEL);
+    let radius = select(size, -size, (*image).radius < 0);
+    let per_radius = divisor_of(u32(size));
+    let center = (*image).center;
+    let level = pen.levels[(*image).node.level];
+    let seen = seen_runs_of(image, cells);
+    let shift = light_shift(image, height_bits);
+    let first = max((center.y - size) >> POSITION_BITS, -1);
+    let last = min((center.y + size) >> POSITION_BITS, level.height);
+    for (var row = first; row <= last; row += 1) {
+        let up = divide(per_radius, center.y - ((row << POSITION_BITS) + PIXEL / 2));
+        let v = select(up, -up, radius < 0);
+        let shape_row = min(mul_shift(u32(max(v + ONE, 0)), pen.shape_rows, 15u), pen.shape_rows - 1u);
+        for (var run = shape[shape_row]; run < shape[shape_row + 1u]; run += 1u) {
+            let at = pen.shape_runs + 3u * run;
+            let a = center.x + signed_mul_shift(radius, bitcast<i32>(shape[at]), 24u);
+            let b = center.x + signed_mul_shift(radius, bitcast<i32>(shape[at + 1u]), 24u);
+            let height = mul_shift(height_of_clear, shape[at + 2u], 16u);
+            let span = vec2<i32>(min(a, b), max(a, b));
+            if cells == OPEN - 1u {
+                let value = value_of(image, mul_shift(height, u32(ONE), 14u), (*image).share, shift, row);
+                add_run(image, row, clamped(image, span.x), clamped(image, span.y), value);
+            } else {
+                seen_row(image, seen, row, v, span, height, shift, 0u, false);
+            }
+        }
+    }
+}
+
+// Records: node, signed radius, what the form needs, flags.
+
+fn light_of(image: ptr<function, Image>, at: u32, gain: i32, is_coverage: bool) {
+    let bits = vec4<u32>(nodes[at + 6u], nodes[at + 7u], nodes[at + 8u], nodes[at + 9u]) * select(vec4<u32>(1u), vec4<u32>(0u, 0u, 0u, 1u), is_coverage);
+    let exponents = bits >> vec4<u32>(23u);
+    let top = max(max(exponents.x, exponents.y), max(exponents.z, exponents.w));
+    for (var c = 0u; c < 4u; c += 1u) {
+        let mantissa = select(0u, (bits[c] & 0x7FFFFFu) | 0x800000u, exponents[c] > 0u);
+        (*image).mantissa[c] = (mantissa << 7u) >> min(top - exponents[c], 31u);
+    }
+    (*image).exponent = i32(top) - 157 + gain;
+}
+
+@compute @workgroup_size(64)
+fn draw(@builtin(global_invocation_id) id: vec3<u32>, @builtin(workgroup_id) group: vec3<u32>) {
+    if id.x >= batch.x {
+        return;
+    }
+    let words = select(4u, 8u, KIND == KIND_LARGE);
+    let record = words * id.x;
+    let at = 10u * records[record];
+    let flags = records[record + 3u];
+    let form = flags & 7u;
+    let is_bright = (nodes[at + 3u] & 0x80u) != 0u;
+
+    var image: Image;
+    image.node.center = vec2<i32>(bitcast<i32>(nodes[at]), bitcast<i32>(nodes[at + 1u]));
+    image.node.half_size = vec2<u32>(nodes[at + 2u] & 0xFFFFu, nodes[at + 2u] >> 16u);
+    image.node.level = nodes[at + 3u] & 7u;
+    image.node.base = high_half(nodes[at + 3u]);
+    image.node.tilt = vec2<i32>(low_half(nodes[at + 4u]), high_half(nodes[at + 4u]));
+    image.node.cells = nodes[at + 5u];
+    if (flags & 64u) != 0u {
+        // A piece of a sample of a large cell.
+        let count = 1i << image.node.level;
+        let piece = i32(flags >> 16u);
+        let half_size = max(image.node.half_size >> vec2<u32>(image.node.level), vec2<u32>(128u));
+        let step = vec2<i32>(2 * (piece % count) + 1 - count, 2 * (piece / count) + 1 - count);
+        image.node.center += step * vec2<i32>(half_size);
+        image.node.half_size = half_size;
+        image.node.level = 0u;
+    }
+    image.center = image.node.center >> vec2<u32>(image.node.level);
+    image.radius = bitcast<i32>(records[record + 1u]) / (1i << image.node.level);
+    image.share = WHOLE;
+    image.dither = seed(image.node);
+    image.is_sharing = (flags & 8u) != 0u;
+    image.is_removed = (flags & 16u) != 0u;
+    image.slot = group.x % SLOTS;
+    let is_coverage = (flags & 32u) != 0u;
+    var gain = 0;
+    if !IS_WIDE {
+        gain = select(pen.dim_exponent, pen.coverage_exponent, is_bright);
+    }
+    light_of(&image, at, gain, is_coverage);
+
+    let of_form = records[record + 2u];
+    let mixed = part_of_stencil(u32(abs(bitcast<i32>(records[record + 1u]))));
+    let far = select(mixed, 65536u, image.node.level > 0u);
+    var through = OPEN;
+    var share = WHOLE;
+    if form == FORM_SEEN || form == FORM_SEEN_BOX {
+        through = 10u * image.node.cells;
+        share = cells[through + 8u];
+    }
+    if form == FORM_TILTED {
+        let leaning = image.node.tilt.x * pen.mean.x + image.node.tilt.y * pen.mean.y;
+        share = mul_shift(far << 8u, u32(max((image.node.base << 14u) + leaning, 0)), 28u);
+    }
+    if form == FORM_IMAGE {
+        image.share = far << 8u;
+        lean(&image);
+    }
+    if KIND == KIND_BOXES {
+        if form == FORM_PARTS {
+            image.share = WHOLE - (far << 8u);
+            draw_parts(&image, bitcast<i32>(of_form));
+        } else if form == FORM_SEEN_BOX {
+            let mean = cells[through + 9u];
+            shift_to(&image, vec2<i32>(low_half(mean), high_half(mean)));
+            image.share = share;
+            draw_box(&image, image.node.half_size, pen.half);
+        } else {
+            lean(&image);
+            shift_to(&image, pen.mean);
+            draw_box(&image, image.node.half_size, pen.half);
+        }
+    } else if KIND == KIND_LARGE {
+        image.share = records[record + 6u];
+        let seen_through = select(through, OPEN - 1u, form == FORM_IMAGE);
+        draw_large(&image, records[record + 4u], records[record + 5u], seen_through);
+    } else {
+        draw_image(&image, of_form, through, share);
+    }
+}

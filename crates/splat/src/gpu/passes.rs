@@ -1,0 +1,125 @@
+//! The compute passes of the sum, and what they are bound to.
+
+use std::sync::OnceLock;
+use wgpu::{BindGroupLayout, BufferBindingType, ComputePipeline, Device, ShaderModule};
+
+/// Kinds of records, as in draw.wgsl.
+pub const KINDS: usize = 4;
+
+const FIXED: &str = include_str!("fixed.wgsl");
+const DRAW: &str = include_str!("draw.wgsl");
+const RESOLVE: &str = include_str!("resolve.wgsl");
+
+/// All passes.
+pub struct Passes {
+    /// Drawing, by kind of record: onto ordinary accumulators, then onto wide ones.
+    pub draw: [[Pass; KINDS]; 2],
+    pub draw_layout: BindGroupLayout,
+    pub integrate: Pass,
+    pub integrate_wide: Pass,
+    pub integrate_layout: BindGroupLayout,
+    pub finish: Pass,
+    pub finish_layout: BindGroupLayout,
+}
+
+/// One pass, compiled when it is first needed.
+pub struct Pass {
+    module: ShaderModule,
+    layout: BindGroupLayout,
+    entry: &'static str,
+    constants: Vec<(&'static str, f64)>,
+    pipeline: OnceLock<ComputePipeline>,
+}
+
+impl Pass {
+    fn new(
+        module: &ShaderModule,
+        layout: &BindGroupLayout,
+        entry: &'static str,
+        constants: &[(&'static str, f64)],
+    ) -> Self {
+        let (module, layout, constants) = (module.clone(), layout.clone(), constants.to_vec());
+        Self { module, layout, entry, constants, pipeline: OnceLock::new() }
+    }
+
+    /// What the card runs.
+    pub fn pipeline(&self, device: &Device) -> &ComputePipeline {
+        self.pipeline.get_or_init(|| {
+            let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+                label: Some(self.entry),
+                bind_group_layouts: &[Some(&self.layout)],
+                ..wgpu::PipelineLayoutDescriptor::default()
+            });
+            device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+                label: Some(self.entry),
+                layout: Some(&layout),
+                module: &self.module,
+                entry_point: Some(self.entry),
+                compilation_options: wgpu::PipelineCompilationOptions {
+                    constants: &self.constants,
+                    ..wgpu::PipelineCompilationOptions::default()
+                },
+                cache: None,
+            })
+        })
+    }
+}
+
+/// What a binding is.
+#[derive(Clone, Copy)]
+enum Bound {
+    Read,
+    Write,
+    Uniform,
+}
+
+impl Passes {
+    /// Has a card read the shaders.
+    pub fn new(device: &Device) -> Self {
+        use Bound::{Read, Uniform, Write};
+        let module = |name: &'static str, source: &str| {
+            device.create_shader_module(wgpu::ShaderModuleDescriptor {
+                label: Some(name),
+                source: wgpu::ShaderSource::Wgsl(format!("{FIXED}\n{source}").into()),
+            })
+        };
+        let (draw, resolve) = (module("draw", DRAW), module("resolve", RESOLVE));
+        let reads = (0..6).map(|binding| (binding, Read));
+        let draw_layout = layout(device, reads.chain([(6, Write), (7, Write), (8, Uniform)]));
+        let integrate_layout =
+            layout(device, [(0, Read), (1, Write), (2, Uniform), (3, Uniform), (4, Write)]);
+        let finish_layout =
+            layout(device, [(2, Uniform), (3, Uniform), (5, Read), (6, Read), (7, Write), (8, Write)]);
+        let of_kind = |is_wide: f64, kind: usize| {
+            Pass::new(&draw, &draw_layout, "draw", &[("IS_WIDE", is_wide), ("KIND", kind as f64)])
+        };
+        Self {
+            draw: [0.0, 1.0].map(|is_wide| std::array::from_fn(|kind| of_kind(is_wide, kind))),
+            draw_layout: draw_layout.clone(),
+            integrate: Pass::new(&resolve, &integrate_layout, "integrate", &[]),
+            integrate_wide: Pass::new(&resolve, &integrate_layout, "integrate_wide", &[]),
+            integrate_layout: integrate_layout.clone(),
+            finish: Pass::new(&resolve, &finish_layout, "finish", &[]),
+            finish_layout: finish_layout.clone(),
+        }
+    }
+}
+
+fn layout(device: &Device, bound: impl IntoIterator<Item = (u32, Bound)>) -> BindGroupLayout {
+    let entry = |(binding, bound)| wgpu::BindGroupLayoutEntry {
+        binding,
+        visibility: wgpu::ShaderStages::COMPUTE,
+        ty: wgpu::BindingType::Buffer {
+            ty: match bound {
+                Bound::Read => BufferBindingType::Storage { read_only: true },
+                Bound::Write => BufferBindingType::Storage { read_only: false },
+                Bound::Uniform => BufferBindingType::Uniform,
+            },
+            has_dynamic_offset: false,
+            min_binding_size: None,
+        },
+        count: None,
+    };
+    let entries: Vec<_> = bound.into_iter().map(entry).collect();
+    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: None, entries: &entries })
+}

@@ -1,0 +1,228 @@
+//! Accumulators to a picture, on the card.
+
+use crate::gpu::Gpu;
+use crate::gpu::device::Lost;
+use crate::gpu::passes::Pass;
+use crate::gpu::sums::{Layout, Level};
+use crate::nodes::{BRIGHT, Nodes};
+use crate::resolve::{Overflow, Quanta};
+use std::ops::Range;
+use std::sync::mpsc;
+use wgpu::{BindGroup, BindGroupLayout, Buffer, BufferUsages};
+
+/// Lines, shares and picture.
+pub struct Resolve {
+    /// Of the picture.
+    pub size: [usize; 2],
+    levels: Vec<Level>,
+    /// What resolve.wgsl is told of each level.
+    uniforms: Vec<Buffer>,
+    wide_uniform: Buffer,
+    frame: Buffer,
+    lines: [Buffer; 2],
+    shares: Buffer,
+    picture: Buffer,
+    overflow: Buffer,
+}
+
+/// Words of `Level` and of `Frame` in resolve.wgsl.
+const LEVEL_WORDS: usize = 12;
+const FRAME_WORDS: usize = 12;
+
+impl Resolve {
+    pub fn new(gpu: &Gpu, size: [usize; 2], layout: &Layout) -> Result<Self, Lost> {
+        let storage = BufferUsages::STORAGE | BufferUsages::COPY_DST | BufferUsages::COPY_SRC;
+        let uniform = BufferUsages::UNIFORM | BufferUsages::COPY_DST;
+        let pixels = size[0] * size[1];
+        let mut uniforms = Vec::new();
+        for (k, level) in layout.levels.iter().enumerate() {
+            let buffer = gpu.buffer("level", LEVEL_WORDS, uniform)?;
+            gpu.write(&buffer, &words_of_level(k, level, layout.levels.get(k + 1)));
+            uniforms.push(buffer);
+        }
+        let lines = || gpu.buffer("lines", 4 * layout.lines, storage);
+        let resolve = Self {
+            size,
+            levels: layout.levels.clone(),
+            uniforms,
+            wide_uniform: gpu.buffer("wide level", LEVEL_WORDS, uniform)?,
+            frame: gpu.buffer("frame", FRAME_WORDS, uniform)?,
+            lines: [lines()?, lines()?],
+            shares: gpu.buffer("shares", 2 * pixels, storage)?,
+            picture: gpu.buffer("picture", 4 * pixels, storage)?,
+            overflow: gpu.buffer("overflow", 1, storage)?,
+        };
+        Ok(resolve)
+    }
+
+    /// Bytes on the card.
+    pub fn bytes(&self) -> usize {
+        let buffers = self.lines.iter().chain([&self.shares, &self.picture]);
+        buffers.map(|buffer| buffer.size() as usize).sum()
+    }
+
+    /// Tells what is asked for.
+    pub fn begin(&self, gpu: &Gpu, nodes: &Nodes, rows: Range<u32>, is_sharing: bool, is_painted: bool) {
+        let (dim, wide) = Quanta::of(nodes);
+        let largest = dim.largest_coverage.min(i32::MAX as i64) as u32;
+        let wide_largest = wide.largest_coverage as u64;
+        gpu.write(
+            &self.frame,
+            &[
+                rows.start,
+                rows.end,
+                self.size[0] as u32,
+                is_painted as u32,
+                0,
+                (dim.quantum as f32).to_bits(),
+                (wide.quantum as f32).to_bits(),
+                largest,
+                wide_largest as u32,
+                (wide_largest >> 32) as u32,
+                is_sharing as u32,
+                0,
+            ],
+        );
+        gpu.write(&self.overflow, &[0]);
+    }
+
+    /// Integrates the sums of free (0) or sharing (1) samples to lines, coarse levels first.
+    pub fn integrate(&self, gpu: &Gpu, kind: usize, sums: &Buffer, rows: &Range<u32>) {
+        let passes = gpu.passes();
+        for (k, level) in self.levels.iter().enumerate().rev() {
+            let bound = self.bound(gpu, sums, kind, &self.uniforms[k]);
+            // The rows asked for, and one more to either side.
+            let [first, end] = if k == 0 {
+                [rows.start as i32, rows.end as i32]
+            } else {
+                [(rows.start as i32 >> k) - 1, ((rows.end as i32 - 1) >> k) + 2]
+            };
+            let count = end.min(level.height as i32 + 1) - first.max(-1);
+            dispatch(gpu, &passes.integrate, &bound, [count.max(0) as u32, 1]);
+        }
+    }
+
+    /// Adds the sums of bright samples.
+    pub fn integrate_wide(
+        &self,
+        gpu: &Gpu,
+        kind: usize,
+        sums: &Buffer,
+        layout: &Layout,
+        rows: &Range<u32>,
+    ) -> Result<(), Lost> {
+        gpu.write(&self.wide_uniform, &words_of_level(0, layout.levels.first().ok_or(Lost)?, None));
+        let bound = self.bound(gpu, sums, kind, &self.wide_uniform);
+        dispatch(gpu, &gpu.passes().integrate_wide, &bound, [rows.len() as u32, 1]);
+        Ok(())
+    }
+
+    fn bound(&self, gpu: &Gpu, sums: &Buffer, kind: usize, level: &Buffer) -> BindGroup {
+        let buffers = [sums, &self.lines[kind], level, &self.frame, &self.overflow];
+        gpu.bind(&gpu.passes().integrate_layout, (0..).zip(buffers))
+    }
+
+    /// Makes shares or the picture of the lines.
+    pub fn finish(&self, gpu: &Gpu, rows: &Range<u32>) {
+        let (level, [free, sharing]) = (&self.uniforms[0], &self.lines);
+        let buffers =
+            [(2, level), (3, &self.frame), (5, free), (6, sharing), (7, &self.shares), (8, &self.picture)];
+        let bound = gpu.bind(&gpu.passes().finish_layout, buffers);
+        let across = (self.size[0] as u32).div_ceil(64);
+        dispatch(gpu, &gpu.passes().finish, &bound, [across, rows.len() as u32]);
+    }
+
+    /// Whether all integers held what they were given.
+    pub fn check(&self, gpu: &Gpu) -> Result<(), super::GpuError> {
+        match gpu.read(&self.overflow, 0..4)?.first() {
+            Some(0) => Ok(()),
+            Some(_) => Err(Overflow.into()),
+            None => Err(Lost.into()),
+        }
+    }
+
+    /// Pixel rows of the picture: red, green, blue and coverage.
+    pub fn read(&self, gpu: &Gpu, rows: Range<u32>) -> Result<Vec<[f32; 4]>, Lost> {
+        let row = 16 * self.size[0] as u64;
+        let words = gpu.read(&self.picture, rows.start as u64 * row..rows.end as u64 * row)?;
+        Ok(words.chunks_exact(4).map(|p| [p[0], p[1], p[2], p[3]].map(f32::from_bits)).collect())
+    }
+}
+
+impl Quanta {
+    /// Of ordinary and of bright sums.
+    fn of(nodes: &Nodes) -> (Self, Self) {
+        let dim = Self::new(nodes.scale.dim_bits, 32, nodes.brightest.min(BRIGHT as f64));
+        (dim, Self::new(nodes.scale.bright_bits, 64, nodes.brightest))
+    }
+}
+
+fn words_of_level(k: usize, level: &Level, coarser: Option<&Level>) -> [u32; LEVEL_WORDS] {
+    let [coarse_lines, coarse_width, coarse_height] =
+        coarser.map_or([0; 3], |level| [level.lines, level.width as u32, level.height as u32]);
+    let (width, height) = (level.width as u32, level.height as u32);
+    [
+        width,
+        height,
+        level.pixels,
+        level.totals,
+        level.lines,
+        coarse_lines,
+        coarse_width,
+        coarse_height,
+        k as u32,
+        0,
+        0,
+        0,
+    ]
+}
+
+fn dispatch(gpu: &Gpu, kernel: &Pass, bound: &BindGroup, [x, y]: [u32; 2]) {
+    let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    {
+        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+        pass.set_pipeline(kernel.pipeline(gpu.device()));
+        pass.set_bind_group(0, bound, &[]);
+        pass.dispatch_workgroups(x, y, 1);
+    }
+    gpu.queue().submit([encoder.finish()]);
+}
+
+impl Gpu {
+    /// Buffers at their bindings.
+    pub(super) fn bind<'a>(
+        &self,
+        layout: &BindGroupLayout,
+        buffers: impl IntoIterator<Item = (u32, &'a Buffer)>,
+    ) -> BindGroup {
+        let entries = buffers
+            .into_iter()
+            .map(|(binding, buffer)| wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() });
+        let entries: Vec<_> = entries.collect();
+        let descriptor = wgpu::BindGroupDescriptor { label: None, layout, entries: &entries };
+        self.device().create_bind_group(&descriptor)
+    }
+
+    /// The words of a range of bytes of a buffer.
+    pub(super) fn read(&self, buffer: &Buffer, range: Range<u64>) -> Result<Vec<u32>, Lost> {
+        self.check()?;
+        let size = range.end - range.start;
+        let usage = BufferUsages::MAP_READ | BufferUsages::COPY_DST;
+        let staging = self.buffer("read", size as usize / 4, usage)?;
+        let mut encoder = self.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        encoder.copy_buffer_to_buffer(buffer, range.start, &staging, 0, size);
+        self.queue().submit([encoder.finish()]);
+        let (sender, receiver) = mpsc::channel();
+        staging.map_async(wgpu::MapMode::Read, 0..size, move |result| {
+            // Nobody listens any more where the device was lost meanwhile.
+            let _ = sender.send(result.is_ok());
+        });
+        self.device().poll(wgpu::PollType::wait_indefinitely()).map_err(|_| Lost)?;
+        if !receiver.try_recv().unwrap_or(false) {
+            return Err(Lost);
+        }
+        let view = staging.get_mapped_range(0..size).map_err(|_| Lost)?;
+        self.check()?;
+        Ok(view.chunks_exact(4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect())
+    }
+}

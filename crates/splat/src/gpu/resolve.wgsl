@@ -1,0 +1,319 @@
+// Accumulators to a picture: the twin of ../resolve.rs and ../partition.rs.
+//
+// Floats are added and multiplied in the same order as there. A product that is added to something goes through `exact`,
+// for compilers like to round the two as one.
+
+struct Level {
+    width: i32,
+    height: i32,
+    // Words of the accumulator before its pixels, and before its totals.
+    pixels: u32,
+    totals: u32,
+    // Places of this level's lines, and of the next coarser one's, which has this size; 0 wide: there is none.
+    lines: u32,
+    coarse_lines: u32,
+    coarse_width: i32,
+    coarse_height: i32,
+    // Its pixel's side is 2 to this.
+    level: u32,
+}
+
+struct Frame {
+    // Pixel rows that are asked for.
+    first: i32,
+    end: i32,
+    width: i32,
+    is_painted: u32,
+    // Always 0, which no compiler knows.
+    zero: u32,
+    quantum: f32,
+    wide_quantum: f32,
+    // More coverage than this may be with a colour that has wrapped.
+    largest: i32,
+    wide_largest: vec2<u32>,
+    // Whether shares are found, or a picture is made.
+    is_sharing: u32,
+}
+
+@group(0) @binding(0) var<storage, read> sums: array<u32>;
+@group(0) @binding(1) var<storage, read_write> lines: array<vec4<f32>>;
+@group(0) @binding(2) var<uniform> level: Level;
+@group(0) @binding(3) var<uniform> frame: Frame;
+@group(0) @binding(4) var<storage, read_write> overflow: atomic<u32>;
+
+const THREADS: u32 = 256u;
+const SLOTS: u32 = 8u;
+
+fn exact(x: f32) -> f32 {
+    return bitcast<f32>(bitcast<u32>(x) ^ frame.zero);
+}
+
+// The nearest float, ties to even.
+fn float_of(x: u32) -> f32 {
+    if x < 0x1000000u {
+        return f32(x);
+    }
+    let shift = 8u - countLeadingZeros(x);
+    let rest = x & ((1u << shift) - 1u);
+    let middle = 1u << (shift - 1u);
+    var top = x >> shift;
+    if rest > middle || (rest == middle && (top & 1u) == 1u) {
+        top += 1u;
+    }
+    return f32(top) * f32(1u << shift);
+}
+
+fn signed_float(x: i32) -> f32 {
+    let size = float_of(u32(abs(x)));
+    return select(size, -size, x < 0);
+}
+
+fn wide_float(x: vec2<u32>) -> f32 {
+    let is_negative = (x.y & 0x80000000u) != 0u;
+    var size = x;
+    if is_negative {
+        size = wide_negative(x);
+    }
+    var float: f32;
+    if size.y == 0u {
+        float = float_of(size.x);
+    } else {
+        let zeros = countLeadingZeros(size.y);
+        let shift = 32u - zeros;
+        let kept = wide_right(size, shift).x;
+        let lost = size.x & select((1u << (shift & 31u)) - 1u, 0xFFFFFFFFu, shift == 32u);
+        // What is lost decides ties.
+        float = float_of(kept | select(0u, 1u, lost != 0u)) * bitcast<f32>((127u + shift) << 23u);
+    }
+    return select(float, -float, is_negative);
+}
+
+// Bilinear: a fine pixel lies a quarter of a coarse one off its centre.
+
+fn coarse(x: i32, y: i32) -> vec4<f32> {
+    if x < -1 || y < -1 || x > level.coarse_width || y > level.coarse_height {
+        return vec4<f32>();
+    }
+    return lines[level.coarse_lines + u32((y + 1) * (level.coarse_width + 2) + x + 1)];
+}
+
+fn mix_of(near: vec4<f32>, far: vec4<f32>) -> vec4<f32> {
+    let a = 0.75 * near;
+    return vec4<f32>(exact(a.x), exact(a.y), exact(a.z), exact(a.w)) + 0.25 * far;
+}
+
+fn upsampled(x: i32, y: i32) -> vec4<f32> {
+    if level.coarse_width == 0 {
+        return vec4<f32>();
+    }
+    let near = vec2<i32>(x, y) >> vec2<u32>(1u);
+    let far = near + select(vec2<i32>(1), vec2<i32>(-1), (vec2<i32>(x, y) & vec2<i32>(1)) == vec2<i32>(0));
+    let left = mix_of(coarse(near.x, near.y), coarse(near.x, far.y));
+    let right = mix_of(coarse(far.x, near.y), coarse(far.x, far.y));
+    return mix_of(left, right);
+}
+
+// The row of this level that a workgroup integrates.
+fn row_of(group: u32) -> i32 {
+    var first = frame.first;
+    if level.level > 0u {
+        first = (frame.first >> level.level) - 1;
+    }
+    return max(first, -1) + i32(group);
+}
+
+fn end_of_rows() -> i32 {
+    var end = frame.end;
+    if level.level > 0u {
+        end = ((frame.end - 1) >> level.level) + 2;
+    }
+    return min(end, level.height + 1);
+}
+
+fn total_of(row: i32) -> vec2<u32> {
+    var total = vec2<u32>();
+    for (var slot = 0u; slot < SLOTS; slot += 1u) {
+        let at = level.totals + 2u * (u32(row + 1) * SLOTS + slot);
+        total = wide_sum(total, vec2<u32>(sums[at], sums[at + 1u]));
+    }
+    return total;
+}
+
+var<workgroup> before: array<vec4<i32>, THREADS>;
+var<workgroup> covered_low: atomic<u32>;
+var<workgroup> covered_high: atomic<u32>;
+
+@compute @workgroup_size(THREADS)
+fn integrate(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) thread: u32) {
+    let row = row_of(group.x);
+    if row >= end_of_rows() {
+        return;
+    }
+    let count = u32(level.width + 2);
+    let line = level.pixels + u32(row + 1) * u32(level.width + 3) * 4u;
+    let segment = (count + THREADS - 1u) / THREADS;
+    let first = min(thread * segment, count);
+    let end = min(first + segment, count);
+    var sum = vec4<i32>();
+    for (var x = first; x < end; x += 1u) {
+        let at = line + 4u * x;
+        sum += vec4<i32>(vec4<u32>(sums[at], sums[at + 1u], sums[at + 2u], sums[at + 3u]));
+    }
+    before[thread] = sum;
+    for (var step = 1u; step < THREADS; step *= 2u) {
+        workgroupBarrier();
+        var more = vec4<i32>();
+        if thread >= step {
+            more = before[thread - step];
+        }
+        workgroupBarrier();
+        before[thread] += more;
+    }
+    sum = before[thread] - sum;
+    var low = 0u;
+    var high = 0;
+    for (var x = first; x < end; x += 1u) {
+        let at = line + 4u * x;
+        sum += vec4<i32>(vec4<u32>(sums[at], sums[at + 1u], sums[at + 2u], sums[at + 3u]));
+        low += u32(sum.w) & 0xFFFFu;
+        high += sum.w >> 16u;
+        if sum.w > frame.largest {
+            atomicOr(&overflow, 1u);
+        }
+        let own = vec4<f32>(signed_float(sum.x), signed_float(sum.y), signed_float(sum.z), signed_float(sum.w)) * frame.quantum;
+        lines[level.lines + u32(row + 1) * count + x] = upsampled(i32(x) - 1, row) + own;
+    }
+    atomicAdd(&covered_low, low);
+    atomicAdd(&covered_high, bitcast<u32>(high));
+    workgroupBarrier();
+    if thread == 0u {
+        let upper = bitcast<i32>(atomicLoad(&covered_high));
+        let covered = wide_sum(vec2<u32>(u32(upper) << 16u, u32(upper >> 16u)), vec2<u32>(atomicLoad(&covered_low), 0u));
+        if any(covered != total_of(row)) {
+            atomicOr(&overflow, 1u);
+        }
+    }
+}
+
+var<workgroup> wide_before: array<vec2<u32>, THREADS>;
+
+fn wide_word(line: u32, x: u32, c: u32) -> vec2<u32> {
+    let at = line + 8u * x + 2u * c;
+    return vec2<u32>(sums[at], sums[at + 1u]);
+}
+
+fn is_above(a: vec2<u32>, b: vec2<u32>) -> bool {
+    return i32(a.y) > i32(b.y) || (a.y == b.y && a.x > b.x);
+}
+
+// The sum of bright samples, added to the lines of the finest level.
+@compute @workgroup_size(THREADS)
+fn integrate_wide(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) thread: u32) {
+    let row = row_of(group.x);
+    if row >= end_of_rows() {
+        return;
+    }
+    let count = u32(level.width + 2);
+    let line = level.pixels + u32(row + 1) * u32(level.width + 3) * 8u;
+    let segment = (count + THREADS - 1u) / THREADS;
+    let first = min(thread * segment, count);
+    let end = min(first + segment, count);
+    for (var c = 0u; c < 4u; c += 1u) {
+        var sum = vec2<u32>();
+        for (var x = first; x < end; x += 1u) {
+            sum = wide_sum(sum, wide_word(line, x, c));
+        }
+        let own = sum;
+        workgroupBarrier();
+        wide_before[thread] = sum;
+        for (var step = 1u; step < THREADS; step *= 2u) {
+            workgroupBarrier();
+            var more = vec2<u32>();
+            if thread >= step {
+                more = wide_before[thread - step];
+            }
+            workgroupBarrier();
+            wide_before[thread] = wide_sum(wide_before[thread], more);
+        }
+        sum = wide_sum(wide_before[thread], wide_negative(own));
+        var covered = vec2<u32>();
+        for (var x = first; x < end; x += 1u) {
+            sum = wide_sum(sum, wide_word(line, x, c));
+            if c == 3u {
+                covered = wide_sum(covered, sum);
+                if is_above(sum, frame.wide_largest) {
+                    atomicOr(&overflow, 1u);
+                }
+            } else {
+                let at = level.lines + u32(row + 1) * count + x;
+                lines[at][c] += exact(wide_float(sum) * frame.wide_quantum);
+            }
+        }
+        if c == 3u {
+            workgroupBarrier();
+            wide_before[thread] = covered;
+            workgroupBarrier();
+            if thread == 0u {
+                var all = vec2<u32>();
+                for (var k = 0u; k < THREADS; k += 1u) {
+                    all = wide_sum(all, wide_before[k]);
+                }
+                if any(all != total_of(row)) {
+                    atomicOr(&overflow, 1u);
+                }
+            }
+        }
+    }
+}
+
+// Shares and the picture.
+
+@group(0) @binding(5) var<storage, read> free_lines: array<vec4<f32>>;
+@group(0) @binding(6) var<storage, read> sharing_lines: array<vec4<f32>>;
+@group(0) @binding(7) var<storage, read_write> shares: array<vec2<f32>>;
+@group(0) @binding(8) var<storage, read_write> picture: array<vec4<f32>>;
+
+const LARGEST_SHARE: u32 = 8u;
+const LEAST_PARTIAL: f32 = 1e-3;
+const RIPPLE: f32 = 0.1;
+const ONE: u32 = 4194304u;
+
+fn fixed_of(covered: f32) -> u32 {
+    return u32(clamp(covered * f32(ONE), 0.0, 67108863.0));
+}
+
+fn share_of(open: f32, partial: f32) -> vec2<f32> {
+    var share = 1.0;
+    if partial >= LEAST_PARTIAL {
+        let left = ONE - min(fixed_of(open), ONE);
+        share = f32(ratio(left, fixed_of(partial), LARGEST_SHARE) >> 3u) / 2097152.0;
+    }
+    let covered = open + exact(share * partial);
+    var even = 1.0;
+    if abs(covered - 1.0) <= RIPPLE {
+        even = f32(ratio(ONE, fixed_of(covered), 2u) >> 1u) / 8388608.0;
+    }
+    return vec2<f32>(share, even);
+}
+
+@compute @workgroup_size(64)
+fn finish(@builtin(global_invocation_id) id: vec3<u32>) {
+    let x = i32(id.x);
+    let y = frame.first + i32(id.y);
+    if x >= frame.width || y >= frame.end {
+        return;
+    }
+    let from_line = level.lines + u32((y + 1) * (level.width + 2) + x + 1);
+    let free = free_lines[from_line];
+    let sharing = sharing_lines[from_line];
+    let at = u32(y * frame.width + x);
+    if frame.is_sharing != 0u {
+        shares[at] = share_of(free.w, sharing.w);
+        return;
+    }
+    let share = shares[at];
+    let shared_light = share.x * sharing;
+    let light = free + vec4<f32>(exact(shared_light.x), exact(shared_light.y), exact(shared_light.z), exact(shared_light.w));
+    let even = select(share.y, 1.0, frame.is_painted != 0u);
+    picture[at] = even * light;
+}

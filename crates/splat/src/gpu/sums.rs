@@ -1,0 +1,328 @@
+//! The sums on the card: accumulators, and what is drawn onto them.
+
+use crate::draw::Pen;
+use crate::gpu::Gpu;
+use crate::gpu::device::Lost;
+use crate::gpu::passes::KINDS;
+use crate::gpu::records::{self, LARGE, Records};
+use crate::gpu::resolve::Resolve;
+use crate::gpu::scene::Scene as Uploaded;
+use crate::gpu::shapes::Shapes;
+use crate::lens_in_use::Placed;
+use crate::nodes::Nodes;
+use crate::resolve::Overflow;
+use crate::sums::Scene;
+use lens::Picture;
+use progress::{Cancelled, Progress};
+use salf::tree::LEVELS;
+use std::ops::Range;
+use wgpu::{BindGroup, Buffer, BufferUsages};
+
+/// Why a sum on the card failed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum GpuError {
+    /// The card no longer works, or does not hold the picture.
+    Lost,
+    /// A pixel holds more than its integers do.
+    Overflow,
+    /// Nobody wants it any more.
+    Cancelled,
+}
+
+impl From<Lost> for GpuError {
+    fn from(_: Lost) -> Self {
+        Self::Lost
+    }
+}
+
+impl From<Overflow> for GpuError {
+    fn from(_: Overflow) -> Self {
+        Self::Overflow
+    }
+}
+
+impl From<Cancelled> for GpuError {
+    fn from(_: Cancelled) -> Self {
+        Self::Cancelled
+    }
+}
+
+/// Records that are drawn at a time, by kind: few enough that no card takes a second.
+const BATCH: [usize; KINDS] = [1 << 16, 1 << 15, 1 << 14, 1 << 9];
+
+/// What a row's total is split into, so that not all threads add to one word.
+pub const SLOTS: usize = 8;
+
+/// Where the levels of an accumulator lie in its buffer.
+pub struct Layout {
+    pub levels: Vec<Level>,
+    /// In all.
+    pub words: usize,
+    /// Pixels of its lines: all levels with their borders.
+    pub lines: usize,
+}
+
+/// A level of an accumulator.
+#[derive(Clone, Copy)]
+pub struct Level {
+    /// Without the border.
+    pub width: usize,
+    /// Without the border.
+    pub height: usize,
+    /// Words before its pixels, and before its totals.
+    pub pixels: u32,
+    /// See `pixels`.
+    pub totals: u32,
+    /// Pixels before its lines.
+    pub lines: u32,
+}
+
+impl Layout {
+    fn new([width, height]: [usize; 2], levels: usize, words_of_pixel: usize) -> Self {
+        let mut layout = Self { levels: Vec::new(), words: 0, lines: 0 };
+        for k in 0..levels {
+            let [width, height] = [width, height].map(|side| side.div_ceil(1 << k));
+            let pixels = layout.words;
+            let totals = pixels + (width + 3) * (height + 2) * words_of_pixel;
+            layout.words = totals + 2 * SLOTS * (height + 2);
+            let lines = layout.lines as u32;
+            layout.lines += (width + 2) * (height + 2);
+            layout.levels.push(Level { width, height, pixels: pixels as u32, totals: totals as u32, lines });
+        }
+        layout
+    }
+}
+
+/// Accumulators of one kind of samples' integers.
+struct Accumulators {
+    layout: Layout,
+    /// Of free samples, then of sharing ones.
+    sums: [Buffer; 2],
+}
+
+/// The sums of a picture on a card.
+pub struct GpuSums {
+    gpu: Gpu,
+    scene: Uploaded,
+    shapes: Option<Shapes>,
+    /// Ordinary ones, then wide ones if any sample is bright.
+    accumulators: Vec<Accumulators>,
+    pens: Vec<Buffer>,
+    records: Buffer,
+    batch: Buffer,
+    resolve: Resolve,
+}
+
+impl GpuSums {
+    /// Room for a picture of this size of some nodes, which are uploaded.
+    pub fn new(gpu: &Gpu, nodes: &Nodes, size: [usize; 2]) -> Result<Self, Lost> {
+        gpu.check()?;
+        let storage = BufferUsages::STORAGE | BufferUsages::COPY_DST | BufferUsages::COPY_SRC;
+        let accumulators = |levels, words_of_pixel| {
+            let layout = Layout::new(size, levels, words_of_pixel);
+            let buffer = || gpu.buffer("sums", layout.words, storage);
+            Ok::<_, Lost>(Accumulators { sums: [buffer()?, buffer()?], layout })
+        };
+        let mut all = vec![accumulators(LEVELS, 4)?];
+        if nodes.has_bright {
+            all.push(accumulators(1, 8)?);
+        }
+        let most = (0..KINDS).map(|kind| BATCH[kind] * words_of(kind)).max().unwrap_or(0);
+        let pens: Result<Vec<_>, Lost> = all.iter().map(|_| Shapes::pen_buffer(gpu)).collect();
+        Ok(Self {
+            scene: Uploaded::new(gpu, nodes)?,
+            shapes: None,
+            resolve: Resolve::new(gpu, size, &all[0].layout)?,
+            accumulators: all,
+            pens: pens?,
+            records: gpu.buffer("records", most, BufferUsages::STORAGE | BufferUsages::COPY_DST)?,
+            batch: gpu.buffer("batch", 4, BufferUsages::UNIFORM | BufferUsages::COPY_DST)?,
+            gpu: gpu.clone(),
+        })
+    }
+
+    /// Bytes on the card, the hierarchy's first, then those of the sums.
+    pub fn bytes(&self) -> [usize; 2] {
+        let sums = self.accumulators.iter().flat_map(|accumulators| &accumulators.sums);
+        [self.scene.bytes(), sums.map(|buffer| buffer.size() as usize).sum::<usize>() + self.resolve.bytes()]
+    }
+
+    /// Forgets the aperture: the next picture is of another.
+    pub fn forget_aperture(&mut self) {
+        self.shapes = None;
+    }
+
+    /// Sets the sums to what a scene sends.
+    pub fn set(&mut self, scene: &Scene, progress: &dyn Progress) -> Result<(), GpuError> {
+        let mut encoder =
+            self.gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        for buffer in self.accumulators.iter().flat_map(|accumulators| &accumulators.sums) {
+            encoder.clear_buffer(buffer, 0, None);
+        }
+        self.gpu.queue().submit([encoder.finish()]);
+        self.take_up(&scene.pen)?;
+        let count = self.scene.chunks.len();
+        for chunk in 0..count {
+            progress.check()?;
+            let of_chunk = &self.scene.chunks[chunk];
+            let records = Records::of_blocks(scene, of_chunk.blocks.clone(), of_chunk.first);
+            self.draw(&scene.pen, chunk, &records, progress)?;
+            progress.report((chunk + 1) as f32 / count as f32);
+        }
+        Ok(())
+    }
+
+    /// Takes nodes away and adds others; both in the hierarchy's order.
+    pub fn change(
+        &mut self,
+        pen: &Pen,
+        removed: &[(u32, Placed)],
+        added: &[(u32, Placed)],
+    ) -> Result<(), GpuError> {
+        self.take_up(pen)?;
+        for chunk in 0..self.scene.chunks.len() {
+            let first = self.scene.chunks[chunk].first;
+            let end = self.scene.chunks.get(chunk + 1).map_or(u32::MAX, |next| next.first);
+            let mut records = Records::default();
+            for (changed, sign) in [(removed, -1), (added, 1)] {
+                for &(index, placed) in changed.iter().filter(|(index, _)| (first..end).contains(index)) {
+                    records.push(pen, index, first, &pen.nodes.nodes[index as usize], placed, sign);
+                }
+            }
+            self.draw(pen, chunk, &records, &progress::Unwatched)?;
+        }
+        Ok(())
+    }
+
+    /// Brings the pen to the card, and what belongs to its aperture if that is another.
+    fn take_up(&mut self, pen: &Pen) -> Result<(), Lost> {
+        self.gpu.check()?;
+        if self.shapes.is_none() {
+            self.shapes = Some(Shapes::new(&self.gpu, pen.stencils)?);
+            self.scene.upload_seen(&self.gpu, pen.nodes, pen.seen);
+        }
+        for (buffer, accumulators) in self.pens.iter().zip(&self.accumulators) {
+            Shapes::upload_pen(&self.gpu, buffer, pen, &accumulators.layout, self.scene.dim_bits);
+        }
+        Ok(())
+    }
+
+    fn draw(
+        &mut self,
+        pen: &Pen,
+        chunk: usize,
+        records: &Records,
+        progress: &dyn Progress,
+    ) -> Result<(), GpuError> {
+        let shapes = self.shapes.as_mut().ok_or(Lost)?;
+        shapes.upload(&self.gpu, pen.stencils, &records.places)?;
+        for width in 0..self.accumulators.len() {
+            let bound = self.bound(chunk, width)?;
+            for (kind, words) in records.words[width].iter().enumerate() {
+                for words in words.chunks(BATCH[kind] * words_of(kind)) {
+                    progress.check()?;
+                    self.draw_batch(&bound, width, kind, words)?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn draw_batch(&self, bound: &BindGroup, width: usize, kind: usize, words: &[u32]) -> Result<(), Lost> {
+        self.gpu.check()?;
+        let count = (words.len() / words_of(kind)) as u32;
+        self.gpu.write(&self.records, words);
+        self.gpu.write(&self.batch, &[count, 0, 0, 0]);
+        let mut encoder =
+            self.gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        {
+            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+            pass.set_pipeline(self.gpu.passes().draw[width][kind].pipeline(self.gpu.device()));
+            pass.set_bind_group(0, bound, &[]);
+            pass.dispatch_workgroups(count.div_ceil(64), 1, 1);
+        }
+        self.gpu.queue().submit([encoder.finish()]);
+        // Frees what was staged for batches that are through.
+        self.gpu.device().poll(wgpu::PollType::Poll).map(|_| ()).map_err(|_| Lost)
+    }
+
+    fn bound(&self, chunk: usize, width: usize) -> Result<BindGroup, Lost> {
+        let (chunk, shapes) = (&self.scene.chunks[chunk], self.shapes.as_ref().ok_or(Lost)?);
+        let sums = &self.accumulators[width].sums;
+        let buffers = [
+            &chunk.nodes,
+            &chunk.cells,
+            &self.pens[width],
+            &shapes.shape,
+            &shapes.stencils,
+            &self.records,
+            &sums[0],
+            &sums[1],
+            &self.batch,
+        ];
+        Ok(self.gpu.bind(&self.gpu.passes().draw_layout, (0..).zip(buffers)))
+    }
+
+    /// Finds the shares of a standard picture whose sums these are.
+    pub fn find_shares(&mut self, nodes: &Nodes) -> Result<(), GpuError> {
+        let height = self.resolve.size[1] as u32;
+        self.integrate(nodes, 0..height, true, false)?;
+        Ok(self.resolve.check(&self.gpu)?)
+    }
+
+    /// Makes the pixel rows `rows` of a picture.
+    pub fn picture(
+        &mut self,
+        nodes: &Nodes,
+        rows: Range<u32>,
+        is_painted: bool,
+        picture: &mut Picture,
+    ) -> Result<(), GpuError> {
+        self.integrate(nodes, rows.clone(), false, is_painted)?;
+        self.resolve.check(&self.gpu)?;
+        let width = self.resolve.size[0];
+        let pixels = self.resolve.read(&self.gpu, rows.clone())?;
+        let first = rows.start as usize * width;
+        let out = picture.radiance[first..].iter_mut().zip(&mut picture.coverage[first..]);
+        for (&[r, g, b, covered], (radiance, coverage)) in pixels.iter().zip(out) {
+            *radiance = [r, g, b];
+            *coverage = covered;
+        }
+        Ok(())
+    }
+
+    fn integrate(
+        &self,
+        nodes: &Nodes,
+        rows: Range<u32>,
+        is_sharing: bool,
+        is_painted: bool,
+    ) -> Result<(), GpuError> {
+        self.gpu.check()?;
+        self.resolve.begin(&self.gpu, nodes, rows.clone(), is_sharing, is_painted);
+        for kind in 0..2 {
+            self.resolve.integrate(&self.gpu, kind, &self.accumulators[0].sums[kind], &rows);
+            if let Some(wide) = self.accumulators.get(1) {
+                self.resolve.integrate_wide(&self.gpu, kind, &wide.sums[kind], &wide.layout, &rows)?;
+            }
+        }
+        self.resolve.finish(&self.gpu, &rows);
+        Ok(())
+    }
+
+    /// The sums as the processor keeps them: pixels and totals of every level, of free and of sharing samples.
+    #[cfg(test)]
+    pub fn accumulated(&self, width: usize) -> Result<[crate::gpu::tests::Accumulated; 2], Lost> {
+        let accumulators = &self.accumulators[width];
+        let of = |buffer: &Buffer| {
+            let words = self.gpu.read(buffer, 0..4 * accumulators.layout.words as u64)?;
+            Ok::<_, Lost>(crate::gpu::tests::accumulated(&words, &accumulators.layout, width == 1))
+        };
+        Ok([of(&accumulators.sums[0])?, of(&accumulators.sums[1])?])
+    }
+}
+
+/// Words of a record of a kind.
+fn words_of(kind: usize) -> usize {
+    if kind == LARGE { 2 * records::WORDS } else { records::WORDS }
+}

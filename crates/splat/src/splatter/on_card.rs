@@ -1,0 +1,129 @@
+//! Sums on a graphics card, and on the processor again once the card is lost.
+
+use super::{SplatError, Splatter};
+use crate::gpu::{Gpu, GpuError, GpuSums};
+use crate::lens_in_use::Placed;
+use crate::paint::Paint;
+use crate::sums::Scene;
+use progress::Progress;
+use std::ops::Range;
+
+/// The card that is used, if one is.
+#[derive(Default)]
+pub struct Card {
+    gpu: Option<Gpu>,
+    /// Its sums, from the first render on.
+    sums: Option<GpuSums>,
+    is_lost: bool,
+}
+
+impl Card {
+    /// The next picture is of another aperture.
+    pub fn forget_aperture(&mut self) {
+        if let Some(sums) = &mut self.sums {
+            sums.forget_aperture();
+        }
+    }
+
+    /// Bytes of the hierarchy and of the sums.
+    pub fn bytes(&self) -> [usize; 2] {
+        self.sums.as_ref().map_or([0; 2], GpuSums::bytes)
+    }
+
+    /// What came of work on the card. The loss of the card stops all work on it.
+    fn came_of(&mut self, result: Result<(), GpuError>) -> Result<(), SplatError> {
+        result.map_err(|error| match error {
+            GpuError::Overflow => SplatError::Overflow,
+            GpuError::Cancelled => SplatError::Cancelled,
+            GpuError::Lost => {
+                self.is_lost = true;
+                SplatError::Cancelled
+            }
+        })
+    }
+}
+
+/// Each does its work on the card, and is `None` where the sums are not on one.
+impl Splatter {
+    /// Sums on a graphics card from the next [`Self::render`] on, or on the processor. The picture has the same bits.
+    ///
+    /// Once the card is lost, or where it does not hold the picture, the processor goes on: nothing else is lost.
+    pub fn use_gpu(&mut self, gpu: Option<Gpu>) {
+        self.card = Card { gpu, ..Card::default() };
+        self.shares_of = None;
+    }
+
+    /// The card that is summed on; none where it is the processor.
+    pub fn gpu(&self) -> Option<&Gpu> {
+        self.card.gpu.as_ref()
+    }
+
+    /// Uploads the nodes if that has not been done.
+    pub(super) fn take_up_card(&mut self) {
+        let (Some(gpu), Some(nodes), None) = (&self.card.gpu, &self.nodes, &self.card.sums) else { return };
+        let camera = &self.salf.camera;
+        match GpuSums::new(gpu, nodes, [camera.width as usize, camera.height as usize]) {
+            Ok(sums) => self.card.sums = Some(sums),
+            Err(_) => self.card = Card::default(),
+        }
+    }
+
+    /// Goes on without a card that was lost. Returns whether one was.
+    pub(super) fn drop_lost_card(&mut self) -> bool {
+        let was_lost = self.card.is_lost;
+        if was_lost {
+            self.use_gpu(None);
+        }
+        was_lost
+    }
+
+    /// See [`Splatter::sum_nodes`].
+    pub(super) fn sum_nodes_on_card(
+        &mut self,
+        paint: &Paint,
+        progress: &dyn Progress,
+    ) -> Option<Result<(), SplatError>> {
+        let (nodes, sums) = (self.nodes.as_ref()?, self.card.sums.as_mut()?);
+        let (aperture, lens) = (&self.aperture, &self.lens);
+        let set = sums.set(&Scene { pen: aperture.pen(nodes, lens), lens, paint }, progress);
+        Some(self.card.came_of(set))
+    }
+
+    /// See [`Splatter::share_out`].
+    pub(super) fn share_out_on_card(&mut self) -> Option<Result<(), SplatError>> {
+        let (nodes, sums) = (self.nodes.as_ref()?, self.card.sums.as_mut()?);
+        let shared_out = sums.find_shares(nodes);
+        Some(self.card.came_of(shared_out))
+    }
+
+    /// See [`Splatter::resolve`].
+    pub(super) fn resolve_on_card(&mut self, rows: Range<u32>) -> Option<Result<(), SplatError>> {
+        let (nodes, sums) = (self.nodes.as_ref()?, self.card.sums.as_mut()?);
+        let resolved = sums.picture(nodes, rows, !self.paint.is_standard(), &mut self.picture);
+        Some(self.card.came_of(resolved))
+    }
+
+    /// Takes the first nodes away from the sums, and adds the others.
+    pub(super) fn change_on_card(
+        &mut self,
+        [removed, added]: [&[(u32, Placed)]; 2],
+    ) -> Option<Result<(), SplatError>> {
+        let (nodes, sums) = (self.nodes.as_ref()?, self.card.sums.as_mut()?);
+        let pen = self.aperture.pen(nodes, &self.lens);
+        let changed = sums.change(&pen, removed, added);
+        Some(self.card.came_of(changed))
+    }
+}
+
+#[cfg(test)]
+impl Splatter {
+    /// The sums on the processor.
+    pub(crate) fn sums(&self) -> &crate::sums::Sums {
+        &self.sums
+    }
+
+    /// The sums on the card.
+    pub(crate) fn sums_on_card(&self) -> Option<&GpuSums> {
+        self.card.sums.as_ref()
+    }
+}
