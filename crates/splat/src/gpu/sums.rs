@@ -267,7 +267,7 @@ impl GpuSums {
     pub fn find_shares(&mut self, nodes: &Nodes) -> Result<(), GpuError> {
         let height = self.resolve.size[1] as u32;
         self.integrate(nodes, 0..height, true, false)?;
-        Ok(self.resolve.check(&self.gpu)?)
+        self.resolve.check(&self.gpu)
     }
 
     /// Makes the pixel rows `rows` of a picture.
