@@ -29,6 +29,9 @@ impl Help {
     pub fn show(&mut self, context: &Context, adapter: &str) {
         let shortcuts =
             Window::new("Keyboard and mouse").open(&mut self.shortcuts).default_size([660.0, 480.0]);
+        // Title and edges included it stays within the window, however large its contents are drawn.
+        let room = context.content_rect().size() - egui::vec2(30.0, 70.0);
+        let shortcuts = shortcuts.max_size(room);
         let middle = context.content_rect().center();
         let shortcuts = shortcuts.pivot(Align2::CENTER_CENTER).default_pos(middle);
         shortcuts.collapsible(false).show(context, |ui| {
@@ -63,10 +66,19 @@ fn table(ui: &mut egui::Ui, title: &str, rows: impl Iterator<Item = (String, &'s
         return;
     }
     ui.label(RichText::new(title).strong());
-    Grid::new(title).num_columns(2).min_col_width(280.0).show(ui, |ui| {
+    // Two columns that fit: what is longer is broken into lines.
+    let keys = (ui.available_width() * 0.42).min(280.0);
+    let words = (ui.available_width() - keys - 24.0).max(60.0);
+    Grid::new(title).num_columns(2).min_col_width(keys).show(ui, |ui| {
+        let cell = |ui: &mut egui::Ui, width: f32, text: RichText| {
+            ui.scope(|ui| {
+                ui.set_max_width(width);
+                ui.add(egui::Label::new(text).wrap());
+            });
+        };
         for (key, what) in rows {
-            ui.monospace(key);
-            ui.label(what);
+            cell(ui, keys, RichText::new(key).monospace());
+            cell(ui, words, RichText::new(what));
             ui.end_row();
         }
     });

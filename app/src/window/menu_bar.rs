@@ -91,8 +91,8 @@ fn with_what(name: &str, what: Option<&str>) -> String {
 pub fn is_possible(id: CommandId, state: &MenuState<'_>) -> bool {
     use CommandId::*;
     match id {
-        Open | OpenDemo | Quit | ResetLayout | NextToneCurve | LightOrDark | ScaleUp | ScaleDown
-        | KeysBlender | KeysSubstance | KeysKrita | Palette | Shortcuts | About => true,
+        Open | OpenDemo | Quit | ResetLayout | ShowInspector | NextToneCurve | LightOrDark | ScaleUp
+        | ScaleDown | KeysBlender | KeysSubstance | KeysKrita | Palette | Shortcuts | About => true,
         SelectAll | InvertSelection | MaskFromSelection => {
             state.document.is_some_and(|document| document.selection.is_some())
         }

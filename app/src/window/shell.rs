@@ -47,6 +47,9 @@ const LAYOUT_KEY: &str = "layout";
 /// Work shorter than this is not spoken of.
 const NOTICEABLE_SECONDS: f64 = 0.5;
 
+/// Views lower than this have no room for the hint of the first start, points.
+const LEAST_HEIGHT_FOR_HINT: f32 = 220.0;
+
 /// The window's application.
 pub struct Shell {
     session: Session,
@@ -554,6 +557,10 @@ impl Shell {
             return;
         }
         let rect = self.paint.rect();
+        // In a small view it would hide what it speaks of.
+        if rect.height() < LEAST_HEIGHT_FOR_HINT {
+            return;
+        }
         let area = egui::Window::new("Try this").collapsible(false).resizable(false).title_bar(false);
         area.fixed_pos(rect.left_top() + egui::vec2(12.0, 12.0)).show(context, |ui| {
             ui.set_max_width((rect.width() - 60.0).clamp(160.0, 420.0));

@@ -128,7 +128,7 @@ impl Tool {
             Tool::SelectDepth => "Select depth",
             Tool::FocusHere => "Focus here",
             Tool::Pick => "Pick",
-            Tool::Inspect => "Aperture from here",
+            Tool::Inspect => "Inspect",
         }
     }
 

@@ -17,21 +17,10 @@ pub fn tool_bar(ui: &mut Ui, document: Option<&Document>, tool: Tool, actions: &
         ui.separator();
         let mut brush = document.brush.clone();
         ui.spacing_mut().slider_width = 104.0;
-        ui.label("Size").on_hover_text(SIZE_TIP);
-        let largest = largest_radius(document);
-        let size = egui::Slider::new(&mut brush.radius, largest * 1e-3..=largest)
-            .logarithmic(true)
-            .show_value(false);
-        super::controls::named(&ui.add(size).on_hover_text(SIZE_TIP), "Brush size");
-        ui.label("Strength").on_hover_text(STRENGTH_TIP);
-        let strength = egui::Slider::new(&mut brush.strength, 0.0..=1.0).show_value(false);
-        super::controls::named(&ui.add(strength).on_hover_text(STRENGTH_TIP), "Brush strength");
-        ui.label("Hardness").on_hover_text(HARDNESS_TIP);
-        let hardness = egui::Slider::new(&mut brush.hardness, 0.0..=1.0).show_value(false);
-        super::controls::named(&ui.add(hardness).on_hover_text(HARDNESS_TIP), "Brush hardness");
-        ui.separator();
+        brush_sliders(ui, &mut brush, largest_radius(document));
         let optics = document.camera.optics();
-        if let Some(target) = target_slider(ui, &optics, brush.target, 170.0) {
+        let width = (ui.available_width() - CIRCLE_WIDTH).clamp(60.0, FOCUS_WIDTH);
+        if let Some(target) = target_slider(ui, &optics, brush.target, width) {
             brush.target = target;
         }
         let px = signed_circle_px(&optics, brush.target.t);
@@ -39,6 +28,35 @@ pub fn tool_bar(ui: &mut Ui, document: Option<&Document>, tool: Tool, actions: &
             .on_hover_text("The blur that the brush paints, on the full-size picture.");
         push_brush(document, brush, actions);
     });
+}
+
+/// Width of the slider from near to far blur, points, and room for the blur in words beside it.
+const FOCUS_WIDTH: f32 = 170.0;
+const CIRCLE_WIDTH: f32 = 90.0;
+/// Room that a slider of the brush takes with its name, points.
+const SLIDER_ROOM: f32 = 182.0;
+
+/// Size, strength and hardness, as many as there is room for: the inspector has them all.
+fn brush_sliders(ui: &mut Ui, brush: &mut Brush, largest: f64) {
+    let has_room = |ui: &Ui| ui.available_width() > FOCUS_WIDTH + CIRCLE_WIDTH + SLIDER_ROOM;
+    if has_room(ui) {
+        ui.label("Size").on_hover_text(SIZE_TIP);
+        let size = egui::Slider::new(&mut brush.radius, largest * 1e-3..=largest);
+        let size = size.logarithmic(true).show_value(false);
+        controls::named(&ui.add(size).on_hover_text(SIZE_TIP), "Brush size");
+    }
+    let shares = [
+        (&mut brush.strength, "Strength", STRENGTH_TIP, "Brush strength"),
+        (&mut brush.hardness, "Hardness", HARDNESS_TIP, "Brush hardness"),
+    ];
+    for (share, label, tip, name) in shares {
+        if has_room(ui) {
+            ui.label(label).on_hover_text(tip);
+            let slider = egui::Slider::new(share, 0.0..=1.0).show_value(false);
+            controls::named(&ui.add(slider).on_hover_text(tip), name);
+        }
+    }
+    ui.separator();
 }
 
 /// The button of a family of tools: the chosen one, or the first; a right click shows them all.

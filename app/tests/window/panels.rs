@@ -162,8 +162,17 @@ fn the_window_can_be_light_and_twice_as_large_and_tones_are_mapped() {
     }
     person.window.run_steps(10);
     assert_eq!(person.window.ctx.zoom_factor(), 2.0);
-    // All of the window is still inside it.
+    // All of the window is still inside it: the views, the tool bar's slider, the list of keys.
     let whole = person.window.ctx.content_rect();
+    person.does(CommandId::Shortcuts);
+    person.window.run_steps(10);
+    let shown = |label: &str| {
+        let node = person.window.get_all_by_label(label).next();
+        node.unwrap_or_else(|| panic!("there is no {label}")).rect()
+    };
+    for label in ["Blur", "Keyboard and mouse", "Left drag"] {
+        assert!(whole.expand(1.0).contains_rect(shown(label)), "{label} at {:?} in {whole:?}", shown(label));
+    }
     for rect in [person.paint_rect(), person.picture_rect()] {
         assert!(whole.contains_rect(rect) && rect.width() > 40.0, "{rect:?} in {whole:?}");
     }

@@ -53,7 +53,7 @@ impl ApertureView {
             let (rect, response) = ui.allocate_exact_size(vec2(side, side), egui::Sense::hover());
             paint(ui, rect, image, 1.0);
             let tip = "The aperture from behind the camera, as this point sees it: hatched where something stands \
-                       between, dark where the aperture's shape is closed.";
+                       between, dark where the aperture's shape is closed. Its brightest light is shown as white.";
             response.on_hover_text(tip);
             let (rect, response) = ui.allocate_exact_size(vec2(side, side), egui::Sense::hover());
             // Where it lands: turned by half a turn for near blur.
@@ -83,7 +83,7 @@ fn paint(ui: &Ui, rect: Rect, image: &ApertureImage, sign: f32) {
     let painter = ui.painter_at(rect);
     painter.rect_filled(rect, 2.0, Color32::from_gray(16));
     let brightest = image.cells.iter().flat_map(|cell| cell.radiance).fold(0.0f32, f32::max);
-    let gain = if brightest > 1.0 { 1.0 / brightest } else { 1.0 };
+    let gain = if brightest > 0.0 { 1.0 / brightest } else { 1.0 };
     let cell_side = rect.width() / image.side as f32;
     let mut mesh = Mesh::default();
     for (k, cell) in image.cells.iter().enumerate().filter(|(_, cell)| cell.transmission > 0.0) {

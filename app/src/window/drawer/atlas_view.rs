@@ -4,7 +4,6 @@ use crate::window::pointer::Hand;
 use crate::window::{Action, controls, false_colour};
 use egui::{Color32, ColorImage, Pos2, Rect, Sense, TextureHandle, TextureOptions, Ui, pos2, vec2};
 use focus::FocusMap;
-use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 use session::{Command, Document, Session, StrokePoint, StrokeTarget, SurfaceHit};
 
@@ -141,7 +140,6 @@ fn hit_of(document: &Document, x: u32, y: u32) -> Option<SurfaceHit> {
     let texels = &document.stage.texels;
     let texel = texels.at(x, y)?;
     let position = texel.centroid.position(document.scene());
-    let front = document.scene().area_normal(texel.centroid.triangle).try_normalize();
-    let normal = front.unwrap_or(DVec3::from(Vec3::ZERO));
+    let normal = document.scene().area_normal(texel.centroid.triangle).normalize_or_zero();
     Some(SurfaceHit { point: texel.centroid, position, normal, distance: 0.0 })
 }

@@ -54,6 +54,7 @@ impl Shell {
                 self.settings.inspector = true;
                 self.settings.drawer = None;
             }
+            CommandId::ShowInspector => self.settings.inspector = !self.settings.inspector,
             CommandId::ShowAtlas => self.toggle_drawer(Drawn::Atlas),
             CommandId::ShowAperture => self.toggle_drawer(Drawn::Aperture),
             CommandId::ShowHistogram => self.toggle_drawer(Drawn::Histogram),
