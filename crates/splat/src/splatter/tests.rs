@@ -81,6 +81,38 @@ fn an_update_equals_a_render_bit_for_bit() {
 }
 
 #[test]
+fn ten_thousand_dabs_and_undos_leave_no_trace() {
+    let (mut focus, mut random) = (standard(), 1u32);
+    let mut next = |below: u32| {
+        random = random.wrapping_mul(1664525).wrapping_add(1013904223);
+        (random >> 8) % below
+    };
+    let mut splatter = Splatter::new(light_field());
+    splatter.set_tolerance(Tolerance::VIEWING);
+    splatter.render(&camera(), &focus, &Unwatched).unwrap();
+    let mut done: Vec<Vec<(u32, FocusOffset)>> = Vec::new();
+    for _ in 0..10_000 {
+        let undone = if next(3) == 0 { done.pop() } else { None };
+        let changes = undone.unwrap_or_else(|| {
+            let offset = FocusOffset::new(0.9 + f64::from(next(21)) * 0.01, f64::from(next(3)) / 2.0);
+            let corner = next(96 * 80);
+            let square = (0..25).map(|k| (corner + k % 5 + k / 5 * 96) % (96 * 80));
+            let dab: Vec<_> = square.map(|index| (index, offset)).collect();
+            done.push(dab.iter().map(|&(index, _)| (index, focus.0[index as usize])).collect());
+            dab
+        });
+        changes.iter().for_each(|&(index, offset)| focus.0[index as usize] = offset);
+        let changed: Vec<u32> = changes.iter().map(|&(index, _)| index).collect();
+        splatter.update(&focus, &changed).unwrap();
+    }
+    let mut fresh = Splatter::new(light_field());
+    fresh.set_tolerance(Tolerance::VIEWING);
+    fresh.render(&camera(), &focus, &Unwatched).unwrap();
+    assert!(splatter.sums == fresh.sums, "the accumulators");
+    assert_eq!(splatter.picture(), fresh.picture());
+}
+
+#[test]
 fn threads_leave_no_trace() {
     let mut focus = standard();
     focus.0.iter_mut().step_by(5).for_each(|offset| *offset = FocusOffset::new(1.2, 0.7));
