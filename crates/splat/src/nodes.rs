@@ -278,10 +278,39 @@ fn convert(node: &Node, scale: Scale) -> Option<SplatNode> {
         cells: OPEN,
         inverse_depth: node.inverse_depth,
         inverse_depth_spread: node.inverse_depth_spread,
-        light: [r, g, b, 1.0].map(|value| value * quanta),
+        // Nodes of no weight at all have no mean to speak of, and no light.
+        light: [r, g, b, 1.0].map(|value| value * quanta).map(|value| if value > 0.0 { value } else { 0.0 }),
         base: if is_edge_on { share(node.weight) } else { ONE as i16 },
         tilt: [share(node.tilt.x), share(node.tilt.y)],
         end: node.end,
         is_leaf: node.sample.is_some(),
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::{Vec2, Vec3};
+
+    #[test]
+    fn nodes_without_weight_have_no_light() {
+        let node = Node {
+            center: Vec2::NAN,
+            half_size: Vec2::NAN,
+            inverse_depth: f32::NAN,
+            inverse_depth_spread: f32::NAN,
+            weight: 0.0,
+            tilt: Vec2::ZERO,
+            radiance: Vec3::NAN,
+            level: 1,
+            visibility: NodeVisibility::Open,
+            end: 1,
+            sample: None,
+        };
+        let converted = convert(&node, Scale::FINEST).expect("it is not bright");
+        assert_eq!(converted.light, [0.0; 4]);
+        let lit =
+            convert(&Node { weight: 4.0, radiance: Vec3::ONE, ..node }, Scale::FINEST).expect("nor this");
+        assert!(lit.light.iter().all(|&light| light > 0.0));
+    }
 }
