@@ -1,12 +1,12 @@
 //! Images as stencils.
 
-use crate::canvas::{POSITION_BITS, Rows, Word};
+use crate::canvas::{PIXEL, POSITION_BITS, Rows, Word};
 use crate::draw::Pen;
 use crate::draw::image::Image;
 use crate::draw::seen_runs::{Row, SeenRun, SeenRuns};
 use crate::fixed::{mul_shift, ratio};
 use crate::nodes::{Cells, ONE};
-use crate::stencil::{HEIGHT_BITS, LARGEST_RADIUS_PX, Stencil, StencilRun};
+use crate::stencil::{HEIGHT_BITS, LARGEST_RADIUS_PX, Stencil};
 
 /// What is let through of a stencil is scaled by this at most.
 const LARGEST_SCALE: u32 = 4;
@@ -25,11 +25,14 @@ impl Pen<'_> {
         let Some(radius) = self.stencil_radius_of(image) else {
             return self.draw_large(image, cells, rows, sign);
         };
-        let (stencil, base) = self.stencils.at(radius, image.center[1]);
-        let row_of = |run: Option<&StencilRun>| run.map_or(0, |run| base + run.row);
-        if row_of(stencil.runs.last()) < rows.first || row_of(stencil.runs.first()) >= rows.end {
+        // Most of what misses these rows is found out before its stencil is fetched: radii are tabled to 1/511.
+        let reach = radius.abs() + (radius.abs() >> 8) + 2 * PIXEL;
+        if (image.center[1] + reach) >> POSITION_BITS < rows.first
+            || (image.center[1] - reach) >> POSITION_BITS >= rows.end
+        {
             return;
         }
+        let (stencil, base) = self.stencils.at(radius, image.center[1]);
         let shift = image.light.shift(stencil.height_bits);
         let Some((cells, share)) = cells else {
             for run in &stencil.runs {
