@@ -18,6 +18,9 @@ const STEEP: f32 = 0.75;
 /// Edge-on nodes are joined if their weights over the aperture, as shares of the largest, differ by at most this.
 const ALIKE_WEIGHTS: f32 = 0.5;
 
+/// What an edge-on node would send is scaled to what its children do by at most this factor.
+const MOST_SCALED: f32 = 1.5;
+
 pub fn build(salf: &Salf, highlight: f32) -> Tree {
     let grid = Grid::new(salf);
     let of_block = grid.samples_of_blocks(&salf.samples);
@@ -143,8 +146,10 @@ impl Builder<'_> {
                 }
             }
             for (pixel, group) in groups {
-                let index = if group.len() == 1 { group[0] } else { self.parent(level, group) };
-                joined.push((pixel, index));
+                match self.parent(level, &group) {
+                    Some(parent) => joined.push((pixel, parent)),
+                    None => joined.extend(group.into_iter().map(|index| (pixel, index))),
+                }
             }
         }
         joined
@@ -163,7 +168,11 @@ impl Builder<'_> {
             }
     }
 
-    fn parent(&mut self, level: u8, children: Vec<usize>) -> usize {
+    /// The node that stands for `children`; `None` for a single one, and if it would send another light than they do.
+    fn parent(&mut self, level: u8, children: &[usize]) -> Option<usize> {
+        if children.len() == 1 {
+            return None;
+        }
         let members: Vec<&Growing> = children.iter().map(|&index| &self.arena[index]).collect();
         let mut node = mean(level, &members);
         let cells = members[0].cells.is_some().then(|| most(&members));
@@ -171,12 +180,13 @@ impl Builder<'_> {
             // Their weights are cut off where they would be negative: sums of them are not quite linear.
             let sent: f32 = members.iter().map(|member| member.sent()).sum();
             let sends = cells.sent(&node);
-            let scale = if sends > 0.0 { sent / sends } else { 0.0 };
+            let is_close = sent <= MOST_SCALED * sends && sends <= MOST_SCALED * sent && sent > 0.0;
+            let scale = is_close.then(|| sent / sends)?;
             node.weight *= scale;
             node.tilt *= scale;
         }
-        self.arena.push(Growing { node, cells, children });
-        self.arena.len() - 1
+        self.arena.push(Growing { node, cells, children: children.to_vec() });
+        Some(self.arena.len() - 1)
     }
 
     fn emit(&self, index: usize, nodes: &mut Vec<Node>, words: &mut Vec<u64>) {
@@ -415,6 +425,28 @@ mod tests {
             at = tree.nodes[at].end as usize;
         }
         assert_eq!(weight, 40.0 * 24.0);
+    }
+
+    #[test]
+    fn edge_on_nodes_send_what_their_samples_send() {
+        let mut salf = plane(|_, _| 0.5);
+        for (index, sample) in salf.samples.iter_mut().enumerate() {
+            // The side that sends nothing is hidden here and there.
+            let hidden = (index as u64).wrapping_mul(0x9E37_79B9_7F4A_7C15);
+            let row = if index % 3 == 0 { 0xFF00 } else { 0x8001 | hidden >> 55 };
+            let words = vec![row | row << 16 | row << 32 | row << 48; 4];
+            sample.visibility = Visibility::Cells { words: words.into(), occluder_inverse_depth: 0.0 };
+            (sample.weight, sample.tilt) = (-0.2 + 0.01 * (index % 9) as f32, Vec2::new(1.0, 0.1));
+        }
+        let tree = Tree::new(&salf, 4.0);
+        let mut joined = 0;
+        for (at, node) in tree.nodes.iter().enumerate().filter(|(_, node)| node.sample.is_none()) {
+            let below = tree.nodes[at..node.end as usize].iter().filter(|node| node.sample.is_some());
+            let most: f32 = below.map(largest_weight).sum();
+            assert!(largest_weight(node) <= MOST_SCALED.powi(node.level.into()) * most, "{node:?}");
+            joined += 1;
+        }
+        assert!(joined > 50, "{joined} nodes");
     }
 
     #[test]
