@@ -63,6 +63,12 @@ impl Player {
         if !session.is_settled() {
             return Ok(true);
         }
+        // The picture that came this frame is finished at the frame's end.
+        let fine = session.preview().filter(|preview| !preview.is_coarse);
+        let seen = fine.map_or(0, |preview| preview.map_serial);
+        if self.unseen.iter().any(|(serial, _)| *serial <= seen) {
+            return Ok(true);
+        }
         self.unseen.clear();
         let Some(step) = self.steps.get(self.next) else { return Ok(false) };
         self.next += 1;
