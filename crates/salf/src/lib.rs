@@ -21,5 +21,6 @@ mod view;
 mod visibility;
 
 pub use bake::{BakeOptions, bake};
+pub use domain::{Cell, Domain};
 pub use file::{SalfFile, SalfFileError};
 pub use sample::{Salf, SalfStatistics, Sample, Visibility};

@@ -80,18 +80,26 @@ impl Field {
         if self.with_dab {
             let (record, holds) = self.dab(&mut splatter, copy, steps)?;
             keep(record);
-            let what = format!("{}: a dab equals a render from scratch, bit for bit, and shows", self.what);
-            measured.checks.push(Check { scene: self.scene.clone(), what, holds });
+            measured
+                .checks
+                .push(self.check("a dab equals a render from scratch, bit for bit, and shows", holds));
         }
-        let what = format!("{}: one thread draws the picture of many, bit for bit", self.what);
         let holds = self.is_same_with_one_thread(&mut splatter, steps)?;
-        measured.checks.push(Check { scene: self.scene.clone(), what, holds });
+        measured.checks.push(self.check("one thread draws the picture of many, bit for bit", holds));
         Ok(())
     }
 
+    /// `what` with the focus, if the field has several.
+    fn named(&self, what: &str) -> String {
+        if self.what.is_empty() { what.into() } else { format!("{what}, {}", self.what) }
+    }
+
+    fn check(&self, what: &str, holds: bool) -> Check {
+        Check { scene: self.scene.clone(), what: self.named(what), holds }
+    }
+
     fn record(&self, what: &str, copy: f64, seconds: f64, splatter: &Splatter) -> EngineRecord {
-        let what = if self.what.is_empty() { what.into() } else { format!("{what}, {}", self.what) };
-        let mut record = EngineRecord::of(&self.scene, &what, &self.salf, copy, seconds);
+        let mut record = EngineRecord::of(&self.scene, &self.named(what), &self.salf, copy, seconds);
         record.coc_px = self.coc_px;
         record.bytes = splatter.bytes().iter().sum::<usize>() as u64;
         record

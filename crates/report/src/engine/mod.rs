@@ -58,6 +58,7 @@ pub fn run_engine(
     steps: &dyn Steps,
     note: &dyn Fn(&str),
 ) -> Result<EngineReport, SessionError> {
+    std::fs::create_dir_all(folder).map_err(|error| SessionError::io(folder, &error))?;
     let [width, height] = options.size.unwrap_or([1920, 1080]);
     let copy = copy_seconds(width as usize * height as usize);
     let mut measured = Measured { copy, records: Vec::new(), checks: Vec::new() };

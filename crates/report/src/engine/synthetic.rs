@@ -6,7 +6,7 @@ use crate::engine::{EngineRecord, Measured};
 use crate::stopwatch::timed;
 use glam::{Vec2, Vec3};
 use lens::{Camera, FocusOffset};
-use salf::{Salf, Sample, Visibility};
+use salf::{Cell, Domain, Salf, Sample, Visibility};
 use scene::{SurfaceField, SurfacePoint};
 use session::{SessionError, Steps};
 use splat::{Splatter, Tolerance};
@@ -45,39 +45,33 @@ fn radiance(x: i32, y: i32) -> Vec3 {
     Vec3::new(0.1 + 0.8 * hash(1), 0.1 + 0.8 * hash(2), 0.1 + 0.8 * hash(3))
 }
 
-fn sample(x: i32, y: i32, inverse_depth: f32, visibility: Visibility) -> Sample {
+fn sample(cell: Cell, inverse_depth: f32, visibility: Visibility) -> Sample {
+    let half = cell.side as f32 / 2.0;
     Sample {
-        center: Vec2::new(x as f32 + 0.5, y as f32 + 0.5),
-        half_size: Vec2::splat(0.5),
+        center: cell.corner.as_vec2() + half,
+        half_size: Vec2::splat(half),
         inverse_depth,
-        weight: 1.0,
+        weight: (cell.side * cell.side) as f32,
         tilt: Vec2::ZERO,
-        radiance: radiance(x, y),
+        radiance: radiance(cell.corner.x, cell.corner.y),
         surface: None,
         visibility,
     }
 }
 
-/// A sample a pixel of the frame and of its margin, where `of` gives them.
-fn salf(camera: &Camera, margin_px: u32, of: impl Fn(i32, i32, &mut Vec<Sample>)) -> Arc<Salf> {
-    let margin_px = margin_px.next_multiple_of(16);
-    let margin = margin_px as i32;
+/// A sample a pixel of the frame and a cell of its margin, where `of` gives them.
+fn salf(camera: &Camera, margin_px: f64, of: impl Fn(Cell, &mut Vec<Sample>)) -> Arc<Salf> {
+    let domain = Domain::new(camera.width, camera.height, margin_px);
     let mut samples = Vec::new();
-    for y in -margin..camera.height as i32 + margin {
-        for x in -margin..camera.width as i32 + margin {
-            of(x, y, &mut samples);
-        }
-    }
-    Arc::new(Salf { camera: camera.clone(), margin_px, samples })
+    domain.block_rows().into_iter().flatten().for_each(|cell| of(cell, &mut samples));
+    Arc::new(Salf { camera: camera.clone(), margin_px: domain.margin as u32, samples })
 }
 
 /// A plane whose circle of confusion is `diameter` px wide.
 fn plane(size: [u32; 2], diameter: f64) -> Arc<Salf> {
     let camera = camera(size);
     let depth = inverse_depth(&camera, diameter);
-    salf(&camera, (diameter / 2.0).ceil() as u32, |x, y, samples| {
-        samples.push(sample(x, y, depth, Visibility::Open));
-    })
+    salf(&camera, diameter / 2.0, |cell, samples| samples.push(sample(cell, depth, Visibility::Open)))
 }
 
 /// Circles of confusion from 0 to 80 px, left to right, behind a near half-plane with an upright edge.
@@ -87,14 +81,16 @@ fn ramp(size: [u32; 2]) -> (Arc<Salf>, i32) {
     let camera = camera(size);
     let edge = size[0] as i32 * 2 / 3;
     let occluder = inverse_depth(&camera, OCCLUDER);
-    let made = salf(&camera, (OCCLUDER / 2.0) as u32, |x, y, samples| {
-        if x >= edge {
-            samples.push(sample(x, y, occluder, Visibility::Open));
+    let made = salf(&camera, OCCLUDER / 2.0, |cell, samples| {
+        // Cells above and below the frame are wider than a pixel; the edge goes on there to a cell's precision.
+        if cell.corner.x >= edge {
+            samples.push(sample(cell, occluder, Visibility::Open));
         }
-        let diameter = WIDEST * (f64::from(x) / f64::from(size[0])).clamp(0.0, 1.0);
+        let middle = f64::from(cell.corner.x) + f64::from(cell.side) / 2.0;
+        let diameter = WIDEST * (f64::from(cell.corner.x) / f64::from(size[0])).clamp(0.0, 1.0);
         // From x the aperture point u sees past the edge if x + reach·u < edge.
         let reach = (OCCLUDER - diameter) / 2.0;
-        let last = (f64::from(edge) - f64::from(x) - 0.5) / reach;
+        let last = (f64::from(edge) - middle) / reach;
         if last <= -1.0 {
             return;
         }
@@ -107,7 +103,7 @@ fn ramp(size: [u32; 2]) -> (Arc<Salf>, i32) {
             Visibility::Cells { words: words.into(), occluder_inverse_depth: occluder }
         };
         if visibility != (Visibility::Cells { words: [0; 4].into(), occluder_inverse_depth: occluder }) {
-            samples.push(sample(x, y, inverse_depth(&camera, diameter), visibility));
+            samples.push(sample(cell, inverse_depth(&camera, diameter), visibility));
         }
     });
     (made, edge)
