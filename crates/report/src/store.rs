@@ -53,6 +53,19 @@ pub fn write_whole(file: &Path, bytes: &[u8]) -> Result<(), SessionError> {
     written.map_err(|error| SessionError::io(file, &error))
 }
 
+/// Writes files into `folder`. Returns them.
+pub fn write_files<'a>(
+    folder: &Path,
+    files: impl IntoIterator<Item = (&'a str, Vec<u8>)>,
+) -> Result<Vec<PathBuf>, SessionError> {
+    let write = |(name, bytes): (&str, Vec<u8>)| {
+        let file = folder.join(name);
+        write_whole(&file, &bytes)?;
+        Ok(file)
+    };
+    files.into_iter().map(write).collect()
+}
+
 /// `text` as part of a file's name: letters, digits, dots and dashes.
 pub fn file_part(text: &str) -> String {
     text.chars().map(|c| if c.is_alphanumeric() || c == '.' { c } else { '-' }).collect()

@@ -5,7 +5,7 @@ use crate::findings::equal_errors;
 use crate::page;
 use crate::record::{Record, Series};
 use crate::run::Report;
-use crate::store::{to_json, write_whole};
+use crate::store::{to_json, write_files};
 use crate::tables;
 use serde_json::{Value, json};
 use session::SessionError;
@@ -29,13 +29,7 @@ pub fn write_report(report: &Report, folder: &Path) -> Result<Vec<PathBuf>, Sess
     if let Some(hard) = &report.hard {
         files.push(("hard.json", to_json(hard)?));
     }
-    let mut written = Vec::new();
-    for (name, bytes) in files {
-        let file = folder.join(name);
-        write_whole(&file, &bytes)?;
-        written.push(file);
-    }
-    Ok(written)
+    write_files(folder, files)
 }
 
 /// The records as comma-separated values (RFC 4180): a column a key of the JSON, in its order.

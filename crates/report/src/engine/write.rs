@@ -1,7 +1,7 @@
 //! The engine's figures as files.
 
 use crate::engine::{EngineRecord, EngineReport};
-use crate::store::{to_json, write_whole};
+use crate::store::{to_json, write_files};
 use crate::table::Table;
 use serde_json::json;
 use session::SessionError;
@@ -15,13 +15,7 @@ pub fn write(report: &EngineReport, copy: f64, folder: &Path) -> Result<Vec<Path
         ("engine.md", markdown(report, copy).into_bytes()),
         ("about.json", to_json(&about)?),
     ];
-    let mut written = Vec::new();
-    for (name, bytes) in files {
-        let file = folder.join(name);
-        write_whole(&file, &bytes)?;
-        written.push(file);
-    }
-    Ok(written)
+    write_files(folder, files)
 }
 
 fn markdown(report: &EngineReport, copy: f64) -> String {
