@@ -35,4 +35,3 @@ pub use gpu::{AdapterDescription, BackendChoice, Gpu, GpuAbsent, adapters};
 pub use lens_in_use::Tolerance;
 pub use nodes::QUANTUM;
 pub use splatter::{SplatError, Splatter};
-pub use sums::DrawnNodes;

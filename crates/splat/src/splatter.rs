@@ -11,7 +11,7 @@ use crate::resolve::{Lines, Overflow};
 use crate::seen::{Seen, seen};
 use crate::shape::Shape;
 use crate::stencil::Stencils;
-use crate::sums::{DrawnNodes, RESOLVE_ROWS, Scene, Sums};
+use crate::sums::{RESOLVE_ROWS, Scene, Sums};
 use lens::{Aperture, Camera, FocusOffset, Picture};
 use on_card::Card;
 use progress::{Cancelled, Progress, Stage};
@@ -130,16 +130,6 @@ impl Splatter {
     pub fn bytes(&self) -> [usize; 2] {
         let [nodes, sums] = self.card.bytes();
         [nodes + self.nodes.as_ref().map_or(0, Nodes::bytes), sums + self.sums.bytes()]
-    }
-
-    /// What the picture is drawn with: samples where they are nearly in focus, fewer nodes where they are not.
-    pub fn drawn_nodes(&self) -> DrawnNodes {
-        let (aperture, lens) = (&self.aperture, &self.lens);
-        let count = |nodes| {
-            let pen = aperture.pen(nodes, lens);
-            Scene { pen, lens, paint: &self.paint }.count()
-        };
-        self.nodes.as_ref().map_or_else(DrawnNodes::default, count)
     }
 
     /// Sums the whole picture for a lens (`camera` may differ from the baked one in focus distance, aperture shape and a

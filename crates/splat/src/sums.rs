@@ -247,28 +247,5 @@ pub fn is_sharing(node: &SplatNode, placed: Placed) -> bool {
     placed.is_standard && !node.is_open()
 }
 
-/// What a picture was drawn with.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct DrawnNodes {
-    /// Samples and nodes that stand for several, by level, that see the whole aperture.
-    pub open: [usize; LEVELS],
-    /// Those that see part of it.
-    pub partial: [usize; LEVELS],
-}
-
-impl Scene<'_> {
-    /// Counts what is drawn.
-    pub fn count(&self) -> DrawnNodes {
-        let mut counts = DrawnNodes::default();
-        for block in 0..self.pen.nodes.blocks.len() {
-            self.drawn(block, self.paint.of_block(block), |_, node, _| {
-                let of_kind = if node.is_open() { &mut counts.open } else { &mut counts.partial };
-                of_kind[node.level as usize] += 1;
-            });
-        }
-        counts
-    }
-}
-
 /// Rows that one thread resolves at a time.
 pub const RESOLVE_ROWS: usize = 32;
