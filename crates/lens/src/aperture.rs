@@ -280,8 +280,10 @@ impl ApertureRows {
 /// Warps uniform numbers to aperture points whose density is the transmission.
 pub struct ApertureSampler {
     aperture: Aperture,
-    /// Cumulative shares: of the angle within a rounded wedge, or of a mask's texels.
+    /// Running shares: of the angle within a rounded wedge, or of a mask's texels, each row by itself.
     cumulative: Vec<f64>,
+    /// Running shares of a mask's rows.
+    rows: Vec<f64>,
 }
 
 impl ApertureSampler {
@@ -290,6 +292,7 @@ impl ApertureSampler {
 
     /// Prepares to sample `aperture`, which must be valid.
     pub fn new(aperture: &Aperture) -> Self {
+        let mut rows = Vec::new();
         let cumulative = match &aperture.shape {
             ApertureShape::Polygon { blades, roundness, .. } if *roundness > 0.0 => {
                 let wedge = TAU / *blades as f64;
@@ -299,10 +302,15 @@ impl ApertureSampler {
                 };
                 running_shares((0..Self::WEDGE_STEPS).map(density))
             }
-            ApertureShape::Mask(mask) => running_shares(mask.transmission.iter().map(|&t| t as f64)),
+            ApertureShape::Mask(mask) => {
+                let texels = || mask.transmission.chunks_exact(mask.width as usize);
+                let light = |row: &[f32]| row.iter().map(|&t| f64::from(t)).sum();
+                rows = running_shares(texels().map(light));
+                texels().flat_map(|row| running_shares(row.iter().map(|&t| f64::from(t)))).collect()
+            }
             _ => Vec::new(),
         };
-        Self { aperture: aperture.clone(), cumulative }
+        Self { aperture: aperture.clone(), cumulative, rows }
     }
 
     /// The aperture point of the uniform numbers a, b in [0, 1); in [−1, 1]².
@@ -317,7 +325,7 @@ impl ApertureSampler {
                 let within = a * n - index;
                 let start = rotation + index * wedge;
                 if *roundness > 0.0 {
-                    let (step, rest) = self.pick(within);
+                    let (step, rest) = pick(&self.cumulative, within);
                     let angle = wedge * (step as f64 + rest) / Self::WEDGE_STEPS as f64;
                     let radius = polygon_radius(angle, *blades, *roundness);
                     DVec2::from_angle(start + angle) * radius * b.sqrt()
@@ -328,27 +336,29 @@ impl ApertureSampler {
                 }
             }
             ApertureShape::Mask(mask) => {
-                let (texel, rest) = self.pick(a);
-                let (row, column) = (texel / mask.width as usize, texel % mask.width as usize);
+                // The row first, then the texel in it: points that are evenly spread stay so in both directions.
+                let (row, below) = pick(&self.rows, b);
+                let width = mask.width as usize;
+                let (column, right) = pick(&self.cumulative[row * width..(row + 1) * width], a);
                 DVec2::new(
-                    2.0 * (column as f64 + rest) / mask.width as f64 - 1.0,
-                    1.0 - 2.0 * (row as f64 + b) / mask.height as f64,
+                    2.0 * (column as f64 + right) / mask.width as f64 - 1.0,
+                    1.0 - 2.0 * (row as f64 + below) / mask.height as f64,
                 )
             }
         };
         point * self.aperture.squeeze()
     }
-
-    /// The table's step that `a` falls into, and where in it.
-    fn pick(&self, a: f64) -> (usize, f64) {
-        let step = self.cumulative.partition_point(|&end| end <= a).min(self.cumulative.len() - 1);
-        let start = if step == 0 { 0.0 } else { self.cumulative[step - 1] };
-        let width = self.cumulative[step] - start;
-        (step, if width > 0.0 { ((a - start) / width).clamp(0.0, 1.0) } else { 0.5 })
-    }
 }
 
-/// Running sums of `shares`, scaled to end at 1.
+/// The step of a table of running shares that `a` in [0, 1) falls into, and where in it.
+fn pick(cumulative: &[f64], a: f64) -> (usize, f64) {
+    let step = cumulative.partition_point(|&end| end <= a).min(cumulative.len() - 1);
+    let start = if step == 0 { 0.0 } else { cumulative[step - 1] };
+    let width = cumulative[step] - start;
+    (step, if width > 0.0 { ((a - start) / width).clamp(0.0, 1.0) } else { 0.5 })
+}
+
+/// Running sums of `shares`, scaled to end at 1; where all are 0 they stay 0.
 fn running_shares(shares: impl Iterator<Item = f64>) -> Vec<f64> {
     let mut sums: Vec<f64> = shares
         .scan(0.0, |sum, share| {
@@ -357,7 +367,9 @@ fn running_shares(shares: impl Iterator<Item = f64>) -> Vec<f64> {
         })
         .collect();
     let total = *sums.last().expect("a table has a step");
-    sums.iter_mut().for_each(|sum| *sum /= total);
+    if total > 0.0 {
+        sums.iter_mut().for_each(|sum| *sum /= total);
+    }
     sums
 }
 

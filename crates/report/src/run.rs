@@ -174,6 +174,7 @@ impl Runner<'_> {
             triangles: subject.scene.triangles.len(),
             parts: subject.scene.parts.len(),
             lights: subject.scene.lights.len(),
+            camera: camera.clone(),
             size: [camera.width, camera.height],
             aperture_radius: camera.aperture_radius,
             f_number: camera.f_number(),

@@ -1,6 +1,7 @@
 //! What is told of each scene beside its measurements.
 
 use crate::reference::ReferenceError;
+use lens::Camera;
 use serde::{Deserialize, Serialize};
 use session::Modelled;
 use std::path::PathBuf;
@@ -18,6 +19,9 @@ pub struct SceneSummary {
     pub parts: usize,
     /// Lights.
     pub lights: usize,
+    /// The camera, at the size of the pictures.
+    #[serde(skip)]
+    pub camera: Camera,
     /// Picture size, px.
     pub size: [u32; 2],
     /// Half the side of the aperture's square, scene units.

@@ -111,7 +111,7 @@ fn scene_section(scene: &SceneSummary, measured: &[Measured]) -> Result<String, 
             escaped(&scene.name),
             escaped(&focus.name),
             escaped(&sentence(&focus.what)),
-            pictures::figures(focus, &shown)?
+            pictures::figures(scene, focus, &shown)?
         );
     }
     html += &format!(

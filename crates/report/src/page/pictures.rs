@@ -5,14 +5,20 @@ use crate::markup::escaped;
 use crate::plot::{seconds, significant};
 use crate::record::Record;
 use crate::run::Measured;
-use crate::summary::FocusSummary;
+use crate::summary::{FocusSummary, SceneSummary};
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD;
+use baselines::ghost_free_depths;
+use lens::Camera;
 use session::SessionError;
 use std::path::Path;
 
 /// The reference and, of every renderer, one picture with its error map.
-pub fn figures(focus: &FocusSummary, measured: &[&Measured]) -> Result<String, SessionError> {
+pub fn figures(
+    scene: &SceneSummary,
+    focus: &FocusSummary,
+    measured: &[&Measured],
+) -> Result<String, SessionError> {
     let reference = focus.reference.error;
     let caption = format!(
         "<b>reference</b>: {} rays a pixel, {}; its own error {:.1} dB",
@@ -40,9 +46,10 @@ pub fn figures(focus: &FocusSummary, measured: &[&Measured]) -> Result<String, S
             None => String::new(),
         };
         let caption = format!(
-            "<b>{renderer}</b>{}: {psnr:.1} dB, FLIP {mean_flip:.4}, {}{again}",
+            "<b>{renderer}</b>{}: {psnr:.1} dB, FLIP {mean_flip:.4}, {}{again}{}",
             escaped(&knob),
-            seconds(*took)
+            seconds(*took),
+            ghosting(&scene.camera, &shown.record)
         );
         html += &format!(
             "<figure>{}{}<figcaption>{caption}</figcaption></figure>\n",
@@ -74,6 +81,22 @@ fn shown<'a>(measured: &[&'a Measured]) -> Vec<&'a Measured> {
         }
     }
     shown
+}
+
+/// Where pinhole views ghost: beyond the bound at which the copies of neighbouring views are a pixel apart. Nothing for
+/// other renderers.
+fn ghosting(camera: &Camera, record: &Record) -> String {
+    if record.knob != "views_a_side" {
+        return String::new();
+    }
+    let views_a_side = record.value as u32;
+    let [nearest, farthest] = ghost_free_depths(camera, views_a_side);
+    let far = if farthest.is_finite() { significant(farthest) } else { "infinity".into() };
+    format!(
+        ". <b>Ghosts</b> beyond the bound of {views_a_side} views a side: circles of confusion over {views_a_side} px, \
+         unpainted those of depths outside {} to {far}",
+        significant(nearest)
+    )
 }
 
 /// A picture as an element that needs no other file.

@@ -3,6 +3,7 @@
 //! Series differ by colour *and* by the shape of their marks. The colours are those of Okabe and Ito (2008), which people
 //! with any of the usual kinds of colour blindness can tell apart.
 
+use super::labels::{Labels, Place};
 use super::scale::{Kind, Scale};
 use crate::markup::escaped;
 use std::fmt::Write;
@@ -129,9 +130,11 @@ impl Chart {
         let title = escaped(&self.title);
         add(&mut svg, format_args!(r#"<text x="{LEFT}" y="20" class="title">{title}</text>"#));
         self.grid(&mut svg, &frame);
+        let mut labels = Labels::between(LEFT, WIDTH);
         for rule in &self.rules {
             let Some(y) = frame.py(rule.y) else { continue };
             let (right, label) = (WIDTH - RIGHT, escaped(&rule.label));
+            labels.keep_free([right - rule.label.chars().count() as f64 * LETTER, y - 16.0, right, y]);
             add(&mut svg, format_args!(r#"<path class="rule" d="M{LEFT} {y:.1}H{right}"/>"#));
             add(
                 &mut svg,
@@ -142,7 +145,7 @@ impl Chart {
                 ),
             );
         }
-        self.series.iter().for_each(|series| draw_series(&mut svg, &frame, series));
+        self.series.iter().for_each(|series| draw_series(&mut svg, &frame, series, &mut labels));
         for Entry { series, x, line } in legend {
             let y = TOP + PLOT_HEIGHT + BOTTOM + LEGEND_LINE * line as f64 + 10.0;
             let name = escaped(&series.name);
@@ -210,7 +213,7 @@ struct Entry<'a> {
     line: usize,
 }
 
-fn draw_series(svg: &mut String, frame: &Frame, series: &Series) {
+fn draw_series(svg: &mut String, frame: &Frame, series: &Series, labels: &mut Labels) {
     let placed: Vec<(f64, f64, &str)> = series
         .points
         .iter()
@@ -230,9 +233,9 @@ fn draw_series(svg: &mut String, frame: &Frame, series: &Series) {
         svg.push_str("</g>");
         let is_end = k == 0 || k + 1 == placed.len();
         if is_end && !label.is_empty() {
-            // To the left of marks near the right side.
-            let (anchor, step) = if x > WIDTH - RIGHT - 70.0 { ("end", -7.0) } else { ("start", 7.0) };
-            let (x, y, colour) = (x + step, y - 6.0, colour(series.style));
+            // Where there is no room the mark's title has to do.
+            let Some(Place { x, y, anchor }) = labels.place(x, y, label) else { continue };
+            let colour = colour(series.style);
             add(
                 svg,
                 format_args!(

@@ -1,6 +1,7 @@
-//! Plots as inline SVG: `scale` maps numbers to places and finds ticks, `number` writes them, `chart` draws.
+//! Plots as inline SVG: `scale` maps numbers to places and finds ticks, `number` writes them, `chart` draws, `labels` keeps its words apart.
 
 mod chart;
+mod labels;
 mod number;
 mod scale;
 

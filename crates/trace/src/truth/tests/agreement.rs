@@ -144,13 +144,15 @@ fn small(samples_per_pixel: u32) -> (Camera, TruthOptions) {
 #[test]
 fn both_estimators_agree() {
     let scene = stage();
+    let mut shares = Vec::new();
     for ((name, focus), aperture) in focuses().into_iter().zip(apertures()) {
         let (camera, options) = small(128);
         let camera = Camera { aperture, ..camera };
         let [a, b] = both(&scene, &focus, &camera, options);
         let share = share_in_agreement(&a, &b);
-        assert!(share >= SHARE, "{name}: {share}");
+        shares.push((share, name));
     }
+    assert!(shares.iter().all(|(share, _)| *share >= SHARE), "{shares:?}");
 }
 
 /// A bright square, whose level says how wide it is blurred.
@@ -160,8 +162,9 @@ fn square() -> Arc<scene::Scene> {
 }
 
 /// Both estimators of the square: they agree, and do not where one of them has κ off by a factor.
-fn check_that_blur_is_noticed(samples: u32, agreement: f64, factors: [f64; 2]) {
+fn check_that_blur_is_noticed(width: u32, samples: u32, agreement: f64, factors: [f64; 2]) {
     let (camera, options) = small(samples);
+    let camera = Camera { width, height: width * 2 / 3, ..camera };
     let focus = [FocusOffset::new(1.25, 1.0)];
     let [a, b] = both(&square(), &focus, &camera, options);
     let share = share_in_agreement(&a, &b);
@@ -179,14 +182,13 @@ fn check_that_blur_is_noticed(samples: u32, agreement: f64, factors: [f64; 2]) {
 
 #[test]
 fn wrong_blur_is_not_overlooked() {
-    check_that_blur_is_noticed(256, SHARE_OF_FEW, [0.9, 1.1]);
+    check_that_blur_is_noticed(48, 256, SHARE_OF_FEW, [0.9, 1.1]);
 }
 
-/// `cargo test -p trace one_per_cent_of_blur -- --ignored --nocapture`
+/// Few pixels of many samples: what is off by one per cent is so in every pixel of the rim.
 #[test]
-#[ignore = "takes a minute"]
 fn one_per_cent_of_blur_is_not_overlooked() {
-    check_that_blur_is_noticed(8192, SHARE, [0.99, 1.01]);
+    check_that_blur_is_noticed(12, 1 << 15, SHARE, [0.99, 1.01]);
 }
 
 /// `cargo test -p trace agreement_in_full -- --ignored --nocapture`

@@ -1,59 +1,100 @@
 //! How errors fall with the number of samples, and whether what the estimate says of them is so.
 
 use super::*;
+use std::ops::RangeInclusive;
 
 fn options(samples_per_pixel: u32, seed: u32, sampler: Sampler) -> TruthOptions {
     TruthOptions { samples_per_pixel, seed, sampler, ..TruthOptions::default() }
 }
 
-/// Edges: upright and slanted, sharp, and blurred by depth and by paint.
-fn edges(slope: f64, z: f64) -> Arc<scene::Scene> {
-    let wall = rectangle(
-        DVec3::new(0.013 - 9.0 * slope, -9.0, -z),
-        DVec3::X * 20.0,
-        DVec3::new(18.0 * slope, 18.0, 0.0),
-    );
-    scene_of(&[(wall, WHITE)])
+/// A white half plane that faces the camera at depth `z`, its edge turned by `angle` from upright.
+fn edge(angle: f64, z: f64) -> Arc<scene::Scene> {
+    let across = DVec3::new(angle.cos(), angle.sin(), 0.0);
+    let along = DVec3::new(-angle.sin(), angle.cos(), 0.0);
+    let corner = DVec3::new(0.0, 0.0, -z) + 0.013 * across - 40.0 * along;
+    scene_of(&[(rectangle(corner, 80.0 * across, 80.0 * along), WHITE)])
 }
 
-/// The root of the mean squared error of a render, from pairs of renders of different seeds; and what they say
-/// of it themselves.
-fn rmse(
-    scene: &Arc<scene::Scene>,
+/// Directions of edges, none of them in line with anything.
+const ANGLES: [f64; 4] = [0.29, 0.73, -0.41, 1.23];
+
+/// A camera in which the depth `BLURRED_Z` is blurred to circles of `circle_px`.
+fn camera_that_blurs(circle_px: f64) -> Camera {
+    let wide = Camera { width: 16, height: 12, aperture_radius: 1.0, ..camera() };
+    let kappa = wide.optics().standard_kappa(1.0 / BLURRED_Z);
+    Camera { aperture_radius: circle_px / wide.optics().circle_of_confusion_px(kappa).abs(), ..wide }
+}
+
+const SHARP_Z: f64 = 3.0;
+const BLURRED_Z: f64 = 6.0;
+
+/// What the slope is measured on: edges of all directions, and the slope that low-discrepancy samples must reach.
+///
+/// What decides whether a ray meets an edge has as many dimensions d as it depends on of the four of a sample; the
+/// error of scrambled nets then falls with N to the −½ − 1/(2d) (He and Wang 2015). A sharp edge has the two of the
+/// place, −¾. A blurred edge has all four, −⅝, unless its circle is so wide that N samples do not tell the places
+/// within a pixel apart: then it has the aperture's two.
+struct Edges {
+    name: &'static str,
+    camera: Camera,
+    z: f64,
     focus: FocusOffset,
-    camera: &Camera,
-    samples: u32,
-    sampler: Sampler,
-) -> [f64; 2] {
-    const PAIRS: u32 = 24;
-    let tracer = Tracer::new(scene.clone());
-    let (radiance, focus) = (BaseColor(scene.clone()), Uniform(focus));
+    reached: f64,
+}
+
+fn edges() -> [Edges; 6] {
+    let blurred = |name, circle_px, reached| Edges {
+        name,
+        camera: camera_that_blurs(circle_px),
+        z: BLURRED_Z,
+        focus: FocusOffset::STANDARD,
+        reached,
+    };
+    let sharp = Edges { name: "sharp", z: SHARP_Z, ..blurred("", 6.0, -0.7) };
+    // κ = (t − 1)/d by paint on the conjugate is κ of BLURRED_Z.
+    let optics = sharp.camera.optics();
+    let t = 1.0 + optics.standard_kappa(1.0 / BLURRED_Z) * optics.image_distance;
+    let painted =
+        Edges { z: SHARP_Z, focus: FocusOffset::new(t, 1.0), ..blurred("6 px, by paint", 6.0, -0.57) };
+    [
+        sharp,
+        blurred("2 px", 2.0, -0.57),
+        blurred("10 px", 10.0, -0.57),
+        painted,
+        blurred("40 px", 40.0, -0.62),
+        blurred("60 px", 60.0, -0.64),
+    ]
+}
+
+/// The root of the mean squared error of pictures of edges of all directions, from `pairs` pairs of renders of
+/// different seeds each; and what the renders say of it themselves.
+fn rmse(edges: &Edges, samples: u32, sampler: Sampler, pairs: u32) -> [f64; 2] {
     let (mut squares, mut expected) = (0.0, 0.0);
-    for pair in 0..PAIRS {
-        let [a, b] = [2 * pair, 2 * pair + 1].map(|seed| {
-            render(&tracer, &radiance, &focus, camera, &options(samples, seed, sampler), &Unwatched).unwrap()
-        });
-        let difference = |(a, b): (&[f32; 3], &[f32; 3])| f64::from(a[0] - b[0]).powi(2);
-        let pixels = a.picture.radiance.len() as f64;
-        let sum: f64 = a.picture.radiance.iter().zip(&b.picture.radiance).map(difference).sum();
-        squares += sum / pixels / 2.0;
-        expected += a.expected_rmse(lens::Exposure::Conserve).powi(2);
+    for angle in ANGLES {
+        let scene = edge(angle, edges.z);
+        let tracer = Tracer::new(scene.clone());
+        let (radiance, focus) = (BaseColor(scene), Uniform(edges.focus));
+        for pair in 0..pairs {
+            let [a, b] = [2 * pair, 2 * pair + 1].map(|seed| {
+                let options = options(samples, seed, sampler);
+                render(&tracer, &radiance, &focus, &edges.camera, &options, &Unwatched).unwrap()
+            });
+            let difference = |(a, b): (&[f32; 3], &[f32; 3])| f64::from(a[0] - b[0]).powi(2);
+            let pixels = a.picture.radiance.len() as f64;
+            let sum: f64 = a.picture.radiance.iter().zip(&b.picture.radiance).map(difference).sum();
+            squares += sum / pixels / 2.0;
+            expected += a.expected_rmse(lens::Exposure::Conserve).powi(2);
+        }
     }
-    [squares, expected].map(|sum| (sum / f64::from(PAIRS)).sqrt())
+    [squares, expected].map(|sum| (sum / f64::from(pairs * ANGLES.len() as u32)).sqrt())
 }
 
 /// Slope of log RMSE over log samples: least squares over powers of two.
-fn slope(
-    scene: &Arc<scene::Scene>,
-    focus: FocusOffset,
-    camera: &Camera,
-    powers: std::ops::Range<u32>,
-    sampler: Sampler,
-) -> f64 {
+fn slope(edges: &Edges, powers: RangeInclusive<u32>, sampler: Sampler, pairs: u32) -> f64 {
     let points: Vec<(f64, f64)> = powers
         .map(|power| {
-            let [rmse, expected] = rmse(scene, focus, camera, 1 << power, sampler);
-            println!("  {} spp: RMSE {rmse:.3e}, estimated {expected:.3e}", 1 << power);
+            let [rmse, expected] = rmse(edges, 1 << power, sampler, pairs);
+            println!("  {} rays: RMSE {rmse:.3e}, estimated {expected:.3e}", 1 << power);
             (f64::from(power), rmse.log2())
         })
         .collect();
@@ -65,48 +106,39 @@ fn slope(
     above / below
 }
 
-/// Name, scene, focus, and the slope that low-discrepancy samples must reach.
-///
-/// What decides whether a sample is in front of an edge or beside it has as many dimensions d as it depends on
-/// of the four (picture and aperture): the error of scrambled nets then falls with N to the −½ − 1/(2d) (He and
-/// Wang 2015). A sharp edge has the picture's two, an upright blurred one x and u: −¾. A slanted blurred edge
-/// has all four: −⅝, and no set of points in four dimensions does better.
-fn edge_scenes() -> [(&'static str, Arc<scene::Scene>, FocusOffset, f64); 4] {
-    [
-        ("slanted edge, sharp", edges(0.3, 3.0), FocusOffset::STANDARD, -0.7),
-        ("upright edge, blurred by depth", edges(0.0, 6.0), FocusOffset::STANDARD, -0.7),
-        ("slanted edge, blurred by depth", edges(0.3, 6.0), FocusOffset::STANDARD, -0.57),
-        ("slanted edge, blurred by paint", edges(0.3, 3.0), FocusOffset::new(1.05, 1.0), -0.57),
-    ]
-}
-
-fn edge_camera() -> Camera {
-    Camera { width: 16, height: 12, ..camera() }
-}
-
 /// `cargo test -p trace slopes_of_convergence -- --ignored --nocapture`
 #[test]
 #[ignore = "takes minutes"]
 fn slopes_of_convergence() {
-    for (name, scene, focus, reached) in edge_scenes() {
-        for (sampler, powers) in [(Sampler::Independent, 5..10), (Sampler::LowDiscrepancy, 5..12)] {
-            println!("{name}, {sampler:?}");
-            let slope = slope(&scene, focus, &edge_camera(), powers, sampler);
-            println!("{name}, {sampler:?}: slope {slope:.3}");
+    for edges in edges() {
+        for (sampler, powers) in [(Sampler::Independent, 4..=9), (Sampler::LowDiscrepancy, 4..=12)] {
+            let slope = slope(&edges, powers, sampler, 8);
+            println!("{}, {sampler:?}: slope {slope:.3}", edges.name);
             match sampler {
-                Sampler::Independent => assert!((slope + 0.5).abs() <= 0.05, "{name}: {slope}"),
-                Sampler::LowDiscrepancy => assert!(slope <= reached, "{name}: {slope}"),
+                Sampler::Independent => assert!((slope + 0.5).abs() <= 0.05, "{}: {slope}", edges.name),
+                Sampler::LowDiscrepancy => assert!(slope <= edges.reached, "{}: {slope}", edges.name),
             }
         }
     }
 }
 
 #[test]
+fn low_discrepancy_samples_converge_faster() {
+    let [sharp, .., wide] = edges();
+    for edges in [sharp, wide] {
+        let slope = |sampler| slope(&edges, 4..=8, sampler, 3);
+        let (independent, spread) = (slope(Sampler::Independent), slope(Sampler::LowDiscrepancy));
+        assert!((independent + 0.5).abs() < 0.1, "{}: {independent}", edges.name);
+        assert!(spread < -0.62, "{}: {spread}", edges.name);
+    }
+}
+
+#[test]
 fn errors_are_as_large_as_estimated() {
-    let (_, scene, focus, _) = &edge_scenes()[0];
-    let [found, expected] = rmse(scene, *focus, &edge_camera(), 64, Sampler::Independent);
+    let [sharp, ..] = edges();
+    let [found, expected] = rmse(&sharp, 64, Sampler::Independent, 8);
     assert!((found / expected - 1.0).abs() < 0.15, "found {found}, estimated {expected}");
-    let [found, expected] = rmse(scene, *focus, &edge_camera(), 64, Sampler::LowDiscrepancy);
+    let [found, expected] = rmse(&sharp, 64, Sampler::LowDiscrepancy, 8);
     // Passes are spread out together: better than their scatter tells, never worse.
     assert!(found < expected && found > 0.1 * expected, "found {found}, estimated {expected}");
 }
