@@ -306,9 +306,9 @@ impl Shell {
         for event in self.session.poll() {
             match event {
                 Event::Opened => self.document_opened(context),
-                Event::MapChanged(columns, rows) => {
+                Event::MapChanged(rectangles) => {
                     if let Some(document) = self.session.document() {
-                        self.paint.map_changed(document, columns, rows);
+                        self.paint.map_changed(document, rectangles);
                     }
                 }
                 Event::SelectionChanged => {

@@ -1,5 +1,7 @@
 //! Which texels an edit touched.
 
+use crate::TILE_SIDE;
+use std::collections::BTreeMap;
 use std::ops::Range;
 
 /// The texels that an edit changed, gutters included, each once and in row order.
@@ -24,12 +26,16 @@ impl Changed {
         self.texels.is_empty()
     }
 
-    /// The columns and rows that all of them lie in; empty ranges if there are none.
-    pub fn bounds(&self) -> [Range<u32>; 2] {
-        [0, 1].map(|axis| {
-            let along = || self.texels.iter().map(|texel| texel[axis]);
-            along().min().unwrap_or(0)..along().max().map_or(0, |last| last + 1)
-        })
+    /// Rectangles, columns and rows, that hold them all: the narrowest of each square of [`TILE_SIDE`] texels, by the
+    /// square's column and row. So what lies far apart in the atlas stays apart.
+    pub fn rectangles(&self) -> BTreeMap<[u32; 2], [Range<u32>; 2]> {
+        let mut rectangles = BTreeMap::new();
+        for &[x, y] in &self.texels {
+            let own = [x..x + 1, y..y + 1];
+            let rectangle = rectangles.entry([x / TILE_SIDE, y / TILE_SIDE]).or_insert_with(|| own.clone());
+            *rectangle = union(rectangle, &own);
+        }
+        rectangles
     }
 
     /// Adds the texels of another edit.
@@ -38,4 +44,9 @@ impl Changed {
         texels.extend(other.texels);
         *self = Self::new(texels);
     }
+}
+
+/// The least rectangle around two, columns and rows.
+pub fn union(a: &[Range<u32>; 2], b: &[Range<u32>; 2]) -> [Range<u32>; 2] {
+    [0, 1].map(|axis| a[axis].start.min(b[axis].start)..a[axis].end.max(b[axis].end))
 }

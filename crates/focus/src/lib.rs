@@ -43,7 +43,7 @@ mod view_frame;
 pub use blend::Blend;
 pub use brush::{Brush, BrushMode, Channels, FocusOffsetFields, PenSample};
 pub use canvas::{Canvas, CanvasTexel};
-pub use changed::Changed;
+pub use changed::{Changed, union};
 pub use curve::Curve;
 pub use depth_curve::DepthCurve;
 pub use edit::Edit;

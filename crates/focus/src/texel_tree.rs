@@ -8,8 +8,16 @@ use glam::Vec3;
 #[derive(Debug)]
 pub(crate) struct TexelTree {
     points: Vec<Vec3>,
-    /// Lower and upper corners, in pre-order.
-    boxes: Vec<[Vec3; 2]>,
+    /// In pre-order: a node's left child follows it.
+    nodes: Vec<Node>,
+}
+
+/// A box and, unless it is a leaf, its right child.
+#[derive(Clone, Copy, Debug)]
+struct Node {
+    low: Vec3,
+    high: Vec3,
+    right: u32,
 }
 
 /// Points in a leaf, at most.
@@ -19,12 +27,13 @@ impl TexelTree {
     /// Builds the tree; also returns the original index of each of its points.
     pub(crate) fn new(points: &[Vec3]) -> (Self, Vec<u32>) {
         let mut order: Vec<u32> = (0..points.len() as u32).collect();
-        let mut boxes = vec![[Vec3::ZERO; 2]; node_count(points.len())];
+        let blank = Node { low: Vec3::ZERO, high: Vec3::ZERO, right: 0 };
+        let mut nodes = vec![blank; node_count(points.len())];
         if !points.is_empty() {
-            build(points, &mut order, &mut boxes);
+            build(points, &mut order, &mut nodes, 0);
         }
         let points = order.iter().map(|&i| points[i as usize]).collect();
-        (Self { points, boxes }, order)
+        (Self { points, nodes }, order)
     }
 
     /// The points, in the tree's order.
@@ -48,7 +57,7 @@ impl TexelTree {
         radius_squared: f32,
         visit: &mut impl FnMut(usize, f32),
     ) {
-        let [low, high] = self.boxes[node];
+        let Node { low, high, right } = self.nodes[node];
         if center.distance_squared(center.clamp(low, high)) > radius_squared {
             return;
         }
@@ -62,38 +71,67 @@ impl TexelTree {
             return;
         }
         let middle = range.start + range.len() / 2;
-        let right = node + 1 + node_count(middle - range.start);
         self.within_node(node + 1, range.start..middle, center, radius_squared, visit);
-        self.within_node(right, middle..range.end, center, radius_squared, visit);
+        self.within_node(right as usize, middle..range.end, center, radius_squared, visit);
     }
 }
 
 /// Nodes of the tree over `points` points.
 fn node_count(points: usize) -> usize {
-    if points <= LEAF { 1 } else { 1 + node_count(points / 2) + node_count(points - points / 2) }
+    node_counts(points)[0]
 }
 
-/// Orders `order` so that every node of its tree is a range, and fills in the nodes' boxes.
-fn build(points: &[Vec3], order: &mut [u32], boxes: &mut [[Vec3; 2]]) {
+/// Nodes of the trees over `points` points and over one more: halves of either hold half as many, or one more.
+fn node_counts(points: usize) -> [usize; 2] {
+    if points < LEAF {
+        return [1, 1];
+    }
+    let [half, more] = node_counts(points / 2);
+    let even = 1 + 2 * half;
+    let odd = 1 + half + more;
+    match points.is_multiple_of(2) {
+        true => [if points == LEAF { 1 } else { even }, odd],
+        false => [odd, 1 + 2 * more],
+    }
+}
+
+/// Orders `order` so that every node of its tree is a range, and fills in the nodes, the first of which is the tree's
+/// number `first`.
+fn build(points: &[Vec3], order: &mut [u32], nodes: &mut [Node], first: usize) {
     let at = |i: u32| points[i as usize];
     let start = (Vec3::INFINITY, Vec3::NEG_INFINITY);
     let (low, high) = order.iter().map(|&i| at(i)).fold(start, |(l, h), p| (l.min(p), h.max(p)));
-    boxes[0] = [low, high];
+    let middle = order.len() / 2;
+    let left_nodes = node_count(middle);
+    let right = first + 1 + left_nodes;
+    nodes[0] = Node { low, high, right: right as u32 };
     if order.len() <= LEAF {
         return;
     }
     let axis = (high - low).max_position();
-    let middle = order.len() / 2;
     // Ties are broken by index, so that the order depends on nothing but the points.
     order.select_nth_unstable_by(middle, |&i, &j| at(i)[axis].total_cmp(&at(j)[axis]).then(i.cmp(&j)));
-    let (left, right) = order.split_at_mut(middle);
-    let (left_boxes, right_boxes) = boxes[1..].split_at_mut(node_count(middle));
-    rayon::join(|| build(points, left, left_boxes), || build(points, right, right_boxes));
+    let (left_order, right_order) = order.split_at_mut(middle);
+    let (left, rest) = nodes[1..].split_at_mut(left_nodes);
+    rayon::join(
+        || build(points, left_order, left, first + 1),
+        || build(points, right_order, rest, right),
+    );
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn nodes_are_counted_as_they_are_built() {
+        fn counted(points: usize) -> usize {
+            if points <= LEAF { 1 } else { 1 + counted(points / 2) + counted(points - points / 2) }
+        }
+        for points in (0..400).chain([4095, 4096, 4097, 100_003]) {
+            assert_eq!(node_count(points), counted(points), "{points}");
+        }
+    }
 
     #[test]
     fn finds_what_a_search_through_all_finds() {

@@ -158,8 +158,8 @@ pub enum Event {
     Opened,
     /// The camera changed (also by undo).
     CameraChanged,
-    /// Texels of the focus map changed: columns and rows.
-    MapChanged(Range<u32>, Range<u32>),
+    /// Texels of the focus map changed: all lie in these rectangles, columns and rows.
+    MapChanged(Vec<[Range<u32>; 2]>),
     /// The layers changed (also by undo), or another one is painted on.
     LayersChanged,
     /// Something else may be painted than before.

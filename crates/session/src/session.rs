@@ -17,10 +17,12 @@ use crate::{
     SessionError, SurfaceHit, Verification,
 };
 use atlas::UnwrapOptions;
-use focus::{Changed, FillTarget};
+use focus::{Changed, FillTarget, union};
 use glam::DVec2;
 use lens::{Camera, FocusOffset};
 use std::cmp::Ordering;
+use std::collections::BTreeMap;
+use std::ops::Range;
 use std::path::PathBuf;
 use std::sync::{Arc, mpsc};
 use std::time::{Duration, Instant};
@@ -119,6 +121,8 @@ pub struct Session {
     outcomes: mpsc::Receiver<(Option<JobId>, Result<Outcome, SessionError>)>,
     sender: mpsc::Sender<(Option<JobId>, Result<Outcome, SessionError>)>,
     events: Vec<Event>,
+    /// Rectangles of the map that changed since the last poll, by squares of the atlas.
+    map_changes: BTreeMap<[u32; 2], [Range<u32>; 2]>,
     reported: Vec<JobStatus>,
 }
 
@@ -147,6 +151,7 @@ impl Session {
             outcomes,
             sender,
             events: Vec::new(),
+            map_changes: BTreeMap::new(),
             reported: Vec::new(),
         })
     }
@@ -234,6 +239,10 @@ impl Session {
         self.events.extend(moved.map(Event::Progress));
         self.reported = jobs;
         self.keep_unsaved_work();
+        if !self.map_changes.is_empty() {
+            let rectangles = std::mem::take(&mut self.map_changes).into_values().collect();
+            self.events.push(Event::MapChanged(rectangles));
+        }
         std::mem::take(&mut self.events)
     }
 
@@ -245,6 +254,7 @@ impl Session {
                 self.generation += 1;
                 (self.underway, self.preview) = (None, None);
                 self.references.clear();
+                self.map_changes.clear();
                 self.end_verification();
                 let camera = self.scaled_camera(&document.camera);
                 self.preview_camera = Some(camera.clone());
@@ -502,7 +512,7 @@ impl Session {
     fn show_everything(&mut self) -> Result<(), SessionError> {
         let map = self.opened()?.map.clone();
         self.map_serial += 1;
-        self.events.push(Event::MapChanged(0..map.width(), 0..map.height()));
+        self.map_changes = BTreeMap::from([([0; 2], [0..map.width(), 0..map.height()])]);
         self.preview_thread.set_map((map, self.map_serial), &Changes::Everything);
         self.preview_thread.settle();
         Ok(())
@@ -513,7 +523,10 @@ impl Session {
         if changed.is_empty() && !background {
             return Ok(());
         }
-        let [columns, rows] = changed.bounds();
+        for (tile, rectangle) in changed.rectangles() {
+            let known = self.map_changes.entry(tile).or_insert_with(|| rectangle.clone());
+            *known = union(known, &rectangle);
+        }
         let map = self.opened()?.map.clone();
         let changes = if background { Changes::Everything } else { Changes::Texels(changed.texels) };
         self.map_serial += 1;
@@ -521,7 +534,6 @@ impl Session {
         if self.underway.is_none() {
             self.preview_thread.settle();
         }
-        self.events.push(Event::MapChanged(columns, rows));
         Ok(())
     }
 

@@ -110,9 +110,11 @@ impl PaintView {
     }
 
     /// Takes up changed texels of the focus map.
-    pub fn map_changed(&mut self, document: &Document, columns: Range<u32>, rows: Range<u32>) {
+    pub fn map_changed(&mut self, document: &Document, rectangles: Vec<[Range<u32>; 2]>) {
         let (Some(renderer), Some(focus)) = (&self.renderer, &self.focus) else { return };
-        focus.update(renderer.device().1, &document.map, columns, rows);
+        for [columns, rows] in rectangles {
+            focus.update(renderer.device().1, &document.map, columns, rows);
+        }
         self.revision += 1;
     }
 
