@@ -3,6 +3,7 @@
 //! * [`Shell`]: the application: one frame from top to bottom, what the commands do.
 //! * `paint_view`: the scene in 3D in the colours of its blur. `picture_view`: the refocused picture.
 //!   Both are painted on by the same pointer code.
+//! * `blit`: puts pictures on the screen.
 //! * `drawer`: the atlas, the aperture view and the histogram, beneath the views.
 //! * `inspector`, `tool_bar`, `menu_bar`, `status_line`: read the document and emit [`Action`]s.
 //! * `palette`, `keys`, `help`, `menu_bar`: views of the one command table in `session`.
@@ -11,6 +12,7 @@
 //! * `file_dialog`, `unsaved_question`, `toasts`: what the window asks and tells.
 
 mod action;
+mod blit;
 mod brush_gesture;
 mod brush_ring;
 mod controls;
@@ -109,6 +111,8 @@ pub fn run(options: WindowOptions) -> anyhow::Result<()> {
             .with_min_inner_size([800.0, 500.0]),
         wgpu_options: graphics(),
         persist_window: options.remember,
+        // For gradients that the window does not have, every pixel would be worked on.
+        dithering: false,
         ..Default::default()
     };
     eframe::run_native(

@@ -1,7 +1,9 @@
 //! A recording played in the window as if it were painted now, and how long every point of a stroke takes to be seen.
 //!
-//! The points of a stroke fall due at the rate of a pen, whether or not the window has time for them: the time from
-//! there until the picture that shows them stands finished in memory is what is measured, waiting included.
+//! The points of a stroke fall due at the rate of a pen, whether or not the window has time for them. What is measured:
+//! the time from when the window is told of a point, as of any event, until the pixels of a picture that shows it stand
+//! finished, ready for the screen; the same from when the point fell due, waiting for the window included; and the time
+//! from one frame on the screen to the next.
 
 use project::{LinearPicture, RecordedStep, compare};
 use serde_json::{Value, json};
@@ -16,13 +18,23 @@ pub struct Player {
     steps: Vec<RecordedStep>,
     next: usize,
     stroke: Option<Played>,
-    /// What was painted and is not in any finished picture yet: how many changes it makes, and when it fell due.
-    unseen: Vec<(u64, Instant)>,
-    /// Of every point, until its picture stood finished.
+    /// What was painted and is not in any finished picture yet.
+    unseen: Vec<Painted>,
+    /// Of every point, from when the window was told until its picture stood finished.
     pictures: Vec<Duration>,
+    /// The same, from when the point fell due.
+    since_due: Vec<Duration>,
     /// From one frame of the window to the next, while strokes were painted.
     frames: Vec<Duration>,
     last_frame: Option<Instant>,
+}
+
+/// A point that was painted.
+struct Painted {
+    /// How many changes the map holds with it.
+    serial: u64,
+    due: Instant,
+    told: Instant,
 }
 
 /// The stroke that is being played.
@@ -41,6 +53,7 @@ impl Player {
             stroke: None,
             unseen: Vec::new(),
             pictures: Vec::new(),
+            since_due: Vec::new(),
             frames: Vec::new(),
             last_frame: None,
         }
@@ -51,6 +64,7 @@ impl Player {
         if session.document().is_none() {
             return Ok(true);
         }
+        self.look(session);
         let now = Instant::now();
         if self.stroke.is_some() {
             self.frames.extend(self.last_frame.map(|last| now - last));
@@ -63,13 +77,6 @@ impl Player {
         if !session.is_settled() {
             return Ok(true);
         }
-        // The picture that came this frame is finished at the frame's end.
-        let fine = session.preview().filter(|preview| !preview.is_coarse);
-        let seen = fine.map_or(0, |preview| preview.map_serial);
-        if self.unseen.iter().any(|(serial, _)| *serial <= seen) {
-            return Ok(true);
-        }
-        self.unseen.clear();
         let Some(step) = self.steps.get(self.next) else { return Ok(false) };
         self.next += 1;
         match step {
@@ -109,19 +116,22 @@ impl Player {
             played.next_point += 1;
             // A point between two dabs changes nothing.
             if session.map_serial() != before {
-                self.unseen.push((session.map_serial(), due));
+                self.unseen.push(Painted { serial: session.map_serial(), due, told: now });
             }
         }
         self.stroke = None;
         session.apply(Command::CommitStroke)
     }
 
-    /// The pictures of this frame stand finished in memory.
-    pub fn shown(&mut self, session: &Session) {
-        let Some(preview) = session.preview().filter(|preview| !preview.is_coarse) else { return };
-        let now = Instant::now();
-        let seen = self.unseen.partition_point(|(serial, _)| *serial <= preview.map_serial);
-        self.pictures.extend(self.unseen.drain(..seen).map(|(_, due)| now - due));
+    /// Notes which points have come to be seen.
+    fn look(&mut self, session: &Session) {
+        for &(serial, finished) in session.finished_pictures() {
+            let seen = self.unseen.partition_point(|painted| painted.serial <= serial);
+            for painted in self.unseen.drain(..seen) {
+                self.pictures.push(finished.saturating_duration_since(painted.told));
+                self.since_due.push(finished.saturating_duration_since(painted.due));
+            }
+        }
     }
 
     /// What was measured, and how far the picture is from the exact one (which is rendered now, and takes its time).
@@ -141,7 +151,8 @@ impl Player {
         Ok(json!({
             "steps": self.steps.len(),
             "picture": { "width": preview.camera.width, "height": preview.camera.height },
-            "point_to_picture_ms": statistics(&self.pictures),
+            "event_to_picture_ms": statistics(&self.pictures),
+            "due_to_picture_ms": statistics(&self.since_due),
             "frame_ms": statistics(&self.frames),
             "error_against_exact": { "psnr": error.psnr, "signed_mean_error": error.signed_mean_error },
         }))

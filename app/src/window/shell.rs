@@ -9,6 +9,7 @@
 
 mod commands;
 
+use super::blit::Blitter;
 use super::brush_gesture::BrushGesture;
 use super::brush_ring::BrushRing;
 
@@ -99,13 +100,14 @@ impl Shell {
             ..SessionOptions::default()
         })?;
         let state = creation.wgpu_render_state.as_ref();
+        let blitter = state.map(Blitter::new);
         let mut shell = Self {
             session,
             tool: Tool::default(),
             settings,
             layout,
-            paint: PaintView::new(state),
-            picture: PictureView::default(),
+            paint: PaintView::new(state, blitter.as_ref()),
+            picture: PictureView::new(blitter),
             inspector: Inspector::default(),
             drawer: Drawer::default(),
             toasts: Toasts::default(),
@@ -460,6 +462,14 @@ impl Shell {
         }
     }
 
+    /// Tells the session how the screen shows pictures.
+    fn show_display(&mut self) {
+        let display = self.settings.display();
+        if self.session.display() != display {
+            self.apply(Command::SetDisplay(display));
+        }
+    }
+
     /// Plays on what is being played.
     fn play(&mut self, context: &Context) {
         let Some(mut player) = self.player.take() else { return };
@@ -586,6 +596,7 @@ fn own_folder() -> PathBuf {
 
 impl eframe::App for Shell {
     fn logic(&mut self, context: &Context, _frame: &mut Frame) {
+        self.show_display();
         self.take_events(context);
         self.play(context);
         self.guard_close(context);
@@ -628,8 +639,8 @@ impl eframe::App for Shell {
             let hand = self.hand();
             panel.show(ui, |ui| self.drawer.ui(ui, &self.session, shown, &hand, &mut actions));
         }
-        let bare = egui::Frame::new().fill(ui.visuals().extreme_bg_color);
-        CentralPanel::default().frame(bare).show(ui, |ui| self.views(ui, &mut actions));
+        // The views fill all of it.
+        CentralPanel::default().frame(egui::Frame::NONE).show(ui, |ui| self.views(ui, &mut actions));
         self.first_hint(&context);
         if let Some(id) = self.palette.show(&context) {
             actions.push(id.into());
@@ -637,9 +648,6 @@ impl eframe::App for Shell {
         self.help.show(&context, &self.adapter);
         self.answer_questions(&context);
         self.toasts.show(&context);
-        if let Some(player) = &mut self.player {
-            player.shown(&self.session);
-        }
         self.perform(actions, &context);
         // While work goes on, its progress is shown four times a second.
         if !self.session.jobs().is_empty() {

@@ -2,10 +2,9 @@
 
 use super::drawer::Drawn;
 use super::paint_view::SurfaceLook;
-use super::picture_view::{Display, ToneCurve};
 use super::tool_settings::ToolSettings;
 use serde::{Deserialize, Serialize};
-use session::KeyMap;
+use session::{Display, KeyMap, ToneCurve};
 use std::path::{Path, PathBuf};
 
 /// Files that the Open recent menu remembers.

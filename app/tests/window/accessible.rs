@@ -1,7 +1,7 @@
 //! Every control has a name that a screen reader can say.
 
 use crate::acting::Person;
-use crate::small_scene;
+use crate::small_scene::opened;
 use egui::accesskit::{Action, Role};
 use egui_kittest::kittest::{NodeT, Queryable};
 use session::{CommandId, Menu};
@@ -29,13 +29,6 @@ fn nameless(person: &Person) -> Vec<String> {
     }
     assert!(controls > 20, "there are controls: {controls}");
     found
-}
-
-fn opened() -> (Person, tempfile::TempDir) {
-    let folder = tempfile::tempdir().unwrap();
-    let file = folder.path().join("wall.glb");
-    small_scene::write(&file);
-    (Person::opens(&file), folder)
 }
 
 #[test]

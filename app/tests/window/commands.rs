@@ -54,10 +54,7 @@ fn prepare(person: &mut Person) {
 
 #[test]
 fn every_command_runs_and_is_undone_or_has_nothing_to_undo() {
-    let folder = tempfile::tempdir().unwrap();
-    let file = folder.path().join("wall.glb");
-    small_scene::write(&file);
-    let mut person = Person::opens(&file);
+    let (mut person, _folder) = small_scene::opened();
     prepare(&mut person);
     for info in COMMANDS {
         let id = info.id;
@@ -112,10 +109,7 @@ fn every_command_runs_and_is_undone_or_has_nothing_to_undo() {
 
 #[test]
 fn a_hundred_edits_are_undone_and_done_again_to_the_bit() {
-    let folder = tempfile::tempdir().unwrap();
-    let file = folder.path().join("wall.glb");
-    small_scene::write(&file);
-    let mut person = Person::opens(&file);
+    let (mut person, _folder) = small_scene::opened();
     let mut states = vec![state(&person)];
     let rect = person.picture_rect();
     for k in 0..100 {

@@ -8,10 +8,7 @@ use session::{Command, FillRegion, ReferenceKind};
 
 #[test]
 fn a_wipe_shows_the_ordinary_lens_on_the_left_of_a_line_that_can_be_dragged() {
-    let folder = tempfile::tempdir().unwrap();
-    let file = folder.path().join("wall.glb");
-    small_scene::write(&file);
-    let mut person = Person::opens(&file);
+    let (mut person, _folder) = small_scene::opened();
     // All painted with strong blur: beside it the ordinary lens, focused on the wall, is sharp.
     let blur = lens::FocusOffset::new(1.2, 1.0);
     person.window.state_mut().apply(Command::Fill(FillRegion::All, blur));
@@ -70,10 +67,7 @@ fn a_wipe_shows_the_ordinary_lens_on_the_left_of_a_line_that_can_be_dragged() {
 
 #[test]
 fn the_ray_traced_picture_is_shown_and_says_when_it_is_old() {
-    let folder = tempfile::tempdir().unwrap();
-    let file = folder.path().join("wall.glb");
-    small_scene::write(&file);
-    let mut person = Person::opens(&file);
+    let (mut person, _folder) = small_scene::opened();
     person.presses(Modifiers::NONE, Key::F12);
     person.wait_until("it is traced", |shell| shell.session().is_reference_current(ReferenceKind::Truth));
     person.waits();
@@ -97,10 +91,7 @@ fn the_ray_traced_picture_is_shown_and_says_when_it_is_old() {
 
 #[test]
 fn a_rectangle_is_checked_by_rays_better_and_better_and_can_be_closed() {
-    let folder = tempfile::tempdir().unwrap();
-    let file = folder.path().join("wall.glb");
-    small_scene::write(&file);
-    let mut person = Person::opens(&file);
+    let (mut person, _folder) = small_scene::opened();
     let map = person.document().map.clone();
     person.presses(Modifiers::NONE, Key::R);
     let image = person.picture_rect();

@@ -1,16 +1,9 @@
 //! Every control has a name and a tooltip's worth of help; the lens follows its controls.
 
 use crate::acting::{Person, at};
-use crate::small_scene;
+use crate::small_scene::opened;
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable;
-
-fn opened() -> (Person, tempfile::TempDir) {
-    let folder = tempfile::tempdir().unwrap();
-    let file = folder.path().join("wall.glb");
-    small_scene::write(&file);
-    (Person::opens(&file), folder)
-}
 
 #[test]
 fn an_empty_window_says_how_to_begin() {

@@ -39,10 +39,7 @@ fn saved_and_reopened_is_the_same() {
 
 #[test]
 fn unsaved_changes_are_asked_about() {
-    let folder = tempfile::tempdir().unwrap();
-    let file = folder.path().join("wall.glb");
-    small_scene::write(&file);
-    let mut person = Person::opens(&file);
+    let (mut person, _folder) = small_scene::opened();
     person.presses(Modifiers::NONE, Key::Plus);
     person.presses(Modifiers::COMMAND, Key::Q);
     assert!(person.window.query_by_label("Save the changes?").is_some());

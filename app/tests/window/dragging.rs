@@ -6,11 +6,9 @@ use egui::{Event, Key, Modifiers, PointerButton, Pos2};
 use lens::FocusOffset;
 use session::{Command, CommandId};
 
+/// The small scene, and far blur on the brush.
 fn opened() -> (Person, tempfile::TempDir) {
-    let folder = tempfile::tempdir().unwrap();
-    let file = folder.path().join("wall.glb");
-    small_scene::write(&file);
-    let mut person = Person::opens(&file);
+    let (mut person, folder) = small_scene::opened();
     for _ in 0..12 {
         person.presses(Modifiers::NONE, Key::Period);
     }

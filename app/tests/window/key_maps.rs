@@ -1,17 +1,10 @@
 //! The three key maps: their keys, their mouse buttons, kept between starts; and the brush set up at the pointer.
 
 use crate::acting::{Person, at};
-use crate::small_scene;
+use crate::small_scene::opened;
 use egui::{Event, Key, Modifiers, PointerButton, Pos2};
 use focus_brush::window::{Tool, ViewSettings};
 use session::{CommandId, KeyMap};
-
-fn opened() -> (Person, tempfile::TempDir) {
-    let folder = tempfile::tempdir().unwrap();
-    let file = folder.path().join("wall.glb");
-    small_scene::write(&file);
-    (Person::opens(&file), folder)
-}
 
 impl Person {
     fn runs(&mut self, id: CommandId) {

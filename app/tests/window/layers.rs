@@ -1,18 +1,11 @@
 //! Layers: painted on, blended, hidden, drawn as a curve, undone, saved.
 
 use crate::acting::{Person, at, difference};
-use crate::small_scene;
+use crate::small_scene::opened;
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable;
 use focus::Blend;
 use lens::FocusOffset;
-
-fn opened() -> (Person, tempfile::TempDir) {
-    let folder = tempfile::tempdir().unwrap();
-    let file = folder.path().join("wall.glb");
-    small_scene::write(&file);
-    (Person::opens(&file), folder)
-}
 
 impl Person {
     fn focus_at(&self, x: f64, y: f64) -> FocusOffset {

@@ -1,17 +1,10 @@
 //! Painting in both views: the map, the colours and the picture follow; undo and redo; Esc.
 
 use crate::acting::{Person, at, color_at, difference};
-use crate::small_scene;
+use crate::small_scene::opened;
 use egui::{Key, Modifiers, Pos2};
 use egui_kittest::kittest::Queryable;
 use lens::FocusOffset;
-
-fn opened() -> (Person, tempfile::TempDir) {
-    let folder = tempfile::tempdir().unwrap();
-    let file = folder.path().join("wall.glb");
-    small_scene::write(&file);
-    (Person::opens(&file), folder)
-}
 
 /// Chooses strong far blur by the keys.
 fn chooses_blur(person: &mut Person) {
@@ -55,6 +48,14 @@ fn a_stroke_in_the_paint_view_shows_while_it_goes_on_and_can_be_undone() {
     assert!(new[2] - new[0] > old[2] - old[0] + 40.0, "far blur is blue: {old:?} became {new:?}");
     let aside = at(person.paint_rect(), 0.95, 0.1);
     assert_eq!(color_at(&before, aside), color_at(&after, aside), "and only under the brush");
+    // Another size and back: all is drawn anew, and looks as what was recoloured dab by dab.
+    person.window.set_size(egui::vec2(1281.0, 720.0));
+    person.window.run_steps(2);
+    person.window.set_size(egui::vec2(1280.0, 720.0));
+    person.window.run_steps(2);
+    let anew = person.window.render().unwrap();
+    let differing = after.pixels().zip(anew.pixels()).filter(|(a, b)| a != b).count();
+    assert_eq!(differing, 0, "dab by dab is the same as all at once");
 
     person.presses(Modifiers::COMMAND, Key::Z);
     person.waits();

@@ -1,10 +1,19 @@
 //! A scene for the tests: a chequered wall 5 away and a card that stands before its left half, 2 away. Unlit.
 
+use crate::acting::Person;
 use serde_json::{Value, json};
 use std::path::Path;
 
 /// Fields of the wall a side.
 const FIELDS: u32 = 10;
+
+/// The window, opened on the scene in a folder of its own.
+pub fn opened() -> (Person, tempfile::TempDir) {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("wall.glb");
+    write(&file);
+    (Person::opens(&file), folder)
+}
 
 /// Writes the scene as GLB.
 pub fn write(file: &Path) {

@@ -113,10 +113,7 @@ fn build(points: &[Vec3], order: &mut [u32], nodes: &mut [Node], first: usize) {
     order.select_nth_unstable_by(middle, |&i, &j| at(i)[axis].total_cmp(&at(j)[axis]).then(i.cmp(&j)));
     let (left_order, right_order) = order.split_at_mut(middle);
     let (left, rest) = nodes[1..].split_at_mut(left_nodes);
-    rayon::join(
-        || build(points, left_order, left, first + 1),
-        || build(points, right_order, rest, right),
-    );
+    rayon::join(|| build(points, left_order, left, first + 1), || build(points, right_order, rest, right));
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! What a session can be asked to do, and what it tells back.
 
-use crate::{CameraEdit, JobId, JobStatus, ReferenceKind, SurfaceHit};
+use crate::{CameraEdit, Display, JobId, JobStatus, ReferenceKind, SurfaceHit};
 use focus::{Brush, Combine, Gradient, LayerEdit, ViewFrame};
 use glam::DVec2;
 use lens::{Exposure, FocusOffset};
@@ -48,6 +48,8 @@ pub enum Command {
     SetView(serde_json::Value),
     /// How the sum becomes the picture.
     SetExposure(Exposure),
+    /// How the screen shows any picture. No part of the document.
+    SetDisplay(Display),
     /// The longest side that the preview is drawn at, px; the picture's own size if that is smaller.
     SetPreviewSize(u32),
 

@@ -8,6 +8,7 @@ use lens::{Camera, Picture};
 use progress::Progress;
 use salf::BakeOptions;
 use splat::{BackendChoice, Gpu, SplatError, Splatter, Tolerance};
+use std::ops::Range;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -53,12 +54,12 @@ impl Changes {
 }
 
 /// What it took to bring a sum up to date.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum Brought {
     /// It was.
     Nothing,
-    /// Some samples were moved.
-    Update,
+    /// Some samples were moved: rows of the picture changed.
+    Update(Range<u32>),
     /// The whole sum was made.
     Whole,
 }
@@ -165,10 +166,7 @@ impl LightField {
         let was_summed = self.summed.take().is_some();
         let brought = match moved {
             Some(samples) if samples.is_empty() => Brought::Nothing,
-            Some(samples) => {
-                self.splatter.update(focus, &samples)?;
-                Brought::Update
-            }
+            Some(samples) => Brought::Update(self.splatter.update(focus, &samples)?),
             None => {
                 let start = Instant::now();
                 if was_summed && self.unseen.is_none() {
@@ -186,8 +184,8 @@ impl LightField {
     }
 
     /// The picture of the sum.
-    pub fn picture(&self) -> Picture {
-        self.splatter.picture().clone()
+    pub fn picture(&self) -> &Picture {
+        self.splatter.picture()
     }
 
     /// What it holds, counted.

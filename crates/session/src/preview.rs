@@ -18,12 +18,14 @@
 use crate::job::{JobProgress, Waker};
 use crate::light_field::{Changes, LightField};
 use crate::preview_worker::Worker;
-use crate::{Modelled, SessionError, Stage};
+use crate::screen::Patch;
+use crate::{Modelled, SessionError, Stage, Tone};
 use focus::FocusMap;
 use lens::{Camera, Picture};
 use progress::{Cancelled, Progress};
 use std::sync::atomic::{AtomicU8, Ordering};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::time::Instant;
 
 /// A picture of the preview.
 #[derive(Clone, Debug)]
@@ -97,6 +99,8 @@ pub(crate) struct Wishes {
     /// A snapshot of the map and how many changes it holds; `changed` is what is new in it.
     pub map: Option<(FocusMap, u64)>,
     pub changed: Changes,
+    /// Another way to put pictures on screen.
+    pub tone: Option<Tone>,
     /// The light field is to be made anew.
     pub bake: bool,
     /// An edit is complete: room for what takes longer.
@@ -128,7 +132,18 @@ pub(crate) struct Shared {
 #[derive(Default)]
 struct Published {
     latest: Option<Preview>,
-    failures: Vec<String>,
+    news: News,
+}
+
+/// What happened since it was taken last.
+#[derive(Default)]
+pub(crate) struct News {
+    /// What is new on screen, oldest first, and of which of the session's documents.
+    pub patches: Vec<(u64, Patch)>,
+    /// The pictures that were finished, at their full size: how many changes of the map each has seen, and when its
+    /// pixels stood ready to be shown.
+    pub finished: Vec<(u64, Instant)>,
+    pub failures: Vec<String>,
 }
 
 /// A poisoned lock only means that a panic passed by; what it guards is replaced as a whole.
@@ -195,15 +210,26 @@ impl Shared {
         self.post(false, |wishes| wishes.delivery = Some(delivery));
     }
 
-    /// Shows a picture.
-    pub fn publish(&self, preview: Preview) {
-        lock(&self.published).latest = Some(preview);
+    /// Shows a picture, and what is new on screen by it.
+    pub fn publish(&self, preview: Preview, patch: Option<Patch>) {
+        let mut published = lock(&self.published);
+        if !preview.is_coarse {
+            published.news.finished.push((preview.map_serial, Instant::now()));
+        }
+        if let Some(patch) = patch {
+            let is_whole = patch.pixels.len() == patch.size[0] as usize * patch.size[1] as usize;
+            let patches = &mut published.news.patches;
+            patches.retain(|_| !is_whole);
+            patches.push((preview.generation, patch));
+        }
+        published.latest = Some(preview);
+        drop(published);
         (self.waker)();
     }
 
     /// Tells the user.
     pub fn fail(&self, what: String) {
-        lock(&self.published).failures.push(what);
+        lock(&self.published).news.failures.push(what);
         (self.waker)();
     }
 }
@@ -290,18 +316,23 @@ impl PreviewThread {
         }
     }
 
-    /// The newest picture, if there is one newer than `id`, and what failed meanwhile.
-    pub fn take(&self, id: u64) -> (Option<Preview>, Vec<String>) {
+    /// The newest picture, if there is one newer than `id`, and what happened meanwhile.
+    pub fn take(&self, id: u64) -> (Option<Preview>, News) {
         let mut published = lock(&self.shared.published);
         let newer = published.latest.as_ref().filter(|preview| preview.id > id).cloned();
-        (newer, std::mem::take(&mut published.failures))
+        (newer, std::mem::take(&mut published.news))
+    }
+
+    /// Puts pictures on screen in another way.
+    pub fn set_tone(&self, tone: Tone) {
+        self.shared.post(false, |wishes| wishes.tone = Some(tone));
     }
 
     /// Whether everything that was posted has been followed, and nothing newer than `id` waits to be taken.
     pub fn is_settled(&self, id: u64) -> bool {
         let wishes = lock(&self.shared.wishes);
         let published = lock(&self.shared.published);
-        let seen = published.failures.is_empty() && published.latest.as_ref().is_none_or(|p| p.id <= id);
+        let seen = published.news.failures.is_empty() && published.latest.as_ref().is_none_or(|p| p.id <= id);
         let idle = [&self.shared.activity, &self.shared.helper]
             .into_iter()
             .all(|activity| PreviewActivity::load(activity) == PreviewActivity::Idle);

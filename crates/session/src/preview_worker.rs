@@ -2,9 +2,12 @@
 
 use crate::job::guarded;
 use crate::light_field::{Brought, Changes, LightField};
+use crate::picture_ring::{PictureRing, Rectangle, whole};
 use crate::preview::{Delivery, Shared, Wishes};
 use crate::render::light;
-use crate::{Modelled, Preview, PreviewActivity, PreviewKind, SessionError, Stage};
+use crate::screen::Patch;
+use crate::tone::rectangle_to_screen;
+use crate::{Modelled, Preview, PreviewActivity, PreviewKind, SessionError, Stage, Tone};
 use baselines::FirstHits;
 use focus::{Focus, FocusMap};
 use lens::{Camera, Picture};
@@ -22,9 +25,9 @@ const SMALLEST_COARSE: u32 = 48;
 /// A whole sum that takes less than this many seconds is made at once for every new lens: two frames.
 const QUICK_SECONDS: f64 = 0.033;
 
-impl From<Brought> for PreviewKind {
-    fn from(brought: Brought) -> Self {
-        if brought == Brought::Update { Self::Update } else { Self::Splat }
+impl From<&Brought> for PreviewKind {
+    fn from(brought: &Brought) -> Self {
+        if matches!(brought, Brought::Update(_)) { Self::Update } else { Self::Splat }
     }
 }
 
@@ -50,8 +53,12 @@ pub(crate) struct Worker {
     is_settled: bool,
     /// The user wants no more work until the next change that needs it.
     is_held: bool,
-    /// The camera of the newest picture.
-    shown: Option<Camera>,
+    /// The newest picture.
+    shown: Option<Preview>,
+    /// It and those of before.
+    pictures: PictureRing,
+    /// How pictures are put on screen.
+    tone: Tone,
     generation: u64,
     last_id: u64,
 }
@@ -73,6 +80,8 @@ impl Worker {
             is_settled: false,
             is_held: false,
             shown: None,
+            pictures: PictureRing::default(),
+            tone: Tone::default(),
             generation: 0,
             last_id: 0,
         }
@@ -117,12 +126,18 @@ impl Worker {
             let start = Instant::now();
             let brought = fine.bring_up(&camera, &focus, &self.shared.quick)?;
             if brought != Brought::Nothing || self.is_new {
-                let (picture, modelled) = (fine.picture(), fine.modelled());
                 // The helper's sum took its time elsewhere.
                 let elsewhere = if self.is_new { fine.whole_seconds() } else { 0.0 };
+                let (picture, changed) = match &brought {
+                    Brought::Update(rows) if !self.is_new => {
+                        self.pictures.follow(fine.picture(), rows.clone())
+                    }
+                    _ => (self.pictures.begin(fine.picture()), Some(whole(fine.picture()))),
+                };
                 self.is_new = false;
+                let (kind, modelled) = (PreviewKind::from(&brought), fine.modelled());
                 let seconds = start.elapsed().as_secs_f64() + elsewhere;
-                self.publish(picture, brought.into(), &camera, seconds, modelled);
+                self.publish(Made { picture, changed, kind, seconds, modelled }, &camera);
             }
             let may_refine = self.is_settled && self.helper.is_none() && !self.is_held;
             let fine = self.fine.as_ref().filter(|_| may_refine);
@@ -175,6 +190,10 @@ impl Worker {
         // A stroke that goes on is no time for more.
         self.is_settled = wishes.settle || (self.is_settled && wishes.map.is_none());
         self.camera = wishes.camera.or(self.camera.take());
+        if let Some(tone) = wishes.tone.filter(|tone| *tone != self.tone) {
+            self.tone = tone;
+            self.show_again();
+        }
         if let Some((map, serial)) = wishes.map {
             (self.map, self.map_serial) = (Some(Arc::new(map)), serial);
         }
@@ -189,12 +208,19 @@ impl Worker {
     fn show_coarse(&mut self, stage: &Stage, camera: &Camera, focus: &Focus) -> Result<(), SessionError> {
         let small = coarse_of(camera);
         let start = Instant::now();
-        if !self.shown.as_ref().is_some_and(|shown| same_view(shown, camera)) {
+        if !self.shown.as_ref().is_some_and(|shown| same_view(&shown.camera, camera)) {
             self.shared.begin(PreviewActivity::Baking)?;
             let radiance = light(&stage.tracer, camera);
             let hits = FirstHits::trace(&stage.tracer, &radiance, focus, camera, &self.shared.quick)?;
-            let seconds = start.elapsed().as_secs_f64();
-            self.publish(hits.picture(), PreviewKind::Pinhole, camera, seconds, Modelled::default());
+            let picture = self.pictures.begin(&hits.picture());
+            let made = Made {
+                changed: Some(whole(&picture)),
+                picture,
+                kind: PreviewKind::Pinhole,
+                seconds: start.elapsed().as_secs_f64(),
+                modelled: Modelled::default(),
+            };
+            self.publish(made, camera);
         }
         let Some(small) = small else { return Ok(()) };
         self.coarse.take_if(|coarse| !coarse.serves(&small));
@@ -208,9 +234,14 @@ impl Worker {
         self.shared.begin(PreviewActivity::Splatting)?;
         let start = Instant::now();
         let brought = coarse.bring_up(&small, focus, &self.shared.quick)?;
-        if brought != Brought::Nothing || self.shown.as_ref() != Some(&small) {
-            let (picture, modelled) = (coarse.picture(), coarse.modelled());
-            self.publish(picture, brought.into(), &small, start.elapsed().as_secs_f64(), modelled);
+        if brought != Brought::Nothing || self.shown.as_ref().is_none_or(|shown| shown.camera != small) {
+            let (picture, changed) = match &brought {
+                Brought::Update(rows) => self.pictures.follow(coarse.picture(), rows.clone()),
+                _ => (self.pictures.begin(coarse.picture()), Some(whole(coarse.picture()))),
+            };
+            let (kind, modelled) = (PreviewKind::from(&brought), coarse.modelled());
+            let seconds = start.elapsed().as_secs_f64();
+            self.publish(Made { picture, changed, kind, seconds, modelled }, &small);
         }
         Ok(())
     }
@@ -252,29 +283,54 @@ impl Worker {
         }
     }
 
-    fn publish(
-        &mut self,
-        picture: Picture,
-        kind: PreviewKind,
-        camera: &Camera,
-        seconds: f64,
-        modelled: Modelled,
-    ) {
+    /// Shows a picture.
+    fn publish(&mut self, made: Made, camera: &Camera) {
+        let Made { picture, changed, kind, seconds, modelled } = made;
         self.last_id += 1;
-        self.shown = Some(camera.clone());
         let full = self.camera.as_ref().map(|camera| (camera.width, camera.height));
-        self.shared.publish(Preview {
+        let preview = Preview {
             id: self.last_id,
             is_coarse: full != Some((picture.width, picture.height)),
-            picture: Arc::new(picture),
+            picture,
             kind,
             camera: camera.clone(),
             seconds,
             modelled,
             map_serial: self.map_serial,
             generation: self.generation,
-        });
+        };
+        self.shown = Some(preview.clone());
+        self.put_on_screen(preview, changed);
     }
+
+    /// Shows the newest picture by another tone.
+    fn show_again(&mut self) {
+        if let Some(mut preview) = self.shown.clone() {
+            self.last_id += 1;
+            preview.id = self.last_id;
+            let all = whole(&preview.picture);
+            self.put_on_screen(preview, Some(all));
+        }
+    }
+
+    fn put_on_screen(&self, preview: Preview, changed: Option<Rectangle>) {
+        let patch = changed.map(|rectangle| Patch {
+            size: [preview.picture.width, preview.picture.height],
+            pixels: rectangle_to_screen(&preview.picture, self.tone, rectangle.clone()),
+            rectangle,
+        });
+        self.shared.publish(preview, patch);
+    }
+}
+
+/// A picture that was made.
+struct Made {
+    picture: Arc<Picture>,
+    /// Where it differs from the one before.
+    changed: Option<Rectangle>,
+    kind: PreviewKind,
+    seconds: f64,
+    modelled: Modelled,
 }
 
 /// The camera of the coarse picture; none where the picture is small anyway.

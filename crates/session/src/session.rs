@@ -13,8 +13,8 @@ use crate::picking::{chief_ray, pick};
 use crate::preview::PreviewThread;
 use crate::undo::{Undo, Undoable, Undone};
 use crate::{
-    CameraEdit, Command, Event, JobId, JobStatus, Preview, PreviewActivity, Reference, ReferenceKind,
-    SessionError, SurfaceHit, Verification,
+    CameraEdit, Command, Display, Event, JobId, JobStatus, Preview, PreviewActivity, Reference,
+    ReferenceKind, Screen, SessionError, SurfaceHit, Tone, Verification,
 };
 use atlas::UnwrapOptions;
 use focus::{Changed, FillTarget, union};
@@ -100,6 +100,11 @@ pub struct Session {
     underway: Option<Underway>,
     preview_thread: PreviewThread,
     preview: Option<Preview>,
+    /// The preview as it is shown.
+    screen: Screen,
+    display: Display,
+    /// The pictures that were finished between the last two polls.
+    finished: Vec<(u64, Instant)>,
     /// The camera that the preview was asked to show last.
     preview_camera: Option<Camera>,
     /// The newest preview that was seen, of whatever document.
@@ -137,6 +142,9 @@ impl Session {
             generation: 0,
             underway: None,
             preview: None,
+            screen: Screen::default(),
+            display: Display::default(),
+            finished: Vec::new(),
             preview_camera: None,
             seen_preview: 0,
             map_serial: 0,
@@ -164,6 +172,22 @@ impl Session {
     /// The last good picture.
     pub fn preview(&self) -> Option<&Preview> {
         self.preview.as_ref()
+    }
+
+    /// How the screen shows any picture.
+    pub fn display(&self) -> Display {
+        self.display
+    }
+
+    /// The live picture as the screen shows it.
+    pub fn screen(&self) -> &Screen {
+        &self.screen
+    }
+
+    /// The pictures of full size that were finished between the last two calls of [`Self::poll`]: how many changes of the
+    /// map each has seen, and when its pixels stood ready to be shown.
+    pub fn finished_pictures(&self) -> &[(u64, Instant)] {
+        &self.finished
     }
 
     /// How many changes of the map there were: a preview that has seen as many shows it as it is.
@@ -225,7 +249,11 @@ impl Session {
                 Err(error) => self.events.push(Event::Failed(error.to_string())),
             }
         }
-        let (newer, failures) = self.preview_thread.take(self.seen_preview);
+        let (newer, news) = self.preview_thread.take(self.seen_preview);
+        for (_, patch) in news.patches.into_iter().filter(|(generation, _)| *generation == self.generation) {
+            self.screen.take(patch);
+        }
+        self.finished = news.finished;
         if let Some(preview) = newer {
             self.seen_preview = preview.id;
             if preview.generation == self.generation {
@@ -233,7 +261,7 @@ impl Session {
                 self.preview = Some(preview);
             }
         }
-        self.events.extend(failures.into_iter().map(Event::Failed));
+        self.events.extend(news.failures.into_iter().map(Event::Failed));
         let jobs = self.jobs();
         let moved = jobs.iter().filter(|job| !self.reported.contains(job)).cloned();
         self.events.extend(moved.map(Event::Progress));
@@ -260,6 +288,7 @@ impl Session {
                 self.preview_camera = Some(camera.clone());
                 let stage = (document.stage.clone(), self.generation);
                 self.preview_thread.set_stage(stage, (document.map.clone(), self.map_serial), camera);
+                self.screen.clear();
                 self.events.push(Event::Opened);
                 self.events.extend(document.warnings.iter().cloned().map(Event::Notice));
                 // What was restored is in its file already; a document as saved has none.
@@ -269,6 +298,7 @@ impl Session {
                     changed: None,
                 };
                 self.document = Some(*document);
+                self.show_tone();
             }
             Outcome::Saved { path, revision, generation } => {
                 if generation == self.generation {
@@ -314,6 +344,12 @@ impl Session {
             }
             Command::SetExposure(exposure) => {
                 self.opened()?.exposure = exposure;
+                self.show_tone();
+                Ok(())
+            }
+            Command::SetDisplay(display) => {
+                self.display = display;
+                self.show_tone();
                 Ok(())
             }
             Command::SetPreviewSize(size) => {
@@ -535,6 +571,12 @@ impl Session {
             self.preview_thread.settle();
         }
         Ok(())
+    }
+
+    /// Shows the preview by the document's exposure.
+    fn show_tone(&self) {
+        let exposure = self.document.as_ref().map(|document| document.exposure).unwrap_or_default();
+        self.preview_thread.set_tone(Tone { exposure, display: self.display });
     }
 
     /// Shows the camera in the preview.

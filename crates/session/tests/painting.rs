@@ -7,7 +7,8 @@ use glam::DVec2;
 use lens::{FocusOffset, Picture};
 use project::RecordedStep;
 use session::{
-    CameraEdit, Command, Event, FillRegion, PreviewKind, Session, SessionError, SessionOptions, StrokePoint,
+    CameraEdit, Command, Display, Event, FillRegion, PreviewKind, Session, SessionError, SessionOptions,
+    StrokePoint, Tone, to_screen,
 };
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -80,9 +81,25 @@ fn paint_shows_while_the_stroke_goes_on_and_undo_brings_the_same_bits_back() {
     assert!(!document.is_unsaved());
     assert_eq!(document.undo_name(), None);
 
+    let seen = session.screen().serial();
     stroke(&mut session);
     let events = settle(&mut session);
     assert!(session.is_painting());
+    let shown = |session: &Session| {
+        let tone = Tone { exposure: session.document().unwrap().exposure, display: session.display() };
+        session.screen().pixels() == to_screen(&session.preview().unwrap().picture, tone)
+    };
+    assert!(shown(&session), "what was made anew piece by piece is the whole");
+    let [columns, rows] = session.screen().changed_since(seen).expect("a change");
+    let [width, height] = session.screen().size();
+    let changed = columns.len() * rows.len();
+    assert!(changed > 100 && changed < (width * height) as usize * 3 / 4, "{columns:?} {rows:?}");
+    let brighter = Display { stops: 1.0, ..Display::default() };
+    session.apply(Command::SetDisplay(brighter)).unwrap();
+    assert!(!shown(&session), "until the picture is put on screen anew");
+    settle(&mut session);
+    assert!(shown(&session));
+    session.apply(Command::SetDisplay(Display::default())).unwrap();
     assert!(events.iter().any(|event| matches!(event, Event::MapChanged(..))));
     let painted = picture(&session);
     assert!(painted != blank, "the preview follows while the pen is down");

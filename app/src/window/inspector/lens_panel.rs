@@ -2,11 +2,10 @@
 
 use super::shape_panel::shape_panel;
 use crate::window::controls::{self, finish, format_number, proportional, row, rows};
-use crate::window::picture_view::ToneCurve;
 use crate::window::{Action, ViewSettings};
 use egui::{Button, ComboBox, DragValue, Ui};
 use lens::Exposure;
-use session::{CameraEdit, Command, CommandId, Document};
+use session::{CameraEdit, Command, CommandId, Document, ToneCurve};
 
 /// Full stops that the f-number's menu offers.
 const STOPS: [f64; 9] = [0.7, 1.0, 1.4, 2.0, 2.8, 4.0, 5.6, 8.0, 16.0];

@@ -6,12 +6,14 @@
 //! OrbitCamera, SurfaceLook ─────┘
 //! ```
 
+mod changed_pixels;
 mod focus_texture;
 mod graphics;
 mod orbit_camera;
 #[cfg(test)]
 mod shader_twin;
 mod surface_mesh;
+mod surface_passes;
 mod surface_renderer;
 mod view;
 
@@ -19,5 +21,5 @@ pub use focus_texture::FocusTexture;
 pub use graphics::GraphicsError;
 pub use orbit_camera::OrbitCamera;
 pub use surface_mesh::SurfaceMesh;
-pub use surface_renderer::{SurfaceFrame, SurfaceLook, SurfaceRenderer};
+pub use surface_renderer::{Stale, SurfaceFrame, SurfaceLook, SurfaceRenderer};
 pub use view::{PaintView, hint};

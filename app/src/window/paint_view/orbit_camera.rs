@@ -105,6 +105,12 @@ impl OrbitCamera {
         (depth > 0.0).then(|| DVec2::new(view.x / aspect, view.y) / (half_height * depth))
     }
 
+    /// Pixels of a unit length across the view at a point, in a view of `height` px; infinite beside the eye.
+    pub fn pixels_per_unit(&self, point: DVec3, height: f64) -> f64 {
+        let depth = (point - self.eye()).dot(self.orientation * DVec3::NEG_Z);
+        height / (2.0 * (self.yfov / 2.0).tan() * depth.max(0.0))
+    }
+
     /// Clip space from a world moved by −`origin`: reverse depth without a far plane.
     ///
     /// `extent` is the scene's size; the near plane keeps 1e-4 of it or of the distance, whichever is less.

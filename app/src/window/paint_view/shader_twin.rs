@@ -1,13 +1,12 @@
 //! The shader's κ and colours against `lens` and the Rust colour map, on the graphics adapter of the tests.
 
-use super::{FocusTexture, OrbitCamera, SurfaceFrame, SurfaceLook, SurfaceMesh, SurfaceRenderer};
+use super::{FocusTexture, OrbitCamera, Stale, SurfaceFrame, SurfaceLook, SurfaceMesh, SurfaceRenderer};
 use crate::window::false_colour;
 use atlas::Atlas;
 use focus::FocusMap;
 use glam::{DVec3, Mat3, Vec2, Vec3, Vec4};
 use lens::{Camera, FocusOffset};
 use scene::{AlphaMode, Image, ImageLevel, Material, Node, Part, Scene, TextureRef, Triangle, Wrap};
-use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Pixels a side of what is drawn; a row is then as long as copies from the card must be.
 const SIDE: u32 = 64;
@@ -53,12 +52,6 @@ fn atlas() -> Atlas {
     Atlas::new([8, 8], vec![[a, b, c], [a, c, d]], vec![0, 0], &[0], 1.0)
 }
 
-/// Every mesh and texture here is another.
-fn next_revision() -> u64 {
-    static LAST: AtomicU64 = AtomicU64::new(0);
-    LAST.fetch_add(1, Ordering::Relaxed)
-}
-
 /// The pixel in the middle of what the renderer draws.
 fn drawn(renderer: &mut SurfaceRenderer, z: f64, focus: FocusOffset, shot: &Camera, share: f32) -> [f32; 3] {
     let (device, queue) = renderer.device();
@@ -66,8 +59,8 @@ fn drawn(renderer: &mut SurfaceRenderer, z: f64, focus: FocusOffset, shot: &Came
     let texture = FocusTexture::new(device, queue, &FocusMap::new(8, 8, focus)).unwrap();
     let view = OrbitCamera::from_shot(shot, z);
     let look = SurfaceLook { focus_share: share, contours: false };
-    let shown = SurfaceFrame { view: &view, shot, look, size: [SIDE, SIDE], revision: next_revision() };
-    renderer.draw(&mesh, &texture, shown).unwrap();
+    let shown = SurfaceFrame { view: &view, shot, look, size: [SIDE, SIDE] };
+    renderer.draw(&mesh, &texture, shown, Stale::Everything).unwrap();
     let pixels = read(renderer);
     let middle = (SIDE / 2 * SIDE + SIDE / 3) as usize * 4;
     std::array::from_fn(|c| pixels[middle + c] as f32 / 255.0)
@@ -85,7 +78,7 @@ fn read(renderer: &SurfaceRenderer) -> Vec<u8> {
     let layout =
         wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(SIDE * 4), rows_per_image: None };
     encoder.copy_texture_to_buffer(
-        renderer.view().unwrap().texture().as_image_copy(),
+        renderer.picture().unwrap().as_image_copy(),
         wgpu::TexelCopyBufferInfo { buffer: &buffer, layout },
         wgpu::Extent3d { width: SIDE, height: SIDE, depth_or_array_layers: 1 },
     );

@@ -1,4 +1,6 @@
-// The scene's surface with the false colour of its focus. Rust twin of the structs: surface_renderer.rs.
+// The scene's surface with the false colour of its focus, in two passes: what is seen of the surface at every pixel, which
+// stays while one paints; and its colours, which are made anew where the paint changed. Rust twin of the structs:
+// surface_renderer.rs.
 
 struct Frame {
     clip_from_scene: mat4x4<f32>,
@@ -21,7 +23,11 @@ struct Material {
 }
 
 @group(0) @binding(0) var<uniform> frame: Frame;
+// What is seen, for the second pass: encoded colour and how much it faces the eye; atlas position in texels, depth in the
+// shot camera, and 1 where there is a surface.
 @group(0) @binding(1) var focus_map: texture_2d<f32>;
+@group(0) @binding(2) var seen_color: texture_2d<f32>;
+@group(0) @binding(3) var seen_place: texture_2d<f32>;
 
 @group(1) @binding(0) var<uniform> material: Material;
 @group(1) @binding(1) var base_texture: texture_2d<f32>;
@@ -111,15 +117,17 @@ fn encoded(linear: vec3<f32>) -> vec3<f32> {
     return select(high, low, clamped <= vec3(0.0031308));
 }
 
+struct Seen {
+    @location(0) color: vec4<f32>,
+    @location(1) place: vec4<f32>,
+}
+
+// First pass: what is seen of the surface.
 @fragment
-fn surface_fragment(in: Fragment) -> @location(0) vec4<f32> {
+fn seen_fragment(in: Fragment) -> Seen {
     // Everything with derivatives comes before the opacity test.
     let base = material.base_color * in.color * textureSample(base_texture, base_sampler, in.base_uv);
     let emitted = material.emissive.rgb * textureSample(emissive_texture, emissive_sampler, in.emissive_uv).rgb;
-    let depth = dot(frame.shot_axis.xyz, in.position) + frame.shot_axis.w;
-    let focus = focus_at(in.atlas);
-    let circle_px = frame.optics.z * kappa(1.0 / max(depth, 1e-9), focus.xy);
-    let circle_width = fwidth(circle_px);
     let facet = cross(dpdx(in.position), dpdy(in.position));
     if base.a < material.kind.y {
         discard;
@@ -130,18 +138,42 @@ fn surface_fragment(in: Fragment) -> @location(0) vec4<f32> {
     let normal = select(normalize(facet), normalize(in.normal), dot(in.normal, in.normal) > 0.0);
     let facing = abs(dot(normal, to_eye));
     let shade = mix(0.25 + 0.75 * facing, 1.0, material.kind.x);
-    let surface = encoded(base.rgb * shade + emitted);
+    let depth = dot(frame.shot_axis.xyz, in.position) + frame.shot_axis.w;
+    return Seen(vec4(encoded(base.rgb * shade + emitted), facing), vec4(in.atlas, depth, 1.0));
+}
+
+@vertex
+fn screen_vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {
+    let corner = vec2(f32(index & 1u), f32(index >> 1u));
+    return vec4(4.0 * corner.x - 1.0, 4.0 * corner.y - 1.0, 0.0, 1.0);
+}
+
+// Encoded grey where no surface is: darker than the panels, so that the scene stands out.
+const BACKGROUND: vec3<f32> = vec3(0.125);
+
+// Second pass: its colours.
+@fragment
+fn color_fragment(@builtin(position) at: vec4<f32>) -> @location(0) vec4<f32> {
+    let pixel = vec2<i32>(at.xy);
+    let seen = textureLoad(seen_color, pixel, 0);
+    let place = textureLoad(seen_place, pixel, 0);
+    let surface = seen.rgb;
+    let facing = seen.a;
+    let depth = place.z;
+    let focus = focus_at(place.xy);
+    let circle_px = frame.optics.z * kappa(1.0 / max(depth, 1e-9), focus.xy);
+    let circle_width = fwidth(circle_px);
 
     // What stands behind the shot camera has no circle of confusion: it stays grey.
-    let seen = select(0.0, 1.0, depth > 0.0);
+    let in_front = select(0.0, 1.0, depth > 0.0);
     let relief = 0.62 + 0.38 * facing;
     let luma = dot(surface, vec3(0.2126, 0.7152, 0.0722));
-    var focus_color = mix(vec3(0.35), false_color(circle_px), seen) * relief * (0.78 + 0.3 * luma);
+    var focus_color = mix(vec3(0.35), false_color(circle_px), in_front) * relief * (0.78 + 0.3 * luma);
     let lines = max(max(contour(circle_px, circle_width, 1.0), contour(circle_px, circle_width, 4.0)),
         contour(circle_px, circle_width, 16.0));
-    focus_color = mix(focus_color, vec3(0.05), 0.75 * lines * frame.look.y * seen);
+    focus_color = mix(focus_color, vec3(0.05), 0.75 * lines * frame.look.y * in_front);
     let color = mix(surface, focus_color, frame.look.x);
     // What is frozen is darker, and striped.
-    let stripe = step(4.0, f32((u32(in.clip.x) + u32(in.clip.y)) % 8u));
-    return vec4(color * mix(1.0, mix(0.45, 0.7, stripe), focus.z), 1.0);
+    let stripe = step(4.0, f32((u32(at.x) + u32(at.y)) % 8u));
+    return vec4(select(BACKGROUND, color * mix(1.0, mix(0.45, 0.7, stripe), focus.z), place.w > 0.0), 1.0);
 }

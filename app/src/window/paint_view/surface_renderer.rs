@@ -1,10 +1,13 @@
-//! Draws the surface into a texture that egui shows. Draws again only when something that it shows has changed.
+//! Draws the surface into a texture. What is seen of the surface is drawn again only from another place; its colours only
+//! where they changed.
 
 use super::graphics::{GraphicsError, guarded};
+use super::surface_passes::{COLOR_FORMAT, Passes, Seen, target_texture};
 use super::{FocusTexture, OrbitCamera, SurfaceMesh};
 use crate::window::false_colour;
 use bytemuck::{Pod, Zeroable};
 use lens::Camera;
+use std::ops::Range;
 
 /// What the surface looks like.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,8 +35,6 @@ pub struct SurfaceFrame<'a> {
     pub look: SurfaceLook,
     /// Columns and rows, px.
     pub size: [u32; 2],
-    /// Counts changes of mesh and focus texture.
-    pub revision: u64,
 }
 
 /// Twin of `Frame` in surface.wgsl.
@@ -48,48 +49,69 @@ struct FrameUniform {
     stops: [[f32; 4]; 7],
 }
 
-/// Where it is drawn, at the size of the view.
+/// Where it is drawn: what is seen, and its colours.
 struct Target {
-    color: wgpu::TextureView,
-    multisampled: Option<wgpu::TextureView>,
-    depth: wgpu::TextureView,
+    seen: Seen,
+    /// Side by side, with as many pixels.
+    color: wgpu::Texture,
+    color_view: wgpu::TextureView,
     size: [u32; 2],
+}
+
+/// What of the last picture no longer holds.
+#[derive(Clone, Debug, PartialEq, Eq, Default)]
+pub enum Stale {
+    /// Nothing.
+    #[default]
+    Nothing,
+    /// The colours of a rectangle, columns and rows of the view, px.
+    Colors([Range<u32>; 2]),
+    /// All colours.
+    AllColors,
+    /// Another mesh.
+    Everything,
+}
+
+impl Stale {
+    /// Takes up what else no longer holds.
+    pub fn join(&mut self, other: Self) {
+        *self = match (std::mem::take(self), other) {
+            (Self::Everything, _) | (_, Self::Everything) => Self::Everything,
+            (Self::AllColors, _) | (_, Self::AllColors) => Self::AllColors,
+            (Self::Colors(a), Self::Colors(b)) => Self::Colors(focus::union(&a, &b)),
+            (Self::Nothing, some) | (some, Self::Nothing) => some,
+        }
+    }
 }
 
 /// Draws a [`SurfaceMesh`] in the false colours of a [`FocusTexture`].
 pub struct SurfaceRenderer {
     device: wgpu::Device,
     queue: wgpu::Queue,
-    pipeline: wgpu::RenderPipeline,
-    frame_layout: wgpu::BindGroupLayout,
+    passes: Passes,
     frame_buffer: wgpu::Buffer,
-    samples: u32,
+    /// Drawn pixels a side of a pixel of the view: their mean smooths edges.
+    pixels_a_side: u32,
     target: Option<Target>,
-    drawn: Option<(FrameUniform, u64)>,
+    drawn: Option<FrameUniform>,
 }
 
-const COLOR_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
-const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
-/// Encoded grey where no surface is: darker than the panels, so that the scene stands out.
-const BACKGROUND: f64 = 0.125;
-
 impl SurfaceRenderer {
-    /// Builds the pipeline. Edges are smoothed where the adapter is a real graphics card.
+    /// Builds the pipelines. Edges are smoothed where the adapter is a real graphics card.
     pub fn new(state: &egui_wgpu::RenderState) -> Result<Self, GraphicsError> {
         let (device, queue) = (state.device.clone(), state.queue.clone());
         let software = state.adapter.get_info().device_type == wgpu::DeviceType::Cpu;
-        let samples = if software { 1 } else { 4 };
-        let (pipeline, frame_layout, frame_buffer) = guarded(&device, || {
-            let frame_layout = frame_layout(&device);
+        let (passes, frame_buffer) = guarded(&device, || {
             let frame_buffer = device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some("surface frame"),
                 size: size_of::<FrameUniform>() as u64,
                 usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
                 mapped_at_creation: false,
             });
-            (create_pipeline(&device, &frame_layout, samples), frame_layout, frame_buffer)
+            (Passes::new(&device), frame_buffer)
         })?;
-        Ok(Self { device, queue, pipeline, frame_layout, frame_buffer, samples, target: None, drawn: None })
+        let pixels_a_side = if software { 1 } else { 2 };
+        Ok(Self { device, queue, passes, frame_buffer, pixels_a_side, target: None, drawn: None })
     }
 
     /// The device that meshes and focus textures must be made for.
@@ -98,74 +120,62 @@ impl SurfaceRenderer {
     }
 
     /// The picture of the last [`Self::draw`].
-    pub fn view(&self) -> Option<&wgpu::TextureView> {
+    pub fn picture(&self) -> Option<&wgpu::Texture> {
         self.target.as_ref().map(|target| &target.color)
     }
 
-    /// Draws `mesh` in the colours of `focus`, unless the last picture still holds. Returns whether [`Self::view`] is a new
-    /// texture.
+    /// Draws `mesh` in the colours of `focus`, as far as the last picture no longer holds; `stale` tells what of that is due
+    /// to mesh and focus. Returns whether [`Self::picture`] is a new texture.
     pub fn draw(
         &mut self,
         mesh: &SurfaceMesh,
         focus: &FocusTexture,
         shown: SurfaceFrame<'_>,
+        stale: Stale,
     ) -> Result<bool, GraphicsError> {
         let limit = self.device.limits().max_texture_dimension_2d;
-        let size = shown.size.map(|side| side.clamp(1, limit));
+        let size = shown.size.map(|side| (side * self.pixels_a_side).clamp(1, limit));
         let frame = frame_uniform(mesh, focus, SurfaceFrame { size, ..shown });
         let resized = self.target.as_ref().is_none_or(|target| target.size != size);
-        if !resized && self.drawn == Some((frame, shown.revision)) {
-            return Ok(false);
-        }
+        let same_view = |drawn: &FrameUniform| {
+            (drawn.clip_from_scene, drawn.eye, drawn.shot_axis)
+                == (frame.clip_from_scene, frame.eye, frame.shot_axis)
+        };
+        let is_seen = !resized && stale != Stale::Everything && self.drawn.as_ref().is_some_and(same_view);
+        let rectangle = match &stale {
+            _ if !is_seen || self.drawn != Some(frame) => size.map(|side| 0..side),
+            Stale::Nothing => return Ok(false),
+            Stale::Colors(rectangle) => [0, 1].map(|axis| {
+                let [start, end] = [rectangle[axis].start, rectangle[axis].end]
+                    .map(|side| side.saturating_mul(self.pixels_a_side).min(size[axis]));
+                start..end
+            }),
+            Stale::AllColors | Stale::Everything => size.map(|side| 0..side),
+        };
         if resized {
-            self.target = Some(guarded(&self.device, || create_target(&self.device, size, self.samples))?);
+            self.target = Some(guarded(&self.device, || Target::new(&self.device, size))?);
         }
         let Some(target) = &self.target else { return Ok(false) };
         self.queue.write_buffer(&self.frame_buffer, 0, bytemuck::bytes_of(&frame));
-        let bind_group = self.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("surface frame"),
-            layout: &self.frame_layout,
-            entries: &[
-                wgpu::BindGroupEntry { binding: 0, resource: self.frame_buffer.as_entire_binding() },
-                wgpu::BindGroupEntry {
-                    binding: 1,
-                    resource: wgpu::BindingResource::TextureView(&focus.view()),
-                },
-            ],
-        });
         let mut encoder = self.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        {
-            let clear = wgpu::Color { r: BACKGROUND, g: BACKGROUND, b: BACKGROUND, a: 1.0 };
-            let (attached, resolved) = match &target.multisampled {
-                Some(multisampled) => (multisampled, Some(&target.color)),
-                None => (&target.color, None),
-            };
-            let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-                label: Some("surface"),
-                color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                    view: attached,
-                    depth_slice: None,
-                    resolve_target: resolved,
-                    ops: wgpu::Operations { load: wgpu::LoadOp::Clear(clear), store: wgpu::StoreOp::Store },
-                })],
-                depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
-                    view: &target.depth,
-                    // Reverse depth: 0 is at infinity.
-                    depth_ops: Some(wgpu::Operations {
-                        load: wgpu::LoadOp::Clear(0.0),
-                        store: wgpu::StoreOp::Discard,
-                    }),
-                    stencil_ops: None,
-                }),
-                ..Default::default()
-            });
-            pass.set_pipeline(&self.pipeline);
-            pass.set_bind_group(0, &bind_group, &[]);
-            mesh.draw(&mut pass);
+        if !is_seen {
+            self.passes
+                .see(&self.device, &mut encoder, &self.frame_buffer, &target.seen, |pass| mesh.draw(pass));
         }
+        let inputs = (&self.frame_buffer, &focus.view(), &target.seen);
+        self.passes.color(&self.device, &mut encoder, inputs, &target.color_view, &rectangle);
         self.queue.submit([encoder.finish()]);
-        self.drawn = Some((frame, shown.revision));
+        self.drawn = Some(frame);
         Ok(resized)
+    }
+}
+
+impl Target {
+    fn new(device: &wgpu::Device, size: [u32; 2]) -> Self {
+        let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_SRC;
+        let color = target_texture(device, "surface", COLOR_FORMAT, size, usage);
+        let color_view = color.create_view(&wgpu::TextureViewDescriptor::default());
+        Self { seen: Seen::new(device, size), color, color_view, size }
     }
 }
 
@@ -189,100 +199,5 @@ fn frame_uniform(mesh: &SurfaceMesh, focus: &FocusTexture, shown: SurfaceFrame<'
         ],
         look: [look.focus_share, if look.contours { 1.0 } else { 0.0 }, width as f32, height as f32],
         stops: false_colour::STOPS.map(stop),
-    }
-}
-
-fn frame_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
-    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: Some("surface frame"),
-        entries: &[
-            wgpu::BindGroupLayoutEntry {
-                binding: 0,
-                visibility: wgpu::ShaderStages::VERTEX_FRAGMENT,
-                ty: wgpu::BindingType::Buffer {
-                    ty: wgpu::BufferBindingType::Uniform,
-                    has_dynamic_offset: false,
-                    min_binding_size: None,
-                },
-                count: None,
-            },
-            wgpu::BindGroupLayoutEntry {
-                binding: 1,
-                visibility: wgpu::ShaderStages::FRAGMENT,
-                ty: wgpu::BindingType::Texture {
-                    sample_type: wgpu::TextureSampleType::Float { filterable: false },
-                    view_dimension: wgpu::TextureViewDimension::D2,
-                    multisampled: false,
-                },
-                count: None,
-            },
-        ],
-    })
-}
-
-fn create_pipeline(
-    device: &wgpu::Device,
-    frame_layout: &wgpu::BindGroupLayout,
-    samples: u32,
-) -> wgpu::RenderPipeline {
-    let module = device.create_shader_module(wgpu::include_wgsl!("surface.wgsl"));
-    let material_layout = SurfaceMesh::material_layout(device);
-    let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-        label: Some("surface"),
-        bind_group_layouts: &[Some(frame_layout), Some(&material_layout)],
-        immediate_size: 0,
-    });
-    device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-        label: Some("surface"),
-        layout: Some(&layout),
-        vertex: wgpu::VertexState {
-            module: &module,
-            entry_point: Some("surface_vertex"),
-            compilation_options: wgpu::PipelineCompilationOptions::default(),
-            buffers: &[Some(SurfaceMesh::corner_layout())],
-        },
-        // Both sides are drawn: both can be painted.
-        primitive: wgpu::PrimitiveState::default(),
-        depth_stencil: Some(wgpu::DepthStencilState {
-            format: DEPTH_FORMAT,
-            depth_write_enabled: Some(true),
-            depth_compare: Some(wgpu::CompareFunction::Greater),
-            stencil: wgpu::StencilState::default(),
-            bias: wgpu::DepthBiasState::default(),
-        }),
-        multisample: wgpu::MultisampleState { count: samples, ..Default::default() },
-        fragment: Some(wgpu::FragmentState {
-            module: &module,
-            entry_point: Some("surface_fragment"),
-            compilation_options: wgpu::PipelineCompilationOptions::default(),
-            targets: &[Some(COLOR_FORMAT.into())],
-        }),
-        multiview_mask: None,
-        cache: None,
-    })
-}
-
-fn create_target(device: &wgpu::Device, size: [u32; 2], samples: u32) -> Target {
-    let texture = |label, format, sample_count, usage| {
-        device
-            .create_texture(&wgpu::TextureDescriptor {
-                label: Some(label),
-                size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: 1 },
-                mip_level_count: 1,
-                sample_count,
-                dimension: wgpu::TextureDimension::D2,
-                format,
-                usage: wgpu::TextureUsages::RENDER_ATTACHMENT | usage,
-                view_formats: &[],
-            })
-            .create_view(&wgpu::TextureViewDescriptor::default())
-    };
-    let shown = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_SRC;
-    let none = wgpu::TextureUsages::empty();
-    Target {
-        color: texture("surface", COLOR_FORMAT, 1, shown),
-        multisampled: (samples > 1).then(|| texture("surface samples", COLOR_FORMAT, samples, none)),
-        depth: texture("surface depth", DEPTH_FORMAT, samples, none),
-        size,
     }
 }

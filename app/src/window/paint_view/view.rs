@@ -1,13 +1,15 @@
 //! The paint view as a panel: the drawn surface, its pointer, the brush ring, the shot camera's frame.
 
+use super::changed_pixels::changed_pixels;
 use super::{
-    FocusTexture, GraphicsError, OrbitCamera, SurfaceFrame, SurfaceLook, SurfaceMesh, SurfaceRenderer,
+    FocusTexture, GraphicsError, OrbitCamera, Stale, SurfaceFrame, SurfaceLook, SurfaceMesh, SurfaceRenderer,
 };
+use crate::window::blit::{Blitter, Drawable, Filter};
 use crate::window::brush_ring;
 use crate::window::navigation::{self, Motion};
 use crate::window::pointer::{Hand, StrokeInput};
 use crate::window::{Action, false_colour, theme};
-use egui::{Color32, Pos2, Rect, Response, Sense, Stroke, TextureId, Ui, pos2, vec2};
+use egui::{Color32, Pos2, Rect, Response, Sense, Stroke, Ui, pos2, vec2};
 use focus::ViewFrame;
 use glam::{DVec2, DVec3};
 use lens::Camera;
@@ -28,19 +30,22 @@ const PIVOT_AT_INFINITY: f64 = 10.0;
 
 /// The 3D view that is painted on.
 pub struct PaintView {
-    state: Option<egui_wgpu::RenderState>,
+    blitter: Option<Blitter>,
     renderer: Option<SurfaceRenderer>,
     mesh: Option<SurfaceMesh>,
     upload: Option<mpsc::Receiver<Result<SurfaceMesh, GraphicsError>>>,
     focus: Option<FocusTexture>,
-    revision: u64,
-    texture: Option<TextureId>,
+    /// What of the drawn surface no longer holds.
+    stale: Stale,
+    drawn: Option<Drawable>,
     problem: Option<String>,
     camera: OrbitCamera,
     stroke: StrokeInput,
     /// What lies under the pointer.
     hover: Option<SurfaceHit>,
     rect: Rect,
+    /// Its columns and rows, px.
+    size: [u32; 2],
     /// Whether the view is to look through the shot camera from the next frame on.
     look_through: bool,
     /// The view through the shot camera, while it is followed.
@@ -49,7 +54,7 @@ pub struct PaintView {
 
 impl PaintView {
     /// A view with nothing to show yet. Without a graphics state it only says so.
-    pub fn new(state: Option<&egui_wgpu::RenderState>) -> Self {
+    pub fn new(state: Option<&egui_wgpu::RenderState>, blitter: Option<&Blitter>) -> Self {
         let mut problem = None;
         let renderer = state.and_then(|state| match SurfaceRenderer::new(state) {
             Ok(renderer) => Some(renderer),
@@ -62,18 +67,19 @@ impl PaintView {
             problem = Some("paint view: there is no graphics adapter (install a Vulkan driver; painting in the picture works)".into());
         }
         Self {
-            state: state.cloned(),
+            blitter: blitter.cloned(),
             renderer,
             mesh: None,
             upload: None,
             focus: None,
-            revision: 0,
-            texture: None,
+            stale: Stale::Everything,
+            drawn: None,
             problem,
             camera: OrbitCamera::default(),
             stroke: StrokeInput::default(),
             hover: None,
             rect: Rect::NOTHING,
+            size: [1; 2],
             look_through: false,
             following: None,
         }
@@ -88,7 +94,7 @@ impl PaintView {
         }
         let Some(renderer) = &self.renderer else { return };
         let (device, queue) = renderer.device();
-        self.mesh = None;
+        (self.mesh, self.drawn) = (None, None);
         match FocusTexture::new(device, queue, &document.map) {
             Ok(focus) => self.focus = Some(focus),
             Err(error) => self.problem = Some(error.to_string()),
@@ -112,22 +118,23 @@ impl PaintView {
     /// Takes up changed texels of the focus map.
     pub fn map_changed(&mut self, document: &Document, rectangles: Vec<[Range<u32>; 2]>) {
         let (Some(renderer), Some(focus)) = (&self.renderer, &self.focus) else { return };
+        let size = self.drawn.as_ref().map_or([0; 2], |_| self.size);
+        self.stale.join(changed_pixels(&document.stage.texels, &rectangles, &self.camera, size));
         for [columns, rows] in rectangles {
             focus.update(renderer.device().1, &document.map, columns, rows);
         }
-        self.revision += 1;
     }
 
     /// Takes up another selection: what is frozen looks so.
     pub fn selection_changed(&mut self, document: &Document) {
         let (Some(renderer), Some(focus)) = (&self.renderer, &mut self.focus) else { return };
         focus.freeze(renderer.device().1, document);
-        self.revision += 1;
+        self.stale.join(Stale::AllColors);
     }
 
     /// Whether the surface is drawn.
     pub fn is_ready(&self) -> bool {
-        self.mesh.is_some() && self.texture.is_some()
+        self.mesh.is_some() && self.drawn.is_some()
     }
 
     /// Where the view is on screen.
@@ -206,7 +213,9 @@ impl PaintView {
             ui.allocate_exact_size(ui.available_size().max(vec2(8.0, 8.0)), Sense::click_and_drag());
         self.rect = rect;
         crate::window::controls::named(&response, "Paint view");
-        ui.painter().rect_filled(rect, 0.0, Color32::from_gray(32));
+        if self.drawn.is_none() {
+            ui.painter().rect_filled(rect, 0.0, Color32::from_gray(32));
+        }
         let Some(document) = session.document() else {
             hint(ui, rect, "Drop a glTF scene or a project here, or press Ctrl+O.");
             return;
@@ -245,7 +254,7 @@ impl PaintView {
             return;
         };
         self.upload = None;
-        self.revision += 1;
+        self.stale = Stale::Everything;
         match received {
             Ok(mesh) => {
                 self.problem = None;
@@ -283,33 +292,19 @@ impl PaintView {
     }
 
     fn draw(&mut self, ui: &Ui, document: &Document, look: SurfaceLook, actions: &mut Vec<Action>) {
-        let (Some(state), Some(renderer), Some(mesh), Some(focus)) =
-            (&self.state, &mut self.renderer, &self.mesh, &self.focus)
+        let (Some(blitter), Some(renderer), Some(mesh), Some(focus)) =
+            (&self.blitter, &mut self.renderer, &self.mesh, &self.focus)
         else {
             return;
         };
         let scale = ui.ctx().pixels_per_point();
-        let size = [self.rect.width(), self.rect.height()].map(|side| (side * scale).round().max(1.0) as u32);
-        let (view, shot, revision) = (&self.camera, &document.camera, self.revision);
-        match renderer.draw(mesh, focus, SurfaceFrame { view, shot, look, size, revision }) {
+        self.size =
+            [self.rect.width(), self.rect.height()].map(|side| (side * scale).round().max(1.0) as u32);
+        let shown = SurfaceFrame { view: &self.camera, shot: &document.camera, look, size: self.size };
+        match renderer.draw(mesh, focus, shown, std::mem::take(&mut self.stale)) {
             Ok(new_texture) => {
-                if let Some(view) = renderer.view().filter(|_| new_texture || self.texture.is_none()) {
-                    let mut egui_renderer = state.renderer.write();
-                    let filter = wgpu::FilterMode::Linear;
-                    match self.texture {
-                        Some(id) => {
-                            egui_renderer.update_egui_texture_from_wgpu_texture(
-                                &state.device,
-                                view,
-                                filter,
-                                id,
-                            );
-                        }
-                        None => {
-                            self.texture =
-                                Some(egui_renderer.register_native_texture(&state.device, view, filter));
-                        }
-                    }
+                if let Some(picture) = renderer.picture().filter(|_| new_texture || self.drawn.is_none()) {
+                    self.drawn = Some(blitter.drawable(picture.clone()));
                 }
             }
             Err(error) => {
@@ -320,9 +315,8 @@ impl PaintView {
                 }
             }
         }
-        if let Some(texture) = self.texture {
-            let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
-            ui.painter().image(texture, self.rect, whole, Color32::WHITE);
+        if let Some(drawn) = &self.drawn {
+            blitter.paint(&ui.painter_at(self.rect), drawn, self.rect, Filter::Linear);
         }
     }
 

@@ -1,27 +1,23 @@
 //! The picture view: the latest refocused picture, as the shot camera sees it, painted on directly.
 
 mod shown;
-mod tone;
-mod tone_curve;
 mod verify;
 mod wipe;
 
 pub use shown::Shown;
-pub use tone_curve::ToneCurve;
 
+use super::blit::{Blitter, Filter};
 use super::brush_ring;
 use super::navigation::{self, Motion};
 use super::paint_view::hint;
 use super::pointer::{Hand, StrokeInput};
 use super::{Action, controls, theme};
-use egui::{PointerButton, Pos2, Rect, Response, Sense, Ui, Vec2, pos2, vec2};
+use egui::{PointerButton, Pos2, Rect, Response, Sense, Ui, Vec2, vec2};
 use focus::ViewFrame;
 use glam::{DVec2, DVec3};
 use lens::Camera;
-use session::{Command, PreviewActivity, PreviewKind, ReferenceKind, Session, SurfaceHit};
+use session::{Command, Display, PreviewActivity, PreviewKind, ReferenceKind, Session, SurfaceHit, Tone};
 use shown::Textures;
-pub use tone::Display;
-use tone::Tone;
 use verify::Verify;
 use wipe::Wipe;
 
@@ -44,6 +40,7 @@ enum Zoom {
 
 /// The view of the picture.
 pub struct PictureView {
+    blitter: Option<Blitter>,
     textures: Textures,
     /// Which picture is shown.
     pub shown: Shown,
@@ -58,9 +55,11 @@ pub struct PictureView {
     image: Rect,
 }
 
-impl Default for PictureView {
-    fn default() -> Self {
+impl PictureView {
+    /// A view with nothing to show yet. Without a blitter it never shows a picture.
+    pub fn new(blitter: Option<Blitter>) -> Self {
         Self {
+            blitter,
             textures: Textures::default(),
             shown: Shown::Painted,
             wipe: Wipe::default(),
@@ -72,12 +71,10 @@ impl Default for PictureView {
             image: Rect::NOTHING,
         }
     }
-}
 
-impl PictureView {
     /// Another document: the old picture goes, and one sees the whole of the new.
     pub fn opened(&mut self) {
-        *self = Self::default();
+        *self = Self::new(self.blitter.take());
     }
 
     /// Shows a picture, on whatever side of the line it is not yet.
@@ -135,11 +132,14 @@ impl PictureView {
             ui.allocate_exact_size(ui.available_size().max(vec2(8.0, 8.0)), Sense::click_and_drag());
         self.rect = rect;
         controls::named(&response, "Picture");
-        ui.painter().rect_filled(rect, 0.0, theme::SURROUNDINGS);
-        let Some(document) = session.document() else { return };
+        let Some(document) = session.document() else {
+            ui.painter().rect_filled(rect, 0.0, theme::SURROUNDINGS);
+            return;
+        };
         let size = vec2(document.camera.width as f32, document.camera.height as f32);
         self.navigate(ui, &response, size);
         self.image = self.place(size);
+        surroundings(ui, rect, self.image);
         let tone = Tone { exposure: document.exposure, display };
         self.paint_picture(ui, session, tone, self.shown, rect);
         let painter = ui.painter_at(rect);
@@ -185,13 +185,15 @@ impl PictureView {
     /// Draws what of a picture lies in `part` of the view.
     fn paint_picture(&mut self, ui: &Ui, session: &Session, tone: Tone, shown: Shown, part: Rect) {
         let painter = ui.painter_at(part);
-        let width = session.preview().map_or(1, |preview| preview.picture.width);
-        let squares = self.image.width() > SQUARES_FROM * width as f32;
-        match self.textures.of(ui, session, shown, tone, squares) {
-            Some(texture) => {
-                let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
-                painter.image(texture.id(), self.image, whole, egui::Color32::WHITE);
-            }
+        let drawn = self.blitter.as_ref().and_then(|blitter| {
+            let drawn = self.textures.of(blitter, session, shown, tone)?;
+            let squares = self.image.width() > SQUARES_FROM * drawn.size()[0] as f32;
+            let filter = if squares { Filter::Nearest } else { Filter::Linear };
+            blitter.paint(&painter, drawn, self.image, filter);
+            Some(())
+        });
+        match drawn {
+            Some(()) => {}
             None => {
                 painter.rect_filled(self.image, 0.0, egui::Color32::from_gray(28));
                 let text = match shown {
@@ -298,6 +300,25 @@ impl PictureView {
         let at = self.rect.left_bottom() + vec2(8.0, -6.0);
         let font = egui::FontId::proportional(12.0);
         ui.painter().text(at, egui::Align2::LEFT_BOTTOM, text, font, egui::Color32::from_gray(200));
+    }
+}
+
+/// Fills what of the view the picture leaves: nothing is drawn twice, which an adapter in software would feel.
+fn surroundings(ui: &Ui, rect: Rect, image: Rect) {
+    let seen = image.intersect(rect);
+    if !seen.is_positive() {
+        ui.painter().rect_filled(rect, 0.0, theme::SURROUNDINGS);
+        return;
+    }
+    let beside = rect.with_min_y(seen.top()).with_max_y(seen.bottom());
+    let strips = [
+        rect.with_max_y(seen.top()),
+        rect.with_min_y(seen.bottom()),
+        beside.with_max_x(seen.left()),
+        beside.with_min_x(seen.right()),
+    ];
+    for strip in strips.into_iter().filter(Rect::is_positive) {
+        ui.painter().rect_filled(strip, 0.0, theme::SURROUNDINGS);
     }
 }
 

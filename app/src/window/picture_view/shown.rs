@@ -1,9 +1,8 @@
 //! The pictures that the view can show, as textures.
 
-use super::tone::{Tone, to_screen};
-use egui::{ColorImage, TextureHandle, TextureOptions, Ui};
+use crate::window::blit::{Blitter, Drawable};
 use lens::Picture;
-use session::{ReferenceKind, Session};
+use session::{ReferenceKind, Screen, Session, Tone, to_screen};
 use std::sync::Arc;
 
 /// Which picture is shown.
@@ -53,13 +52,6 @@ impl Shown {
             Self::Truth => Some(ReferenceKind::Truth),
         }
     }
-
-    fn picture(self, session: &Session) -> Option<&Arc<Picture>> {
-        match self.kind() {
-            None => session.preview().map(|preview| &preview.picture),
-            Some(kind) => session.reference(kind).map(|reference| &reference.picture),
-        }
-    }
 }
 
 /// The textures of the pictures, each as new as its picture.
@@ -69,46 +61,73 @@ pub struct Textures {
 }
 
 struct Held {
-    texture: TextureHandle,
-    /// What it holds, and how that was put on screen.
-    picture: Arc<Picture>,
-    tone: Tone,
-    squares: bool,
+    drawn: Drawable,
+    of: Source,
+}
+
+/// What a texture holds.
+#[derive(Clone)]
+enum Source {
+    /// The live picture, after this many changes of the screen.
+    Live(u64),
+    /// A picture to compare with, and how it was put on screen.
+    Reference(Arc<Picture>, Tone),
 }
 
 impl Textures {
-    /// The texture of a picture, if there is one. Drawn so large that pixels are seen, they are `squares`.
+    /// The texture of a picture, if there is one.
     pub fn of(
         &mut self,
-        ui: &Ui,
+        blitter: &Blitter,
         session: &Session,
         shown: Shown,
         tone: Tone,
-        squares: bool,
-    ) -> Option<&TextureHandle> {
-        let picture = shown.picture(session);
+    ) -> Option<&Drawable> {
         let held = &mut self.held[shown as usize];
-        let Some(picture) = picture else {
-            *held = None;
-            return None;
-        };
-        let fits =
-            |held: &Held| Arc::ptr_eq(&held.picture, picture) && (held.tone, held.squares) == (tone, squares);
-        if !held.as_ref().is_some_and(fits) {
-            let size = [picture.width as usize, picture.height as usize];
-            let image = ColorImage::new(size, to_screen(picture, tone));
-            let magnification =
-                if squares { egui::TextureFilter::Nearest } else { egui::TextureFilter::Linear };
-            let options = TextureOptions { magnification, ..TextureOptions::LINEAR };
-            let texture = match held.take() {
-                Some(mut held) => {
-                    held.texture.set(image, options);
-                    held.texture
-                }
-                None => ui.ctx().load_texture(shown.name(), image, options),
-            };
-            *held = Some(Held { texture, picture: picture.clone(), tone, squares });
+        match shown.kind() {
+            None => show_live(held, blitter, session.screen()),
+            Some(kind) => {
+                let picture = session.reference(kind).map(|reference| &reference.picture);
+                show_reference(held, blitter, picture, tone);
+            }
         }
-        held.as_ref().map(|held| &held.texture)
+        held.as_ref().map(|held| &held.drawn)
     }
+}
+
+/// Writes what changed on the screen.
+fn show_live(held: &mut Option<Held>, blitter: &Blitter, screen: &Screen) {
+    let size = screen.size();
+    if size.contains(&0) {
+        *held = None;
+        return;
+    }
+    let old = held.take().filter(|held| held.drawn.size() == size);
+    let (drawn, seen) = match old {
+        Some(Held { drawn, of: Source::Live(seen) }) => (drawn, Some(seen)),
+        _ => (blitter.picture(size), None),
+    };
+    let changed = seen.map_or(Some(size.map(|side| 0..side)), |seen| screen.changed_since(seen));
+    if let Some(rectangle) = changed {
+        blitter.write(&drawn, screen.pixels(), &rectangle);
+    }
+    *held = Some(Held { drawn, of: Source::Live(screen.serial()) });
+}
+
+/// Writes another picture, or the same one by another tone.
+fn show_reference(held: &mut Option<Held>, blitter: &Blitter, picture: Option<&Arc<Picture>>, tone: Tone) {
+    let Some(picture) = picture else {
+        *held = None;
+        return;
+    };
+    let holds =
+        |of: &Source| matches!(of, Source::Reference(held, by) if Arc::ptr_eq(held, picture) && *by == tone);
+    if held.as_ref().is_some_and(|held| holds(&held.of)) {
+        return;
+    }
+    let size = [picture.width, picture.height];
+    let old = held.take().map(|held| held.drawn).filter(|drawn| drawn.size() == size);
+    let drawn = old.unwrap_or_else(|| blitter.picture(size));
+    blitter.write(&drawn, &to_screen(picture, tone), &size.map(|side| 0..side));
+    *held = Some(Held { drawn, of: Source::Reference(picture.clone(), tone) });
 }

@@ -1,13 +1,12 @@
 //! A rectangle of the picture, checked by rays: drawn, shown, and how far the picture is off.
 
 use super::picture_position;
-use super::tone::{Tone, to_screen};
 use crate::window::{Action, controls};
 use egui::{
     Color32, ColorImage, Key, PointerButton, Pos2, Rect, Response, Stroke, StrokeKind, TextureHandle,
     TextureOptions, Ui, UiBuilder, pos2, vec2,
 };
-use session::{Command, Session, VerifiedError};
+use session::{Command, Session, Tone, VerifiedError, to_screen};
 
 /// What is shown in the rectangle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -105,7 +104,10 @@ impl Verify {
             self.error = verification.error_of(preview, tone.exposure).and_then(Result::ok);
             let size = [region.width as usize, region.height as usize];
             let pixels = match (self.look, &self.error) {
-                (Look::Truth, _) => Some(to_screen(&estimate.picture, tone)),
+                (Look::Truth, _) => {
+                    let rgb = to_screen(&estimate.picture, tone);
+                    Some(rgb.iter().map(|[r, g, b, _]| Color32::from_rgb(*r, *g, *b)).collect())
+                }
                 (Look::Error, Some(error)) => {
                     let rgb = error.map.chunks_exact(3);
                     Some(rgb.map(|rgb| Color32::from_rgb(rgb[0], rgb[1], rgb[2])).collect())

@@ -1,13 +1,19 @@
 //! From linear radiance to the screen: exposure, display gain, tone curve, clamp, sRGB encoding.
 
-use super::tone_curve::ToneCurve;
-use egui::Color32;
+use crate::ToneCurve;
 use lens::{Exposure, Picture};
 use rayon::prelude::*;
+use std::ops::Range;
 use std::sync::LazyLock;
+
+/// A pixel of a screen: red, green and blue in sRGB's encoding, and 255.
+pub type ScreenPixel = [u8; 4];
 
 /// Entries of the encoding table: an 8-bit step is at least three entries wide even in the shadows.
 const ENTRIES: usize = 1 << 13;
+
+/// Fewer pixels than this are not worth another thread.
+const PIXELS_OF_A_TASK: usize = 1 << 13;
 
 /// sRGB encoding of the middle of each of [`ENTRIES`] cells of [0, 1].
 static ENCODED: LazyLock<Vec<u8>> = LazyLock::new(|| {
@@ -18,7 +24,7 @@ static ENCODED: LazyLock<Vec<u8>> = LazyLock::new(|| {
 });
 
 /// How a picture is put on screen.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Tone {
     /// Conserved or normalised.
     pub exposure: Exposure,
@@ -41,18 +47,40 @@ fn encoded(linear: f32) -> u8 {
 }
 
 /// The picture as the screen shows it, row by row.
-pub fn to_screen(picture: &Picture, tone: Tone) -> Vec<Color32> {
+pub fn to_screen(picture: &Picture, tone: Tone) -> Vec<ScreenPixel> {
+    rectangle_to_screen(picture, tone, [0..picture.width, 0..picture.height])
+}
+
+/// A rectangle of the picture, columns and rows within it, as the screen shows it, row by row.
+pub(crate) fn rectangle_to_screen(
+    picture: &Picture,
+    tone: Tone,
+    [columns, rows]: [Range<u32>; 2],
+) -> Vec<ScreenPixel> {
     let gain = tone.display.stops.exp2();
-    let pixel = |(rgb, &coverage): (&[f32; 3], &f32)| {
+    let pixel = |index: usize| {
+        let coverage = picture.coverage[index];
         let scale = match tone.exposure {
             Exposure::Conserve => gain,
             Exposure::Normalise if coverage > 0.0 => gain / coverage,
             Exposure::Normalise => 0.0,
         };
-        let [r, g, b] = tone.display.curve.map(rgb.map(|c| c * scale)).map(encoded);
-        Color32::from_rgb(r, g, b)
+        let [r, g, b] = tone.display.curve.map(picture.radiance[index].map(|c| c * scale)).map(encoded);
+        [r, g, b, u8::MAX]
     };
-    picture.radiance.par_iter().zip(&picture.coverage).with_min_len(1 << 14).map(pixel).collect()
+    let width = columns.len();
+    let mut pixels = vec![[0; 4]; width * rows.len()];
+    if width > 0 {
+        pixels.par_chunks_mut(width).zip(rows).with_min_len(PIXELS_OF_A_TASK.div_ceil(width)).for_each(
+            |(pixels, row)| {
+                let first = row as usize * picture.width as usize + columns.start as usize;
+                for (offset, shown) in pixels.iter_mut().enumerate() {
+                    *shown = pixel(first + offset);
+                }
+            },
+        );
+    }
+    pixels
 }
 
 #[cfg(test)]
@@ -69,7 +97,7 @@ mod tests {
         picture.radiance = vec![[0.0; 3], [0.2140; 3], [1.0; 3], [7.0; 3], [f32::NAN; 3]];
         picture.coverage = vec![1.0; 5];
         let tone = shown_at(Exposure::Conserve, 0.0);
-        let shown: Vec<u8> = to_screen(&picture, tone).iter().map(|c| c.r()).collect();
+        let shown: Vec<u8> = to_screen(&picture, tone).iter().map(|c| c[0]).collect();
         assert_eq!(shown[0], 0);
         assert!(shown[1].abs_diff(127) <= 1, "{}", shown[1]);
         assert_eq!(shown[2..], [255, 255, 0]);
@@ -81,9 +109,22 @@ mod tests {
         picture.radiance = vec![[0.5; 3], [0.25; 3]];
         picture.coverage = vec![2.0, 0.0];
         let shown = to_screen(&picture, shown_at(Exposure::Normalise, 0.0));
-        assert_eq!(shown[1], Color32::BLACK, "what nothing covers is black");
+        assert_eq!(shown[1], [0, 0, 0, 255], "what nothing covers is black");
         let conserved = to_screen(&picture, shown_at(Exposure::Conserve, 1.0));
         assert_eq!(shown[0], to_screen(&picture, shown_at(Exposure::Conserve, -1.0))[0]);
-        assert_eq!(conserved[0].r(), 255);
+        assert_eq!(conserved[0][0], 255);
+    }
+    #[test]
+    fn a_rectangle_is_shown_as_it_is_in_the_whole() {
+        let mut picture = Picture::black(300, 70);
+        for (k, (radiance, coverage)) in picture.radiance.iter_mut().zip(&mut picture.coverage).enumerate() {
+            (*radiance, *coverage) = ([k as f32 * 4e-5, 0.3, 0.01], 0.5 + (k % 7) as f32 * 0.1);
+        }
+        let tone = Tone { display: Display { stops: 0.3, curve: ToneCurve::Agx }, ..Tone::default() };
+        let whole = to_screen(&picture, tone);
+        let part = rectangle_to_screen(&picture, tone, [120..121, 3..70]);
+        let expected: Vec<_> = (3..70).map(|y| whole[y * 300 + 120]).collect();
+        assert_eq!(part, expected);
+        assert!(rectangle_to_screen(&picture, tone, [5..5, 0..70]).is_empty());
     }
 }

@@ -1,0 +1,255 @@
+//! The two passes of the paint view: what is seen of the surface, and its colours.
+
+use super::SurfaceMesh;
+use std::ops::Range;
+
+/// Of the picture: encoded for the screen.
+pub const COLOR_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
+/// Atlas positions need the precision of f32.
+const PLACE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
+const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
+
+/// What is seen of the surface at every pixel.
+pub struct Seen {
+    color: wgpu::TextureView,
+    place: wgpu::TextureView,
+    depth: wgpu::TextureView,
+}
+
+impl Seen {
+    /// Nothing yet, at this size, px.
+    pub fn new(device: &wgpu::Device, size: [u32; 2]) -> Self {
+        let view = |label, format, usage| {
+            let texture = target_texture(device, label, format, size, usage);
+            texture.create_view(&wgpu::TextureViewDescriptor::default())
+        };
+        let read = wgpu::TextureUsages::TEXTURE_BINDING;
+        Self {
+            color: view("surface colour", COLOR_FORMAT, read),
+            place: view("surface place", PLACE_FORMAT, read),
+            depth: view("surface depth", DEPTH_FORMAT, wgpu::TextureUsages::empty()),
+        }
+    }
+}
+
+/// A texture that is drawn into.
+pub fn target_texture(
+    device: &wgpu::Device,
+    label: &str,
+    format: wgpu::TextureFormat,
+    [width, height]: [u32; 2],
+    usage: wgpu::TextureUsages,
+) -> wgpu::Texture {
+    device.create_texture(&wgpu::TextureDescriptor {
+        label: Some(label),
+        size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format,
+        usage: wgpu::TextureUsages::RENDER_ATTACHMENT | usage,
+        view_formats: &[],
+    })
+}
+
+/// The pipelines of the passes.
+pub struct Passes {
+    frame_layout: wgpu::BindGroupLayout,
+    color_layout: wgpu::BindGroupLayout,
+    see: wgpu::RenderPipeline,
+    color: wgpu::RenderPipeline,
+}
+
+impl Passes {
+    /// Builds the pipelines.
+    pub fn new(device: &wgpu::Device) -> Self {
+        let module = device.create_shader_module(wgpu::include_wgsl!("surface.wgsl"));
+        let uniform = wgpu::BindGroupLayoutEntry {
+            binding: 0,
+            visibility: wgpu::ShaderStages::VERTEX_FRAGMENT,
+            ty: wgpu::BindingType::Buffer {
+                ty: wgpu::BufferBindingType::Uniform,
+                has_dynamic_offset: false,
+                min_binding_size: None,
+            },
+            count: None,
+        };
+        let texture = |binding| wgpu::BindGroupLayoutEntry {
+            binding,
+            visibility: wgpu::ShaderStages::FRAGMENT,
+            ty: wgpu::BindingType::Texture {
+                sample_type: wgpu::TextureSampleType::Float { filterable: false },
+                view_dimension: wgpu::TextureViewDimension::D2,
+                multisampled: false,
+            },
+            count: None,
+        };
+        let layout = |label, entries: &[wgpu::BindGroupLayoutEntry]| {
+            device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries })
+        };
+        let frame_layout = layout("surface frame", &[uniform]);
+        let color_layout = layout("surface colours", &[uniform, texture(1), texture(2), texture(3)]);
+        let see = see_pipeline(device, &module, &frame_layout);
+        let color = color_pipeline(device, &module, &color_layout);
+        Self { frame_layout, color_layout, see, color }
+    }
+
+    /// First pass: `mesh` draws what is seen.
+    pub fn see(
+        &self,
+        device: &wgpu::Device,
+        encoder: &mut wgpu::CommandEncoder,
+        frame: &wgpu::Buffer,
+        seen: &Seen,
+        mesh: impl FnOnce(&mut wgpu::RenderPass<'_>),
+    ) {
+        let bound = device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("surface frame"),
+            layout: &self.frame_layout,
+            entries: &[wgpu::BindGroupEntry { binding: 0, resource: frame.as_entire_binding() }],
+        });
+        let cleared = |view| {
+            Some(wgpu::RenderPassColorAttachment {
+                view,
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations {
+                    load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
+                    store: wgpu::StoreOp::Store,
+                },
+            })
+        };
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("surface"),
+            color_attachments: &[cleared(&seen.color), cleared(&seen.place)],
+            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+                view: &seen.depth,
+                // Reverse depth: 0 is at infinity.
+                depth_ops: Some(wgpu::Operations {
+                    load: wgpu::LoadOp::Clear(0.0),
+                    store: wgpu::StoreOp::Discard,
+                }),
+                stencil_ops: None,
+            }),
+            ..Default::default()
+        });
+        pass.set_pipeline(&self.see);
+        pass.set_bind_group(0, &bound, &[]);
+        mesh(&mut pass);
+    }
+
+    /// Second pass: the colours of a rectangle, from frame, focus map and what is seen.
+    pub fn color(
+        &self,
+        device: &wgpu::Device,
+        encoder: &mut wgpu::CommandEncoder,
+        (frame, focus, seen): (&wgpu::Buffer, &wgpu::TextureView, &Seen),
+        color: &wgpu::TextureView,
+        [columns, rows]: &[Range<u32>; 2],
+    ) {
+        if columns.is_empty() || rows.is_empty() {
+            return;
+        }
+        let view = |binding, view| wgpu::BindGroupEntry {
+            binding,
+            resource: wgpu::BindingResource::TextureView(view),
+        };
+        let bound = device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("surface colours"),
+            layout: &self.color_layout,
+            entries: &[
+                wgpu::BindGroupEntry { binding: 0, resource: frame.as_entire_binding() },
+                view(1, focus),
+                view(2, &seen.color),
+                view(3, &seen.place),
+            ],
+        });
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("surface colours"),
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view: color,
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations { load: wgpu::LoadOp::Load, store: wgpu::StoreOp::Store },
+            })],
+            ..Default::default()
+        });
+        pass.set_pipeline(&self.color);
+        pass.set_bind_group(0, &bound, &[]);
+        pass.set_scissor_rect(columns.start, rows.start, columns.len() as u32, rows.len() as u32);
+        pass.draw(0..3, 0..1);
+    }
+}
+
+fn see_pipeline(
+    device: &wgpu::Device,
+    module: &wgpu::ShaderModule,
+    frame_layout: &wgpu::BindGroupLayout,
+) -> wgpu::RenderPipeline {
+    let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        label: Some("surface"),
+        bind_group_layouts: &[Some(frame_layout), Some(&SurfaceMesh::material_layout(device))],
+        immediate_size: 0,
+    });
+    device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: Some("surface"),
+        layout: Some(&layout),
+        vertex: wgpu::VertexState {
+            module,
+            entry_point: Some("surface_vertex"),
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            buffers: &[Some(SurfaceMesh::corner_layout())],
+        },
+        // Both sides are drawn: both can be painted.
+        primitive: wgpu::PrimitiveState::default(),
+        depth_stencil: Some(wgpu::DepthStencilState {
+            format: DEPTH_FORMAT,
+            depth_write_enabled: Some(true),
+            depth_compare: Some(wgpu::CompareFunction::Greater),
+            stencil: wgpu::StencilState::default(),
+            bias: wgpu::DepthBiasState::default(),
+        }),
+        multisample: wgpu::MultisampleState::default(),
+        fragment: Some(wgpu::FragmentState {
+            module,
+            entry_point: Some("seen_fragment"),
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            targets: &[Some(COLOR_FORMAT.into()), Some(PLACE_FORMAT.into())],
+        }),
+        multiview_mask: None,
+        cache: None,
+    })
+}
+
+fn color_pipeline(
+    device: &wgpu::Device,
+    module: &wgpu::ShaderModule,
+    color_layout: &wgpu::BindGroupLayout,
+) -> wgpu::RenderPipeline {
+    let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        label: Some("surface colours"),
+        bind_group_layouts: &[Some(color_layout)],
+        immediate_size: 0,
+    });
+    device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: Some("surface colours"),
+        layout: Some(&layout),
+        vertex: wgpu::VertexState {
+            module,
+            entry_point: Some("screen_vertex"),
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            buffers: &[],
+        },
+        primitive: wgpu::PrimitiveState::default(),
+        depth_stencil: None,
+        multisample: wgpu::MultisampleState::default(),
+        fragment: Some(wgpu::FragmentState {
+            module,
+            entry_point: Some("color_fragment"),
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            targets: &[Some(COLOR_FORMAT.into())],
+        }),
+        multiview_mask: None,
+        cache: None,
+    })
+}
