@@ -35,11 +35,13 @@ impl FocusOffset {
     }
 
     /// Itself where it is valid, else the standard lens: what every renderer takes it for.
+    #[inline]
     pub fn or_standard(self) -> Self {
         if self.is_valid() { self } else { Self::STANDARD }
     }
 
     /// Whether both numbers are usable: t finite and anchor in [0, 1].
+    #[inline]
     pub fn is_valid(self) -> bool {
         self.t.is_finite() && (0.0..=1.0).contains(&self.anchor)
     }

@@ -41,6 +41,7 @@ impl Optics {
     /// infinity, is an ordinary value: z' and the travelled distance T = t·lerp(d, z', a) are never formed.
     /// Finite for every finite depth: an offset that is not valid counts as the standard one, and one beyond
     /// ±1e100 as that.
+    #[inline]
     pub fn kappa(&self, inverse_depth: f64, focus: FocusOffset) -> f64 {
         let FocusOffset { t, anchor: a } = focus.or_standard();
         let t = t.clamp(-LARGEST_OFFSET, LARGEST_OFFSET);
@@ -83,6 +84,7 @@ impl Optics {
     }
 
     /// κ of the unpainted point: the ordinary thin lens, 1/s − 1/z.
+    #[inline]
     pub fn standard_kappa(&self, inverse_depth: f64) -> f64 {
         self.inverse_focus_distance - inverse_depth
     }

@@ -9,6 +9,7 @@
 //! them has wrapped: it is never unseen.
 
 use salf::tree::LEVELS;
+use std::ops::Range;
 
 /// Bits behind the point of positions: 1/4096 px.
 pub const POSITION_BITS: u32 = 12;
@@ -20,10 +21,16 @@ pub const PIXEL: i32 = 1 << POSITION_BITS;
 pub trait Word: Copy + Default + PartialEq + Send + Sync {
     /// As a wide integer.
     fn wide(self) -> i64;
+    /// As a float.
+    fn float(self) -> f32;
     /// The sum, wrapping.
     fn plus(self, other: Self) -> Self;
-    /// ⌊value·(4096 − fraction)/4096⌋ and what that leaves of it, both times `sign`; of a value that fits.
-    fn split(value: u64, fraction: u32, sign: i32) -> [Self; 2];
+    /// The difference, wrapping.
+    fn minus(self, other: Self) -> Self;
+    /// Of a value that fits.
+    fn of(value: u64) -> Self;
+    /// ⌊value·(4096 − fraction)/4096⌋ of a value that fits.
+    fn near(value: u64, fraction: u32) -> Self;
 }
 
 impl Word for i32 {
@@ -32,14 +39,25 @@ impl Word for i32 {
         self as i64
     }
     #[inline(always)]
+    fn float(self) -> f32 {
+        self as f32
+    }
+    #[inline(always)]
     fn plus(self, other: Self) -> Self {
         self.wrapping_add(other)
     }
     #[inline(always)]
-    fn split(value: u64, fraction: u32, sign: i32) -> [Self; 2] {
+    fn minus(self, other: Self) -> Self {
+        self.wrapping_sub(other)
+    }
+    #[inline(always)]
+    fn of(value: u64) -> Self {
+        value as i32
+    }
+    #[inline(always)]
+    fn near(value: u64, fraction: u32) -> Self {
         // Both factors have 32 bits.
-        let near = ((value & u32::MAX as u64) * (PIXEL as u32 - fraction) as u64) >> POSITION_BITS;
-        [(near as i32).wrapping_mul(sign), (value as i32).wrapping_sub(near as i32).wrapping_mul(sign)]
+        (((value & u32::MAX as u64) * (PIXEL as u32 - fraction) as u64) >> POSITION_BITS) as i32
     }
 }
 
@@ -49,13 +67,24 @@ impl Word for i64 {
         self
     }
     #[inline(always)]
+    fn float(self) -> f32 {
+        self as f32
+    }
+    #[inline(always)]
     fn plus(self, other: Self) -> Self {
         self.wrapping_add(other)
     }
     #[inline(always)]
-    fn split(value: u64, fraction: u32, sign: i32) -> [Self; 2] {
-        let near = (value * (PIXEL as u32 - fraction) as u64) >> POSITION_BITS;
-        [sign as i64 * near as i64, sign as i64 * (value - near) as i64]
+    fn minus(self, other: Self) -> Self {
+        self.wrapping_sub(other)
+    }
+    #[inline(always)]
+    fn of(value: u64) -> Self {
+        value as i64
+    }
+    #[inline(always)]
+    fn near(value: u64, fraction: u32) -> Self {
+        ((value * (PIXEL as u32 - fraction) as u64) >> POSITION_BITS) as i64
     }
 }
 
@@ -71,8 +100,32 @@ pub struct Level<W> {
     pub height: usize,
     cells: Vec<Pixel<W>>,
     totals: Vec<i64>,
-    /// Rows that were ever drawn on.
-    touched: Vec<bool>,
+    touched: Vec<Touched>,
+}
+
+/// The columns in memory that were ever drawn on.
+#[derive(Clone, Copy, Debug)]
+struct Touched {
+    first: u32,
+    end: u32,
+}
+
+impl Touched {
+    const NONE: Self = Self { first: u32::MAX, end: 0 };
+
+    fn columns(self) -> Option<Range<usize>> {
+        (self.first < self.end).then_some(self.first as usize..self.end as usize)
+    }
+}
+
+/// A row of a level that was drawn on.
+pub struct Row<'a, W> {
+    /// The columns in memory that were: all others are 0, and so is their running sum.
+    pub columns: Range<usize>,
+    /// Their differences.
+    pub differences: &'a [Pixel<W>],
+    /// The coverage thrown at the row.
+    pub total: i64,
 }
 
 /// Levels are equal if they hold the same sums; where they were drawn on does not matter.
@@ -96,11 +149,12 @@ impl<W: Word> Level<W> {
         self.width + 3
     }
 
-    /// A row, from −1 to its height, and the coverage thrown at it; `None` if it was never drawn on.
-    pub fn row(&self, row: i32) -> Option<(&[Pixel<W>], i64)> {
+    /// A row, from −1 to its height; `None` if it was never drawn on.
+    pub fn row(&self, row: i32) -> Option<Row<'_, W>> {
         let place = (row + 1) as usize;
+        let columns = self.touched[place].columns()?;
         let line = &self.cells[place * self.stride()..(place + 1) * self.stride()];
-        self.touched[place].then_some((line, self.totals[place]))
+        Some(Row { differences: &line[columns.clone()], columns, total: self.totals[place] })
     }
 }
 
@@ -118,7 +172,13 @@ impl<W: Word> Accumulator<W> {
         let level = |k: usize| {
             let [width, height] = [width, height].map(|side| side.div_ceil(1 << k));
             let cells = vec![[W::default(); 4]; (width + 3) * (height + 2)];
-            Level { width, height, cells, totals: vec![0; height + 2], touched: vec![false; height + 2] }
+            Level {
+                width,
+                height,
+                cells,
+                totals: vec![0; height + 2],
+                touched: vec![Touched::NONE; height + 2],
+            }
         };
         Self { levels: (0..levels).map(level).collect() }
     }
@@ -175,7 +235,7 @@ pub struct Rows<'a, W> {
     width: usize,
     cells: &'a mut [Pixel<W>],
     totals: &'a mut [i64],
-    touched: &'a mut [bool],
+    touched: &'a mut [Touched],
 }
 
 impl<W: Word> Canvas<'_, W> {
@@ -183,10 +243,11 @@ impl<W: Word> Canvas<'_, W> {
     pub fn clear(&mut self) {
         for rows in &mut self.levels {
             let stride = rows.width + 3;
-            for (place, touched) in rows.touched.iter_mut().enumerate().filter(|(_, touched)| **touched) {
-                rows.cells[place * stride..(place + 1) * stride].fill([W::default(); 4]);
+            for (place, touched) in rows.touched.iter_mut().enumerate() {
+                let Some(columns) = touched.columns() else { continue };
+                rows.cells[place * stride..][columns].fill([W::default(); 4]);
                 rows.totals[place] = 0;
-                *touched = false;
+                *touched = Touched::NONE;
             }
         }
     }
@@ -199,50 +260,72 @@ impl<W: Word> Rows<'_, W> {
         x.clamp(-4 * PIXEL, (self.width as i32 + 4) << POSITION_BITS)
     }
 
-    /// Adds (`sign` 1) or takes away (−1) light from `start` to `end` (1/4096 px) of a row: `value` a pixel.
+    /// Adds (`sign` 1) or takes away (−1) light from `start` to `end` ≥ `start` (1/4096 px) of a row: `value` a pixel.
     #[inline(always)]
     pub fn add_run(&mut self, row: i32, start: i32, end: i32, value: [u64; 4], sign: i32) {
         let stride = self.width + 3;
-        let last = stride as i32 - 1;
         let place = (row - self.first) as usize;
-        let line = &mut self.cells[place * stride..(place + 1) * stride];
-        let mut total = 0;
-        for (at, sign) in [(start, sign), (end, -sign)] {
-            // The border is column 0.
-            let (column, fraction) = ((at >> POSITION_BITS) + 1, (at & (PIXEL - 1)) as u32);
-            let (first, second) = (column.clamp(0, last), (column + 1).clamp(0, last));
-            let (mut near, mut far) = ([W::default(); 4], [W::default(); 4]);
-            for c in 0..4 {
-                [near[c], far[c]] = W::split(value[c], fraction, sign);
-            }
-            add(&mut line[first as usize], &near);
-            add(&mut line[second as usize], &far);
-            total += near[3].wide() * (last - first) as i64 + far[3].wide() * (last - second) as i64;
+        let line = &mut self.cells[place * stride..][..stride];
+        // The border is column 0.
+        let [from, to] = [start, end].map(|at| (at >> POSITION_BITS) + 1);
+        let (begun, ended) = (near::<W>(&value, start), near::<W>(&value, end));
+        let mut whole = [W::default(); 4];
+        for c in 0..4 {
+            whole[c] = W::of(value[c]);
         }
-        self.totals[place] = self.totals[place].wrapping_add(total);
-        self.touched[place] = true;
+        let last = stride - 1;
+        let touched = &mut self.touched[place];
+        let total = if (from as u32 as usize) < last && (to as u32 as usize) < last {
+            let (from, to) = (from as usize, to as usize);
+            add(&mut line[from], &begun, sign);
+            add(&mut line[from + 1], &rest(&whole, &begun), sign);
+            add(&mut line[to], &ended, -sign);
+            add(&mut line[to + 1], &rest(&whole, &ended), -sign);
+            touched.first = touched.first.min(from as u32);
+            touched.end = touched.end.max(to as u32 + 2);
+            whole[3].wide() * (to - from) as i64 + begun[3].wide() - ended[3].wide()
+        } else {
+            let mut throw = |at: i32, near: &Pixel<W>, sign: i32| {
+                let far = rest(&whole, near);
+                let [first, second] = [at, at + 1].map(|column| column.clamp(0, last as i32) as usize);
+                add(&mut line[first], near, sign);
+                add(&mut line[second], &far, sign);
+                touched.first = touched.first.min(first as u32);
+                touched.end = touched.end.max(second as u32 + 1);
+                near[3].wide() * (last - first) as i64 + far[3].wide() * (last - second) as i64
+            };
+            throw(from, &begun, sign) - throw(to, &ended, -sign)
+        };
+        self.totals[place] = self.totals[place].wrapping_add(if sign < 0 { -total } else { total });
     }
+}
+
+/// What of a pixel's `value` falls into the nearer of the two columns that the position `at` lies between.
+#[inline(always)]
+fn near<W: Word>(value: &[u64; 4], at: i32) -> Pixel<W> {
+    let fraction = (at & (PIXEL - 1)) as u32;
+    let mut near = [W::default(); 4];
+    for c in 0..4 {
+        near[c] = W::near(value[c], fraction);
+    }
+    near
+}
+
+/// What `near` leaves of `whole`.
+#[inline(always)]
+fn rest<W: Word>(whole: &Pixel<W>, near: &Pixel<W>) -> Pixel<W> {
+    let mut rest = [W::default(); 4];
+    for c in 0..4 {
+        rest[c] = whole[c].minus(near[c]);
+    }
+    rest
 }
 
 #[inline(always)]
-fn add<W: Word>(sum: &mut Pixel<W>, pixel: &Pixel<W>) {
+fn add<W: Word>(sum: &mut Pixel<W>, pixel: &Pixel<W>, sign: i32) {
     for c in 0..4 {
-        sum[c] = sum[c].plus(pixel[c]);
+        sum[c] = if sign < 0 { sum[c].minus(pixel[c]) } else { sum[c].plus(pixel[c]) };
     }
-}
-
-/// The pixels of a row from its differences, border included. `None` if one of them has wrapped.
-pub fn integrated<W: Word>(line: &[Pixel<W>], total: i64, pixels: &mut [Pixel<i64>]) -> Option<()> {
-    let mut sum = [W::default(); 4];
-    let mut covered = 0i64;
-    for (pixel, difference) in pixels.iter_mut().zip(line) {
-        add(&mut sum, difference);
-        for c in 0..4 {
-            pixel[c] = sum[c].wide();
-        }
-        covered = covered.wrapping_add(pixel[3]);
-    }
-    (covered == total).then_some(())
 }
 
 #[cfg(test)]
@@ -252,9 +335,14 @@ mod tests {
     fn pixels<W: Word>(accumulator: &Accumulator<W>, row: i32) -> Option<Vec<[i64; 4]>> {
         let level = &accumulator.levels[0];
         let mut pixels = vec![[0; 4]; level.width + 2];
-        let Some((line, total)) = level.row(row) else { return Some(pixels) };
-        integrated(line, total, &mut pixels)?;
-        Some(pixels)
+        let Some(row) = level.row(row) else { return Some(pixels) };
+        let (mut sum, mut covered) = ([W::default(); 4], 0);
+        for (pixel, difference) in pixels[row.columns.start..].iter_mut().zip(row.differences) {
+            add(&mut sum, difference, 1);
+            *pixel = sum.map(W::wide);
+            covered += pixel[3];
+        }
+        (covered == row.total).then_some(pixels)
     }
 
     #[test]

@@ -26,8 +26,11 @@ use image::{Image, Light, seed};
 /// Aperture images of a smaller standard deviation, px, are boxes.
 const BOX_DEVIATION_PX: f64 = 0.75;
 
-/// Smaller changes of a node's weight over the aperture, as a share of it in 1/16384, only move its image.
-const EVEN: i32 = ONE / 40;
+/// x / 2^`times`, toward zero.
+#[inline(always)]
+fn halved(x: i32, times: u8) -> i32 {
+    (x + ((x >> 31) & ((1 << times) - 1))) >> times
+}
 
 /// What nodes are drawn with.
 pub struct Pen<'a> {
@@ -47,10 +50,16 @@ pub struct Pen<'a> {
     too_blurred: [i64; salf::tree::LEVELS],
     /// 16384 over the mean variance.
     per_variance: i64,
-    /// Aperture images of a smaller radius, 1/4096 px, are boxes.
-    pub box_radius: u32,
+    /// Images of partly occluded nodes of a smaller radius, 1/4096 px, are boxes.
+    box_radius: u32,
+    /// Smaller changes of an open node's weight over the aperture, as a share of it in 1/16384, only move its image.
+    even_tilt: i32,
+    /// Changes of a partly occluded node's weight that are not larger do not count.
+    pub even_seen_tilt: i32,
     /// Parts of the aperture whose images are boxes.
     pub parts: Vec<BoxPart>,
+    /// Even images of a smaller radius, 1/4096 px, are one box; others one a part of the aperture.
+    one_box_radius: u32,
     /// From which |radius| on, 1/4096 px, stencils follow boxes; at twice that they are alone.
     pub stencil_radius: u32,
     /// 2³² over it.
@@ -63,8 +72,8 @@ pub const ALL: Cells = [u16::MAX; 16];
 /// A form that a node, or a part of its light, is drawn in; shares are times 2²⁴.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Form {
-    /// One box.
-    Box,
+    /// One box, with this share of the light.
+    Box(u32),
     /// A box for each part of the aperture, with this share of the light.
     Parts(u32),
     /// The aperture's image, with this share of the light.
@@ -102,7 +111,11 @@ impl<'a> Pen<'a> {
         });
         let deviations =
             |factor: f64| (factor * BOX_DEVIATION_PX / variance.sqrt() * PIXEL as f64).ceil() as u32;
-        let (stop, stencil_radius) = (fixed(stop), deviations(if is_exact { 2.0 } else { 1.0 }));
+        let stop = fixed(stop);
+        // To look at, one box will do until the stencils take over.
+        let [stencil_radius, one_box_radius] =
+            if is_exact { [deviations(2.0), deviations(0.5)] } else { [deviations(0.4), u32::MAX] };
+        let [even_tilt, even_seen_tilt] = if is_exact { [ONE / 40, 0] } else { [ONE / 20, ONE / 20] };
         Self {
             nodes,
             stencils,
@@ -118,6 +131,9 @@ impl<'a> Pen<'a> {
             stencil_radius,
             per_stencil_radius: u32::MAX / stencil_radius,
             box_radius: deviations(1.0),
+            one_box_radius,
+            even_tilt,
+            even_seen_tilt,
         }
     }
 
@@ -125,35 +141,34 @@ impl<'a> Pen<'a> {
     #[inline(always)]
     pub fn draw<W: Word>(
         &self,
-        index: u32,
+        node: &SplatNode,
         light: [f32; 4],
         placed: Placed,
         canvas: &mut Canvas<W>,
         found: &mut Vec<SeenRun>,
         sign: i32,
     ) {
-        let node = &self.nodes.nodes[index as usize];
-        if placed.is_split {
-            return self.draw_split(index, light, placed, canvas, found, sign);
+        if placed.level < node.level {
+            return self.draw_split(node, light, placed, canvas, found, sign);
         }
         let rows = &mut canvas.levels[node.level as usize];
-        self.draw_whole(index, node, light, placed, rows, found, sign);
+        self.draw_whole(node, light, placed, rows, found, sign);
     }
 
-    /// A sample of a large cell, as samples of a pixel each.
+    /// A sample of a large cell, as samples of smaller ones.
     #[cold]
     fn draw_split<W: Word>(
         &self,
-        index: u32,
+        node: &SplatNode,
         light: [f32; 4],
         placed: Placed,
         canvas: &mut Canvas<W>,
         found: &mut Vec<SeenRun>,
         sign: i32,
     ) {
-        let node = &self.nodes.nodes[index as usize];
-        for piece in node.pieces() {
-            self.draw_whole(index, &piece, light, placed, &mut canvas.levels[0], found, sign);
+        let rows = &mut canvas.levels[placed.level as usize];
+        for piece in node.pieces(placed.level) {
+            self.draw_whole(&piece, light, placed, rows, found, sign);
         }
     }
 
@@ -163,7 +178,7 @@ impl<'a> Pen<'a> {
         Image {
             node,
             center: [node.center[0] >> node.level, node.center[1] >> node.level],
-            radius: placed.radius / (1 << node.level),
+            radius: halved(placed.radius, node.level),
             light: Light::of(light),
             share: WHOLE,
             dither: seed(node, self.nodes.middle),
@@ -174,7 +189,6 @@ impl<'a> Pen<'a> {
     #[inline(always)]
     fn draw_whole<W: Word>(
         &self,
-        index: u32,
         node: &SplatNode,
         light: [f32; 4],
         placed: Placed,
@@ -190,7 +204,8 @@ impl<'a> Pen<'a> {
             |form| {
                 let mut image = Image { ..image };
                 match form {
-                    Form::Box => {
+                    Form::Box(share) => {
+                        image.share = share;
                         image.lean(node, self.tilt_shift);
                         image.shift(self.mean);
                         self.draw_box(&image, node.half_size.map(u32::from), self.half, rows, sign);
@@ -208,13 +223,14 @@ impl<'a> Pen<'a> {
                         self.draw_image(&mut image, Some((&ALL, share)), rows, found, sign)
                     }
                     Form::SeenBox => {
-                        let seen = &self.seen[index as usize];
+                        let seen = &self.seen[node.cells as usize];
                         image.shift(seen.mean.map(i32::from));
                         image.share = seen.share;
-                        self.draw_box(&image, node.half_size.map(u32::from), self.half, rows, sign);
+                        let half = seen.half.map(|half| u32::from(half) << 2);
+                        self.draw_box(&image, node.half_size.map(u32::from), half, rows, sign);
                     }
                     Form::Seen => {
-                        self.draw_image(&mut image, Some(self.seen_of(index, node)), rows, found, sign);
+                        self.draw_image(&mut image, Some(self.seen_of(node)), rows, found, sign);
                     }
                 }
             },
@@ -223,8 +239,11 @@ impl<'a> Pen<'a> {
 
     /// What a partly occluded node sees, and its share (times 2²⁴) of the light.
     #[inline(always)]
-    pub fn seen_of(&self, index: u32, node: &SplatNode) -> (&Cells, u32) {
-        (self.nodes.cells(node).unwrap_or(&ALL), self.seen[index as usize].share)
+    pub fn seen_of<'n>(&'n self, node: &SplatNode) -> (&'n Cells, u32) {
+        match self.nodes.cells(node) {
+            Some(cells) => (cells, self.seen[node.cells as usize].share),
+            None => (&ALL, WHOLE),
+        }
     }
 
     /// Calls `visit` with the forms that a node of this signed radius (1/4096 px) is drawn in.
@@ -235,13 +254,12 @@ impl<'a> Pen<'a> {
             let is_box = node.level == 0 && radius < self.box_radius;
             return if is_box { visit(Form::SeenBox) } else { visit(Form::Seen) };
         }
-        let is_even = node.tilt[0].abs() as i32 + (node.tilt[1].abs() as i32) < EVEN;
+        let is_even = node.tilt[0].abs() as i32 + (node.tilt[1].abs() as i32) < self.even_tilt;
         let far = if node.level > 0 { 1 << 16 } else { self.part_of_stencil(radius) };
-        if far == 0 && is_even && radius < self.box_radius / 2 {
-            return visit(Form::Box);
-        }
         if far < 1 << 16 {
-            visit(Form::Parts(WHOLE - (far << 8)));
+            let share = WHOLE - (far << 8);
+            let is_one = is_even && radius < self.one_box_radius;
+            visit(if is_one { Form::Box(share) } else { Form::Parts(share) });
         }
         if far > 0 && is_even {
             visit(Form::Image(far << 8));
@@ -269,8 +287,8 @@ impl<'a> Pen<'a> {
     }
 
     /// The rows of a picture of `height` rows that a node's light may reach.
-    pub fn rows(&self, index: u32, placed: Placed, height: u32) -> std::ops::Range<u32> {
-        let node = &self.nodes.nodes[index as usize];
+    #[inline(always)]
+    pub fn rows(&self, node: &SplatNode, placed: Placed, height: u32) -> std::ops::Range<u32> {
         let center = (node.center[1] >> POSITION_BITS) as i64;
         let reach = (placed.radius.unsigned_abs() as i64 >> POSITION_BITS) * 65 / 64
             + (node.half_size[1] as i64 >> (POSITION_BITS - 1))

@@ -74,8 +74,8 @@ pub struct Placed {
     pub depth_share: i32,
     /// Whether it is unpainted.
     pub is_standard: bool,
-    /// Whether it is a sample of a cell larger than may be drawn as one.
-    pub is_split: bool,
+    /// The level that it is drawn on: a sample of a cell larger than may be drawn as one is drawn in pieces.
+    pub level: u8,
 }
 
 /// Larger aperture images, 1/4096 px, are taken as this large: next to none of their light is in the picture.
@@ -88,6 +88,8 @@ const LARGEST_DEPTH_SHARE: f32 = ((1u32 << 17) - 1) as f32;
 #[derive(Clone, PartialEq)]
 pub struct LensInUse {
     pub optics: Optics,
+    /// The signed radius of the aperture's image, 1/4096 px, for κ = 1.
+    radius_per_kappa: f64,
     /// Whether every sample is drawn, as exactly as it can be.
     pub is_exact: bool,
     /// From which |radius| on, 1/4096 px, open nodes of each level may be drawn, and partly occluded ones.
@@ -111,7 +113,12 @@ impl LensInUse {
             })
         };
         let is_exact = tolerance == Tolerance::NONE;
-        Self { optics, is_exact, smallest_radius: [smallest(1.0), smallest(FINER_AT_OUTLINES)] }
+        Self {
+            optics,
+            radius_per_kappa: optics.splat_radius_px(1.0) * (1 << POSITION_BITS) as f64,
+            is_exact,
+            smallest_radius: [smallest(1.0), smallest(FINER_AT_OUTLINES)],
+        }
     }
 
     /// The lens's aperture radius as a share of the baked one, ≤ 1.
@@ -128,29 +135,31 @@ impl LensInUse {
         } else {
             self.optics.kappa(inverse_depth, FocusOffset::new(focus.t as f64, focus.anchor as f64))
         };
-        let radius = self.optics.splat_radius_px(kappa) * (1 << POSITION_BITS) as f64;
+        let radius = kappa * self.radius_per_kappa;
         let radius = radius.clamp(-LARGEST_RADIUS, LARGEST_RADIUS).round_ties_even() as i32;
         let depth_share = focus.t * (1.0 - focus.anchor) * ONE as f32;
-        let is_split = node.is_leaf && node.level > 0 && !self.is_far_out(node, radius);
+        let mut level = node.level;
+        while node.is_leaf && level > 0 && !self.is_far_out(node.is_open(), level, radius) {
+            level -= 1;
+        }
         Placed {
             radius,
             depth_share: depth_share.clamp(-LARGEST_DEPTH_SHARE, LARGEST_DEPTH_SHARE) as i32,
             is_standard,
-            is_split,
+            level,
         }
     }
 
-    /// Whether an aperture image of this radius, 1/4096 px, is large enough for a node's side.
+    /// Whether an aperture image of this radius, 1/4096 px, is large enough for nodes of a level.
     #[inline(always)]
-    fn is_far_out(&self, node: &SplatNode, radius: i32) -> bool {
-        let is_partial = usize::from(!node.is_open());
-        radius.abs() as f64 >= self.smallest_radius[is_partial][node.level as usize]
+    fn is_far_out(&self, is_open: bool, level: u8, radius: i32) -> bool {
+        radius.abs() as f64 >= self.smallest_radius[usize::from(!is_open)][level as usize]
     }
 
     /// Whether a node that was `placed` may stand for all below it.
     #[inline(always)]
     pub fn may_merge(&self, node: &SplatNode, focus: &NodeFocus, placed: Placed) -> bool {
-        if !self.is_far_out(node, placed.radius) {
+        if !self.is_far_out(node.is_open(), node.level, placed.radius) {
             return false;
         }
         let optics = &self.optics;
@@ -162,21 +171,7 @@ impl LensInUse {
             apart += (1.0 / optics.image_distance + (1.0 - a) * defocus).abs() * focus.t_apart as f64
                 + (t * defocus).abs() * focus.anchor_apart as f64;
         }
-        optics.splat_radius_px(apart) <= FLAT * (1 << node.level) as f64
-    }
-
-    /// The largest |radius|, px, of what lies between two inverse depths, painted between two offsets.
-    pub fn largest_radius_px(&self, inverse_depths: [f32; 2], t: [f32; 2], anchor: [f32; 2]) -> f64 {
-        let mut largest: f64 = 0.0;
-        for depth in inverse_depths {
-            for t in t {
-                for anchor in anchor {
-                    let offset = FocusOffset::new(t as f64, anchor as f64);
-                    largest = largest.max(self.optics.kappa(depth as f64, offset).abs());
-                }
-            }
-        }
-        self.optics.splat_radius_px(largest)
+        (apart * self.radius_per_kappa).abs() <= FLAT * (1 << node.level << POSITION_BITS) as f64
     }
 }
 

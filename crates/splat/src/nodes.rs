@@ -82,14 +82,15 @@ impl SplatNode {
         self.cells == OPEN
     }
 
-    /// A sample of a large cell as samples of a pixel each.
-    pub fn pieces(&self) -> impl Iterator<Item = Self> + '_ {
-        let count = 1 << self.level;
-        let half_size = self.half_size.map(|half| (half >> self.level).max(PIXEL as u16 / 32));
+    /// A sample of a large cell as samples of cells of `level`.
+    pub fn pieces(&self, level: u8) -> impl Iterator<Item = Self> + '_ {
+        let finer = self.level - level;
+        let count = 1 << finer;
+        let half_size = self.half_size.map(|half| (half >> finer).max(PIXEL as u16 / 32));
         let offset = move |k: i32, axis: usize| (2 * k + 1 - count) * half_size[axis] as i32;
         (0..count * count).map(move |k| {
             let center = [self.center[0] + offset(k % count, 0), self.center[1] + offset(k / count, 1)];
-            Self { center, half_size, level: 0, ..*self }
+            Self { center, half_size, level, ..*self }
         })
     }
 }
@@ -98,8 +99,6 @@ impl SplatNode {
 pub struct Nodes {
     /// Nodes of each block.
     pub blocks: Vec<Range<u32>>,
-    /// Bounds of what lies in each block.
-    pub bounds: Vec<Bounds>,
     pub nodes: Vec<SplatNode>,
     cells: Vec<Cells>,
     /// The sample of each node that is one.
@@ -112,17 +111,6 @@ pub struct Nodes {
     /// The largest radiance, at least 1.
     pub brightest: f64,
     pub has_bright: bool,
-}
-
-/// Where the centres of a block's nodes lie, and how deep.
-#[derive(Clone, Copy, Debug)]
-pub struct Bounds {
-    /// Rows, px.
-    pub rows: [f32; 2],
-    /// Inverse depths.
-    pub inverse_depths: [f32; 2],
-    /// The largest half height, px.
-    pub half_height: f32,
 }
 
 /// One as a share.
@@ -148,7 +136,6 @@ impl Nodes {
         }
         let brightest = salf.samples.par_iter().map(|sample| sample.radiance.max_element());
         Some(Self {
-            bounds: tree.blocks.iter().map(|block| Bounds::of(&tree, &block.nodes)).collect(),
             blocks: tree.blocks.into_iter().map(|block| block.nodes).collect(),
             has_bright: nodes.iter().any(|node| node.is_bright),
             nodes,
@@ -212,23 +199,6 @@ impl Nodes {
     #[inline(always)]
     pub fn cells(&self, node: &SplatNode) -> Option<&Cells> {
         self.cells.get(node.cells as usize)
-    }
-}
-
-impl Bounds {
-    fn of(tree: &Tree, nodes: &Range<u32>) -> Self {
-        let mut bounds = Self {
-            rows: [f32::INFINITY, f32::NEG_INFINITY],
-            inverse_depths: [f32::INFINITY, f32::NEG_INFINITY],
-            half_height: 0.0,
-        };
-        for node in &tree.nodes[nodes.start as usize..nodes.end as usize] {
-            bounds.rows = [bounds.rows[0].min(node.center.y), bounds.rows[1].max(node.center.y)];
-            let [low, high] = bounds.inverse_depths;
-            bounds.inverse_depths = [low.min(node.inverse_depth), high.max(node.inverse_depth)];
-            bounds.half_height = bounds.half_height.max(node.half_size.y);
-        }
-        bounds
     }
 }
 

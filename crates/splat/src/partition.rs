@@ -17,6 +17,7 @@
 //! tenth: a pixel that lacks more has a hole. Where anything is painted it is 1: coverage then has a shape of its own, and no light is made or lost.
 
 use crate::fixed::ratio;
+use crate::resolve::Lines;
 
 /// A pixel's factors.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -54,6 +55,51 @@ impl Share {
         };
         Self { partial: share, even }
     }
+}
+
+/// What a pixel holds that nothing was thrown at.
+const BLACK: [f32; 4] = [0.0; 4];
+
+/// The pixels of `count` lines of either part, free and sharing.
+fn each(
+    [free, sharing]: &[Option<Lines>; 2],
+    width: usize,
+    count: usize,
+    mut visit: impl FnMut(usize, &[f32; 4], &[f32; 4]),
+) {
+    let black = if free.is_some() && sharing.is_some() { Vec::new() } else { vec![BLACK; width] };
+    let [mut free, mut sharing] = [free, sharing].map(|lines| lines.as_ref().map(Lines::rows));
+    for line in 0..count {
+        let free = free.as_mut().and_then(Iterator::next).unwrap_or(&black);
+        let sharing = sharing.as_mut().and_then(Iterator::next).unwrap_or(&black);
+        for (x, (free, sharing)) in free.iter().zip(sharing).enumerate() {
+            visit(line * width + x, free, sharing);
+        }
+    }
+}
+
+/// Finds the factors of pixels from the lines of a standard picture, free and sharing.
+pub fn find_shares(parts: &[Option<Lines>; 2], width: usize, shares: &mut [Share]) {
+    each(parts, width, shares.len() / width, |at, free, sharing| {
+        shares[at] = Share::of(free[3], sharing[3]);
+    });
+}
+
+/// Joins lines, free and sharing, to pixels and their coverage; evened out if nothing is painted.
+pub fn join(
+    parts: &[Option<Lines>; 2],
+    width: usize,
+    shares: &[Share],
+    is_painted: bool,
+    (radiance, coverage): (&mut [[f32; 3]], &mut [f32]),
+) {
+    each(parts, width, shares.len() / width, |at, free, sharing| {
+        let share = &shares[at];
+        let even = if is_painted { 1.0 } else { share.even };
+        let [r, g, b, covered] = std::array::from_fn(|c| even * (free[c] + share.partial * sharing[c]));
+        radiance[at] = [r, g, b];
+        coverage[at] = covered;
+    });
 }
 
 /// A coverage of 1.

@@ -1,6 +1,6 @@
 //! Accumulators to pictures: running sums, and each level upsampled onto the next finer one.
 
-use crate::canvas::{Accumulator, Level, Pixel, Word, integrated};
+use crate::canvas::{Accumulator, Level, Row, Word};
 use std::ops::Range;
 
 /// A pixel holds more light than its integers are sure to hold.
@@ -8,7 +8,25 @@ use std::ops::Range;
 pub struct Overflow;
 
 /// Sums of red, green, blue and coverage of some pixel rows, each 1 for a pixel of radiance 1.
-pub type Lines = Vec<[f32; 4]>;
+pub struct Lines {
+    stride: usize,
+    /// Row by row, a column of border on either side.
+    pixels: Vec<[f32; 4]>,
+}
+
+impl Lines {
+    /// The rows without their border.
+    pub fn rows(&self) -> impl Iterator<Item = &[[f32; 4]]> {
+        self.pixels.chunks_exact(self.stride).map(|line| &line[1..line.len() - 1])
+    }
+
+    /// Adds the light, not the coverage, of lines of the same size.
+    pub fn add_light(&mut self, more: &Self) {
+        for (pixel, more) in self.pixels.iter_mut().zip(&more.pixels) {
+            (0..3).for_each(|c| pixel[c] += more[c]);
+        }
+    }
+}
 
 /// How integers become numbers.
 #[derive(Clone, Copy, Debug)]
@@ -27,50 +45,55 @@ impl Quanta {
     }
 }
 
-/// Adds the pixel rows `rows` of a sum to `lines`, which holds them one after another.
-pub fn add_rows<W: Word>(
+/// The pixel rows `rows` of a sum; `None` if they are black.
+pub fn lines<W: Word>(
     accumulator: &Accumulator<W>,
     quanta: Quanta,
     rows: Range<i32>,
-    lines: &mut Lines,
-) -> Result<(), Overflow> {
+) -> Result<Option<Lines>, Overflow> {
     let is_touched =
         |level: &Level<W>, rows: &Range<i32>| with_halo(level, rows).any(|row| level.row(row).is_some());
     let ranges: Vec<_> = (0..accumulator.levels.len() as i32)
         .map(|k| if k == 0 { rows.clone() } else { (rows.start >> k) - 1..((rows.end - 1) >> k) + 2 })
         .collect();
     let levels = || accumulator.levels.iter().zip(&ranges);
-    let Some(coarsest) = levels().rposition(|(level, rows)| is_touched(level, rows)) else { return Ok(()) };
-    let mut pixels = Vec::new();
-    let mut above: Option<(Lines, Range<i32>, usize)> = None;
+    let Some(coarsest) = levels().rposition(|(level, rows)| is_touched(level, rows)) else {
+        return Ok(None);
+    };
+    let mut above: Option<(Lines, Range<i32>)> = None;
     for (level, rows) in levels().take(coarsest + 1).rev() {
         let stride = level.width + 2;
-        let mut here = vec![[0f32; 4]; stride * rows.len()];
-        if let Some((coarse, coarse_rows, coarse_stride)) = &above {
-            upsample(coarse, coarse_rows, *coarse_stride, &mut here, rows, stride);
-        }
-        pixels.resize(stride, [0; 4]);
+        let mut here = match &above {
+            Some((coarse, coarse_rows)) => upsampled(coarse, coarse_rows, rows, stride),
+            None => Lines { stride, pixels: vec![[0.0; 4]; stride * rows.len()] },
+        };
         for row in with_halo(level, rows) {
-            let Some((line, total)) = level.row(row) else { continue };
-            integrated(line, total, &mut pixels).ok_or(Overflow)?;
-            if pixels.iter().any(|pixel| pixel[3] > quanta.largest_coverage) {
-                return Err(Overflow);
-            }
             let first = (row - rows.start) as usize * stride;
-            for (out, pixel) in here[first..first + stride].iter_mut().zip(&pixels) {
-                (0..4).for_each(|c| out[c] += pixel[c] as f32 * quanta.quantum as f32);
-            }
+            level
+                .row(row)
+                .map_or(Ok(()), |row| integrate(&row, quanta, &mut here.pixels[first..first + stride]))?;
         }
-        above = Some((here, rows.clone(), stride));
+        above = Some((here, rows.clone()));
     }
-    let (finest, _, stride) = above.expect("there is a finest level");
-    let width = stride - 2;
-    for (line, finest) in lines.chunks_mut(width).zip(finest.chunks(stride)) {
-        for (out, pixel) in line.iter_mut().zip(&finest[1..]) {
-            (0..4).for_each(|c| out[c] += pixel[c]);
+    Ok(above.map(|(lines, _)| lines))
+}
+
+/// Adds the pixels of a row to a line.
+#[inline(always)]
+fn integrate<W: Word>(row: &Row<W>, quanta: Quanta, line: &mut [[f32; 4]]) -> Result<(), Overflow> {
+    let quantum = quanta.quantum as f32;
+    let (mut sum, mut covered, mut largest) = ([W::default(); 4], 0i64, 0i64);
+    // What leaves the picture ends in a column behind it.
+    let pixels = line.iter_mut().skip(row.columns.start);
+    for (pixel, difference) in pixels.zip(row.differences) {
+        for c in 0..4 {
+            sum[c] = sum[c].plus(difference[c]);
+            pixel[c] += sum[c].float() * quantum;
         }
+        covered = covered.wrapping_add(sum[3].wide());
+        largest = largest.max(sum[3].wide());
     }
-    Ok(())
+    if covered == row.total && largest <= quanta.largest_coverage { Ok(()) } else { Err(Overflow) }
 }
 
 /// Those of `rows` that a level has.
@@ -79,39 +102,30 @@ fn with_halo<W: Word>(level: &Level<W>, rows: &Range<i32>) -> Range<i32> {
 }
 
 /// Bilinear: a fine pixel lies a quarter of a coarse one off its centre. Both begin with column −1.
-fn upsample(
-    coarse: &[Pixel<f32>],
-    coarse_rows: &Range<i32>,
-    coarse_stride: usize,
-    fine: &mut [Pixel<f32>],
-    rows: &Range<i32>,
-    stride: usize,
-) {
+fn upsampled(coarse: &Lines, coarse_rows: &Range<i32>, rows: &Range<i32>, stride: usize) -> Lines {
     const NEAR: f32 = 0.75;
     const FAR: f32 = 0.25;
-    // Each fine pixel's coarse one, and the neighbour it leans to.
-    let sources = |at: i32| (at >> 1, (at >> 1) + if at & 1 == 0 { -1 } else { 1 });
-    let mut mixed = vec![[0f32; 4]; coarse_stride];
-    for (line, row) in fine.chunks_mut(stride).zip(rows.clone()) {
-        let (near, far) = sources(row);
-        let line_of = |row: i32| {
-            let place = row - coarse_rows.start;
-            let is_known = coarse_rows.contains(&row);
-            is_known.then(|| &coarse[place as usize * coarse_stride..(place as usize + 1) * coarse_stride])
-        };
-        let zero = [[0f32; 4]; 0];
-        let (near, far) = (line_of(near).unwrap_or(&zero), line_of(far).unwrap_or(&zero));
-        for (x, out) in mixed.iter_mut().enumerate() {
-            let [a, b] = [near, far].map(|line| line.get(x).copied().unwrap_or_default());
-            *out = std::array::from_fn(|c| NEAR * a[c] + FAR * b[c]);
+    let mix = |a: &[f32; 4], b: &[f32; 4]| -> [f32; 4] { std::array::from_fn(|c| NEAR * a[c] + FAR * b[c]) };
+    let black = vec![[0f32; 4]; coarse.stride];
+    let line_of = |row: i32| {
+        let first = (row - coarse_rows.start) as usize * coarse.stride;
+        if coarse_rows.contains(&row) { &coarse.pixels[first..first + coarse.stride] } else { &black }
+    };
+    let mut mixed = black.clone();
+    let mut pixels = Vec::with_capacity(stride * rows.len() + 1);
+    for row in rows.clone() {
+        // A fine row's coarse one, and the neighbour it leans to.
+        let (near, far) = (line_of(row >> 1), line_of((row >> 1) + if row & 1 == 0 { -1 } else { 1 }));
+        for ((out, near), far) in mixed.iter_mut().zip(near).zip(far) {
+            *out = mix(near, far);
         }
-        for (x, out) in line.iter_mut().enumerate() {
-            let (near, far) = sources(x as i32 - 1);
-            let at = |column: i32| mixed.get((column + 1) as usize).copied().unwrap_or_default();
-            let [a, b] = [at(near), at(far)];
-            *out = std::array::from_fn(|c| NEAR * a[c] + FAR * b[c]);
-        }
+        // Fine columns −1 and 0 lie between the coarse ones −1 and 0, and so on.
+        let first = pixels.len();
+        let between = mixed.windows(2).take(stride.div_ceil(2));
+        pixels.extend(between.flat_map(|pair| [mix(&pair[0], &pair[1]), mix(&pair[1], &pair[0])]));
+        pixels.truncate(first + stride);
     }
+    Lines { stride, pixels }
 }
 
 #[cfg(test)]
@@ -121,11 +135,14 @@ mod tests {
 
     const FINE: Quanta = Quanta { quantum: 1.0 / 1024.0, largest_coverage: i64::MAX };
 
-    fn whole(accumulator: &Accumulator<i32>) -> Lines {
-        let (width, height) = (accumulator.levels[0].width, accumulator.levels[0].height);
-        let mut lines = vec![[0.0; 4]; width * height];
-        add_rows(accumulator, FINE, 0..height as i32, &mut lines).unwrap();
-        lines
+    fn part(accumulator: &Accumulator<i32>, rows: Range<i32>) -> Vec<[f32; 4]> {
+        let black = vec![[0.0; 4]; accumulator.levels[0].width * rows.len()];
+        let lines = lines(accumulator, FINE, rows).unwrap();
+        lines.map_or(black, |lines| lines.rows().flatten().copied().collect())
+    }
+
+    fn whole(accumulator: &Accumulator<i32>) -> Vec<[f32; 4]> {
+        part(accumulator, 0..accumulator.levels[0].height as i32)
     }
 
     #[test]
@@ -158,9 +175,10 @@ mod tests {
         let wanted = (300.0 * 64.0 + 1300.0 * 4.0 + 1300.0) / 256.0 * 1024.0;
         assert!((mass / wanted - 1.0).abs() < 1e-4, "{mass} {wanted}");
         for rows in [0..64, 3..4, 30..41, 63..64] {
-            let mut part = vec![[0.0; 4]; 64 * rows.len()];
-            add_rows(&accumulator, FINE, rows.clone(), &mut part).unwrap();
-            assert_eq!(part, lines[rows.start as usize * 64..rows.end as usize * 64]);
+            assert_eq!(
+                part(&accumulator, rows.clone()),
+                lines[rows.start as usize * 64..rows.end as usize * 64]
+            );
         }
     }
 }

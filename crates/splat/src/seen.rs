@@ -14,6 +14,8 @@ pub struct Seen {
     pub share: u32,
     /// Times 16384, in units of the lens's radius.
     pub mean: [i16; 2],
+    /// √3 standard deviations of its aperture points: half a box as wide. Times 16384, in units of the lens's radius.
+    pub half: [u16; 2],
 }
 
 /// Sums over cells: share of the aperture, first and second moments.
@@ -26,7 +28,7 @@ impl Moments {
     }
 }
 
-/// Of every node; open ones have none.
+/// Of every partly occluded node, in the order of [`crate::nodes::SplatNode::cells`].
 pub fn seen(nodes: &Nodes, shape: &Shape, stop: f64) -> Vec<Seen> {
     let cells = shape.cells(1.0 / stop);
     // Of every eight cells of a row at once.
@@ -61,10 +63,15 @@ pub fn seen(nodes: &Nodes, shape: &Shape, stop: f64) -> Vec<Seen> {
         let first =
             DVec2::new(base * x + tilt[0] * xx + tilt[1] * xy, base * y + tilt[0] * xy + tilt[1] * yy);
         let mean = (first / share).clamp(DVec2::NEG_ONE, DVec2::ONE);
+        // The weight's change counts for little within what is seen.
+        let variance = (DVec2::new(xx, yy) / m - (DVec2::new(x, y) / m).powf(2.0)).max(DVec2::ZERO);
+        let half = (3.0 * variance).map(f64::sqrt);
         Seen {
+            half: (half * one).to_array().map(|half| half.round().min(65535.0) as u16),
             share: (share * WHOLE as f64).round() as u32,
             mean: (mean * one).to_array().map(|m| m.round() as i16),
         }
     };
-    nodes.nodes.par_iter().map(of).collect()
+    let partial: Vec<_> = nodes.nodes.iter().filter(|node| !node.is_open()).collect();
+    partial.into_par_iter().map(of).collect()
 }

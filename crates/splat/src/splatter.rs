@@ -6,8 +6,8 @@ use crate::draw::Pen;
 use crate::lens_in_use::{LensInUse, Placed, Tolerance};
 use crate::nodes::{Nodes, Scale};
 use crate::paint::Paint;
-use crate::partition::Share;
-use crate::resolve::{Lines, Overflow};
+use crate::partition::{Share, find_shares, join};
+use crate::resolve::Overflow;
 use crate::seen::{Seen, seen};
 use crate::shape::Shape;
 use crate::stencil::Stencils;
@@ -183,24 +183,25 @@ impl Splatter {
         let has_shares = self.shares_of.as_ref() == Some(&self.lens);
         let standard = Stage::new(progress, 0.0, if is_painted { 0.5 } else { 1.0 });
         let painted = Stage::new(progress, if has_shares { 0.0 } else { 0.5 }, 1.0);
+        let rows = 0..self.salf.camera.height;
         if !has_shares {
             self.shares_of = None;
+            let wanted = if is_painted { Wanted::Shares } else { Wanted::SharesAndPicture };
             self.in_finest_integers(|splatter| {
                 splatter.sum_nodes(&Paint::default(), &standard)?;
-                splatter.share_out()
+                splatter.resolve(rows.clone(), wanted)
             })?;
             self.shares_of = Some(self.lens.clone());
-        }
-        let rows = 0..self.salf.camera.height;
-        if !is_painted && !has_shares {
-            return self.resolve(rows);
+            if !is_painted {
+                return Ok(());
+            }
         }
         self.in_finest_integers(|splatter| {
             let paint = std::mem::take(&mut splatter.paint);
             let summed = splatter.sum_nodes(&paint, &painted);
             splatter.paint = paint;
             summed?;
-            splatter.resolve(rows.clone())
+            splatter.resolve(rows.clone(), Wanted::Picture)
         })
     }
 
@@ -227,21 +228,6 @@ impl Splatter {
         let nodes = self.nodes.as_ref().ok_or(SplatError::Overflow)?;
         let (aperture, lens) = (&self.aperture, &self.lens);
         Ok(self.sums.set(&Scene { pen: aperture.pen(nodes, lens), lens, paint }, progress)?)
-    }
-
-    /// Reads the shares off the sums of the standard picture.
-    fn share_out(&mut self) -> Result<(), SplatError> {
-        if let Some(shared_out) = self.share_out_on_card() {
-            return shared_out;
-        }
-        let nodes = self.nodes.as_ref().ok_or(SplatError::Overflow)?;
-        let (sums, width) = (&self.sums, self.salf.camera.width as usize);
-        let shares = self.shares.par_chunks_mut(RESOLVE_ROWS * width).enumerate();
-        shares.try_for_each(|(chunk, shares)| {
-            let rows = chunk_rows(chunk, shares.len() / width);
-            shares.copy_from_slice(&sums.shares(nodes, rows)?);
-            Ok(())
-        })
     }
 
     /// Moves the given samples to where `focus` now sends them. Returns the rows of the picture that changed.
@@ -275,7 +261,7 @@ impl Splatter {
         let pen = aperture.pen(nodes, lens);
         let mut rows = height..0;
         for &(index, placed) in removed.iter().chain(&added) {
-            let reached = pen.rows(index, placed, height);
+            let reached = pen.rows(&nodes.nodes[index as usize], placed, height);
             if !reached.is_empty() {
                 rows = rows.start.min(reached.start)..rows.end.max(reached.end);
             }
@@ -308,7 +294,7 @@ impl Splatter {
             self.sums.add(&pen, removed, -1);
             self.sums.add(&pen, added, 1);
         }
-        self.resolve(rows)
+        self.resolve(rows, Wanted::Picture)
     }
 
     /// Sums all with the paint as it is.
@@ -317,35 +303,57 @@ impl Splatter {
         Ok(0..self.salf.camera.height)
     }
 
-    /// Integrates `rows` of the sums to the picture.
-    fn resolve(&mut self, rows: Range<u32>) -> Result<(), SplatError> {
+    /// Integrates `rows` of the sums.
+    fn resolve(&mut self, rows: Range<u32>, wanted: Wanted) -> Result<(), SplatError> {
         if rows.is_empty() {
             return Ok(());
         }
-        if let Some(resolved) = self.resolve_on_card(rows.clone()) {
+        if let Some(resolved) = self.resolve_on_card(rows.clone(), wanted) {
             return resolved;
         }
         let nodes = self.nodes.as_ref().ok_or(SplatError::Overflow)?;
         let width = self.salf.camera.width as usize;
         // The same chunks whatever rows are asked for.
         let chunks = rows.start as usize / RESOLVE_ROWS..(rows.end as usize).div_ceil(RESOLVE_ROWS);
-        let (sums, shares, is_painted) = (&self.sums, &self.shares, !self.paint.is_standard());
+        let (sums, is_painted) = (&self.sums, !self.paint.is_standard());
         let radiance = self.picture.radiance.par_chunks_mut(RESOLVE_ROWS * width);
         let coverage = self.picture.coverage.par_chunks_mut(RESOLVE_ROWS * width);
-        let all = radiance.zip(coverage).enumerate().skip(chunks.start).take(chunks.len());
-        all.try_for_each(|(chunk, (radiance, coverage))| {
+        let shares = self.shares.par_chunks_mut(RESOLVE_ROWS * width);
+        let all = radiance.zip(coverage).zip(shares).enumerate().skip(chunks.start).take(chunks.len());
+        all.try_for_each(|(chunk, ((radiance, coverage), shares))| {
             let of_chunk = chunk_rows(chunk, coverage.len() / width);
-            let wanted = of_chunk.start.max(rows.start as i32)..of_chunk.end.min(rows.end as i32);
-            let shares = &shares[wanted.start as usize * width..wanted.end as usize * width];
-            let lines: Lines = sums.picture(nodes, wanted.clone(), shares, is_painted)?;
-            let first = (wanted.start - of_chunk.start) as usize * width;
-            let out = radiance[first..].iter_mut().zip(&mut coverage[first..]);
-            for ([r, g, b, covered], (radiance, coverage)) in lines.into_iter().zip(out) {
-                *radiance = [r, g, b];
-                *coverage = covered;
+            let rows = of_chunk.start.max(rows.start as i32)..of_chunk.end.min(rows.end as i32);
+            let first = (rows.start - of_chunk.start) as usize * width;
+            let here = first..first + rows.len() * width;
+            let parts = sums.lines(nodes, rows)?;
+            if wanted.has_shares() {
+                find_shares(&parts, width, &mut shares[here.clone()]);
+            }
+            if wanted.has_picture() {
+                let out = (&mut radiance[here.clone()], &mut coverage[here.clone()]);
+                join(&parts, width, &shares[here], is_painted, out);
             }
             Ok(())
         })
+    }
+}
+
+/// What is made of the sums.
+#[derive(Clone, Copy, PartialEq)]
+enum Wanted {
+    /// What each pixel is multiplied by, from the sums of the standard picture.
+    Shares,
+    Picture,
+    SharesAndPicture,
+}
+
+impl Wanted {
+    fn has_shares(self) -> bool {
+        self != Self::Picture
+    }
+
+    fn has_picture(self) -> bool {
+        self != Self::Shares
     }
 }
 

@@ -1,8 +1,8 @@
 //! Stencils: the aperture's image at every radius, cut to pixel rows once and used by all splats of that radius.
 //!
 //! A stencil's run says: in this pixel row, from here to there, this much light a quantum. Positions are in 1/4096 px from
-//! the splat's centre, so that a splat costs a few integer operations a row. Radii are tabled in steps of 1/256 of
-//! themselves, the centre's height in 32nds of a pixel.
+//! the splat's centre, so that a splat costs a few integer operations a row. Radii are tabled by their squares, in steps of
+//! 1/256 of themselves, the centre's height in 32nds of a pixel or, of large ones, more coarsely.
 
 use crate::canvas::{PIXEL, POSITION_BITS};
 use crate::shape::{Part, Shape};
@@ -15,8 +15,8 @@ pub const HEIGHT_BITS: u32 = 24;
 /// Stencils are made up to this radius, px.
 pub const LARGEST_RADIUS_PX: i32 = 64;
 
-/// Heights of the centre within a pixel.
-const PHASES: usize = 32;
+/// Heights of the centre within a pixel, at most: 2 to this.
+const PHASE_BITS: u32 = 5;
 
 /// Light in one pixel row.
 #[derive(Clone, Copy, Debug)]
@@ -47,88 +47,120 @@ pub struct Stencils {
     pub shape: Shape,
     /// Its parts, few and many.
     pub parts: [Vec<Part>; 2],
-    /// Far (upright) radii, then near ones.
-    table: Vec<OnceLock<[Stencil; PHASES]>>,
+    /// Far (upright) radii, then near ones; of each the heights.
+    table: Vec<OnceLock<Box<[Stencil]>>>,
 }
 
 /// The stencils of one signed radius.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Place {
     pub index: usize,
+    /// They are cut at 2 to this heights of the centre within a pixel.
+    phase_bits: u32,
 }
 
 impl Place {
+    /// The height of a stencil of the place, and the pixel row, of a centre at `y` (1/4096 px).
+    #[inline(always)]
+    fn phase(self, y: i32) -> (usize, i32) {
+        let bits = POSITION_BITS - self.phase_bits;
+        let rounded = y + (1 << bits) / 2;
+        (((rounded & (PIXEL - 1)) >> bits) as usize, rounded >> POSITION_BITS)
+    }
+
+    /// Half the step of heights, 1/4096 px.
+    pub fn half_step(self) -> u32 {
+        1 << (POSITION_BITS - self.phase_bits - 1)
+    }
+
     /// A number for each stencil.
     pub fn with_phase(self, phase: usize) -> u32 {
-        (self.index * PHASES + phase) as u32
+        ((self.index << PHASE_BITS) + phase) as u32
     }
 }
 
-/// Bits behind the point of the table's radii.
-const RADIUS_BITS: u32 = 8;
+/// The size of a stencil: its radius squared and whether it is turned (of a negative radius).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct StencilSize {
+    /// (1/64 px)².
+    square: u32,
+    is_turned: bool,
+}
 
-/// Bits of the table's radii below the leading one.
-const MANTISSA_BITS: u32 = 8;
+/// Bits behind the point of the radii whose squares are tabled.
+const RADIUS_BITS: u32 = 6;
 
-/// The place of a radius (1/256 px, ≥ 0) in the table: a float of eight bits, rounded.
+/// Bits of the tabled squares below the leading one.
+const MANTISSA_BITS: u32 = 7;
+
+impl StencilSize {
+    /// Of a radius squared, (1/4096 px)²; less than 0 counts as 0. `None` if it is too large for a stencil.
+    #[inline(always)]
+    pub fn of(square: i64, is_turned: bool) -> Option<Self> {
+        const LARGEST: i64 = (LARGEST_RADIUS_PX as i64 * PIXEL as i64).pow(2);
+        let square_64 = square.max(0) >> (2 * (POSITION_BITS - RADIUS_BITS));
+        (square <= LARGEST).then_some(Self { square: square_64 as u32, is_turned })
+    }
+}
+
+/// The place of a squared radius, (1/64 px)², in the table: a float of a few bits, rounded.
 #[inline(always)]
-const fn index_of(radius: u32) -> usize {
-    let octave = (radius | 1).ilog2().saturating_sub(MANTISSA_BITS);
-    let steps = (radius + (1 << octave) / 2) >> octave;
+const fn index_of(square: u32) -> usize {
+    let octave = (square | 1).ilog2().saturating_sub(MANTISSA_BITS);
+    let steps = (square + (1 << octave) / 2) >> octave;
     // Rounding up to the next octave is its first place.
     ((octave << MANTISSA_BITS) + steps) as usize
 }
 
+/// From these places on, 8 and 24 px, stencils are cut at half as many heights each.
+const COARSER: [usize; 2] =
+    [index_of((8 * 8) << (2 * RADIUS_BITS)), index_of((24 * 24) << (2 * RADIUS_BITS))];
+
 /// The radius, px, that a place of the table stands for.
 fn radius_at(index: usize) -> f64 {
     let one = 1usize << MANTISSA_BITS;
-    if index < 2 * one {
-        return index as f64 / 256.0;
-    }
-    let (octave, mantissa) = (index / one - 1, index % one + one);
-    mantissa as f64 / 256.0 * (1u64 << octave) as f64
+    let (octave, mantissa) = if index < 2 * one { (0, index) } else { (index / one - 1, index % one + one) };
+    (mantissa as f64 * (1u64 << octave) as f64).sqrt() / (1 << RADIUS_BITS) as f64
 }
 
 impl Stencils {
     /// Places of the table.
-    pub const PLACES: usize = 2 * (index_of((LARGEST_RADIUS_PX as u32) << RADIUS_BITS) + 1);
-    /// Stencils of a place.
-    pub const PHASES: usize = PHASES;
+    pub const PLACES: usize = 2 * (index_of((LARGEST_RADIUS_PX as u32).pow(2) << (2 * RADIUS_BITS)) + 1);
+    /// Stencils of a place, at most.
+    pub const PHASES: usize = 1 << PHASE_BITS;
 
     pub fn new(shape: Shape) -> Self {
         let parts = [2, 4].map(|side| shape.parts(side));
         Self { shape, parts, table: (0..Self::PLACES).map(|_| OnceLock::new()).collect() }
     }
 
-    /// The stencil of a signed radius (1/4096 px, at most [`LARGEST_RADIUS_PX`]) for a centre at the height `y` (1/4096 px),
-    /// and the pixel row of that centre.
+    /// The stencil of a size for a centre at the height `y` (1/4096 px), and the pixel row of that centre.
     #[inline(always)]
-    pub fn at(&self, radius: i32, y: i32) -> (&Stencil, i32) {
-        let (place, phase, row) = self.place(radius, y);
+    pub fn at(&self, size: StencilSize, y: i32) -> (&Stencil, i32) {
+        let (place, phase, row) = self.place(size, y);
         (&self.at_place(place)[phase], row)
     }
 
     /// Where in the table [`Self::at`] looks: place, phase, and the pixel row of the centre.
     #[inline(always)]
-    pub fn place(&self, radius: i32, y: i32) -> (Place, usize, i32) {
-        // Rounded to the table's bits.
-        let shift = POSITION_BITS - RADIUS_BITS;
-        let index = index_of((radius.unsigned_abs() + (1 << shift) / 2) >> shift);
-        let step = PIXEL / PHASES as i32;
-        let rounded = y + step / 2;
-        let phase = (rounded & (PIXEL - 1)) as usize / step as usize;
-        let turned = if radius < 0 { Self::PLACES / 2 } else { 0 };
-        (Place { index: turned + index }, phase, rounded >> POSITION_BITS)
+    pub fn place(&self, size: StencilSize, y: i32) -> (Place, usize, i32) {
+        let turned = if size.is_turned { Self::PLACES / 2 } else { 0 };
+        let index = index_of(size.square);
+        let [coarser, coarsest] = [COARSER[0], COARSER[1]].map(|first| u32::from(index >= first));
+        let place = Place { index: turned + index, phase_bits: PHASE_BITS - coarser - coarsest };
+        let (phase, row) = place.phase(y);
+        (place, phase, row)
     }
 
     /// The stencils of a place, cut when they are first asked for.
     #[inline(always)]
-    pub fn at_place(&self, place: Place) -> &[Stencil; PHASES] {
+    pub fn at_place(&self, place: Place) -> &[Stencil] {
         self.table[place.index].get_or_init(|| {
             let half = Self::PLACES / 2;
             let radius_px =
                 if place.index < half { radius_at(place.index) } else { -radius_at(place.index - half) };
-            std::array::from_fn(|phase| self.cut(radius_px, phase as f64 / PHASES as f64))
+            let count = 1 << place.phase_bits;
+            (0..count).map(|phase| self.cut(radius_px, phase as f64 / count as f64)).collect()
         })
     }
 
@@ -264,14 +296,21 @@ mod tests {
 
     #[test]
     fn places_of_the_table_invert() {
-        for index in 0..1800 {
-            let radius = radius_at(index) * 256.0;
-            assert_eq!(index_of(radius.round() as u32), index, "{radius}");
+        for index in 0..Stencils::PLACES / 2 {
+            let square = (radius_at(index) * 64.0).powi(2);
+            assert_eq!(index_of(square.round() as u32), index, "{square}");
         }
-        for radius in 1..1u32 << 14 {
-            let apart = (radius_at(index_of(radius)) * 256.0 - radius as f64).abs();
+        for radius in 1..1i64 << 12 {
+            let size = StencilSize::of((64 * radius).pow(2), false).expect("it is small");
+            let apart = (radius_at(index_of(size.square)) * 64.0 - radius as f64).abs();
             assert!(apart <= radius as f64 / 511.0);
         }
+        let largest = (LARGEST_RADIUS_PX as i64 * PIXEL as i64).pow(2);
+        assert!(StencilSize::of(largest, true).is_some() && StencilSize::of(largest + 1, true).is_none());
+    }
+
+    fn size_of(radius_px: f64) -> StencilSize {
+        StencilSize::of((radius_px * 4096.0).powi(2) as i64, radius_px < 0.0).expect("it is small")
     }
 
     fn letter() -> ApertureShape {
@@ -287,7 +326,7 @@ mod tests {
         let mask = ApertureMask { width: 64, height: 64, transmission, file: String::new() };
         let stencils = Stencils::new(Shape::new(&ApertureShape::Mask(Arc::new(mask)).into()));
         for radius in [1.7, 3.0, 20.0, 60.0] {
-            let (stencil, base) = stencils.at((radius * 4096.0f64) as i32, PIXEL / 2);
+            let (stencil, base) = stencils.at(size_of(radius), PIXEL / 2);
             let (mut light, mut mean) = (0.0, [0.0; 2]);
             for run in &stencil.runs {
                 let share = (run.end - run.start) as f64 * run.height as f64;
@@ -308,8 +347,7 @@ mod tests {
             let stencils = Stencils::new(Shape::new(&shape.clone().into()));
             for radius in [1.7, -2.2, 4.0, -11.3, 63.0] {
                 for y in [0.5, 0.125, 0.875] {
-                    let (stencil, base) =
-                        stencils.at((radius * 4096.0f64).round() as i32, (y * 4096.0) as i32);
+                    let (stencil, base) = stencils.at(size_of(radius), (y * 4096.0) as i32);
                     let (mut light, mut mean, mut square) = (0.0, [0.0; 2], [0.0; 2]);
                     for run in &stencil.runs {
                         let [a, b] = [run.start, run.end].map(|x| x as f64 / PIXEL as f64);

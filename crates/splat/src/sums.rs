@@ -5,8 +5,7 @@ use crate::draw::{Pen, SeenRun};
 use crate::lens_in_use::{LensInUse, NodeFocus, Placed};
 use crate::nodes::{Nodes, SplatNode};
 use crate::paint::Paint;
-use crate::partition::Share;
-use crate::resolve::{Lines, Overflow, Quanta, add_rows};
+use crate::resolve::{Lines, Overflow, Quanta, lines};
 use crate::widest::with_widest_instructions;
 use progress::{Cancelled, Progress};
 use rayon::prelude::*;
@@ -15,7 +14,7 @@ use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Pixel rows that one thread sums at a time; a multiple of the coarsest level's pixel.
-const BAND_ROWS: i32 = 64;
+const BAND_ROWS: u32 = 64;
 
 /// One kind of samples: ordinary ones, and bright ones if there are any.
 #[derive(Clone, PartialEq)]
@@ -49,9 +48,9 @@ impl Sum {
         }
     }
 
-    fn bands(&mut self, rows: i32) -> Vec<SumCanvas<'_>> {
-        let mut bright = self.bright.as_mut().map(|bright| bright.bands(rows).into_iter());
-        let dim = self.dim.bands(rows).into_iter();
+    fn bands(&mut self, rows: u32) -> Vec<SumCanvas<'_>> {
+        let mut bright = self.bright.as_mut().map(|bright| bright.bands(rows as i32).into_iter());
+        let dim = self.dim.bands(rows as i32).into_iter();
         let canvas =
             |dim| SumCanvas { dim, bright: bright.as_mut().and_then(Iterator::next), found: Vec::new() };
         dim.map(canvas).collect()
@@ -66,20 +65,18 @@ impl Sum {
         self.dim.bytes() + self.bright.as_ref().map_or(0, Accumulator::bytes)
     }
 
-    /// Its pixel rows `rows`.
-    fn lines(&self, nodes: &Nodes, rows: Range<i32>) -> Result<Lines, Overflow> {
-        let mut lines = vec![[0.0; 4]; self.dim.levels[0].width * rows.len()];
+    /// Its pixel rows `rows`; `None` if they are black.
+    fn lines(&self, nodes: &Nodes, rows: Range<i32>) -> Result<Option<Lines>, Overflow> {
         let dim = Quanta::new(nodes.scale.dim_bits, 32, nodes.brightest.min(crate::nodes::BRIGHT as f64));
-        add_rows(&self.dim, dim, rows.clone(), &mut lines)?;
+        let mut found = lines(&self.dim, dim, rows.clone())?;
         if let Some(bright) = &self.bright {
             let quanta = Quanta::new(nodes.scale.bright_bits, 64, nodes.brightest);
-            let mut light = vec![[0.0; 4]; lines.len()];
-            add_rows(bright, quanta, rows, &mut light)?;
-            for (pixel, light) in lines.iter_mut().zip(light) {
-                (0..3).for_each(|c| pixel[c] += light[c]);
+            // Their coverage is among the ordinary ones'.
+            if let (Some(found), Some(light)) = (&mut found, lines(bright, quanta, rows)?) {
+                found.add_light(&light);
             }
         }
-        Ok(lines)
+        Ok(found)
     }
 }
 
@@ -92,15 +89,15 @@ impl SumCanvas<'_> {
     }
 
     #[inline(always)]
-    fn draw(&mut self, pen: &Pen, index: u32, node: &SplatNode, placed: Placed, sign: i32) {
+    fn draw(&mut self, pen: &Pen, node: &SplatNode, placed: Placed, sign: i32) {
         // All coverage is summed alike, so that how bright a sample is leaves no trace in it.
         let found = &mut self.found;
         match &mut self.bright {
             Some(bright) if node.is_bright => {
-                pen.draw(index, node.light, placed, bright, found, sign);
-                pen.draw(index, pen.nodes.dim_coverage(node), placed, &mut self.dim, found, sign);
+                pen.draw(node, node.light, placed, bright, found, sign);
+                pen.draw(node, pen.nodes.dim_coverage(node), placed, &mut self.dim, found, sign);
             }
-            _ => pen.draw(index, node.light, placed, &mut self.dim, found, sign),
+            _ => pen.draw(node, node.light, placed, &mut self.dim, found, sign),
         }
     }
 }
@@ -139,20 +136,30 @@ impl Scene<'_> {
         }
     }
 
-    /// The pixel rows that a block's light may reach.
-    fn reach(&self, block: usize) -> Range<i32> {
-        let bounds = &self.pen.nodes.bounds[block];
-        let (mut t, mut anchor) = ([1.0f32; 2], [0.0f32; 2]);
-        for focus in self.paint.of_block(block).into_iter().flatten() {
-            t = [t[0].min(focus.t), t[1].max(focus.t)];
-            anchor = [anchor[0].min(focus.anchor), anchor[1].max(focus.anchor)];
-        }
-        let radius = self.lens.largest_radius_px(bounds.inverse_depths, t, anchor);
-        // Coarse levels spread a little further.
-        let reach = radius * 1.01 + 2.0 * bounds.half_height as f64 + 3.0 * (1 << LEVELS) as f64;
-        let clamp = |row: f64| row.clamp(-1e9, 1e9) as i32;
-        clamp(bounds.rows[0] as f64 - reach)..clamp(bounds.rows[1] as f64 + reach)
+    /// The nodes of a block that are drawn.
+    fn list(&self, block: usize, height: u32) -> Vec<Drawn> {
+        let mut list = Vec::new();
+        self.drawn(
+            block,
+            self.paint.of_block(block),
+            #[inline(always)]
+            |index, node, placed| {
+                let rows = self.pen.rows(node, placed, height);
+                if !rows.is_empty() {
+                    list.push(Drawn { index, placed, rows: [rows.start, rows.end] });
+                }
+            },
+        );
+        list
     }
+}
+
+/// A node that is drawn.
+struct Drawn {
+    index: u32,
+    placed: Placed,
+    /// The first pixel row that its light may reach, and the one behind the last.
+    rows: [u32; 2],
 }
 
 impl Sums {
@@ -168,8 +175,16 @@ impl Sums {
 
     /// Sets them to what a scene sends.
     pub fn set(&mut self, scene: &Scene, progress: &dyn Progress) -> Result<(), Cancelled> {
-        let blocks = scene.pen.nodes.blocks.len();
-        let reaches: Vec<_> = (0..blocks).into_par_iter().map(|block| scene.reach(block)).collect();
+        let height = self.free.dim.levels[0].height as u32;
+        let blocks = (0..scene.pen.nodes.blocks.len()).into_par_iter();
+        let lists: Vec<(Vec<Drawn>, Range<u32>)> = blocks
+            .map(|block| {
+                let list = scene.list(block, height);
+                let first = list.iter().map(|drawn| drawn.rows[0]).min().unwrap_or(0);
+                let end = list.iter().map(|drawn| drawn.rows[1]).max().unwrap_or(0);
+                (list, first..end)
+            })
+            .collect();
         let bands: Vec<_> =
             self.free.bands(BAND_ROWS).into_iter().zip(self.sharing.bands(BAND_ROWS)).collect();
         let (count, done) = (bands.len(), AtomicUsize::new(0));
@@ -177,22 +192,16 @@ impl Sums {
             progress.check()?;
             free.clear();
             sharing.clear();
-            let rows = band as i32 * BAND_ROWS..(band as i32 + 1) * BAND_ROWS;
-            let reaches = reaches.iter().enumerate();
-            let blocks = reaches.filter(|(_, reach)| reach.start <= rows.end && reach.end >= rows.start);
+            let first = band as u32 * BAND_ROWS;
+            let is_here = |rows: [u32; 2]| rows[0] < first + BAND_ROWS && rows[1] > first;
+            let lists = lists.iter().filter(|(_, rows)| is_here([rows.start, rows.end]));
             with_widest_instructions(
                 #[inline(always)]
                 || {
-                    for (block, _) in blocks {
-                        scene.drawn(
-                            block,
-                            scene.paint.of_block(block),
-                            #[inline(always)]
-                            |index, node, placed| {
-                                let canvas = if is_sharing(node, placed) { &mut sharing } else { &mut free };
-                                canvas.draw(&scene.pen, index, node, placed, 1);
-                            },
-                        );
+                    for drawn in lists.flat_map(|(list, _)| list).filter(|drawn| is_here(drawn.rows)) {
+                        let node = &scene.pen.nodes.nodes[drawn.index as usize];
+                        let canvas = if is_sharing(node, drawn.placed) { &mut sharing } else { &mut free };
+                        canvas.draw(&scene.pen, node, drawn.placed, 1);
                     }
                 },
             );
@@ -210,34 +219,15 @@ impl Sums {
                 for &(index, placed) in drawn {
                     let node = &pen.nodes.nodes[index as usize];
                     let canvas = if is_sharing(node, placed) { &mut sharing } else { &mut free };
-                    canvas.draw(pen, index, node, placed, sign);
+                    canvas.draw(pen, node, placed, sign);
                 }
             },
         );
     }
 
-    /// The factors that a standard picture's sums give its pixel rows `rows`.
-    pub fn shares(&self, nodes: &Nodes, rows: Range<i32>) -> Result<Vec<Share>, Overflow> {
-        let (free, sharing) = (self.free.lines(nodes, rows.clone())?, self.sharing.lines(nodes, rows)?);
-        let shares = free.iter().zip(&sharing).map(|(free, sharing)| Share::of(free[3], sharing[3]));
-        Ok(shares.collect())
-    }
-
-    /// The picture's pixel rows `rows`, evened out if nothing is painted.
-    pub fn picture(
-        &self,
-        nodes: &Nodes,
-        rows: Range<i32>,
-        shares: &[Share],
-        is_painted: bool,
-    ) -> Result<Lines, Overflow> {
-        let mut lines = self.free.lines(nodes, rows.clone())?;
-        let sharing = self.sharing.lines(nodes, rows)?;
-        for ((pixel, sharing), share) in lines.iter_mut().zip(&sharing).zip(shares) {
-            let even = if is_painted { 1.0 } else { share.even };
-            (0..4).for_each(|c| pixel[c] = even * (pixel[c] + share.partial * sharing[c]));
-        }
-        Ok(lines)
+    /// The pixel rows `rows`: what is free, and what shares the rest.
+    pub fn lines(&self, nodes: &Nodes, rows: Range<i32>) -> Result<[Option<Lines>; 2], Overflow> {
+        Ok([self.free.lines(nodes, rows.clone())?, self.sharing.lines(nodes, rows)?])
     }
 }
 
@@ -248,4 +238,4 @@ pub fn is_sharing(node: &SplatNode, placed: Placed) -> bool {
 }
 
 /// Rows that one thread resolves at a time.
-pub const RESOLVE_ROWS: usize = 32;
+pub const RESOLVE_ROWS: usize = 16;

@@ -20,12 +20,13 @@ impl Light {
     pub fn of(light: [f32; 4]) -> Self {
         let bits = light.map(f32::to_bits);
         let top = bits[0].max(bits[1]).max(bits[2]).max(bits[3]) >> 23;
-        let mantissa = bits.map(|bits| {
+        let mut mantissa = [0; 4];
+        for (mantissa, bits) in mantissa.iter_mut().zip(bits) {
             // Subnormal numbers are nothing.
             let is_normal = bits >> 23 > 0;
-            let mantissa = if is_normal { (bits & 0x7F_FFFF) | 0x80_0000 } else { 0 };
-            (mantissa << 7) >> (top - (bits >> 23)).min(31)
-        });
+            let fraction = if is_normal { (bits & 0x7F_FFFF) | 0x80_0000 } else { 0 };
+            *mantissa = (fraction << 7) >> (top - (bits >> 23)).min(31);
+        }
         Self { mantissa, exponent: top as i32 - 157 }
     }
 
@@ -72,7 +73,11 @@ impl Image<'_> {
         let hash = (hash ^ hash >> 15).wrapping_mul(0x2C1B_3C6D) as u64;
         let dither = (hash << shift.saturating_sub(32)) >> 32u32.saturating_sub(shift);
         let height = mul_shift(height, self.share, 24) as u64;
-        self.light.mantissa.map(|mantissa| (mantissa as u64 * height + dither) >> shift)
+        let mut value = [0; 4];
+        for (value, mantissa) in value.iter_mut().zip(self.light.mantissa) {
+            *value = (mantissa as u64 * height + dither) >> shift;
+        }
+        value
     }
 }
 

@@ -33,6 +33,9 @@ fn halvings(tilt: i32) -> u32 {
     }
 }
 
+/// 2³² over the golden ratio: its multiples, wrapped, are spread out evenly.
+const GOLDEN: u32 = 0x9E37_79B1;
+
 /// ⌊x·factor / 2^`shift`⌋ for |factor| < 2^`shift`, where x·factor may not fit.
 #[inline(always)]
 fn part(x: i32, factor: i32, shift: u32) -> i32 {
@@ -57,6 +60,8 @@ pub struct SeenRuns {
     reach: i32,
     per_reach: Divisor,
     is_turned: bool,
+    /// Whether the weight is that at the aperture's centre for all of it.
+    is_even: bool,
 }
 
 impl SeenRuns {
@@ -70,6 +75,9 @@ impl SeenRuns {
             reach: reach as i32,
             per_reach: Divisor::new(reach),
             is_turned: image.radius < 0,
+            is_even: image.node.base as i32 == ONE
+                && (image.node.tilt[0].abs() as i32 + (image.node.tilt[1].abs() as i32))
+                    <= pen.even_seen_tilt,
         }
     }
 
@@ -85,11 +93,14 @@ impl SeenRuns {
     ) {
         // A pixel row may lie across several rows of cells: each splat takes one of them, each row its own.
         let from_center = (row - (image.center[1] >> POSITION_BITS)) as u32;
-        let jitter = (image.dither ^ from_center.wrapping_mul(0x85EB_CA77)).wrapping_mul(0xC2B2_AE35) >> 18;
+        let jitter = image.dither.wrapping_add(from_center.wrapping_mul(GOLDEN)) >> 18;
         let jittered = v + ((self.pixel * (jitter as i32 - ONE / 2)) >> 14);
         let of_baked = (jittered * self.stop) >> 14;
         let cell_row = ((of_baked + ONE) >> 11).clamp(0, 15);
         let mut bits = cells[cell_row as usize] as u32;
+        if self.is_even && bits == u32::from(u16::MAX) {
+            return emit(span[0], span[1], ONE);
+        }
         if self.is_turned {
             // u grows to the left.
             bits = u32::from((bits as u16).reverse_bits());
@@ -101,7 +112,6 @@ impl SeenRuns {
             _ => image.center[0].wrapping_add(part(self.reach, cell as i32 - 8, 3)),
         };
         let tilt = image.node.tilt.map(i32::from);
-        let is_even = tilt == [0, 0] && image.node.base as i32 == ONE;
         // Not the jittered row: weights are smooth.
         let base = image.node.base as i32 + ((tilt[1] * ((v * self.stop) >> 14)) >> 14);
         while bits != 0 {
@@ -112,7 +122,7 @@ impl SeenRuns {
             if from >= to {
                 continue;
             }
-            if is_even {
+            if self.is_even {
                 emit(from, to, ONE);
                 continue;
             }

@@ -6,7 +6,7 @@ use crate::draw::image::Image;
 use crate::draw::seen_runs::{Row, SeenRun, SeenRuns};
 use crate::fixed::{mul_shift, ratio};
 use crate::nodes::{Cells, ONE};
-use crate::stencil::{HEIGHT_BITS, LARGEST_RADIUS_PX, Stencil};
+use crate::stencil::{HEIGHT_BITS, Stencil, StencilSize};
 
 /// What is let through of a stencil is scaled by this at most.
 const LARGEST_SCALE: u32 = 4;
@@ -22,17 +22,17 @@ impl Pen<'_> {
         found: &mut Vec<SeenRun>,
         sign: i32,
     ) {
-        let Some(radius) = self.stencil_radius_of(image) else {
+        let Some(size) = self.stencil_size_of(image) else {
             return self.draw_large(image, cells, rows, sign);
         };
-        // Most of what misses these rows is found out before its stencil is fetched: radii are tabled to 1/511.
-        let reach = radius.abs() + (radius.abs() >> 8) + 2 * PIXEL;
+        // Most of what misses these rows is found out before its stencil is fetched.
+        let reach = image.radius.abs() + image.radius.abs() / 2 + 2 * PIXEL;
         if (image.center[1] + reach) >> POSITION_BITS < rows.first
             || (image.center[1] - reach) >> POSITION_BITS >= rows.end
         {
             return;
         }
-        let (stencil, base) = self.stencils.at(radius, image.center[1]);
+        let (stencil, base) = self.stencils.at(size, image.center[1]);
         let shift = image.light.shift(stencil.height_bits);
         let Some((cells, share)) = cells else {
             for run in &stencil.runs {
@@ -48,7 +48,7 @@ impl Pen<'_> {
         for run in found.iter() {
             if run.row >= rows.first && run.row < rows.end {
                 let value = image.value(run.height, shift, run.row);
-                rows.add_run(run.row, rows.clamped(run.start), rows.clamped(run.end), value, sign);
+                rows.add_run(run.row, run.start, run.end, value, sign);
             }
         }
     }
@@ -83,18 +83,16 @@ impl Pen<'_> {
         ratio(share, passing, LARGEST_SCALE)
     }
 
-    /// The radius of the stencil that, blurred by its level, has the variance of the footprint and the aperture's image;
+    /// The size of the stencil that, blurred by its level, has the variance of the footprint and the aperture's image;
     /// none where that is too large for a stencil.
     #[inline(always)]
-    pub fn stencil_radius_of(&self, image: &Image) -> Option<i32> {
+    pub fn stencil_size_of(&self, image: &Image) -> Option<StencilSize> {
         let [x, y] = image.node.half_size.map(i64::from);
         // A box of half side h has the variance h²/3.
         let footprint =
             ((x * x + y * y) >> (2 * image.node.level + 1)) * self.per_variance / (3 * ONE as i64);
         let radius = image.radius as i64;
         let square = radius * radius + footprint - self.too_blurred[image.node.level as usize];
-        let blurred = (square.max(1) as f64).sqrt() as i32;
-        let signed = if radius < 0 { -blurred } else { blurred };
-        (blurred <= LARGEST_RADIUS_PX << POSITION_BITS).then_some(signed)
+        StencilSize::of(square, image.radius < 0)
     }
 }

@@ -32,6 +32,7 @@ struct Pen {
     dim_exponent: i32,
     coverage_exponent: i32,
     part_count: u32,
+    even_seen_tilt: i32,
     levels: array<Level, 5>,
     // Share, mean, variance, half.
     parts: array<Part, 16>,
@@ -39,7 +40,7 @@ struct Pen {
 
 // The nodes of a chunk, ten words each: see `words_of_node` in scene.rs.
 @group(0) @binding(0) var<storage, read> nodes: array<u32>;
-// What partly occluded nodes see, ten words each: 16 rows of cells, share, mean.
+// What partly occluded nodes see, eleven words each: 16 rows of cells, share, mean, half.
 @group(0) @binding(1) var<storage, read> cells: array<u32>;
 // Pen, the aperture's rows, and stencils; see `Shapes` in shapes.rs.
 @group(0) @binding(2) var<storage, read> pen: Pen;
@@ -66,7 +67,6 @@ const LARGEST_SCALE: u32 = 4u;
 const TALLEST_ROW: u32 = 65536u;
 const SMALLEST_REACH: u32 = 256u;
 const LARGEST_REACH: u32 = 1073741824u;
-const PHASE_STEP: i32 = 128;
 const OPEN: u32 = 0xFFFFFFFFu;
 const SLOTS: u32 = 8u;
 
@@ -344,7 +344,7 @@ fn seen_row(
     let node = (*image).node;
     let center = (*image).center;
     let from_center = bitcast<u32>(row - (center.y >> POSITION_BITS));
-    let jitter = i32((((*image).dither ^ (from_center * 0x85EBCA77u)) * 0xC2B2AE35u) >> 18u);
+    let jitter = i32(((*image).dither + from_center * 0x9E3779B1u) >> 18u);
     let jittered = v + ((seen.pixel * (jitter - ONE / 2)) >> 14u);
     let of_baked = (jittered * pen.stop) >> 14u;
     let cell_row = u32(clamp((of_baked + ONE) >> 11u, 0, 15));
@@ -355,7 +355,7 @@ fn seen_row(
     if seen.is_turned {
         bits = reverseBits(bits) >> 16u;
     }
-    let is_even = all(node.tilt == vec2<i32>()) && node.base == ONE;
+    let is_even = abs(node.tilt.x) + abs(node.tilt.y) <= pen.even_seen_tilt && node.base == ONE;
     let base = node.base + ((node.tilt.y * ((v * pen.stop) >> 14u)) >> 14u);
     let toward = select(node.tilt.x, -node.tilt.x, seen.is_turned);
     let steep = abs(node.tilt.x);
@@ -405,8 +405,9 @@ fn seen_row(
 fn draw_image(image: ptr<function, Image>, place: u32, cells: u32, share: u32) {
     let first_run = stencils[2u * place];
     let count = stencils[2u * place + 1u] & 0xFFFFu;
-    let height_bits = stencils[2u * place + 1u] >> 16u;
-    let base = ((*image).center.y + PHASE_STEP / 2) >> POSITION_BITS;
+    let height_bits = (stencils[2u * place + 1u] >> 16u) & 63u;
+    let half_step = i32(stencils[2u * place + 1u] >> 22u);
+    let base = ((*image).center.y + half_step) >> POSITION_BITS;
     let level = pen.levels[(*image).node.level];
     let shift = light_shift(image, height_bits);
     let center = (*image).center.x;
@@ -507,13 +508,15 @@ fn draw(@builtin(global_invocation_id) id: vec3<u32>, @builtin(workgroup_id) gro
     image.node.cells = nodes[at + 5u];
     if (flags & 64u) != 0u {
         // A piece of a sample of a large cell.
-        let count = 1i << image.node.level;
+        let level = (flags >> 8u) & 7u;
+        let finer = image.node.level - level;
+        let count = 1i << finer;
         let piece = i32(flags >> 16u);
-        let half_size = max(image.node.half_size >> vec2<u32>(image.node.level), vec2<u32>(128u));
+        let half_size = max(image.node.half_size >> vec2<u32>(finer), vec2<u32>(128u));
         let step = vec2<i32>(2 * (piece % count) + 1 - count, 2 * (piece / count) + 1 - count);
         image.node.center += step * vec2<i32>(half_size);
         image.node.half_size = half_size;
-        image.node.level = 0u;
+        image.node.level = level;
     }
     image.center = image.node.center >> vec2<u32>(image.node.level);
     image.radius = bitcast<i32>(records[record + 1u]) / (1i << image.node.level);
@@ -535,7 +538,7 @@ fn draw(@builtin(global_invocation_id) id: vec3<u32>, @builtin(workgroup_id) gro
     var through = OPEN;
     var share = WHOLE;
     if form == FORM_SEEN || form == FORM_SEEN_BOX {
-        through = 10u * image.node.cells;
+        through = 11u * image.node.cells;
         share = cells[through + 8u];
     }
     if form == FORM_TILTED {
@@ -554,8 +557,10 @@ fn draw(@builtin(global_invocation_id) id: vec3<u32>, @builtin(workgroup_id) gro
             let mean = cells[through + 9u];
             shift_to(&image, vec2<i32>(low_half(mean), high_half(mean)));
             image.share = share;
-            draw_box(&image, image.node.half_size, pen.half);
+            let half = cells[through + 10u];
+            draw_box(&image, image.node.half_size, vec2<u32>(half & 0xFFFFu, half >> 16u) << vec2<u32>(2u));
         } else {
+            image.share = WHOLE - (far << 8u);
             lean(&image);
             shift_to(&image, pen.mean);
             draw_box(&image, image.node.half_size, pen.half);

@@ -23,6 +23,8 @@ const IS_SHARING: u32 = 8;
 const IS_REMOVED: u32 = 16;
 const IS_COVERAGE: u32 = 32;
 const IS_PIECE: u32 = 64;
+/// Where the level of a piece stands; behind it, from bit 16 on, which piece it is.
+const LEVEL_BIT: u32 = 8;
 
 /// Records by kind: of ordinary accumulators, then of wide ones.
 #[derive(Clone, Debug, Default)]
@@ -72,9 +74,10 @@ impl Records {
                 self.push_forms(0, pen, index, first, node, placed, flags);
             }
         };
-        if placed.is_split {
-            for (k, piece) in node.pieces().enumerate() {
-                push(&piece, flags | IS_PIECE | (k as u32) << 16);
+        if placed.level < node.level {
+            flags |= IS_PIECE | (placed.level as u32) << LEVEL_BIT;
+            for (k, piece) in node.pieces(placed.level).enumerate() {
+                push(&piece, flags | (k as u32) << 16);
             }
         } else {
             push(node, flags);
@@ -99,7 +102,7 @@ impl Records {
             let head = |of_form: u32, number: u32| [index - first, radius, of_form, flags | number];
             let mut image = pen.image(node, [0.0; 4], placed);
             let (number, cells) = match form {
-                Form::Box => return words[BOXES].extend(head(0, 0)),
+                Form::Box(_) => return words[BOXES].extend(head(0, 0)),
                 Form::Parts(_) => return words[BOXES].extend(head(placed.depth_share as u32, 1)),
                 Form::SeenBox => return words[BOXES].extend(head(0, 4)),
                 Form::Image(share) => {
@@ -108,11 +111,11 @@ impl Records {
                     (2, None)
                 }
                 Form::Tilted(share) => (3, Some((&crate::draw::ALL, share))),
-                Form::Seen => (5, Some(pen.seen_of(index, node))),
+                Form::Seen => (5, Some(pen.seen_of(node))),
             };
-            match pen.stencil_radius_of(&image) {
-                Some(radius) => {
-                    let (place, phase, _) = pen.stencils.place(radius, image.center[1]);
+            match pen.stencil_size_of(&image) {
+                Some(size) => {
+                    let (place, phase, _) = pen.stencils.place(size, image.center[1]);
                     // Blocks ask for few different ones, one after another.
                     if places.last() != Some(&place) {
                         places.push(place);

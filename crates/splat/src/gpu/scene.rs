@@ -10,8 +10,11 @@ use wgpu::{Buffer, BufferUsages};
 /// Nodes of a chunk at most: with ten words each a chunk is within the 128 MiB that any card can bind.
 const CHUNK_NODES: u32 = 1 << 21;
 
-/// Words of a node, and of what a partly occluded one sees.
+/// Words of a node.
 const WORDS: usize = 10;
+
+/// Words of what a partly occluded one sees.
+const SEEN_WORDS: usize = 11;
 
 /// A light field's nodes, in chunks of whole blocks.
 pub struct Scene {
@@ -56,12 +59,14 @@ impl Scene {
     /// Uploads what partly occluded nodes see of an aperture.
     pub fn upload_seen(&self, gpu: &Gpu, nodes: &Nodes, seen: &[Seen]) {
         for chunk in &self.chunks {
-            let mut words = Vec::with_capacity(chunk.partial.len() * WORDS);
+            let mut words = Vec::with_capacity(chunk.partial.len() * SEEN_WORDS);
             for &index in &chunk.partial {
-                let seen = &seen[index as usize];
-                if let Some(cells) = nodes.cells(&nodes.nodes[index as usize]) {
+                let node = &nodes.nodes[index as usize];
+                if let Some(cells) = nodes.cells(node) {
+                    let seen = &seen[node.cells as usize];
                     words.extend(cells.chunks_exact(2).map(|pair| pair_of(pair[0], pair[1])));
                     words.extend([seen.share, pair_of(seen.mean[0] as u16, seen.mean[1] as u16)]);
+                    words.push(pair_of(seen.half[0], seen.half[1]));
                 }
             }
             gpu.write(&chunk.cells, &words);
@@ -82,7 +87,7 @@ impl Chunk {
         let usage = BufferUsages::STORAGE | BufferUsages::COPY_DST;
         let buffer = gpu.buffer("nodes", words.len(), usage)?;
         gpu.write(&buffer, &words);
-        let cells = gpu.buffer("cells", partial.len() * WORDS, usage)?;
+        let cells = gpu.buffer("cells", partial.len() * SEEN_WORDS, usage)?;
         Ok(Self { blocks, first: range.start, nodes: buffer, cells, partial })
     }
 }

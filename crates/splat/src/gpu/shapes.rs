@@ -53,7 +53,8 @@ impl Shapes {
             for (phase, stencil) in stencils.at_place(place).iter().enumerate() {
                 let entry = 2 * (place.index * Stencils::PHASES + phase);
                 self.words[entry] = self.words.len() as u32;
-                self.words[entry + 1] = stencil.runs.len() as u32 | stencil.height_bits << 16;
+                self.words[entry + 1] =
+                    stencil.runs.len() as u32 | (stencil.height_bits | place.half_step() << 6) << 16;
                 for run in &stencil.runs {
                     let row_and_v = (run.v as u32 & 0xFFFF) | (run.row as u32) << 16;
                     self.words.extend([run.start as u32, run.end as u32, run.height, row_and_v]);
@@ -92,6 +93,7 @@ impl Shapes {
         let rows = pen.stencils.shape.firsts.len() as u32;
         words.extend([rows - 1, rows]);
         words.extend([(now - dim_bits) as u32, (now - bright_bits) as u32, pen.parts.len() as u32]);
+        words.push(pen.even_seen_tilt as u32);
         for level in &layout.levels {
             words.extend([level.width as u32, level.height as u32, level.pixels, level.totals]);
         }
@@ -110,5 +112,5 @@ impl Shapes {
 }
 
 /// Words of `Pen` in draw.wgsl before its levels, and in all.
-const FIRST_LEVEL: usize = 17;
+const FIRST_LEVEL: usize = 18;
 const PEN_WORDS: usize = FIRST_LEVEL + 4 * salf::tree::LEVELS + 1 + 8 * 16;

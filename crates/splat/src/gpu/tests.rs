@@ -266,9 +266,9 @@ fn card_and_processor_sum_the_same_bits() {
         if pixels > 0 {
             wrong.push(format!("{}: {pixels} pixels differ", hard.name));
         }
-        // The control: one sample whose light is a few quanta more; those of bright sums are 64 times as large.
+        // The control: one sample whose light is some quanta more; those of bright sums are 64 times as large.
         let mut other = (*salf).clone();
-        let quanta = if sums.len() == 4 { 512.0 } else { 4.0 };
+        let quanta = if sums.len() == 4 { 2048.0 } else { 32.0 };
         other.samples[1000].radiance.y += crate::QUANTUM as f32 * quanta;
         let other = hard.rendered(Arc::new(other), &focus, None);
         assert!(first_difference(&sums_here(&other), &others).is_some(), "{}: the control", hard.name);

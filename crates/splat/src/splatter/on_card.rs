@@ -1,6 +1,6 @@
 //! Sums on a graphics card, and on the processor again once the card is lost.
 
-use super::{SplatError, Splatter};
+use super::{SplatError, Splatter, Wanted};
 use crate::gpu::{Gpu, GpuError, GpuSums};
 use crate::lens_in_use::Placed;
 use crate::paint::Paint;
@@ -89,17 +89,17 @@ impl Splatter {
         Some(self.card.came_of(set))
     }
 
-    /// See [`Splatter::share_out`].
-    pub(super) fn share_out_on_card(&mut self) -> Option<Result<(), SplatError>> {
-        let (nodes, sums) = (self.nodes.as_ref()?, self.card.sums.as_mut()?);
-        let shared_out = sums.find_shares(nodes);
-        Some(self.card.came_of(shared_out))
-    }
-
     /// See [`Splatter::resolve`].
-    pub(super) fn resolve_on_card(&mut self, rows: Range<u32>) -> Option<Result<(), SplatError>> {
+    pub(super) fn resolve_on_card(
+        &mut self,
+        rows: Range<u32>,
+        wanted: Wanted,
+    ) -> Option<Result<(), SplatError>> {
         let (nodes, sums) = (self.nodes.as_ref()?, self.card.sums.as_mut()?);
-        let resolved = sums.picture(nodes, rows, !self.paint.is_standard(), &mut self.picture);
+        let mut resolved = if wanted.has_shares() { sums.find_shares(nodes) } else { Ok(()) };
+        if resolved.is_ok() && wanted.has_picture() {
+            resolved = sums.picture(nodes, rows, !self.paint.is_standard(), &mut self.picture);
+        }
         Some(self.card.came_of(resolved))
     }
 
