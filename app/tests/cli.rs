@@ -428,7 +428,7 @@ fn strokes_are_replayed_onto_a_new_project() {
     };
     let brush = focus::Brush { radius: 0.3, target: lens::FocusOffset::new(1.4, 0.5), ..Default::default() };
     let points = (0..20).map(|k| [0.3 + 0.02 * k as f64, 0.5, 1.0]).collect();
-    let stroke = project::RecordedStroke { layer: "Paint".into(), brush, view, points };
+    let stroke = project::RecordedStroke { layer: "Paint".into(), brush, view: view.into(), points };
     let recorded = |stroke: &project::RecordedStroke| [project::RecordedStep::Stroke(stroke.clone())];
     project::write_strokes(&place.path("strokes.json"), &recorded(&stroke)).unwrap();
     let told = place.json("replay quads.fbrush strokes.json -o painted.fbrush --json");

@@ -60,6 +60,21 @@ impl Purpose {
         }
     }
 
+    /// Where there is a choice of formats: extension, name, and what it is for.
+    fn formats(self) -> &'static [(&'static str, &'static str, &'static str)] {
+        match self {
+            Self::ExportPicture => &[
+                ("png", "PNG", "The picture as the screen shows it, for everyone."),
+                ("exr", "OpenEXR", "Linear light, unclipped, for grading and compositing."),
+            ],
+            Self::ExportFocusMap => &[
+                ("exr", "OpenEXR", "Exact values, as floats."),
+                ("png", "PNG, 16 bits", "For programs that read pictures only."),
+            ],
+            _ => &[],
+        }
+    }
+
     /// Whether a file is written.
     pub fn writes(self) -> bool {
         matches!(
@@ -176,7 +191,12 @@ fn system_dialog(
     context: &Context,
 ) -> Option<mpsc::Receiver<Option<PathBuf>>> {
     let mut dialog = rfd::AsyncFileDialog::new().set_title(purpose.title());
-    dialog = dialog.add_filter(purpose.extensions().join(", "), purpose.extensions());
+    if purpose.formats().is_empty() {
+        dialog = dialog.add_filter(purpose.extensions().join(", "), purpose.extensions());
+    }
+    for (extension, name, _) in purpose.formats() {
+        dialog = dialog.add_filter(*name, &[extension]);
+    }
     if let Some(folder) = suggestion.parent().filter(|folder| folder.is_dir()) {
         dialog = dialog.set_directory(folder);
     }
@@ -254,6 +274,7 @@ fn typed_dialog(context: &Context, purpose: Purpose, text: &mut String, wish: &m
             state.cursor.set_char_range(Some(egui::text::CCursorRange::two(start, end)));
             state.store(ui.ctx(), response.id);
         }
+        format_row(ui, purpose, text);
         ui.add_space(4.0);
         egui::ScrollArea::vertical().auto_shrink([false; 2]).max_height(240.0).show(ui, |ui| {
             for entry in entries(purpose, text) {
@@ -308,6 +329,23 @@ fn typed_dialog(context: &Context, purpose: Purpose, text: &mut String, wish: &m
         step = Step::Cancel;
     }
     step
+}
+
+/// The formats to choose from: they are the file's extension.
+fn format_row(ui: &mut egui::Ui, purpose: Purpose, text: &mut String) {
+    if purpose.formats().is_empty() {
+        return;
+    }
+    ui.horizontal(|ui| {
+        ui.label("Format");
+        let path = with_extension(purpose, PathBuf::from(text.trim()));
+        for (extension, name, tip) in purpose.formats() {
+            let is_chosen = path.extension().is_some_and(|own| own.eq_ignore_ascii_case(extension));
+            if ui.add(egui::Button::selectable(is_chosen, *name)).on_hover_text(*tip).clicked() {
+                *text = path.with_extension(extension).display().to_string();
+            }
+        }
+    });
 }
 
 /// The characters of a suggestion that typing replaces.

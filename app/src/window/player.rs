@@ -7,7 +7,7 @@
 
 use project::{LinearPicture, RecordedStep, compare};
 use serde_json::{Value, json};
-use session::{Command, Session, SessionError, StrokePoint, StrokeTarget};
+use session::{Command, Session, SessionError, StrokePoint};
 use std::time::{Duration, Instant};
 
 /// Time between two points: a tablet's 125 reports a second.
@@ -101,13 +101,12 @@ impl Player {
     fn paint_due(&mut self, session: &mut Session, now: Instant) -> Result<(), SessionError> {
         let Some(played) = &mut self.stroke else { return Ok(()) };
         let RecordedStep::Stroke(stroke) = &self.steps[played.step] else { return Ok(()) };
-        while let Some(&[x, y, pressure]) = stroke.points.get(played.next_point) {
+        while let Some(point) = stroke.points.get(played.next_point) {
             let due = played.began + POINT_EVERY * played.next_point as u32;
             if due > now {
                 return Ok(());
             }
-            let at = StrokeTarget::View(stroke.view, glam::DVec2::new(x, y));
-            let point = StrokePoint { at, pressure: pressure as f32 };
+            let point = StrokePoint::recorded(&stroke.view, point);
             let before = session.map_serial();
             session.apply(match played.next_point {
                 0 => Command::BeginStroke(point),

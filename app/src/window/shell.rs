@@ -8,35 +8,30 @@
 //! list of [`Action`]s and carried out at the end.
 
 mod commands;
+mod document;
+mod views;
 
 use super::blit::Blitter;
 use super::brush_gesture::BrushGesture;
-use super::brush_ring::BrushRing;
-
 use super::drawer::{Drawer, Drawn};
 use super::file_dialog::{FileDialog, Purpose};
 use super::help::Help;
 use super::inspector::Inspector;
-use super::layout::{self, Pane, Panes};
+use super::layout::{self, Pane};
 use super::menu_bar::{MenuState, is_possible, menu_bar};
 use super::paint_view::PaintView;
 use super::palette::Palette;
 use super::picture_view::{PictureView, Shown};
 use super::player::Player;
-use super::pointer::Hand;
-use super::status_line::{Hover, StatusNotes, status_line};
+use super::status_line::{StatusNotes, status_line};
 use super::toasts::{Severity, Toasts};
-use super::tool_bar::{largest_radius, signed_circle_px, tool_bar};
-use super::unsaved_question::{Answer, Next, UnsavedQuestion};
-use super::view_header::{HeaderState, view_header};
-use super::{Action, Tool, ViewSettings, WindowOptions, demo, keys, theme};
+use super::tool_bar::{largest_radius, tool_bar};
+use super::unsaved_question::{Next, UnsavedQuestion};
+use super::{Action, Tool, ViewSettings, WindowOptions, keys, theme};
 use eframe::{CreationContext, Frame, Storage};
 use egui::{CentralPanel, Context, Panel, Ui, ViewportCommand};
 use egui_tiles::Tree;
-use session::{
-    CameraEdit, Command, CommandId, Event, PreviewActivity, ReferenceKind, Session, SessionError,
-    SessionOptions,
-};
+use session::{CameraEdit, Command, CommandId, Event, ReferenceKind, Session, SessionError, SessionOptions};
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -44,12 +39,6 @@ use std::sync::Arc;
 const SETTINGS_KEY: &str = "settings";
 /// Where eframe keeps the layout between runs.
 const LAYOUT_KEY: &str = "layout";
-
-/// Work shorter than this is not spoken of.
-const NOTICEABLE_SECONDS: f64 = 0.5;
-
-/// Views lower than this have no room for the hint of the first start, points.
-const LEAST_HEIGHT_FOR_HINT: f32 = 220.0;
 
 /// The window's application.
 pub struct Shell {
@@ -195,101 +184,6 @@ impl Shell {
         }
     }
 
-    fn open(&mut self, path: PathBuf) {
-        self.showing_demo = false;
-        self.opening = Some(path.clone());
-        self.apply(Command::Open(path));
-    }
-
-    fn open_demo(&mut self) {
-        match demo::project() {
-            Some(project) => {
-                self.opening = None;
-                self.showing_demo = true;
-                self.apply(Command::OpenTemplate(project));
-            }
-            None => self.toasts.error("assets/demo: the demo is not installed (open a scene with Ctrl+O)"),
-        }
-    }
-
-    /// Does `next` now, or after the question about unsaved changes.
-    fn ask_then(&mut self, next: Next, context: &Context) {
-        if self.session.document().is_some_and(|document| document.is_unsaved()) {
-            self.question.ask(next);
-        } else {
-            self.go_on(next, context);
-        }
-    }
-
-    fn go_on(&mut self, next: Next, context: &Context) {
-        match next {
-            Next::Quit => {
-                self.may_close = true;
-                context.send_viewport_cmd(ViewportCommand::Close);
-            }
-            Next::Open(path) => self.open(path),
-            Next::OpenDemo => self.open_demo(),
-            Next::AskOpen => {
-                let folder = self.settings.recent.first().and_then(|path| Some(path.parent()?.to_path_buf()));
-                let folder = folder.or_else(|| std::env::current_dir().ok()).unwrap_or_default();
-                self.dialog.ask(Purpose::Open, folder.join(""), context);
-            }
-        }
-    }
-
-    fn save(&mut self, context: &Context) {
-        let Some(document) = self.session.document() else { return };
-        if document.path.is_some() {
-            self.keep_viewpoint();
-            self.apply(Command::Save);
-        } else {
-            self.ask_for(Purpose::SaveAs, context);
-        }
-    }
-
-    /// The viewpoint is saved with the document, but is no change of it.
-    fn keep_viewpoint(&mut self) {
-        self.apply(Command::SetView(self.paint.viewpoint()));
-    }
-
-    /// Asks for a file to write, beside the document and named after it.
-    fn ask_for(&mut self, purpose: Purpose, context: &Context) {
-        let Some(document) = self.session.document() else { return };
-        let base = document.path.clone().unwrap_or_else(|| document.scene().path.clone());
-        let stem = base.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
-        // What is made of the demo does not belong among the program's own files.
-        let base = if self.showing_demo && document.path.is_none() {
-            own_folder().join(stem.as_str())
-        } else {
-            base
-        };
-        let name = match purpose {
-            Purpose::SaveAs => format!("{stem}.fbrush"),
-            Purpose::ExportPicture => format!("{stem}.png"),
-            Purpose::ExportFocusMap => format!("{stem}-focus.exr"),
-            Purpose::ExportScene => format!("{stem}-unwrapped.glb"),
-            Purpose::ExportStrokes => format!("{stem}-strokes.json"),
-            Purpose::Open | Purpose::ImportFocusMap | Purpose::ApertureMask => String::new(),
-        };
-        self.dialog.ask(purpose, base.with_file_name("").join(name), context);
-    }
-
-    fn answered(&mut self, purpose: Purpose, path: PathBuf) {
-        match purpose {
-            Purpose::Open => self.open(path),
-            Purpose::SaveAs => {
-                self.keep_viewpoint();
-                self.apply(Command::SaveAs(path));
-            }
-            Purpose::ExportPicture => self.apply(Command::ExportPicture(path)),
-            Purpose::ExportFocusMap => self.apply(Command::ExportFocusMap(path)),
-            Purpose::ExportScene => self.apply(Command::ExportScene(path)),
-            Purpose::ExportStrokes => self.apply(Command::ExportStrokes(path)),
-            Purpose::ImportFocusMap => self.apply(Command::ImportFocusMap(path)),
-            Purpose::ApertureMask => self.use_mask(path),
-        }
-    }
-
     fn use_mask(&mut self, path: PathBuf) {
         let Some(document) = self.session.document() else { return };
         let ratio = document.camera.aperture.ratio;
@@ -332,90 +226,6 @@ impl Shell {
                 | Event::PreviewReady(_)
                 | Event::Progress(_) => {}
             }
-        }
-    }
-
-    fn document_opened(&mut self, context: &Context) {
-        self.tool = Tool::Brush;
-        self.picture.opened();
-        self.drawer.opened();
-        let opening = self.opening.take();
-        if let Some(document) = self.session.document() {
-            self.paint.opened(document, context);
-            if let Some(path) = opening.filter(|_| !self.showing_demo) {
-                self.settings.remember(&path);
-            }
-            let warnings = document.warnings.len();
-            if warnings > 0 {
-                let first = &document.warnings[0];
-                let more = if warnings > 1 {
-                    format!(" (and {} more, see Scene)", warnings - 1)
-                } else {
-                    String::new()
-                };
-                self.toasts.notice(format!("{first}{more}"));
-            }
-        }
-    }
-
-    fn written(&mut self, path: PathBuf, context: &Context) {
-        self.toasts.notice(format!("Wrote {}", path.display()));
-        let Some(document) = self.session.document() else { return };
-        if document.path.as_ref() == Some(&path) {
-            self.settings.remember(&path);
-            if let Some(next) = self.after_save.take() {
-                self.go_on(next, context);
-            }
-        }
-    }
-
-    fn update_title(&mut self, context: &Context) {
-        let title = match self.session.document() {
-            Some(document) => {
-                let star = if document.is_unsaved() { " *" } else { "" };
-                format!("{}{star} – Focus Brush", document.name())
-            }
-            None => "Focus Brush".into(),
-        };
-        if title != self.title {
-            context.send_viewport_cmd(ViewportCommand::Title(title.clone()));
-            self.title = title;
-        }
-    }
-
-    /// Asks before the window closes over unsaved changes.
-    fn guard_close(&mut self, context: &Context) {
-        let closing = context.input(|input| input.viewport().close_requested());
-        let unsaved = self.session.document().is_some_and(|document| document.is_unsaved());
-        if closing && unsaved && !self.may_close {
-            context.send_viewport_cmd(ViewportCommand::CancelClose);
-            self.question.ask(Next::Quit);
-        }
-    }
-
-    fn answer_questions(&mut self, context: &Context) {
-        let name = self.session.document().map(|document| document.name()).unwrap_or_default();
-        match self.question.show(context, &name) {
-            Some(Answer::Save(next)) => {
-                self.after_save = Some(next);
-                self.save(context);
-            }
-            Some(Answer::Discard(next)) => self.go_on(next, context),
-            Some(Answer::Stay) | None => {}
-        }
-        let was_open = self.dialog.is_open();
-        match self.dialog.show(context) {
-            Some((purpose, path)) => self.answered(purpose, path),
-            None if was_open && !self.dialog.is_open() => self.after_save = None,
-            None => {}
-        }
-    }
-
-    fn dropped_files(&mut self, context: &Context) {
-        let dropped =
-            context.input(|input| input.raw.dropped_files.first().map(|file| file.path().to_path_buf()));
-        if let Some(path) = dropped {
-            self.ask_then(Next::Open(path), context);
         }
     }
 
@@ -495,103 +305,6 @@ impl Shell {
             Err(error) => self.toasts.error(error.to_string()),
         }
     }
-
-    /// Whether the picture has been summed for longer than one would not notice.
-    fn is_drawing_long(&mut self, context: &Context) -> bool {
-        if self.session.preview_activity() != PreviewActivity::Splatting {
-            self.drawing_since = None;
-            return false;
-        }
-        let now = context.input(|input| input.time);
-        let since = *self.drawing_since.get_or_insert(now);
-        context.request_repaint_after_secs(0.25);
-        now - since > NOTICEABLE_SECONDS
-    }
-
-    fn hovered(&self) -> Option<session::SurfaceHit> {
-        self.paint.hover().or(self.picture.hover())
-    }
-
-    /// What lies under the pointer, in numbers.
-    fn hover_numbers(&self) -> Option<Hover> {
-        let hit = self.hovered()?;
-        let document = self.session.document()?;
-        let focus = self.session.focus_at(&hit)?;
-        let depth = document.camera.camera_from_world(hit.position).z;
-        let optics = document.camera.optics();
-        let circle_px = 2.0 * optics.splat_radius_px(optics.kappa(1.0 / depth, focus));
-        (depth > 0.0).then_some(Hover { depth, circle_px, t: focus.t, anchor: focus.anchor })
-    }
-
-    fn ring(&self) -> Option<BrushRing> {
-        let document = self.session.document().filter(|_| self.tool.paints())?;
-        let brush = &document.brush;
-        let circle_px = match self.tool {
-            Tool::Brush => signed_circle_px(&document.camera.optics(), brush.target.t),
-            _ => 0.0,
-        };
-        Some(BrushRing { radius: brush.radius, hardness: brush.hardness, circle_px })
-    }
-
-    /// What the user holds.
-    fn hand(&self) -> Hand {
-        Hand {
-            tool: self.tool,
-            settings: self.settings.tools.clone(),
-            is_busy: self.gesture.has_input(),
-            ring: self.ring(),
-            string: self.settings.stabiliser,
-        }
-    }
-
-    fn views(&mut self, ui: &mut Ui, actions: &mut Vec<Action>) {
-        let hand = self.hand();
-        let Self { layout, paint, picture, session, settings, .. } = self;
-        let mut panes = Panes {
-            pane_ui: |ui: &mut Ui, pane: Pane| {
-                ui.spacing_mut().item_spacing.y = 0.0;
-                let dragged = view_header(ui, pane, session, HeaderState { settings, picture }, actions);
-                match pane {
-                    Pane::Paint => paint.ui(ui, session, &hand, settings.look(), actions),
-                    Pane::Picture => picture.ui(ui, session, &hand, settings.display(), actions),
-                }
-                dragged
-            },
-        };
-        layout.ui(&mut panes, ui);
-    }
-
-    /// The hint of the first start: three lines over the demo, until it is put away.
-    fn first_hint(&mut self, context: &Context) {
-        if !self.showing_demo || self.settings.hint_seen || self.session.document().is_none() {
-            return;
-        }
-        let rect = self.paint.rect();
-        // In a small view it would hide what it speaks of.
-        if rect.height() < LEAST_HEIGHT_FOR_HINT {
-            return;
-        }
-        let area = egui::Window::new("Try this").collapsible(false).resizable(false).title_bar(false);
-        area.fixed_pos(rect.left_top() + egui::vec2(12.0, 12.0)).show(context, |ui| {
-            ui.set_max_width((rect.width() - 60.0).clamp(160.0, 420.0));
-            ui.label("Drag over the scene here, or over the picture: what you paint becomes sharp.");
-            ui.label("Move the slider above from near to far to paint blur instead.");
-            ui.label("Middle drag (or Alt+drag) turns this view; Ctrl+Z takes anything back.");
-            if ui.button("Got it").clicked() {
-                self.settings.hint_seen = true;
-            }
-        });
-    }
-}
-
-/// Where the user's own files go when nothing says where: documents, else home, else here.
-fn own_folder() -> PathBuf {
-    let folders = directories::UserDirs::new();
-    let own = folders.map(|folders| {
-        let documents = folders.document_dir().filter(|folder| folder.is_dir());
-        documents.unwrap_or(folders.home_dir()).to_path_buf()
-    });
-    own.or_else(|| std::env::current_dir().ok()).unwrap_or_default()
 }
 
 impl eframe::App for Shell {

@@ -67,7 +67,7 @@ fn the_history_shows_what_changed_and_a_click_goes_there() {
 
 #[test]
 fn the_atlas_is_painted_on_in_2d() {
-    let (mut person, _folder) = opened();
+    let (mut person, folder) = opened();
     for _ in 0..12 {
         person.presses(Modifiers::NONE, Key::Period);
     }
@@ -93,6 +93,22 @@ fn the_atlas_is_painted_on_in_2d() {
     let after = person.window.render().unwrap();
     let (old, new) = (color_at(&before, place), color_at(&after, place));
     assert!(old != new && new[2] > new[0], "far blur is blue in the atlas too: {old:?} {new:?}");
+    // It is recorded, and does the same again; but not on another atlas.
+    let strokes = folder.path().join("strokes.json");
+    person.window.state_mut().apply(session::Command::ExportStrokes(strokes.clone()));
+    let painted = person.document().map.clone();
+    let mut steps = project::read_strokes(&strokes).unwrap();
+    let begun = || {
+        let scene = folder.path().join("wall.glb");
+        session::Document::begin(&scene, None, None, &Default::default(), &progress::Unwatched).unwrap()
+    };
+    let mut again = begun();
+    assert_eq!(session::replay(&mut again, &steps).unwrap(), 1);
+    assert!(again.map == painted);
+    let RecordedStep::Stroke(stroke) = &mut steps[0] else { panic!("a stroke: {steps:?}") };
+    stroke.view = project::StrokeView::Atlas { atlas: "another".into() };
+    let refused = session::replay(&mut begun(), &steps).unwrap_err().to_string();
+    assert!(refused.contains("another atlas"), "{refused}");
     person.presses(Modifiers::COMMAND, Key::Z);
     person.waits();
     assert_eq!(person.document().map, map);
@@ -110,18 +126,35 @@ fn the_aperture_as_a_point_sees_it() {
     person.window.run_steps(20);
     let image = person.shell().drawer().aperture_image().expect("the card's").clone();
     assert_eq!(image.visible_share(), 1.0, "nothing stands before the card");
+    let kept = image.kept.expect("a sample of the light field");
+    assert_eq!((kept.side, kept.visible_share()), (1, 1.0), "and the light field keeps it open");
     assert!((image.depth - 2.0).abs() < 1e-6 && image.circle_px < 0.0, "nearer than the focus");
     // A disc: its corners are closed.
     assert!(image.cells[0].transmission == 0.0 && image.cells[16 * 32 + 16].transmission == 1.0);
     // The wall just beside the card's outline, seen past it by part of the aperture: look for it along a row.
     let session = person.shell().session();
-    let shares: Vec<f64> = (0..400)
+    let images: Vec<_> = (0..400)
         .filter_map(|k| {
             let ray = session.picture_ray(glam::DVec2::new(0.2 + 0.001 * k as f64, 0.5))?;
             let hit = session.pick(&ray).filter(|hit| hit.position.z < -4.0)?;
-            Some(session.aperture_image(&hit)?.visible_share())
+            session.aperture_image(&hit)
         })
         .collect();
+    let shares: Vec<f64> = images.iter().map(|image| image.visible_share()).collect();
+    // What the light field keeps, over the whole square, is what rays find there.
+    let by_rays = |image: &session::ApertureImage| {
+        image.cells.iter().filter(|cell| cell.is_seen).count() as f64 / image.cells.len() as f64
+    };
+    let differences =
+        images.iter().filter_map(|image| Some((image.kept.as_ref()?.visible_share(), by_rays(image))));
+    let differences: Vec<(f64, f64)> = differences.collect();
+    assert!(differences.len() > 50 && differences.iter().any(|(kept, _)| *kept < 0.8 && *kept > 0.2));
+    let mean = |off: &dyn Fn(&(f64, f64)) -> f64| {
+        differences.iter().map(off).sum::<f64>() / differences.len() as f64
+    };
+    let error = mean(&|(kept, rays)| (kept - rays).abs());
+    assert!(error < 0.05, "{error}");
+    assert!(mean(&|(kept, rays)| (1.0 - kept - rays).abs()) > 0.3, "what is hidden is not what is seen");
     assert!(shares.iter().any(|share| *share > 0.2 && *share < 0.8), "half hidden beside the outline");
     assert_eq!(shares[shares.len() - 1], 1.0, "and free further on");
     assert!(person.window.query_all_by_label_contains("100 %").next().is_some());
@@ -183,7 +216,7 @@ fn a_recording_is_played_in_the_window_and_timed() {
     let view = focus::ViewFrame { camera_to_world: glam::DMat4::IDENTITY, yfov: 0.7, aspect: 1.5 };
     let brush = focus::Brush { radius: 0.2, target: FocusOffset::new(1.02, 1.0), ..Default::default() };
     let points = (0..40).map(|k| [0.5 + 0.01 * k as f64, 0.8, 1.0]).collect();
-    let stroke = RecordedStroke { layer: "Paint".into(), brush, view, points };
+    let stroke = RecordedStroke { layer: "Paint".into(), brush, view: view.into(), points };
     let targets = vec![focus::FillTarget::Node(1)];
     let fill = RecordedFill { layer: "Paint".into(), targets, focus: FocusOffset::SHARP };
     let steps = vec![RecordedStep::Fill(fill), RecordedStep::Stroke(stroke)];

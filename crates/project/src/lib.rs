@@ -39,5 +39,5 @@ pub use recipe::{FocusFile, read_focus, read_recipe};
 pub use recovery::{find_recovery, recovery_path_for, remove_recovery, unsaved_recovery_path};
 pub use strokes_file::{
     RecordedFill, RecordedGradient, RecordedSelection, RecordedStep, RecordedStroke, SelectionShape,
-    read_strokes, write_strokes,
+    StrokeView, read_strokes, write_strokes,
 };

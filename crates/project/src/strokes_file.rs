@@ -1,7 +1,7 @@
 //! Recorded painting as JSON: what was done as data, to be done again.
 //!
 //! ```text
-//! {"format": "focus-brush strokes", "version": 2, "steps": [
+//! {"format": "focus-brush strokes", "version": 3, "steps": [
 //!   {"stroke": {"layer": "Paint", "brush": {…},
 //!    "view": {"camera_to_world": [16 numbers, by columns], "yfov": 0.7, "aspect": 1.78},
 //!    "points": [[0.5, 0.25, 1.0], …]}},
@@ -12,8 +12,9 @@
 //! ```
 //!
 //! A point is where the pen was in the view it painted in ((0, 0) the upper left corner, (1, 1) the lower right) and
-//! how hard it pressed, in [0, 1]. When is not recorded: dabs follow the path, not the clock. Version 1 held
-//! `"strokes": [{"layer": …}, …]` alone; it is read as well.
+//! how hard it pressed, in [0, 1]. When is not recorded: dabs follow the path, not the clock. A stroke in the atlas laid
+//! flat has the atlas's hash for a view, `{"atlas": "…"}`. Version 1 held `"strokes": [{"layer": …}, …]` alone, version 2
+//! no strokes in the atlas; both are read as well.
 
 use crate::ProjectError;
 use crate::disk::{read_bytes, write_verified};
@@ -27,7 +28,7 @@ use std::path::Path;
 const FORMAT: &str = "focus-brush strokes";
 
 /// The version that is written.
-const VERSION: u64 = 2;
+const VERSION: u64 = 3;
 
 /// One thing that was done.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -70,7 +71,9 @@ impl RecordedStep {
         match self {
             Self::Stroke(stroke) => match stroke.brush.problem() {
                 Some(problem) => Some(format!("brush: {problem}")),
-                None if !stroke.view.is_valid() => bad("its view cannot be looked through"),
+                None if matches!(&stroke.view, StrokeView::Scene(view) if !view.is_valid()) => {
+                    bad("its view cannot be looked through")
+                }
                 None if !stroke.points.as_flattened().iter().all(|number| number.is_finite()) => {
                     bad("it has points that are not finite")
                 }
@@ -91,10 +94,29 @@ pub struct RecordedStroke {
     pub layer: String,
     /// What it was painted with.
     pub brush: Brush,
-    /// The view that it was painted in.
-    pub view: ViewFrame,
+    /// What it was painted in.
+    pub view: StrokeView,
     /// x, y and pressure.
     pub points: Vec<[f64; 3]>,
+}
+
+/// What a stroke was painted in.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum StrokeView {
+    /// A view of the scene.
+    Scene(ViewFrame),
+    /// The atlas, laid flat.
+    Atlas {
+        /// Its hash: on another one the stroke means nothing.
+        atlas: String,
+    },
+}
+
+impl From<ViewFrame> for StrokeView {
+    fn from(view: ViewFrame) -> Self {
+        Self::Scene(view)
+    }
 }
 
 /// A fill as it was made.

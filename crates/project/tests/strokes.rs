@@ -7,21 +7,24 @@ use glam::{DMat4, DVec2, DVec3};
 use lens::FocusOffset;
 use project::{
     RecordedFill, RecordedGradient, RecordedSelection, RecordedStep, RecordedStroke, SelectionShape,
-    read_strokes, write_strokes,
+    StrokeView, read_strokes, write_strokes,
 };
 
-fn stroke() -> RecordedStroke {
-    let view = ViewFrame {
+fn view() -> ViewFrame {
+    ViewFrame {
         camera_to_world: DMat4::from_rotation_translation(
             glam::DQuat::from_rotation_y(0.1 + 0.2),
             DVec3::new(1.0 / 3.0, 2.0, -0.7),
         ),
         yfov: 0.7,
         aspect: 16.0 / 9.0,
-    };
+    }
+}
+
+fn stroke() -> RecordedStroke {
     let points = (0..50).map(|k| [k as f64 / 49.0, (k as f64 * 0.37).sin().abs(), 1.0 / (1.0 + k as f64)]);
     let brush = Brush { mirror: [true, false, false], ..Brush::default() };
-    RecordedStroke { layer: "far \"lamp\"".into(), brush, view, points: points.collect() }
+    RecordedStroke { layer: "far \"lamp\"".into(), brush, view: view().into(), points: points.collect() }
 }
 
 #[test]
@@ -32,7 +35,7 @@ fn what_is_written_is_read_to_the_bit_and_what_is_wrong_is_told() {
     let select = |shape, combine| RecordedStep::Select(RecordedSelection { shape, combine });
     let gradient = Gradient {
         shape: GradientShape::Radial,
-        line: GradientLine::View(stroke().view, [DVec2::new(0.1, 0.2), DVec2::new(1.0 / 3.0, 0.7)]),
+        line: GradientLine::View(view(), [DVec2::new(0.1, 0.2), DVec2::new(1.0 / 3.0, 0.7)]),
         from: FocusOffset::SHARP,
         to: Some(FocusOffset::new(1.03, 0.25)),
         symmetry: Symmetry { radial: 3, ..Symmetry::default() },
@@ -43,6 +46,7 @@ fn what_is_written_is_read_to_the_bit_and_what_is_wrong_is_told() {
     let steps = [
         RecordedStep::Stroke(stroke()),
         RecordedStep::Stroke(RecordedStroke { points: Vec::new(), ..stroke() }),
+        RecordedStep::Stroke(RecordedStroke { view: StrokeView::Atlas { atlas: "a1b2".into() }, ..stroke() }),
         RecordedStep::Fill(RecordedFill {
             layer: layer.clone(),
             targets: vec![FillTarget::Node(3), FillTarget::Background, FillTarget::Everything],
@@ -50,7 +54,7 @@ fn what_is_written_is_read_to_the_bit_and_what_is_wrong_is_told() {
         }),
         RecordedStep::Gradient(RecordedGradient { layer: layer.clone(), gradient }),
         RecordedStep::Gradient(RecordedGradient { layer, gradient: fading }),
-        select(SelectionShape::Outline { view: stroke().view, points, through: true }, Combine::Replace),
+        select(SelectionShape::Outline { view: view(), points, through: true }, Combine::Replace),
         select(SelectionShape::Targets(vec![FillTarget::Material(1)]), Combine::Add),
         select(SelectionShape::Inverse, Combine::Replace),
         select(

@@ -5,6 +5,7 @@ use crate::{Session, SurfaceHit};
 use glam::{DVec2, DVec3};
 use lens::FocusOffset;
 use rayon::prelude::*;
+use salf::Visibility;
 use trace::Radiance;
 
 /// The image of the aperture as one surface point sees it, by rays.
@@ -24,6 +25,30 @@ pub struct ApertureImage {
     pub kappa: f64,
     /// Its signed circle of confusion, px: negative lands turned by half a turn.
     pub circle_px: f64,
+    /// What the preview's light field keeps of it; none while there is no light field, or where it has no sample.
+    pub kept: Option<KeptVisibility>,
+}
+
+/// What the sample of the light field nearest to a point keeps of the aperture.
+#[derive(Clone, Debug, PartialEq)]
+pub struct KeptVisibility {
+    /// Rows and columns of cells over the square [−R, R]² of the lens that it was made for; 1 where it sees all.
+    pub side: usize,
+    /// Which of them it sees, in the order of [`ApertureImage::cells`].
+    pub cells: Vec<bool>,
+    /// Linear RGB radiance toward the aperture: one for all cells.
+    pub radiance: [f32; 3],
+    /// How far from the point the sample is, scene units.
+    pub distance: f64,
+    /// The aperture radius that it was made for: the cells lie in it, however far the lens is stopped down since.
+    pub aperture_radius: f64,
+}
+
+impl KeptVisibility {
+    /// The share of its cells that it sees, in [0, 1].
+    pub fn visible_share(&self) -> f64 {
+        self.cells.iter().filter(|is_seen| **is_seen).count() as f64 / self.cells.len().max(1) as f64
+    }
 }
 
 /// A cell of the aperture.
@@ -36,6 +61,9 @@ pub struct ApertureCell {
     /// Linear RGB radiance from the point to its middle; black where it is not seen.
     pub radiance: [f32; 3],
 }
+
+/// How far the nearest sample is sought, texels.
+const SQUARES: [u32; 6] = [0, 2, 8, 24, 64, 160];
 
 impl ApertureImage {
     /// Rows and columns of cells.
@@ -79,6 +107,45 @@ impl Session {
         let optics = camera.optics();
         let kappa = optics.kappa(1.0 / depth, focus);
         let circle_px = 2.0 * optics.splat_radius_px(kappa);
-        Some(ApertureImage { position: hit.position, side, cells, depth, focus, kappa, circle_px })
+        let kept = self.kept_visibility(hit);
+        Some(ApertureImage { position: hit.position, side, cells, depth, focus, kappa, circle_px, kept })
+    }
+
+    /// Counts the light fields that the preview was made of: [`Self::aperture_image`] may tell more after another.
+    pub fn light_fields(&self) -> u64 {
+        self.fields
+    }
+
+    /// What the light field keeps of the aperture beside a surface point: its nearest sample, sought in ever wider squares
+    /// of the atlas.
+    fn kept_visibility(&self, hit: &SurfaceHit) -> Option<KeptVisibility> {
+        let (document, field) = (self.document()?, self.field.as_ref()?);
+        let stage = &document.stage;
+        let place = stage.atlas.position_of(hit.point);
+        let samples = SQUARES.into_iter().find_map(|reach| {
+            let along = |at: f64, count: u32| {
+                let at = (at.max(0.0) as u32).min(count.saturating_sub(1));
+                at.saturating_sub(reach)..(at + reach + 1).min(count)
+            };
+            let (columns, rows) = (along(place.x, stage.atlas.width), along(place.y, stage.atlas.height));
+            let texels: Vec<_> = rows.flat_map(|y| columns.clone().map(move |x| [x, y])).collect();
+            Some(field.index.samples_reading(&texels)).filter(|found| !found.is_empty())
+        })?;
+        let position = |index: u32| Some(field.salf.samples[index as usize].surface?.position(&stage.scene));
+        let near =
+            samples.into_iter().filter_map(|index| Some((position(index)?.distance(hit.position), index)));
+        let (distance, index) = near.min_by(|a, b| a.0.total_cmp(&b.0))?;
+        let sample = &field.salf.samples[index as usize];
+        let (side, cells) = match &sample.visibility {
+            Visibility::Open => (1, vec![true]),
+            Visibility::Cells { words, .. } => {
+                let side = Visibility::side_of(words);
+                // Its row 0 lies at v = −R.
+                let rows = (0..side).rev().map(|row| Visibility::row(words, row));
+                (side, rows.flat_map(|bits| (0..side).map(move |column| bits >> column & 1 == 1)).collect())
+            }
+        };
+        let (radiance, aperture_radius) = (sample.radiance.to_array(), field.salf.camera.aperture_radius);
+        Some(KeptVisibility { side, cells, radiance, distance, aperture_radius })
     }
 }

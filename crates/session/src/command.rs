@@ -4,7 +4,7 @@ use crate::{CameraEdit, Display, JobId, JobStatus, ReferenceKind, SurfaceHit};
 use focus::{Brush, Combine, Gradient, LayerEdit, ViewFrame};
 use glam::DVec2;
 use lens::{Exposure, FocusOffset};
-use project::{RecordedStep, SelectionShape};
+use project::{RecordedStep, SelectionShape, StrokeView};
 use std::ops::Range;
 use std::path::PathBuf;
 use trace::Ray;
@@ -137,11 +137,24 @@ pub enum StrokeTarget {
     Ray(Ray),
     /// A position in a view ((0, 0) upper left, (1, 1) lower right), as [`Self::Ray`]. Such strokes are recorded.
     View(ViewFrame, DVec2),
+    /// A position in the atlas laid flat ((0, 0) upper left, (1, 1) lower right); where no surface is, the stroke is
+    /// interrupted. Such strokes are recorded.
+    Atlas(DVec2),
     /// A point that was picked already.
     Surface(SurfaceHit),
 }
 
 impl StrokePoint {
+    /// A point of a recorded stroke.
+    pub fn recorded(view: &StrokeView, &[x, y, pressure]: &[f64; 3]) -> Self {
+        let at = DVec2::new(x, y);
+        let at = match view {
+            StrokeView::Scene(view) => StrokeTarget::View(*view, at),
+            StrokeView::Atlas { .. } => StrokeTarget::Atlas(at),
+        };
+        Self { at, pressure: pressure as f32 }
+    }
+
     /// A mouse position, as a ray of a view.
     pub fn ray(ray: Ray) -> Self {
         Self { at: StrokeTarget::Ray(ray), pressure: 1.0 }

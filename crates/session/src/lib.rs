@@ -48,7 +48,7 @@ mod unwrapped;
 mod verification;
 
 pub use aov::Aov;
-pub use aperture_image::{ApertureCell, ApertureImage};
+pub use aperture_image::{ApertureCell, ApertureImage, KeptVisibility};
 pub use baselines::{FirstHits, LayeredOptions, ScatterOptions, ViewsOptions};
 pub use blur_histogram::BlurHistogram;
 pub use camera_edit::CameraEdit;

@@ -6,7 +6,7 @@ use crate::{Modelled, SessionError, Stage};
 use focus::Focus;
 use lens::{Camera, Picture};
 use progress::Progress;
-use salf::BakeOptions;
+use salf::{BakeOptions, Salf};
 use splat::{BackendChoice, Gpu, SplatError, Splatter, Tolerance};
 use std::ops::Range;
 use std::sync::Arc;
@@ -64,10 +64,17 @@ pub(crate) enum Brought {
     Whole,
 }
 
+/// A light field to look at.
+#[derive(Clone)]
+pub(crate) struct BakedField {
+    pub salf: Arc<Salf>,
+    pub index: Arc<SampleIndex>,
+}
+
 /// A light field and its running sum.
 pub(crate) struct LightField {
     splatter: Splatter,
-    index: SampleIndex,
+    index: Arc<SampleIndex>,
     modelled: Modelled,
     /// The lens of the sum; none while there is no valid sum.
     summed: Option<Camera>,
@@ -100,7 +107,7 @@ impl LightField {
         let radiance = light(&stage.tracer, camera);
         let salf = Arc::new(salf::bake(&stage.tracer, &radiance, camera, &options, progress)?);
         Ok(Self {
-            index: SampleIndex::new(&salf, &stage.atlas),
+            index: Arc::new(SampleIndex::new(&salf, &stage.atlas)),
             modelled: Modelled::with_texels(&salf, &stage.tracer, Some(&stage.texels.texels)),
             splatter: {
                 let mut splatter = Splatter::new(salf);
@@ -186,6 +193,11 @@ impl LightField {
     /// The picture of the sum.
     pub fn picture(&self) -> &Picture {
         self.splatter.picture()
+    }
+
+    /// The light field itself, and where its samples are.
+    pub fn baked(&self) -> BakedField {
+        BakedField { salf: self.splatter.salf().clone(), index: self.index.clone() }
     }
 
     /// What it holds, counted.

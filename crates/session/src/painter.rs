@@ -4,7 +4,8 @@ use crate::document::Document;
 use crate::picking::{pick, view_ray};
 use crate::{SessionError, StrokePoint, StrokeTarget};
 use focus::{Brush, Changed, Channels, FocusLayer, FocusMap, Gradient, PenSample, Stroke, ViewFrame};
-use project::{RecordedStep, RecordedStroke};
+use glam::DVec2;
+use project::{RecordedStep, RecordedStroke, StrokeView};
 
 /// A stroke and its record.
 pub(crate) struct Painter {
@@ -23,19 +24,21 @@ impl Painter {
         let stroke = Stroke::begin(&layer.map, document.stage.canvas.clone(), brush.clone())?;
         let stroke = stroke.within(document.selection.clone());
         let view = match point.at {
-            StrokeTarget::View(view, _) => Some(view),
+            StrokeTarget::View(view, _) => Some(StrokeView::Scene(view)),
+            StrokeTarget::Atlas(_) => Some(StrokeView::Atlas { atlas: document.stage.atlas.hash.clone() }),
             StrokeTarget::Ray(_) | StrokeTarget::Surface(_) => None,
         };
+        let is_recordable = view.is_some();
         let shot = &document.camera;
         let unseen =
             ViewFrame { camera_to_world: shot.camera_to_world, yfov: shot.yfov, aspect: shot.aspect() };
         let record = RecordedStroke {
             layer: layer.name.clone(),
             brush,
-            view: view.unwrap_or(unseen),
+            view: view.unwrap_or(unseen.into()),
             points: Vec::new(),
         };
-        Ok(Self { stroke, record, is_recordable: view.is_some() })
+        Ok(Self { stroke, record, is_recordable })
     }
 
     /// Draws on to the next point. What changed in the layer.
@@ -44,11 +47,11 @@ impl Painter {
             StrokeTarget::Surface(hit) => Some(hit),
             StrokeTarget::Ray(ray) => pick(&document.stage.tracer, &ray),
             StrokeTarget::View(view, position) => pick(&document.stage.tracer, &view_ray(&view, position)),
+            StrokeTarget::Atlas(position) => document.stage.surface_at(position),
         };
-        match point.at {
-            StrokeTarget::View(view, at) if view == self.record.view => {
-                self.record.points.push([at.x, at.y, point.pressure as f64]);
-            }
+        match (point.at, &self.record.view) {
+            (StrokeTarget::View(view, at), StrokeView::Scene(own)) if view == *own => self.note(at, point),
+            (StrokeTarget::Atlas(at), StrokeView::Atlas { .. }) => self.note(at, point),
             _ => self.is_recordable = false,
         }
         let Some(hit) = hit else {
@@ -59,6 +62,10 @@ impl Painter {
         let hit = focus::SurfaceHit { position: hit.position, normal: front.map(|n| n.as_vec3()) };
         let pen = PenSample { pressure: point.pressure as f64 };
         self.stroke.extend(&mut document.layers.active_mut().map, hit, pen)
+    }
+
+    fn note(&mut self, at: DVec2, point: &StrokePoint) {
+        self.record.points.push([at.x, at.y, point.pressure as f64]);
     }
 
     /// Ends the stroke: one step of undo, or nothing if it changed nothing. Whether it changed anything.
@@ -178,11 +185,14 @@ fn activate(document: &mut Document, name: &str) -> Result<(), SessionError> {
 
 /// Paints a recorded stroke on the active layer. Whether it changed anything.
 fn draw(document: &mut Document, stroke: &RecordedStroke) -> Result<bool, SessionError> {
+    if let StrokeView::Atlas { atlas } = &stroke.view
+        && *atlas != document.stage.atlas.hash
+    {
+        let what = "the stroke was painted in another atlas (replay it on the project it was recorded on)";
+        return Err(SessionError::BadInput(what.into()));
+    }
     document.brush = stroke.brush.clone();
-    let mut points = stroke.points.iter().map(|&[x, y, pressure]| StrokePoint {
-        at: StrokeTarget::View(stroke.view, glam::DVec2::new(x, y)),
-        pressure: pressure as f32,
-    });
+    let mut points = stroke.points.iter().map(|point| StrokePoint::recorded(&stroke.view, point));
     let Some(first) = points.next() else { return Ok(false) };
     let mut painter = Painter::begin(document, &first)?;
     for point in std::iter::once(first).chain(points) {

@@ -16,7 +16,7 @@
 //! a newer wish makes useless is stopped. The last good picture is never taken away.
 
 use crate::job::{JobProgress, Waker};
-use crate::light_field::{Changes, LightField};
+use crate::light_field::{BakedField, Changes, LightField};
 use crate::preview_worker::Worker;
 use crate::screen::Patch;
 use crate::{Modelled, SessionError, Stage, Tone};
@@ -143,6 +143,8 @@ pub(crate) struct News {
     /// The pictures that were finished, at their full size: how many changes of the map each has seen, and when its
     /// pixels stood ready to be shown.
     pub finished: Vec<(u64, Instant)>,
+    /// Another light field of full size, and of which of the session's documents.
+    pub field: Option<(u64, BakedField)>,
     pub failures: Vec<String>,
 }
 
@@ -225,6 +227,11 @@ impl Shared {
         published.latest = Some(preview);
         drop(published);
         (self.waker)();
+    }
+
+    /// Shows the light field that pictures are made of.
+    pub fn publish_field(&self, generation: u64, field: BakedField) {
+        lock(&self.published).news.field = Some((generation, field));
     }
 
     /// Tells the user.

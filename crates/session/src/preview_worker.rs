@@ -170,6 +170,9 @@ impl Worker {
                     field.note(&since);
                     self.fine = Some(field).filter(|_| delivery.epoch == self.epoch);
                     self.is_new = true;
+                    if let Some(field) = &self.fine {
+                        self.shared.publish_field(self.generation, field.baked());
+                    }
                 }
                 Err(SessionError::Cancelled) => {}
                 Err(error) => failed = Err(error),

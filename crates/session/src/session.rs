@@ -7,7 +7,7 @@ mod verifying;
 
 use crate::document::Document;
 use crate::job::{Job, JobProgress, Waker};
-use crate::light_field::{Changes, serves};
+use crate::light_field::{BakedField, Changes, serves};
 use crate::painter::Underway;
 use crate::picking::{chief_ray, pick};
 use crate::preview::PreviewThread;
@@ -103,6 +103,10 @@ pub struct Session {
     /// The preview as it is shown.
     screen: Screen,
     display: Display,
+    /// The light field that the preview is made of.
+    pub(crate) field: Option<BakedField>,
+    /// Counts them.
+    pub(crate) fields: u64,
     /// The pictures that were finished between the last two polls.
     finished: Vec<(u64, Instant)>,
     /// The camera that the preview was asked to show last.
@@ -144,6 +148,8 @@ impl Session {
             preview: None,
             screen: Screen::default(),
             display: Display::default(),
+            field: None,
+            fields: 0,
             finished: Vec::new(),
             preview_camera: None,
             seen_preview: 0,
@@ -254,6 +260,10 @@ impl Session {
             self.screen.take(patch);
         }
         self.finished = news.finished;
+        if let Some((_, field)) = news.field.filter(|(generation, _)| *generation == self.generation) {
+            self.field = Some(field);
+            self.fields += 1;
+        }
         if let Some(preview) = newer {
             self.seen_preview = preview.id;
             if preview.generation == self.generation {
@@ -280,7 +290,7 @@ impl Session {
                 document.undo = Undo::new(self.options.undo_budget_bytes);
                 self.forget_recovery();
                 self.generation += 1;
-                (self.underway, self.preview) = (None, None);
+                (self.underway, self.preview, self.field) = (None, None, None);
                 self.references.clear();
                 self.map_changes.clear();
                 self.end_verification();

@@ -1,8 +1,9 @@
 //! What stays while a document is open: the scene, its atlas and what answers rays and dabs on it.
 
-use crate::SessionError;
+use crate::{SessionError, SurfaceHit};
 use atlas::{Atlas, AtlasError, TexelMap};
 use focus::Canvas;
+use glam::DVec2;
 use progress::Progress;
 use scene::{LoadOptions, Scene, SceneError};
 use std::path::Path;
@@ -47,6 +48,17 @@ pub fn load_scene(path: &Path, progress: &dyn Progress) -> Result<Arc<Scene>, Se
 }
 
 impl Stage {
+    /// The surface at a position in the atlas laid flat, (0, 0) its upper left corner, (1, 1) its lower right: the middle
+    /// of what the texel there covers.
+    pub fn surface_at(&self, position: DVec2) -> Option<SurfaceHit> {
+        let texel = position * DVec2::new(self.atlas.width.into(), self.atlas.height.into());
+        let inside = texel.cmpge(DVec2::ZERO).all();
+        let texel = self.texels.at(texel.x as u32, texel.y as u32).filter(|_| inside)?;
+        let position = texel.centroid.position(&self.scene);
+        let normal = self.scene.area_normal(texel.centroid.triangle).normalize_or_zero();
+        Some(SurfaceHit { point: texel.centroid, position, normal, distance: 0.0 })
+    }
+
     /// Prepares a scene whose atlas is known.
     pub fn of(scene: Arc<Scene>, atlas: Arc<Atlas>, progress: &dyn Progress) -> Result<Self, SessionError> {
         progress.check()?;

@@ -8,9 +8,7 @@ use glam::{DVec2, Mat2, Vec2};
 use lens::{Camera, FocusOffset};
 use project::{RecordedStep, RecordedStroke};
 use serde_json::json;
-use session::{
-    Command, Document, RenderOptions, Session, SessionOptions, StrokePoint, StrokeTarget, render, view_ray,
-};
+use session::{Command, Document, RenderOptions, Session, SessionOptions, StrokePoint, render, view_ray};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -109,7 +107,12 @@ fn stroke(camera: &Camera) -> RecordedStroke {
         let across = (share % 2.0 - 1.0).abs();
         [0.08 + 0.84 * across, 0.35 + 0.08 * share, 0.6 + 0.4 * (share * 2.0).cos().abs()]
     };
-    RecordedStroke { layer: "Paint".into(), brush, view, points: (0..points).map(point).collect() }
+    RecordedStroke {
+        layer: "Paint".into(),
+        brush,
+        view: view.into(),
+        points: (0..points).map(point).collect(),
+    }
 }
 
 /// Where the strips meet, m.
@@ -235,9 +238,8 @@ fn a_stroke_paints_the_same_map_at_any_rate_of_events_and_frames() {
             std::thread::sleep(Duration::from_millis(2));
         }
         session.apply(Command::SetBrush(stroke.brush.clone())).unwrap();
-        for (k, &[x, y, pressure]) in stroke.points.iter().enumerate() {
-            let at = StrokeTarget::View(stroke.view, DVec2::new(x, y));
-            let point = StrokePoint { at, pressure: pressure as f32 };
+        for (k, point) in stroke.points.iter().enumerate() {
+            let point = StrokePoint::recorded(&stroke.view, point);
             let command = if k == 0 { Command::BeginStroke(point) } else { Command::ExtendStroke(point) };
             session.apply(command).unwrap();
             if k % events == 0 {

@@ -5,7 +5,7 @@ use crate::window::controls::{self, row, rows};
 use crate::window::{Action, keys};
 use egui::{Color32, Mesh, Rect, Shape, Stroke, Ui, pos2, vec2};
 use glam::DVec3;
-use session::{ApertureImage, CommandId, Session, SurfaceHit};
+use session::{ApertureImage, CommandId, KeptVisibility, Session, SurfaceHit};
 
 /// The view's state between frames.
 #[derive(Default)]
@@ -13,13 +13,18 @@ pub struct ApertureView {
     point: Option<SurfaceHit>,
     image: Option<ApertureImage>,
     /// What the image was made for.
-    made_for: Option<(DVec3, lens::Camera, lens::FocusOffset)>,
+    made_for: Option<(DVec3, lens::Camera, lens::FocusOffset, u64)>,
 }
 
 impl ApertureView {
     /// Takes a point to look from.
     pub fn inspect(&mut self, hit: SurfaceHit) {
         self.point = Some(hit);
+    }
+
+    /// Whether there is one.
+    pub fn has_point(&self) -> bool {
+        self.point.is_some()
     }
 
     /// What the point sees.
@@ -39,7 +44,7 @@ impl ApertureView {
             return;
         };
         let focus = session.focus_at(&hit).unwrap_or(lens::FocusOffset::STANDARD);
-        let made_for = (hit.position, document.camera.clone(), focus);
+        let made_for = (hit.position, document.camera.clone(), focus, session.light_fields());
         if self.made_for.as_ref() != Some(&made_for) {
             self.image = session.aperture_image(&hit);
             self.made_for = Some(made_for);
@@ -59,12 +64,24 @@ impl ApertureView {
             // Where it lands: turned by half a turn for near blur.
             paint(ui, rect, image, if image.circle_px < 0.0 { -1.0 } else { 1.0 });
             response.on_hover_text("The same as it lands in the picture: turned by half a turn for near blur.");
+            if let Some(kept) = &image.kept {
+                let (rect, response) = ui.allocate_exact_size(vec2(side, side), egui::Sense::hover());
+                paint_kept(ui, rect, kept);
+                response.on_hover_text(
+                    "What the light field keeps of it, as one colour: the cells that the nearest sample sees. The picture is made of these.",
+                );
+            }
             rows(ui, "aperture", |ui| {
                 let mut line = |label: &str, tip: &str, value: String| {
                     row(ui, label, tip, |ui| ui.label(value));
                 };
                 let seen = format!("{:.0} %", image.visible_share() * 100.0);
-                line("Sees", "How much of the open aperture the point sees.", seen);
+                line("Sees", "How much of the open aperture the point sees, by rays.", seen);
+                let kept = image.kept.as_ref().map_or("–".into(), |kept| {
+                    let cells = if kept.side == 1 { "all".into() } else { format!("{0} × {0} cells", kept.side) };
+                    format!("{:.0} % ({cells})", kept.visible_share() * 100.0)
+                });
+                line("Light field", "How much of it the light field keeps as seen, and how finely.", kept);
                 line("Depth", "Axial depth in the shot camera.", controls::length(image.depth));
                 let circle = controls::circle(image.circle_px);
                 line("Lands as", "Its circle of confusion on the full-size picture.", circle);
@@ -102,6 +119,24 @@ fn paint(ui: &Ui, rect: Rect, image: &ApertureImage, sign: f32) {
     let middle = Stroke::new(1.0, Color32::from_white_alpha(40));
     painter.line_segment([pos2(rect.left(), rect.center().y), pos2(rect.right(), rect.center().y)], middle);
     painter.line_segment([pos2(rect.center().x, rect.top()), pos2(rect.center().x, rect.bottom())], middle);
+}
+
+/// Draws the cells that a sample of the light field keeps, in its colour.
+fn paint_kept(ui: &Ui, rect: Rect, kept: &KeptVisibility) {
+    let painter = ui.painter_at(rect);
+    painter.rect_filled(rect, 2.0, Color32::from_gray(16));
+    let brightest = kept.radiance.into_iter().fold(0.0f32, f32::max);
+    let gain = if brightest > 0.0 { 1.0 / brightest } else { 1.0 };
+    let [r, g, b] = kept.radiance.map(|c| encoded(c * gain));
+    let cell_side = rect.width() / kept.side as f32;
+    let mut mesh = Mesh::default();
+    for (k, is_seen) in kept.cells.iter().enumerate() {
+        let corner = vec2((k % kept.side) as f32, (k / kept.side) as f32) * cell_side;
+        let place = Rect::from_min_size(rect.min + corner, vec2(cell_side, cell_side));
+        let color = if *is_seen { Color32::from_rgb(r, g, b) } else { Color32::from_gray(34) };
+        mesh.add_colored_rect(place.shrink(if kept.side > 1 { 0.5 } else { 0.0 }), color);
+    }
+    painter.add(Shape::mesh(mesh));
 }
 
 /// sRGB encoding of one channel.

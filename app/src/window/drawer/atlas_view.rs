@@ -4,8 +4,9 @@ use crate::window::pointer::Hand;
 use crate::window::{Action, controls, false_colour};
 use egui::{Color32, ColorImage, Pos2, Rect, Sense, TextureHandle, TextureOptions, Ui, pos2, vec2};
 use focus::FocusMap;
+use glam::DVec2;
 use rayon::prelude::*;
-use session::{Command, Document, Session, StrokePoint, StrokeTarget, SurfaceHit};
+use session::{Command, Document, Session, StrokePoint, StrokeTarget};
 
 /// Longest side of the picture of the atlas, px: larger maps are thinned out.
 const LONGEST: u32 = 1024;
@@ -41,16 +42,15 @@ impl AtlasView {
             let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
             ui.painter_at(area).image(texture.id(), rect, whole, Color32::WHITE);
         }
-        let texel_at = |at: Pos2| {
-            let place = (at - rect.min) / scale;
-            let inside = rect.contains(at);
-            inside.then_some([place.x as u32, place.y as u32])
+        let place_of = |at: Pos2| {
+            let share = (at - rect.min) / rect.size();
+            DVec2::new(share.x.into(), share.y.into())
         };
-        let hit_at = |at: Pos2| texel_at(at).and_then(|[x, y]| hit_of(document, x, y));
+        let hit_at = |at: Pos2| document.stage.surface_at(place_of(at));
         if response.hovered() {
             ui.set_cursor_icon(egui::CursorIcon::Crosshair);
         }
-        self.paint(ui, &response, session, hand, hit_at, actions);
+        self.paint(ui, &response, session, hand, place_of, actions);
         if let Some(hit) = response.hover_pos().and_then(hit_at) {
             let chart = document.stage.atlas.chart_of[hit.point.triangle as usize];
             let part = document.scene().triangles[hit.point.triangle as usize].part;
@@ -70,23 +70,23 @@ impl AtlasView {
         response: &egui::Response,
         session: &Session,
         hand: &Hand,
-        hit_at: impl Fn(Pos2) -> Option<SurfaceHit>,
+        place_of: impl Fn(Pos2) -> DVec2,
         actions: &mut Vec<Action>,
     ) {
         let Some(document) = session.document().filter(|_| hand.tool.paints() && !hand.is_busy) else {
             return;
         };
-        let point = |hit| StrokePoint { at: StrokeTarget::Surface(hit), pressure: 1.0 };
-        let pointer = response.interact_pointer_pos();
+        let point = |at| StrokePoint { at: StrokeTarget::Atlas(at), pressure: 1.0 };
+        let pointer = response.interact_pointer_pos().map(place_of);
         let pressed =
             response.is_pointer_button_down_on() && ui.input(|input| input.pointer.primary_pressed());
         self.painting &= session.is_painting();
-        if pressed && let Some(hit) = pointer.and_then(&hit_at) {
+        if pressed && let Some(at) = pointer.filter(|at| document.stage.surface_at(*at).is_some()) {
             let mode = hand.tool.mode(document.brush.mode);
             if mode != document.brush.mode {
                 actions.push(Command::SetBrush(focus::Brush { mode, ..document.brush.clone() }).into());
             }
-            actions.push(Command::BeginStroke(point(hit)).into());
+            actions.push(Command::BeginStroke(point(at)).into());
             self.painting = true;
         } else if self.painting && !ui.input(|input| input.pointer.primary_down()) {
             actions.push(Command::CommitStroke.into());
@@ -94,9 +94,9 @@ impl AtlasView {
         } else if self.painting
             && response.dragged()
             && ui.input(|input| input.pointer.is_moving())
-            && let Some(hit) = pointer.and_then(&hit_at)
+            && let Some(at) = pointer
         {
-            actions.push(Command::ExtendStroke(point(hit)).into());
+            actions.push(Command::ExtendStroke(point(at)).into());
         }
     }
 
@@ -133,13 +133,4 @@ impl AtlasView {
         }
         self.made_of = Some((document.map.clone(), document.camera.clone()));
     }
-}
-
-/// The surface under a texel.
-fn hit_of(document: &Document, x: u32, y: u32) -> Option<SurfaceHit> {
-    let texels = &document.stage.texels;
-    let texel = texels.at(x, y)?;
-    let position = texel.centroid.position(document.scene());
-    let normal = document.scene().area_normal(texel.centroid.triangle).normalize_or_zero();
-    Some(SurfaceHit { point: texel.centroid, position, normal, distance: 0.0 })
 }

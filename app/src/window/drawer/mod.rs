@@ -66,6 +66,11 @@ impl Drawer {
         self.aperture.inspect(hit);
     }
 
+    /// Whether a point was chosen to look from at the aperture.
+    pub fn has_aperture_point(&self) -> bool {
+        self.aperture.has_point()
+    }
+
     /// Where the atlas is on screen.
     pub fn atlas_rect(&self) -> egui::Rect {
         self.atlas.rect()
@@ -110,5 +115,7 @@ impl Drawer {
             Drawn::Aperture => self.aperture.ui(ui, session, actions),
             Drawn::Histogram => self.histogram.ui(ui, session),
         }
+        // As high as the user drew it, whatever is in it.
+        ui.allocate_space(ui.available_size());
     }
 }

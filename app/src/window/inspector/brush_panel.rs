@@ -138,15 +138,20 @@ fn mirror_row(ui: &mut Ui, document: &Document, brush: &mut Brush) {
             if was_off && is_on && brush.mirror_center == [0.0; 3] {
                 brush.mirror_center = middle;
             }
-            let mut about = brush.mirror_center == middle;
-            let tip = "Mirror about the scene's middle; else about the world's origin.";
-            let response = ui.add_enabled(is_on, egui::Checkbox::new(&mut about, "about the middle"));
-            if response.on_hover_text(tip).changed() {
-                brush.mirror_center = if about { middle } else { [0.0; 3] };
-            }
         })
         .response
     });
+    let tip = "Mirror at the scene's middle; else at the world's origin.";
+    let is_on = !brush.symmetry().is_none();
+    let (low, high) = document.scene().bounds();
+    let middle = ((low + high) / 2.0).to_array();
+    let mut about = brush.mirror_center == middle;
+    let response = row(ui, "Mirror at", tip, |ui| {
+        ui.add_enabled(is_on, egui::Checkbox::new(&mut about, "the middle of the scene"))
+    });
+    if response.changed() {
+        brush.mirror_center = if about { middle } else { [0.0; 3] };
+    }
 }
 
 /// The brush's radius on the full-size picture.

@@ -56,7 +56,13 @@ impl Shell {
             }
             CommandId::ShowInspector => self.settings.inspector = !self.settings.inspector,
             CommandId::ShowAtlas => self.toggle_drawer(Drawn::Atlas),
-            CommandId::ShowAperture => self.toggle_drawer(Drawn::Aperture),
+            CommandId::ShowAperture => {
+                self.toggle_drawer(Drawn::Aperture);
+                // The next click says from where.
+                if self.settings.drawer == Some(Drawn::Aperture) && !self.drawer.has_aperture_point() {
+                    self.tool = Tool::Inspect;
+                }
+            }
             CommandId::ShowHistogram => self.toggle_drawer(Drawn::Histogram),
             CommandId::NextToneCurve => self.settings.tone_curve = self.settings.tone_curve.next(),
             CommandId::LightOrDark => self.settings.light_theme = !self.settings.light_theme,

@@ -1,0 +1,200 @@
+//! The document's way in and out: opened, saved, asked about, dropped on the window; its name in the title.
+
+use super::Shell;
+use crate::window::file_dialog::Purpose;
+use crate::window::unsaved_question::{Answer, Next};
+use crate::window::{Tool, demo};
+use egui::{Context, ViewportCommand};
+use session::Command;
+use std::path::PathBuf;
+
+impl Shell {
+    pub(super) fn open(&mut self, path: PathBuf) {
+        self.showing_demo = false;
+        self.opening = Some(path.clone());
+        self.apply(Command::Open(path));
+    }
+
+    pub(super) fn open_demo(&mut self) {
+        match demo::project() {
+            Some(project) => {
+                self.opening = None;
+                self.showing_demo = true;
+                self.apply(Command::OpenTemplate(project));
+            }
+            None => self.toasts.error("assets/demo: the demo is not installed (open a scene with Ctrl+O)"),
+        }
+    }
+
+    /// Does `next` now, or after the question about unsaved changes.
+    pub(super) fn ask_then(&mut self, next: Next, context: &Context) {
+        if self.session.document().is_some_and(|document| document.is_unsaved()) {
+            self.question.ask(next);
+        } else {
+            self.go_on(next, context);
+        }
+    }
+
+    pub(super) fn go_on(&mut self, next: Next, context: &Context) {
+        match next {
+            Next::Quit => {
+                self.may_close = true;
+                context.send_viewport_cmd(ViewportCommand::Close);
+            }
+            Next::Open(path) => self.open(path),
+            Next::OpenDemo => self.open_demo(),
+            Next::AskOpen => {
+                let folder = self.settings.recent.first().and_then(|path| Some(path.parent()?.to_path_buf()));
+                let folder = folder.or_else(|| std::env::current_dir().ok()).unwrap_or_default();
+                self.dialog.ask(Purpose::Open, folder.join(""), context);
+            }
+        }
+    }
+
+    pub(super) fn save(&mut self, context: &Context) {
+        let Some(document) = self.session.document() else { return };
+        if document.path.is_some() {
+            self.keep_viewpoint();
+            self.apply(Command::Save);
+        } else {
+            self.ask_for(Purpose::SaveAs, context);
+        }
+    }
+
+    /// The viewpoint is saved with the document, but is no change of it.
+    pub(super) fn keep_viewpoint(&mut self) {
+        self.apply(Command::SetView(self.paint.viewpoint()));
+    }
+
+    /// Asks for a file to write, beside the document and named after it.
+    pub(super) fn ask_for(&mut self, purpose: Purpose, context: &Context) {
+        let Some(document) = self.session.document() else { return };
+        let base = document.path.clone().unwrap_or_else(|| document.scene().path.clone());
+        let stem = base.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
+        // What is made of the demo does not belong among the program's own files.
+        let base = if self.showing_demo && document.path.is_none() {
+            own_folder().join(stem.as_str())
+        } else {
+            base
+        };
+        let name = match purpose {
+            Purpose::SaveAs => format!("{stem}.fbrush"),
+            Purpose::ExportPicture => format!("{stem}.png"),
+            Purpose::ExportFocusMap => format!("{stem}-focus.exr"),
+            Purpose::ExportScene => format!("{stem}-unwrapped.glb"),
+            Purpose::ExportStrokes => format!("{stem}-strokes.json"),
+            Purpose::Open | Purpose::ImportFocusMap | Purpose::ApertureMask => String::new(),
+        };
+        self.dialog.ask(purpose, base.with_file_name("").join(name), context);
+    }
+
+    pub(super) fn answered(&mut self, purpose: Purpose, path: PathBuf) {
+        match purpose {
+            Purpose::Open => self.open(path),
+            Purpose::SaveAs => {
+                self.keep_viewpoint();
+                self.apply(Command::SaveAs(path));
+            }
+            Purpose::ExportPicture => self.apply(Command::ExportPicture(path)),
+            Purpose::ExportFocusMap => self.apply(Command::ExportFocusMap(path)),
+            Purpose::ExportScene => self.apply(Command::ExportScene(path)),
+            Purpose::ExportStrokes => self.apply(Command::ExportStrokes(path)),
+            Purpose::ImportFocusMap => self.apply(Command::ImportFocusMap(path)),
+            Purpose::ApertureMask => self.use_mask(path),
+        }
+    }
+
+    pub(super) fn document_opened(&mut self, context: &Context) {
+        self.tool = Tool::Brush;
+        self.picture.opened();
+        self.drawer.opened();
+        let opening = self.opening.take();
+        if let Some(document) = self.session.document() {
+            self.paint.opened(document, context);
+            if let Some(path) = opening.filter(|_| !self.showing_demo) {
+                self.settings.remember(&path);
+            }
+            let warnings = document.warnings.len();
+            if warnings > 0 {
+                let first = &document.warnings[0];
+                let more = if warnings > 1 {
+                    format!(" (and {} more, see Scene)", warnings - 1)
+                } else {
+                    String::new()
+                };
+                self.toasts.notice(format!("{first}{more}"));
+            }
+        }
+    }
+
+    pub(super) fn written(&mut self, path: PathBuf, context: &Context) {
+        self.toasts.notice(format!("Wrote {}", path.display()));
+        let Some(document) = self.session.document() else { return };
+        if document.path.as_ref() == Some(&path) {
+            self.settings.remember(&path);
+            if let Some(next) = self.after_save.take() {
+                self.go_on(next, context);
+            }
+        }
+    }
+
+    pub(super) fn update_title(&mut self, context: &Context) {
+        let title = match self.session.document() {
+            Some(document) => {
+                let star = if document.is_unsaved() { " *" } else { "" };
+                format!("{}{star} – Focus Brush", document.name())
+            }
+            None => "Focus Brush".into(),
+        };
+        if title != self.title {
+            context.send_viewport_cmd(ViewportCommand::Title(title.clone()));
+            self.title = title;
+        }
+    }
+
+    /// Asks before the window closes over unsaved changes.
+    pub(super) fn guard_close(&mut self, context: &Context) {
+        let closing = context.input(|input| input.viewport().close_requested());
+        let unsaved = self.session.document().is_some_and(|document| document.is_unsaved());
+        if closing && unsaved && !self.may_close {
+            context.send_viewport_cmd(ViewportCommand::CancelClose);
+            self.question.ask(Next::Quit);
+        }
+    }
+
+    pub(super) fn answer_questions(&mut self, context: &Context) {
+        let name = self.session.document().map(|document| document.name()).unwrap_or_default();
+        match self.question.show(context, &name) {
+            Some(Answer::Save(next)) => {
+                self.after_save = Some(next);
+                self.save(context);
+            }
+            Some(Answer::Discard(next)) => self.go_on(next, context),
+            Some(Answer::Stay) | None => {}
+        }
+        let was_open = self.dialog.is_open();
+        match self.dialog.show(context) {
+            Some((purpose, path)) => self.answered(purpose, path),
+            None if was_open && !self.dialog.is_open() => self.after_save = None,
+            None => {}
+        }
+    }
+
+    pub(super) fn dropped_files(&mut self, context: &Context) {
+        let dropped =
+            context.input(|input| input.raw.dropped_files.first().map(|file| file.path().to_path_buf()));
+        if let Some(path) = dropped {
+            self.ask_then(Next::Open(path), context);
+        }
+    }
+}
+
+/// Where the user's own files go when nothing says where: documents, else home, else here.
+fn own_folder() -> PathBuf {
+    let folders = directories::UserDirs::new();
+    let own = folders.map(|folders| {
+        let documents = folders.document_dir().filter(|folder| folder.is_dir());
+        documents.unwrap_or(folders.home_dir()).to_path_buf()
+    });
+    own.or_else(|| std::env::current_dir().ok()).unwrap_or_default()
+}

@@ -1,0 +1,107 @@
+//! The two views, what the user holds over them, and what lies under the pointer.
+
+use super::Shell;
+use crate::window::brush_ring::BrushRing;
+use crate::window::layout::{Pane, Panes};
+use crate::window::pointer::Hand;
+use crate::window::status_line::Hover;
+use crate::window::tool_bar::signed_circle_px;
+use crate::window::view_header::{HeaderState, view_header};
+use crate::window::{Action, Tool};
+use egui::{Context, Ui};
+use session::PreviewActivity;
+
+/// Work shorter than this is not spoken of.
+const NOTICEABLE_SECONDS: f64 = 0.5;
+
+/// Views lower than this have no room for the hint of the first start, points.
+const LEAST_HEIGHT_FOR_HINT: f32 = 220.0;
+
+impl Shell {
+    /// Whether the picture has been summed for longer than one would not notice.
+    pub(super) fn is_drawing_long(&mut self, context: &Context) -> bool {
+        if self.session.preview_activity() != PreviewActivity::Splatting {
+            self.drawing_since = None;
+            return false;
+        }
+        let now = context.input(|input| input.time);
+        let since = *self.drawing_since.get_or_insert(now);
+        context.request_repaint_after_secs(0.25);
+        now - since > NOTICEABLE_SECONDS
+    }
+
+    pub(super) fn hovered(&self) -> Option<session::SurfaceHit> {
+        self.paint.hover().or(self.picture.hover())
+    }
+
+    /// What lies under the pointer, in numbers.
+    pub(super) fn hover_numbers(&self) -> Option<Hover> {
+        let hit = self.hovered()?;
+        let document = self.session.document()?;
+        let focus = self.session.focus_at(&hit)?;
+        let depth = document.camera.camera_from_world(hit.position).z;
+        let optics = document.camera.optics();
+        let circle_px = 2.0 * optics.splat_radius_px(optics.kappa(1.0 / depth, focus));
+        (depth > 0.0).then_some(Hover { depth, circle_px, t: focus.t, anchor: focus.anchor })
+    }
+
+    pub(super) fn ring(&self) -> Option<BrushRing> {
+        let document = self.session.document().filter(|_| self.tool.paints())?;
+        let brush = &document.brush;
+        let circle_px = match self.tool {
+            Tool::Brush => signed_circle_px(&document.camera.optics(), brush.target.t),
+            _ => 0.0,
+        };
+        Some(BrushRing { radius: brush.radius, hardness: brush.hardness, circle_px })
+    }
+
+    /// What the user holds.
+    pub(super) fn hand(&self) -> Hand {
+        Hand {
+            tool: self.tool,
+            settings: self.settings.tools.clone(),
+            is_busy: self.gesture.has_input(),
+            ring: self.ring(),
+            string: self.settings.stabiliser,
+        }
+    }
+
+    pub(super) fn views(&mut self, ui: &mut Ui, actions: &mut Vec<Action>) {
+        let hand = self.hand();
+        let Self { layout, paint, picture, session, settings, .. } = self;
+        let mut panes = Panes {
+            pane_ui: |ui: &mut Ui, pane: Pane| {
+                ui.spacing_mut().item_spacing.y = 0.0;
+                let dragged = view_header(ui, pane, session, HeaderState { settings, picture }, actions);
+                match pane {
+                    Pane::Paint => paint.ui(ui, session, &hand, settings.look(), actions),
+                    Pane::Picture => picture.ui(ui, session, &hand, settings.display(), actions),
+                }
+                dragged
+            },
+        };
+        layout.ui(&mut panes, ui);
+    }
+
+    /// The hint of the first start: three lines over the demo, until it is put away.
+    pub(super) fn first_hint(&mut self, context: &Context) {
+        if !self.showing_demo || self.settings.hint_seen || self.session.document().is_none() {
+            return;
+        }
+        let rect = self.paint.rect();
+        // In a small view it would hide what it speaks of.
+        if rect.height() < LEAST_HEIGHT_FOR_HINT {
+            return;
+        }
+        let area = egui::Window::new("Try this").collapsible(false).resizable(false).title_bar(false);
+        area.fixed_pos(rect.left_top() + egui::vec2(12.0, 12.0)).show(context, |ui| {
+            ui.set_max_width((rect.width() - 60.0).clamp(160.0, 420.0));
+            ui.label("Drag over the scene here, or over the picture: what you paint becomes sharp.");
+            ui.label("Move the slider above from near to far to paint blur instead.");
+            ui.label("Middle drag (or Alt+drag) turns this view; Ctrl+Z takes anything back.");
+            if ui.button("Got it").clicked() {
+                self.settings.hint_seen = true;
+            }
+        });
+    }
+}

@@ -1,0 +1,92 @@
+#!/bin/bash
+# Paints the demo from nothing to a finished picture, by playing a recording in the real window under Xvfb, and looks at every
+# panel. Leaves a screenshot of every step, to be looked at critically.
+#
+#   tests/window/painting.sh [FOLDER] [WIDTHxHEIGHT]
+#
+# FOLDER   where the screenshots go (default: target/window/painting)
+# SCALE=2 makes everything twice as large: with 2560x1440 the window is laid out as with 1280x720.
+# See display.sh for what it needs.
+set -u
+root=$(cd "$(dirname "$0")/../.." && pwd)
+out=${1:-$root/target/window/painting}
+size=${2:-1280x720}
+. "$root/tests/window/display.sh"
+project=$work/garden.fbrush
+cp "$root/assets/demo/demo.glb" "$work/"
+"$program" new "$work/demo.glb" --camera "$root/assets/demo/demo.camera.json" -o "$project" || fail "no project"
+
+at() { xdotool mousemove $(($1 * scale)) $(($2 * scale)); sleep 0.3; }
+click() { at "$1" "$2"; xdotool click 1; sleep 0.4; }
+key() { xdotool key "$1"; sleep 0.6; }
+palette() { key ctrl+shift+p; xdotool type --delay 40 "$1"; sleep 0.3; key Return; }
+# Points of the window as the layout has it at 1280 × 720 points.
+wide=$((width / scale))
+high=$((height / scale))
+inspector=$((wide - 150))
+
+start_app "$project"
+settle "opening"
+shot 01-nothing
+xdotool key ctrl+q
+wait "$app" 2>/dev/null
+
+# Every stroke of the recording waits for the picture of the one before.
+start_app "$project" --replay "$root/tests/window/painting.json"
+for k in $(seq 1 400); do
+    kill -0 "$app" 2>/dev/null || fail "painting: the program ended"
+    import -window root "$work/now.png"
+    # While a stroke is played, the title and the picture change; a star is in the title once anything is painted.
+    title=$(xdotool search --name "Focus Brush" getwindowname 2>/dev/null | tail -1)
+    case $title in *"*"*) cp "$work/now.png" "$out/02-painting-$(printf %02d "$k").png" ;; esac
+    steps=$((${steps:-0} + 1))
+    [ "$(ls "$out" | grep -c '^02-painting')" -ge "${SERIES:-10}" ] && break
+    sleep 1
+done
+settle "painting"
+shot 03-finished
+
+key F7
+settle "the atlas"
+shot 10-atlas
+key F8
+click $((wide * 60 / 100)) $((high * 40 / 100))
+shot 11-aperture
+key F9
+settle "the histogram"
+shot 12-histogram
+key F9
+at "$inspector" $((high / 2))
+xdotool click --repeat 8 --delay 60 5
+sleep 0.7
+import -window root "$out/13-inspector-middle.png"
+xdotool click --repeat 60 --delay 20 5
+sleep 0.7
+import -window root "$out/14-inspector-end.png"
+xdotool click --repeat 90 --delay 20 4
+key w
+settle "comparing"
+shot 15-compared
+key w
+key ctrl+shift+p
+shot 16-palette
+key Escape
+key F1
+shot 17-help
+key F1
+x=20
+for menu in file edit select view focus layer lens render help; do
+    click "$x" 12
+    import -window root "$out/18-menu-$menu.png"
+    key Escape
+    x=$((x + 38))
+done
+palette "light"
+settle "the light theme"
+shot 19-light-theme
+palette "light"
+xdotool key ctrl+shift+s
+sleep 0.6
+shot 20-save-as
+key Escape
+echo "all is well; screenshots in $out"
