@@ -24,6 +24,8 @@ mod ray_focus;
 mod reach;
 mod samples;
 mod sensor;
+mod sheared;
+mod survey;
 mod view;
 
 pub use estimate::Estimate;

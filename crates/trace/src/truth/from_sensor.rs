@@ -12,13 +12,16 @@
 //! the pixel it lands in, 1/spp of it. The change of variables has no Jacobian of its own (p at fixed U moves
 //! with the surface), so energy is conserved, and a standard hit keeps its pixel exactly.
 //!
-//! Small bright surfaces also send rays of their own ([`super::bright_surfaces`]).
+//! Small bright surfaces also send rays of their own ([`super::bright_surfaces`]). Low-discrepancy samples suit the
+//! circle of confusion of what a pixel shows ([`super::sheared`], [`super::survey`]).
 
 use super::bright_surfaces::BrightSurfaces;
 use super::options::{Sampler, TruthOptions};
 use super::reach::Reach;
 use super::samples;
 use super::sensor::{self, Sensor};
+use super::sheared::Sheared;
+use super::survey::{self, Look, Survey};
 use super::view::View;
 use crate::random::hash;
 use crate::{Radiance, Ray};
@@ -28,6 +31,7 @@ use progress::{Cancelled, Progress, Stage};
 use rayon::prelude::*;
 use scene::SurfacePoint;
 use std::ops::Range;
+use std::sync::OnceLock;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// The side of a tile, px: the unit of work.
@@ -38,18 +42,23 @@ pub(super) struct FromSensor {
     reach: Reach,
     bright: BrightSurfaces,
     aperture: ApertureSampler,
-    sampler: Sampler,
+    options: TruthOptions,
     seed: u64,
+    /// Which samples suit which pixel, and those samples; known from the first pass on.
+    suited: OnceLock<(Survey, Sheared)>,
 }
 
 /// One sample of a pixel.
-#[derive(Clone, Copy)]
-struct PixelSample {
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct PixelSample {
     /// From the pixel's upper left corner, px.
-    within_px: DVec2,
+    pub within_px: DVec2,
     /// The aperture point U, scene units.
-    u: DVec2,
+    pub u: DVec2,
 }
+
+/// Tells the seed of the rays that are looked at in advance from the samples'.
+const SURVEY: u64 = 0x5375_7276;
 
 /// What a ray found.
 struct Found {
@@ -59,6 +68,8 @@ struct Found {
     eye: DVec3,
     /// The direction from there, in the world.
     direction: DVec3,
+    /// 1/depth, camera space; 0 for the background.
+    inverse_depth: f64,
     /// Where it lands, less where it left: px.
     displacement_px: DVec2,
 }
@@ -68,7 +79,8 @@ impl FromSensor {
         let reach = Reach::of(view, sensor.window());
         let bright = BrightSurfaces::find(view, radiance, reach, sensor.window(), options);
         let aperture = ApertureSampler::new(&view.camera.aperture);
-        Self { reach, bright, aperture, sampler: options.sampler, seed: u64::from(options.seed) }
+        let (options, seed) = (*options, u64::from(options.seed));
+        Self { reach, bright, aperture, options, seed, suited: OnceLock::new() }
     }
 
     /// Sends the rays of one pass, the samples `passed` of each pixel.
@@ -82,21 +94,36 @@ impl FromSensor {
     ) -> Result<(), Cancelled> {
         let own_rays = if self.bright.is_empty() { 0.0 } else { 0.1 };
         self.bright.shine(view, radiance, sensor, &passed, &Stage::new(progress, 0.0, own_rays))?;
-        let shared = match self.sampler {
-            Sampler::LowDiscrepancy => self.pixel_samples(view, self.seed, &passed),
-            Sampler::Independent => Vec::new(),
-        };
-        let exposure = Exposure { estimator: self, view, radiance, sensor, shared, passed };
-        exposure.expose(&Stage::new(progress, own_rays, 1.0))
+        let mut exposure = Exposure { estimator: self, view, radiance, sensor, shared: Vec::new(), passed };
+        let mut looked = own_rays;
+        if self.options.sampler == Sampler::LowDiscrepancy {
+            if self.suited.get().is_none() {
+                looked += 0.1;
+                let survey = exposure.survey(&Stage::new(progress, own_rays, looked))?;
+                let sheared = Sheared::new(self.seed, self.options.samples_per_pixel, survey.levels.clone());
+                self.suited.get_or_init(|| (survey, sheared));
+            }
+            exposure.shared.push(self.pixel_samples(view, self.seed, &exposure.passed));
+            if let Some((_, sheared)) = self.suited.get() {
+                let radius = view.camera.aperture_radius;
+                exposure.shared.extend(sheared.samples(&exposure.passed, radius, self.pixel_sample(view)));
+            }
+        }
+        exposure.expose(&Stage::new(progress, looked, 1.0))
     }
 
     fn pixel_samples(&self, view: &View, seed: u64, passed: &Range<u32>) -> Vec<PixelSample> {
         let indices = u64::from(passed.start)..u64::from(passed.end);
-        let sample = |[x, y, a, b]: [f64; 4]| PixelSample {
+        samples::points(self.options.sampler, seed, indices).map(self.pixel_sample(view)).collect()
+    }
+
+    /// What makes a sample of four numbers.
+    fn pixel_sample(&self, view: &View) -> impl Fn([f64; 4]) -> PixelSample {
+        let radius = view.camera.aperture_radius;
+        move |[x, y, a, b]| PixelSample {
             within_px: DVec2::new(x, y),
-            u: self.aperture.sample(a, b) * view.camera.aperture_radius,
-        };
-        samples::points(self.sampler, seed, indices).map(sample).collect()
+            u: self.aperture.sample(a, b) * radius,
+        }
     }
 }
 
@@ -106,8 +133,8 @@ struct Exposure<'a> {
     view: &'a View<'a>,
     radiance: &'a dyn Radiance,
     sensor: &'a Sensor,
-    /// The samples of every pixel, where all have the same.
-    shared: Vec<PixelSample>,
+    /// Low-discrepancy samples: those that pixels have in common, then those of each level in use.
+    shared: Vec<Vec<PixelSample>>,
     passed: Range<u32>,
 }
 
@@ -149,15 +176,33 @@ impl Exposure<'_> {
                 self.sensor.expose(to, self.light(&found, sample.u), 1.0, 1.0);
             }
         };
-        if self.estimator.sampler == Sampler::Independent {
+        if self.estimator.options.sampler == Sampler::Independent {
             let seed = hash([self.estimator.seed, x as u64, y as u64]);
             self.estimator.pixel_samples(self.view, seed, &self.passed).iter().for_each(&mut expose);
         } else {
-            self.shared.iter().for_each(&mut expose);
+            // What is seen from outside of the region goes elsewhere.
+            let suited = self.estimator.suited.get().zip(self.sensor.pixel(corner));
+            let choice = suited.map_or(0, |((survey, _), pixel)| survey.choices[pixel]);
+            self.shared[usize::from(choice)].iter().for_each(&mut expose);
         }
         if let Some(pixel) = own {
             self.sensor.add(pixel, stays);
         }
+    }
+
+    /// Chooses the samples of all pixels of the region.
+    fn survey(&self, progress: &dyn Progress) -> Result<Survey, Cancelled> {
+        let (view, estimator, region) = (self.view, self.estimator, self.sensor.region());
+        let count = survey::rays_of(&estimator.options);
+        let rays = estimator.pixel_samples(view, hash([estimator.seed, SURVEY]), &(0..count));
+        let look = |corner: DVec2, ray: &PixelSample| {
+            let found = self.trace(corner + ray.within_px, ray.u);
+            (found.displacement_px == DVec2::ZERO).then(|| Look {
+                radius_px: view.optics.splat_radius_px(view.optics.standard_kappa(found.inverse_depth)),
+                light: self.light(&found, ray.u).element_sum(),
+            })
+        };
+        Survey::of(region, &rays, view.camera.aperture_radius, look, progress)
     }
 
     /// Traces the ray that passes the picture at `pixel` and the aperture at `u`.
@@ -173,7 +218,8 @@ impl Exposure<'_> {
         let point = hit.as_ref().map(|hit| hit.point);
         let inverse_depth = hit.map_or(0.0, |hit| 1.0 / hit.t);
         let blur = view.blur(point, inverse_depth, u);
-        Found { point, eye, direction, displacement_px: view.displacement_px(blur, inverse_depth, u) }
+        let displacement_px = view.displacement_px(blur, inverse_depth, u);
+        Found { point, eye, direction, inverse_depth, displacement_px }
     }
 
     /// The radiance that a sample through the aperture point `u` carries.

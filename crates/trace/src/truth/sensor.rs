@@ -69,6 +69,11 @@ impl Sensor {
         Self { region, filter, quantiser, pixels, overflowed: AtomicBool::new(false) }
     }
 
+    /// The pixels that it has.
+    pub fn region(&self) -> Region {
+        self.region
+    }
+
     /// The positions of the frame where light counts, px: the region and as far around it as the filter reaches.
     pub fn window(&self) -> [DVec2; 2] {
         let Region { x, y, width, height } = self.region;

@@ -31,9 +31,10 @@ const BLURRED_Z: f64 = 6.0;
 /// What the slope is measured on: edges of all directions, and the slope that low-discrepancy samples must reach.
 ///
 /// What decides whether a ray meets an edge has as many dimensions d as it depends on of the four of a sample; the
-/// error of scrambled nets then falls with N to the −½ − 1/(2d) (He and Wang 2015). A sharp edge has the two of the
-/// place, −¾. A blurred edge has all four, −⅝, unless its circle is so wide that N samples do not tell the places
-/// within a pixel apart: then it has the aperture's two.
+/// error of nets and of grids on a curve then falls with N to the −½ − 1/(2d) (He and Wang 2015, He and Owen 2016).
+/// A sharp edge has the two of the place, −¾. A blurred edge has all four, −⅝, but for samples that suit its circle
+/// of confusion: then the two of where a ray crosses its depth, −¾. Paint that sends light to other pixels keeps to
+/// the samples that all pixels have in common.
 struct Edges {
     name: &'static str,
     camera: Camera,
@@ -58,11 +59,11 @@ fn edges() -> [Edges; 6] {
         Edges { z: SHARP_Z, focus: FocusOffset::new(t, 1.0), ..blurred("6 px, by paint", 6.0, -0.57) };
     [
         sharp,
-        blurred("2 px", 2.0, -0.57),
-        blurred("10 px", 10.0, -0.57),
+        blurred("1 px", 1.0, -0.7),
+        blurred("2 px", 2.0, -0.7),
+        blurred("10 px", 10.0, -0.7),
+        blurred("40 px", 40.0, -0.7),
         painted,
-        blurred("40 px", 40.0, -0.62),
-        blurred("60 px", 60.0, -0.64),
     ]
 }
 
@@ -124,12 +125,12 @@ fn slopes_of_convergence() {
 
 #[test]
 fn low_discrepancy_samples_converge_faster() {
-    let [sharp, .., wide] = edges();
-    for edges in [sharp, wide] {
-        let slope = |sampler| slope(&edges, 4..=8, sampler, 3);
+    let [sharp, _, blurred, ..] = edges();
+    for edges in [sharp, blurred] {
+        let slope = |sampler| slope(&edges, 4..=9, sampler, 3);
         let (independent, spread) = (slope(Sampler::Independent), slope(Sampler::LowDiscrepancy));
         assert!((independent + 0.5).abs() < 0.1, "{}: {independent}", edges.name);
-        assert!(spread < -0.62, "{}: {spread}", edges.name);
+        assert!(spread < -0.66, "{}: {spread}", edges.name);
     }
 }
 

@@ -1,0 +1,247 @@
+//! Which samples suit which pixel: a few rays looked at in advance.
+//!
+//! [`super::sheared`] has samples for every radius of the circle of confusion; this chooses a pixel's. Its edges
+//! and its texture lie at the depths that its rays meet, so the candidates are the radii of what is met in front
+//! and behind. The one whose order along the curve makes the seen light least rough is taken. The rays are
+//! used for nothing else, so that the choice does not depend on the samples that it is made for.
+//!
+//! All pixels have the samples of one sequence in common where nothing is to be gained or lost: where all rays
+//! see the same; where no order helps much, as with edges of several depths; and where paint sends light to
+//! other pixels, which then is even by construction (see [`super::samples`]).
+
+use super::from_sensor::PixelSample;
+use super::options::{Region, TruthOptions};
+use super::sheared::{self, Level};
+use glam::DVec2;
+use progress::{Cancelled, Progress};
+use rayon::prelude::*;
+use std::sync::OnceLock;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// What a ray meets.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Look {
+    /// The signed radius of its circle of confusion under the standard lens, px.
+    pub radius_px: f64,
+    /// The light that it brings.
+    pub light: f32,
+}
+
+/// Every pixel's level.
+pub(super) struct Survey {
+    /// Those in use.
+    pub levels: Vec<Level>,
+    /// For every pixel of the region one more than the place of its level in `levels`; 0 for the common samples.
+    pub choices: Vec<u16>,
+}
+
+/// How many rays a pixel are looked at: an eighth of what the render will have, and none where that is too few to
+/// tell anything.
+pub(super) fn rays_of(options: &TruthOptions) -> u32 {
+    match options.samples_per_pixel / 8 {
+        0..FEWEST_RAYS => 0,
+        rays => rays.min(MOST_RAYS),
+    }
+}
+
+const FEWEST_RAYS: u32 = 8;
+const MOST_RAYS: u32 = 32;
+/// An order helps if the light along it is smoother than this share of what it is without order.
+const SMOOTHER: f32 = 0.8;
+/// And the order of what lies behind is better than that of what lies in front if light is smoother than this share
+/// along it: edges belong to what lies in front.
+const BEHIND: f32 = 0.5;
+/// Radii farther apart than this, relative (absolute below 1 px), are two depths.
+const APART: f64 = 0.1;
+
+impl Survey {
+    /// Of a region's pixels. `look` tells what the ray of a pixel with this upper left corner meets; `None` if its
+    /// light goes elsewhere.
+    pub fn of(
+        region: Region,
+        rays: &[PixelSample],
+        aperture_radius: f64,
+        look: impl Fn(DVec2, &PixelSample) -> Option<Look> + Sync,
+        progress: &dyn Progress,
+    ) -> Result<Self, Cancelled> {
+        let mut found = vec![Finding::Nothing; region.pixels()];
+        let orders: Vec<OnceLock<Vec<u32>>> = (0..Level::COUNT).map(|_| OnceLock::new()).collect();
+        let order = |level: Level| -> &[u32] {
+            orders[level.index()].get_or_init(|| sheared::order(rays, level, aperture_radius))
+        };
+        let done = AtomicUsize::new(0);
+        let width = region.width.max(1) as usize;
+        found.par_chunks_mut(width).enumerate().try_for_each(|(row, pixels)| {
+            progress.check()?;
+            for (column, pixel) in pixels.iter_mut().enumerate() {
+                let corner =
+                    DVec2::new(f64::from(region.x) + column as f64, f64::from(region.y) + row as f64);
+                let looks: Option<Vec<Look>> = rays.iter().map(|ray| look(corner, ray)).collect();
+                *pixel = looks.map_or(Finding::Common, |looks| find(&looks, order));
+            }
+            progress.report((done.fetch_add(1, Ordering::Relaxed) + 1) as f32 / region.height.max(1) as f32);
+            Ok(())
+        })?;
+        let chosen: Vec<Option<Level>> = (0..found.len()).map(|pixel| agree(&found, width, pixel)).collect();
+        let mut levels: Vec<Level> = chosen.iter().copied().flatten().collect();
+        levels.sort_unstable();
+        levels.dedup();
+        let choice = |level: Level| 1 + levels.partition_point(|&other| other < level) as u16;
+        let choices = chosen.into_iter().map(|level| level.map_or(0, choice)).collect();
+        Ok(Self { levels, choices })
+    }
+}
+
+/// What a pixel's own rays say.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Finding {
+    /// All see the same: its samples may be any.
+    Nothing,
+    /// It should have the common samples.
+    Common,
+    /// It should have those of a level.
+    Level(Level),
+}
+
+/// The level whose order suits what a pixel's rays meet.
+fn find<'a>(looks: &[Look], order: impl Fn(Level) -> &'a [u32]) -> Finding {
+    let along = |order: &mut dyn Iterator<Item = usize>| -> f32 {
+        let mut last = None;
+        order.map(|k| (looks[k].light - last.replace(looks[k].light).unwrap_or(looks[k].light)).abs()).sum()
+    };
+    let rough = along(&mut (0..looks.len()));
+    if rough == 0.0 {
+        return Finding::Nothing;
+    }
+    candidates(looks)
+        .into_iter()
+        .map(|level| (along(&mut order(level).iter().map(|&k| k as usize)), level))
+        .reduce(|front, behind| if behind.0 < BEHIND * front.0 { behind } else { front })
+        .filter(|&(smooth, _)| smooth < SMOOTHER * rough)
+        .map_or(Finding::Common, |(_, level)| Finding::Level(level))
+}
+
+/// The level that most of a pixel and its neighbours agree on, its own if it can: few rays err, and miss what the
+/// neighbours see. `None` for the common samples.
+fn agree(found: &[Finding], width: usize, pixel: usize) -> Option<Level> {
+    let own = match found[pixel] {
+        Finding::Common => return None,
+        Finding::Nothing => None,
+        Finding::Level(level) => Some(level),
+    };
+    let (x, y) = (pixel % width, pixel / width);
+    let rows = y.saturating_sub(1)..(y + 2).min(found.len() / width);
+    let columns = x.saturating_sub(1)..(x + 2).min(width);
+    let levels: Vec<Level> = rows
+        .flat_map(|y| columns.clone().map(move |x| found[y * width + x]))
+        .filter_map(|finding| if let Finding::Level(level) = finding { Some(level) } else { None })
+        .collect();
+    let support = |level: Level| levels.iter().filter(|other| other.is_near(level)).count();
+    let best = levels.iter().copied().max_by_key(|&level| (support(level), std::cmp::Reverse(level)))?;
+    let level = own.filter(|&own| support(own) == support(best)).unwrap_or(best);
+    (level != Level::SHARP).then_some(level)
+}
+
+/// The radii of what lies in front and behind, or of the one surface that there is. κ grows with depth.
+fn candidates(looks: &[Look]) -> Vec<Level> {
+    let mut radii: Vec<f64> = looks.iter().map(|look| look.radius_px).collect();
+    radii.sort_unstable_by(f64::total_cmp);
+    let apart = |k: usize| radii[k] - radii[k - 1];
+    let Some(gap) = (1..radii.len()).max_by(|&a, &b| apart(a).total_cmp(&apart(b))) else {
+        return Vec::new();
+    };
+    let middle = |radii: &[f64]| Level::of(radii[radii.len() / 2]);
+    if apart(gap) <= APART * radii[gap].abs().min(radii[gap - 1].abs()).max(1.0) {
+        return vec![middle(&radii)];
+    }
+    let (front, behind) = radii.split_at(gap);
+    vec![middle(front), middle(behind)]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::truth::Sampler;
+    use crate::truth::samples::points;
+
+    /// Rays of a pixel whose front half, of the signed radius `front`, is bright to one side of a line; behind it is
+    /// the radius `behind`, with light that `texture` gives at where the ray crosses that depth.
+    fn looks(
+        rays: &[PixelSample],
+        [front, behind]: [f64; 2],
+        line: f64,
+        texture: impl Fn(DVec2) -> f32,
+    ) -> Vec<Look> {
+        let crossing =
+            |ray: &PixelSample, radius: f64| ray.within_px - radius * DVec2::new(ray.u.x, -ray.u.y);
+        let look = |ray: &PixelSample| {
+            let is_front = crossing(ray, front).dot(DVec2::new(0.8, 0.6)) < line;
+            let light = if is_front { 5.0 } else { texture(crossing(ray, behind)) };
+            Look { radius_px: if is_front { front } else { behind }, light }
+        };
+        rays.iter().map(look).collect()
+    }
+
+    fn rays() -> Vec<PixelSample> {
+        let aperture = lens::ApertureSampler::new(&lens::ApertureShape::Disc.into());
+        points(Sampler::LowDiscrepancy, 5, 0..u64::from(MOST_RAYS))
+            .map(|[x, y, a, b]| PixelSample { within_px: DVec2::new(x, y), u: aperture.sample(a, b) })
+            .collect()
+    }
+
+    fn found(radii: [f64; 2], line: f64, texture: impl Fn(DVec2) -> f32) -> Finding {
+        let rays = rays();
+        let orders: Vec<OnceLock<Vec<u32>>> = (0..Level::COUNT).map(|_| OnceLock::new()).collect();
+        find(&looks(&rays, radii, line, texture), |level| {
+            orders[level.index()].get_or_init(|| sheared::order(&rays, level, 1.0))
+        })
+    }
+
+    #[test]
+    fn an_edge_has_the_level_of_what_lies_in_front() {
+        for radii in [[-4.0, 0.0], [0.0, 9.0], [3.0, 12.0]] {
+            assert_eq!(found(radii, 0.7, |_| 1.0), Finding::Level(Level::of(radii[0])), "{radii:?}");
+        }
+    }
+
+    #[test]
+    fn a_texture_behind_few_rays_in_front_has_its_own_level() {
+        let texture = |place: DVec2| if place.x < 0.5 { 0.0 } else { 40.0 };
+        assert_eq!(found([-6.0, 0.0], -4.0, texture), Finding::Level(Level::SHARP));
+        assert_eq!(found([-6.0, 2.0], f64::NEG_INFINITY, texture), Finding::Level(Level::of(2.0)));
+    }
+
+    #[test]
+    fn one_light_says_nothing_and_no_order_is_none() {
+        assert_eq!(found([-6.0, 0.0], 0.7, |_| 5.0), Finding::Nothing);
+        // Light without any order in space.
+        let noise = |place: DVec2| (place.x * 12345.678).sin() as f32;
+        assert_eq!(found([2.0, 2.0], f64::NEG_INFINITY, noise), Finding::Common);
+    }
+
+    #[test]
+    fn neighbours_outvote_an_error_and_tell_those_that_saw_nothing() {
+        let level = |radius| Finding::Level(Level::of(radius));
+        let (edge, error) = (level(3.0), level(9.0));
+        let found = [
+            edge,
+            edge,
+            error,
+            Finding::Nothing,
+            Finding::Common,
+            edge,
+            Finding::Nothing,
+            Finding::Nothing,
+            edge,
+        ];
+        let agreed: Vec<_> = (0..9).map(|pixel| agree(&found, 3, pixel)).collect();
+        let [edge, none] = [Some(Level::of(3.0)), None];
+        assert_eq!(agreed, [edge, edge, edge, edge, none, edge, none, edge, edge]);
+        assert_eq!(agree(&[level(0.0), level(0.0)], 2, 0), None, "in focus the common samples are best");
+        assert_eq!(
+            agree(&[level(5.0), level(2.0)], 2, 0),
+            Some(Level::of(5.0)),
+            "its own if no more say otherwise"
+        );
+    }
+}
