@@ -199,7 +199,7 @@ impl Exposure<'_> {
             let found = self.trace(corner + ray.within_px, ray.u);
             (found.displacement_px == DVec2::ZERO).then(|| Look {
                 radius_px: view.optics.splat_radius_px(view.optics.standard_kappa(found.inverse_depth)),
-                light: self.light(&found, ray.u).element_sum(),
+                light: self.light(&found, ray.u),
             })
         };
         Survey::of(region, &rays, view.camera.aperture_radius, look, progress)

@@ -9,11 +9,11 @@
 //! ```
 //!
 //! Four-dimensional points of low discrepancy are no better than N^(−5/8) at such edges, and no set of points
-//! spreads w evenly for all r at once. For a given r it is easy: a pool of points is put in order along
-//! Hilbert's curve over w, and samples are taken from equal pieces of that order, by the scrambled van der Corput
-//! sequence (extensible grids on a space-filling curve: He and Owen 2016). Errors at edges then fall with
-//! N^(−3/4), as in focus, whatever the circle. The order is one of a few hundred, for radii so close that what
-//! lies between costs little ([`Level`]); [`super::survey`] chooses each pixel's.
+//! spreads w evenly for all r at once. For a given r it is easy: a pool of points is halved by w's first
+//! coordinate, the halves by its second, and so on, which gives every point an address in a square; samples are the
+//! points that two-dimensional Sobol' points address. Errors at edges then fall with N^(−3/4), as in focus,
+//! whatever the circle, and are as small. There are a few hundred such orders of the pool, for radii so close that
+//! what lies between costs little ([`Level`]); [`super::survey`] chooses each pixel's.
 //!
 //! Every sample is evenly distributed over pixel and aperture whatever the order, so no choice makes a bias, if
 //! only it is made without regard to the samples' own values.
@@ -102,12 +102,13 @@ impl Sheared {
             let number = from / self.size;
             let pool = self.pool(number, aperture_radius, &sample);
             let until = end.min((number + 1) * self.size);
-            let scramble = hash([self.seed, RANKS, number]) as u32;
+            let scramble = hash([self.seed, ADDRESSES, number]) as u32;
             for index in from..until {
-                let along = sobol_burley::sample((index % self.size) as u32, 0, scramble);
-                let rank = (f64::from(along) * self.size as f64) as usize;
+                let square =
+                    [0, 1].map(|axis| sobol_burley::sample((index % self.size) as u32, axis, scramble));
+                let address = address(square.map(f64::from), self.size);
                 for (samples, order) in samples.iter_mut().zip(&pool.orders) {
-                    samples.push(pool.points[order[rank] as usize]);
+                    samples.push(pool.points[order[address] as usize]);
                 }
             }
             from = until;
@@ -128,49 +129,42 @@ impl Sheared {
     }
 }
 
-/// Tell the seeds of the pools' points and of the ranks that samples take from others.
+/// Tell the seeds of the pools' points and of the addresses that samples take from others.
 const POINTS: u64 = 1;
-const RANKS: u64 = 2;
+const ADDRESSES: u64 = 2;
 
-/// The indices of `pool` in the order of Hilbert's curve over w; `aperture_radius` in scene units.
+/// The indices of `pool` by their address over w, first coordinate first; `aperture_radius` in scene units.
 pub(super) fn order(pool: &[PixelSample], level: Level, aperture_radius: f64) -> Vec<u32> {
     let radius = level.radius_px();
-    let half = radius.abs() + 0.5;
-    let steps = f64::from(1 << HILBERT_BITS);
-    let place = |sample: &PixelSample| {
+    let crossing = |sample: &PixelSample| {
         // The picture's y is down, the aperture's is up.
         let u = if aperture_radius > 0.0 { sample.u / aperture_radius } else { DVec2::ZERO };
-        let w = sample.within_px - 0.5 - radius * DVec2::new(u.x, -u.y);
-        // `as` saturates: what lies on the border stays inside.
-        let [x, y] =
-            ((w / half + 1.0) / 2.0 * steps).to_array().map(|c| (c as u32).min((1 << HILBERT_BITS) - 1));
-        along_hilbert(x, y)
+        (sample.within_px - radius * DVec2::new(u.x, -u.y)).to_array()
     };
-    let places: Vec<u32> = pool.iter().map(place).collect();
+    let crossings: Vec<[f64; 2]> = pool.iter().map(crossing).collect();
     let mut order: Vec<u32> = (0..pool.len() as u32).collect();
-    order.sort_by_key(|&k| places[k as usize]);
+    halve(&mut order, &crossings, 0);
     order
 }
 
-/// Bits of a coordinate on the curve.
-const HILBERT_BITS: u32 = 16;
-
-/// How far along Hilbert's curve the cell (x, y) of 2¹⁶ × 2¹⁶ lies.
-fn along_hilbert(mut x: u32, mut y: u32) -> u32 {
-    let mut along = 0;
-    for bit in (0..HILBERT_BITS).rev() {
-        let side = 1u32 << bit;
-        let (right, down) = (u32::from(x & side != 0), u32::from(y & side != 0));
-        along = along << 2 | ((3 * right) ^ down);
-        // Turned so that each quarter's curve begins where the one before it ends.
-        if down == 0 {
-            if right == 1 {
-                (x, y) = (!x, !y);
-            }
-            (x, y) = (y, x);
-        }
+/// Puts those with the smaller coordinate along `axis` into the first half, and halves the halves along the other.
+fn halve(order: &mut [u32], crossings: &[[f64; 2]], axis: usize) {
+    if order.len() < 2 {
+        return;
     }
-    along
+    let coordinate = |k: &u32| crossings[*k as usize][axis];
+    let middle = order.len() / 2;
+    order.select_nth_unstable_by(middle, |a, b| coordinate(a).total_cmp(&coordinate(b)).then(a.cmp(b)));
+    let (low, high) = order.split_at_mut(middle);
+    halve(low, crossings, 1 - axis);
+    halve(high, crossings, 1 - axis);
+}
+
+/// The address of a point of the unit square among `size`, a power of two up to 2¹⁶: bits of its coordinates in turn.
+fn address([x, y]: [f64; 2], size: u64) -> usize {
+    let fixed = [x, y].map(|c| (c * f64::from(1u32 << 16)) as usize);
+    (0..size.trailing_zeros())
+        .fold(0, |address, k| address << 1 | (fixed[k as usize % 2] >> (15 - k / 2)) & 1)
 }
 
 #[cfg(test)]
@@ -191,14 +185,13 @@ mod tests {
     }
 
     #[test]
-    fn neighbours_on_the_curve_are_neighbours_in_the_plane() {
-        // The first 64 × 64 cells of the finest size are a curve of their own.
-        let mut cells: Vec<(u32, i32, i32)> =
-            (0..64 * 64).map(|k| (along_hilbert(k % 64, k / 64), (k % 64) as i32, (k / 64) as i32)).collect();
-        cells.sort_unstable();
-        for pair in cells.windows(2) {
-            let [(a, xa, ya), (b, xb, yb)] = [pair[0], pair[1]];
-            assert_eq!((b - a, (xb - xa).abs() + (yb - ya).abs()), (1, 1), "{pair:?}");
+    fn an_address_is_where_a_point_lies() {
+        // In focus w is the place on the pixel: a grid of 8 × 8 is addressed by itself.
+        let at = |k: u32| DVec2::new(f64::from(k % 8) + 0.5, f64::from(k / 8) + 0.5) / 8.0;
+        let pool: Vec<_> = (0..64).map(|k| PixelSample { within_px: at(k), u: DVec2::ONE }).collect();
+        let order = order(&pool, Level::SHARP, 1.0);
+        for k in 0..64 {
+            assert_eq!(order[address(at(k).to_array(), 64)], k);
         }
     }
 

@@ -1,18 +1,18 @@
 //! Which samples suit which pixel: a few rays looked at in advance.
 //!
-//! [`super::sheared`] has samples for every radius of the circle of confusion; this chooses a pixel's. Its edges
-//! and its texture lie at the depths that its rays meet, so the candidates are the radii of what is met in front
-//! and behind. The one whose order along the curve makes the seen light least rough is taken. The rays are
-//! used for nothing else, so that the choice does not depend on the samples that it is made for.
+//! [`super::sheared`] has samples for every radius of the circle of confusion; this chooses a pixel's. Where its rays
+//! meet one depth, its texture lies there. Where they meet two, of one light each, the edge between them belongs to
+//! what lies in front. The rays are used for nothing else, so that the choice does not depend on the samples that it
+//! is made for.
 //!
 //! All pixels have the samples of one sequence in common where nothing is to be gained or lost: where all rays
-//! see the same; where no order helps much, as with edges of several depths; and where paint sends light to
-//! other pixels, which then is even by construction (see [`super::samples`]).
+//! see the same; where no order helps much, as with an edge before a texture of another depth; and where paint sends
+//! light to other pixels, which then is even by construction (see [`super::samples`]).
 
 use super::from_sensor::PixelSample;
 use super::options::{Region, TruthOptions};
 use super::sheared::{self, Level};
-use glam::DVec2;
+use glam::{DVec2, Vec3};
 use progress::{Cancelled, Progress};
 use rayon::prelude::*;
 use std::sync::OnceLock;
@@ -24,7 +24,7 @@ pub(super) struct Look {
     /// The signed radius of its circle of confusion under the standard lens, px.
     pub radius_px: f64,
     /// The light that it brings.
-    pub light: f32,
+    pub light: Vec3,
 }
 
 /// Every pixel's level.
@@ -44,13 +44,13 @@ pub(super) fn rays_of(options: &TruthOptions) -> u32 {
     }
 }
 
-const FEWEST_RAYS: u32 = 8;
+const FEWEST_RAYS: u32 = 16;
 const MOST_RAYS: u32 = 32;
 /// An order helps if the light along it is smoother than this share of what it is without order.
 const SMOOTHER: f32 = 0.8;
-/// And the order of what lies behind is better than that of what lies in front if light is smoother than this share
-/// along it: edges belong to what lies in front.
-const BEHIND: f32 = 0.5;
+/// How much of the light's variance may lie within what is in front and what is behind for the edge between them to
+/// be all that there is. With more, the rest costs as much as is gained.
+const WITHIN: f32 = 0.01;
 /// Radii farther apart than this, relative (absolute below 1 px), are two depths.
 const APART: f64 = 0.1;
 
@@ -105,20 +105,42 @@ enum Finding {
 
 /// The level whose order suits what a pixel's rays meet.
 fn find<'a>(looks: &[Look], order: impl Fn(Level) -> &'a [u32]) -> Finding {
-    let along = |order: &mut dyn Iterator<Item = usize>| -> f32 {
-        let mut last = None;
-        order.map(|k| (looks[k].light - last.replace(looks[k].light).unwrap_or(looks[k].light)).abs()).sum()
-    };
-    let rough = along(&mut (0..looks.len()));
-    if rough == 0.0 {
+    let is_dull = looks.windows(2).all(|pair| pair[0].light == pair[1].light);
+    if is_dull {
         return Finding::Nothing;
     }
-    candidates(looks)
-        .into_iter()
-        .map(|level| (along(&mut order(level).iter().map(|&k| k as usize)), level))
-        .reduce(|front, behind| if behind.0 < BEHIND * front.0 { behind } else { front })
-        .filter(|&(smooth, _)| smooth < SMOOTHER * rough)
-        .map_or(Finding::Common, |(_, level)| Finding::Level(level))
+    let mut by_radius = looks.to_vec();
+    by_radius.sort_by(|a, b| a.radius_px.total_cmp(&b.radius_px));
+    // κ grows with depth.
+    let (front, behind) = by_radius.split_at(widest_gap(&by_radius));
+    let level = Level::of(by_radius[front.len() / 2].radius_px);
+    let suits = if behind.is_empty() {
+        let along = |order: &mut dyn Iterator<Item = &Look>| -> f32 {
+            let lights: Vec<Vec3> = order.map(|look| look.light).collect();
+            lights.windows(2).map(|pair| (pair[1] - pair[0]).abs().element_sum()).sum()
+        };
+        let smooth = along(&mut order(level).iter().map(|&k| &looks[k as usize]));
+        smooth < SMOOTHER * along(&mut looks.iter())
+    } else {
+        scatter(front) + scatter(behind) < WITHIN * scatter(looks)
+    };
+    if suits { Finding::Level(level) } else { Finding::Common }
+}
+
+/// How many of those looks, in the order of their radii, lie in front of the widest gap between depths; all if there
+/// is one depth.
+fn widest_gap(by_radius: &[Look]) -> usize {
+    let radius = |k: usize| by_radius[k].radius_px;
+    let gap = (1..by_radius.len())
+        .max_by(|&a, &b| (radius(a) - radius(a - 1)).total_cmp(&(radius(b) - radius(b - 1))));
+    gap.filter(|&k| radius(k) - radius(k - 1) > APART * radius(k).abs().min(radius(k - 1).abs()).max(1.0))
+        .unwrap_or(by_radius.len())
+}
+
+/// The sum of the light's squared deviations from its mean.
+fn scatter(looks: &[Look]) -> f32 {
+    let mean = looks.iter().map(|look| look.light).sum::<Vec3>() / looks.len().max(1) as f32;
+    looks.iter().map(|look| (look.light - mean).length_squared()).sum()
 }
 
 /// The level that most of a pixel and its neighbours agree on, its own if it can: few rays err, and miss what the
@@ -142,22 +164,6 @@ fn agree(found: &[Finding], width: usize, pixel: usize) -> Option<Level> {
     (level != Level::SHARP).then_some(level)
 }
 
-/// The radii of what lies in front and behind, or of the one surface that there is. κ grows with depth.
-fn candidates(looks: &[Look]) -> Vec<Level> {
-    let mut radii: Vec<f64> = looks.iter().map(|look| look.radius_px).collect();
-    radii.sort_unstable_by(f64::total_cmp);
-    let apart = |k: usize| radii[k] - radii[k - 1];
-    let Some(gap) = (1..radii.len()).max_by(|&a, &b| apart(a).total_cmp(&apart(b))) else {
-        return Vec::new();
-    };
-    let middle = |radii: &[f64]| Level::of(radii[radii.len() / 2]);
-    if apart(gap) <= APART * radii[gap].abs().min(radii[gap - 1].abs()).max(1.0) {
-        return vec![middle(&radii)];
-    }
-    let (front, behind) = radii.split_at(gap);
-    vec![middle(front), middle(behind)]
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -177,7 +183,7 @@ mod tests {
         let look = |ray: &PixelSample| {
             let is_front = crossing(ray, front).dot(DVec2::new(0.8, 0.6)) < line;
             let light = if is_front { 5.0 } else { texture(crossing(ray, behind)) };
-            Look { radius_px: if is_front { front } else { behind }, light }
+            Look { radius_px: if is_front { front } else { behind }, light: Vec3::splat(light) }
         };
         rays.iter().map(look).collect()
     }
@@ -205,10 +211,10 @@ mod tests {
     }
 
     #[test]
-    fn a_texture_behind_few_rays_in_front_has_its_own_level() {
+    fn a_texture_has_its_own_level_but_behind_an_edge_none() {
         let texture = |place: DVec2| if place.x < 0.5 { 0.0 } else { 40.0 };
-        assert_eq!(found([-6.0, 0.0], -4.0, texture), Finding::Level(Level::SHARP));
         assert_eq!(found([-6.0, 2.0], f64::NEG_INFINITY, texture), Finding::Level(Level::of(2.0)));
+        assert_eq!(found([-6.0, 2.0], 0.7, texture), Finding::Common);
     }
 
     #[test]
