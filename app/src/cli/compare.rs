@@ -32,5 +32,11 @@ pub fn run(arguments: &CompareArguments) -> Result<(), Failure> {
     say(format!("FLIP               {:.4}", found.flip));
     say(format!("signed mean error  {:+.4} %", found.signed_mean_error * 100.0));
     say(format!("largest difference {:.4}", found.largest_difference));
+    if found.undefined_pixels > 0 {
+        let (undefined, pixels) = (found.undefined_pixels, a.width as usize * a.height as usize);
+        say(format!(
+            "undefined pixels   {undefined} of {pixels}   (NaN or infinite, so the rest is undefined as well)"
+        ));
+    }
     Ok(())
 }

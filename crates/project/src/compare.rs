@@ -33,8 +33,10 @@ pub struct Comparison {
     /// The largest |a − b|, not clipped.
     pub largest_difference: f64,
     /// Mean of FLIP (Andersson et al. 2020) on sRGB-encoded clipped 8-bit pictures at 67 pixels a degree, in
-    /// [0, 1].
+    /// [0, 1]; NaN if there are undefined pixels, which FLIP itself would take for black or white.
     pub flip: f64,
+    /// Pixels that either picture has no finite number for. If there are any, the other numbers are not finite.
+    pub undefined_pixels: usize,
 }
 
 /// Where two pictures differ, a value a pixel.
@@ -56,6 +58,9 @@ pub fn compare(a: &LinearPicture, b: &LinearPicture) -> Result<Comparison, Proje
         sums.add(a as f64, b as f64);
     }
     let mean_square = sums.square_clipped / count;
+    let is_undefined = |(a, b): &(&[f32; 3], &[f32; 3])| a.iter().chain(b.iter()).any(|c| !c.is_finite());
+    let undefined_pixels = a.rgb.iter().zip(&b.rgb).filter(is_undefined).count();
+    let flip = || f64::from(FlipPool::from_image(&flip_image(a, b)).mean());
     let relative = |difference: f64, mean: f64| if difference == 0.0 { 0.0 } else { difference / mean };
     let psnr = if mean_square < 1e-20 { HIGHEST_PSNR } else { -10.0 * mean_square.log10() };
     Ok(Comparison {
@@ -68,7 +73,8 @@ pub fn compare(a: &LinearPicture, b: &LinearPicture) -> Result<Comparison, Proje
         signed_mean_error: relative(sums.difference, sums.reference),
         signed_mean_error_clipped: relative(sums.difference_clipped, sums.reference_clipped),
         largest_difference: sums.largest,
-        flip: FlipPool::from_image(&flip_image(a, b)).mean() as f64,
+        flip: if undefined_pixels == 0 { flip() } else { f64::NAN },
+        undefined_pixels,
     })
 }
 

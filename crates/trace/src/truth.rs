@@ -8,7 +8,8 @@
 //! A render is a row of passes ([`Truth::pass`]), each a picture of its own of a few samples a pixel. Within a
 //! pass sums are integers, so that any order and any number of threads gives the same bits (`sensor`); from
 //! pass to pass means and scatter are kept, and the scatter gives the standard error of every pixel
-//! ([`Estimate`]). Samples are low-discrepancy points that go on from pass to pass (`samples`). Which surfaces
+//! ([`Estimate`]). Samples are low-discrepancy points that go on from pass to pass (`samples`), spread evenly where
+//! a pixel's edges and texture are decided (`sheared`, `survey`). Which surfaces
 //! may send light into the picture at all, and from how far outside the frame, follows from bounds on κ over
 //! pieces of surface (`kappa_bounds`, `patches`, `reach`).
 

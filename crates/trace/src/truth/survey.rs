@@ -82,7 +82,8 @@ impl Survey {
             progress.report((done.fetch_add(1, Ordering::Relaxed) + 1) as f32 / region.height.max(1) as f32);
             Ok(())
         })?;
-        let chosen: Vec<Option<Level>> = (0..found.len()).map(|pixel| agree(&found, width, pixel)).collect();
+        let pixels = (0..found.len()).into_par_iter();
+        let chosen: Vec<Option<Level>> = pixels.map(|pixel| agree(&found, width, pixel)).collect();
         let mut levels: Vec<Level> = chosen.iter().copied().flatten().collect();
         levels.sort_unstable();
         levels.dedup();
