@@ -9,9 +9,9 @@
 //! pass sums are integers, so that any order and any number of threads gives the same bits (`sensor`); from
 //! pass to pass means and scatter are kept, and the scatter gives the standard error of every pixel
 //! ([`Estimate`]). Samples are low-discrepancy points that go on from pass to pass (`samples`), spread evenly where
-//! a pixel's edges and texture are decided (`sheared`, `survey`). Which surfaces
-//! may send light into the picture at all, and from how far outside the frame, follows from bounds on κ over
-//! pieces of surface (`kappa_bounds`, `patches`, `reach`).
+//! a pixel's edges and texture are decided (`sheared`, `survey`). Which surfaces may send light into the picture at
+//! all, and from how far outside the frame, follows from bounds on κ over pieces of surface (`kappa_bounds`,
+//! `patches`, `reach`).
 
 mod bright_surfaces;
 mod estimate;
@@ -58,7 +58,7 @@ pub struct Truth<'a> {
 
 /// Where rays start.
 enum Rays {
-    Sensor(FromSensor),
+    Sensor(Box<FromSensor>),
     Surfaces(FromSurfaces),
 }
 
@@ -140,7 +140,7 @@ impl<'a> Truth<'a> {
         let known = self.rays.take();
         let Self { view, radiance, options, sensor, .. } = &*self;
         let rays = known.unwrap_or_else(|| match options.estimator {
-            Estimator::Sensor => Rays::Sensor(FromSensor::new(view, *radiance, sensor, options)),
+            Estimator::Sensor => Rays::Sensor(Box::new(FromSensor::new(view, *radiance, sensor, options))),
             Estimator::Surface => Rays::Surfaces(FromSurfaces::new(view, *radiance, sensor, options)),
         });
         let passed = self.next_pass();

@@ -1,12 +1,13 @@
 //! The random numbers of samples: low-discrepancy or independent.
 //!
 //! A set of samples is a sequence of points in [0, 1)⁴; passes take consecutive pieces of it. With
-//! [`Sampler::LowDiscrepancy`] all pixels whose light paint moves use the same sequence (others may have samples
-//! of their own kind, [`super::sheared`]). That matters where samples go to other pixels: equal aperture points move all pixels' samples alike, so that where κ varies slowly each
-//! pixel gives and takes the same number, and the coverage is even by construction. Drawn apart, the samples
-//! that land in a pixel are a random draw from its neighbourhood, with the noise of one (measured: more than
-//! twice the samples for the same error). The price is that errors of neighbouring pixels are alike: at few
-//! samples they show as steps and repeated dots in place of grain.
+//! [`Sampler::LowDiscrepancy`] all pixels whose light paint moves use the same sequence (others may have samples of
+//! their own kind, [`super::sheared`]). That matters where samples go to other pixels: equal aperture points move
+//! all pixels' samples alike, so that where κ varies slowly each pixel gives and takes the same number, and the
+//! coverage is even by construction. Drawn apart, the samples that land in a pixel are a random draw from its
+//! neighbourhood, with the noise of one (measured: more than twice the samples for the same error). The price is
+//! that errors of neighbouring pixels are alike: at few samples they show as steps and repeated dots in place of
+//! grain.
 
 use super::options::Sampler;
 use crate::random::{hash, mix, unit};
