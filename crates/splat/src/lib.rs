@@ -16,6 +16,7 @@
 
 mod canvas;
 mod draw;
+mod drawn;
 mod fixed;
 mod gpu;
 

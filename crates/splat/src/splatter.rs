@@ -3,7 +3,8 @@
 mod on_card;
 
 use crate::draw::Pen;
-use crate::lens_in_use::{LensInUse, Placed, Tolerance};
+use crate::drawn::{Changes, Scene};
+use crate::lens_in_use::{LensInUse, Tolerance};
 use crate::nodes::{Nodes, Scale};
 use crate::paint::Paint;
 use crate::partition::{Share, find_shares, join};
@@ -11,14 +12,13 @@ use crate::resolve::Overflow;
 use crate::seen::{Seen, seen};
 use crate::shape::Shape;
 use crate::stencil::Stencils;
-use crate::sums::{RESOLVE_ROWS, Scene, Sums};
+use crate::sums::{RESOLVE_ROWS, Sums};
 use lens::{Aperture, Camera, FocusOffset, Picture};
 use on_card::Card;
 use progress::{Cancelled, Progress, Stage};
 use rayon::prelude::*;
 use salf::Salf;
 use scene::SurfaceField;
-use std::cmp::Ordering;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -192,7 +192,7 @@ impl Splatter {
                 splatter.resolve(rows.clone(), wanted)
             })?;
             self.shares_of = Some(self.lens.clone());
-            if !is_painted {
+            if !is_painted || self.paint_over()? {
                 return Ok(());
             }
         }
@@ -227,7 +227,8 @@ impl Splatter {
         }
         let nodes = self.nodes.as_ref().ok_or(SplatError::Overflow)?;
         let (aperture, lens) = (&self.aperture, &self.lens);
-        Ok(self.sums.set(&Scene { pen: aperture.pen(nodes, lens), lens, paint }, progress)?)
+        let height = self.salf.camera.height;
+        Ok(self.sums.set(&Scene { pen: aperture.pen(nodes, lens), lens, paint, height }, progress)?)
     }
 
     /// Moves the given samples to where `focus` now sends them. Returns the rows of the picture that changed.
@@ -246,33 +247,23 @@ impl Splatter {
         let was_standard = self.paint.is_standard();
         let (aperture, lens) = (&self.aperture, &self.lens);
         let height = self.salf.camera.height;
-        let (mut removed, mut added) = (Vec::new(), Vec::new());
+        let mut changes = Changes::default();
         let block_of = |leaf: &u32| nodes.block_of_node[*leaf as usize];
         for leaves in leaves.chunk_by(|a, b| block_of(a) == block_of(b)) {
             let block = block_of(&leaves[0]) as usize;
             let before = self.paint.blocks[block].clone();
             self.paint.update(nodes, block, leaves, &self.salf.samples, focus);
-            let pen = aperture.pen(nodes, lens);
-            let scene = Scene { pen, lens, paint: &self.paint };
-            if before.as_deref() != self.paint.of_block(block) {
-                compare(&scene, block, before.as_deref(), &mut removed, &mut added);
-            }
+            let scene = Scene { pen: aperture.pen(nodes, lens), lens, paint: &self.paint, height };
+            changes.join(scene.changes(block, before.as_deref()));
         }
-        let pen = aperture.pen(nodes, lens);
-        let mut rows = height..0;
-        for &(index, placed) in removed.iter().chain(&added) {
-            let reached = pen.rows(&nodes.nodes[index as usize], placed, height);
-            if !reached.is_empty() {
-                rows = rows.start.min(reached.start)..rows.end.max(reached.end);
-            }
-        }
+        let mut rows = changes.rows();
         if nodes.scale != Scale::FINEST {
             return self.sum_again();
         }
         if was_standard != self.paint.is_standard() {
             rows = 0..height;
         }
-        match self.change([&removed, &added], rows.clone()) {
+        match self.change(&changes, rows.clone()) {
             Ok(()) => Ok(rows),
             Err(SplatError::Overflow) => self.sum_again(),
             Err(_) if self.drop_lost_card() => self.sum_again(),
@@ -280,21 +271,36 @@ impl Splatter {
         }
     }
 
-    /// Takes the first nodes away from the sums, adds the others, and makes rows of the picture.
-    fn change(
-        &mut self,
-        [removed, added]: [&[(u32, Placed)]; 2],
-        rows: Range<u32>,
-    ) -> Result<(), SplatError> {
-        if let Some(changed) = self.change_on_card([removed, added]) {
+    /// Changes the sums, and makes rows of the picture.
+    fn change(&mut self, changes: &Changes, rows: Range<u32>) -> Result<(), SplatError> {
+        if let Some(changed) = self.change_on_card(changes) {
             changed?;
         } else {
             let nodes = self.nodes.as_ref().ok_or(SplatError::Overflow)?;
             let pen = self.aperture.pen(nodes, &self.lens);
-            self.sums.add(&pen, removed, -1);
-            self.sums.add(&pen, added, 1);
+            self.sums.change(&pen, &changes.removed, &changes.added);
         }
         self.resolve(rows, Wanted::Picture)
+    }
+
+    /// Paints over the sums of the standard picture. Returns whether that is done: not where most is painted.
+    fn paint_over(&mut self) -> Result<bool, SplatError> {
+        let nodes = self.nodes.as_ref().ok_or(SplatError::Overflow)?;
+        let (lens, height) = (&self.lens, self.salf.camera.height);
+        let painted = |block: &usize| self.paint.of_block(*block).is_some();
+        let blocks = (0..nodes.blocks.len()).into_par_iter().filter(painted);
+        let count: usize = blocks.clone().map(|block| nodes.blocks[block].len()).sum();
+        if nodes.scale != Scale::FINEST || 2 * count > nodes.nodes.len() {
+            return Ok(false);
+        }
+        let scene = Scene { pen: self.aperture.pen(nodes, lens), lens, paint: &self.paint, height };
+        let of_blocks: Vec<_> = blocks.map(|block| scene.changes(block, None)).collect();
+        let mut changes = Changes::default();
+        of_blocks.into_iter().for_each(|more| changes.join(more));
+        match self.change(&changes, 0..height) {
+            Err(SplatError::Overflow) => Ok(false),
+            other => other.map(|()| true),
+        }
     }
 
     /// Sums all with the paint as it is.
@@ -361,42 +367,6 @@ impl Wanted {
 fn chunk_rows(chunk: usize, count: usize) -> Range<i32> {
     let first = (chunk * RESOLVE_ROWS) as i32;
     first..first + count as i32
-}
-
-/// What is no longer drawn of a block, and what is now, since its paint was `before`.
-fn compare(
-    scene: &Scene,
-    block: usize,
-    before: Option<&[crate::lens_in_use::NodeFocus]>,
-    removed: &mut Vec<(u32, Placed)>,
-    added: &mut Vec<(u32, Placed)>,
-) {
-    let drawn = |paint| {
-        let mut drawn = Vec::new();
-        scene.drawn(block, paint, |index, _, placed| drawn.push((index, placed)));
-        drawn
-    };
-    let (old, new) = (drawn(before), drawn(scene.paint.of_block(block)));
-    let (mut old, mut new) = (old.into_iter().peekable(), new.into_iter().peekable());
-    loop {
-        let order = match (old.peek(), new.peek()) {
-            (Some((a, _)), Some((b, _))) => a.cmp(b),
-            (Some(_), None) => Ordering::Less,
-            (None, Some(_)) => Ordering::Greater,
-            (None, None) => break,
-        };
-        match order {
-            Ordering::Less => removed.extend(old.next()),
-            Ordering::Greater => added.extend(new.next()),
-            Ordering::Equal => {
-                let (was, is) = (old.next(), new.next());
-                if was != is {
-                    removed.extend(was);
-                    added.extend(is);
-                }
-            }
-        }
-    }
 }
 
 #[cfg(test)]

@@ -2,9 +2,9 @@
 
 use crate::canvas::{Accumulator, Canvas};
 use crate::draw::{Pen, SeenRun};
-use crate::lens_in_use::{LensInUse, NodeFocus, Placed};
+use crate::drawn::{Drawn, Scene, rows_of};
+use crate::lens_in_use::Placed;
 use crate::nodes::{Nodes, SplatNode};
-use crate::paint::Paint;
 use crate::resolve::{Lines, Overflow, Quanta, lines};
 use crate::widest::with_widest_instructions;
 use progress::{Cancelled, Progress};
@@ -56,11 +56,6 @@ impl Sum {
         dim.map(canvas).collect()
     }
 
-    fn canvas(&mut self) -> SumCanvas<'_> {
-        let bright = self.bright.as_mut().map(Accumulator::canvas);
-        SumCanvas { dim: self.dim.canvas(), bright, found: Vec::new() }
-    }
-
     fn bytes(&self) -> usize {
         self.dim.bytes() + self.bright.as_ref().map_or(0, Accumulator::bytes)
     }
@@ -102,66 +97,6 @@ impl SumCanvas<'_> {
     }
 }
 
-/// What is summed: nodes as a lens sees them, and their paint.
-pub struct Scene<'a> {
-    pub pen: Pen<'a>,
-    pub lens: &'a LensInUse,
-    pub paint: &'a Paint,
-}
-
-impl Scene<'_> {
-    /// Calls `visit` with each node of a block that is drawn, painted as `paint` says.
-    #[inline(always)]
-    pub fn drawn(
-        &self,
-        block: usize,
-        paint: Option<&[NodeFocus]>,
-        mut visit: impl FnMut(u32, &SplatNode, Placed),
-    ) {
-        let first = self.pen.nodes.blocks[block].start;
-        let nodes = self.pen.nodes.of_block(block);
-        let mut at = 0;
-        while at < nodes.len() {
-            let node = &nodes[at];
-            let focus = paint.map_or(NodeFocus::STANDARD, |paint| paint[at]);
-            let placed = self.lens.place(node, &focus);
-            if node.is_leaf || self.lens.may_merge(node, &focus, placed) {
-                if self.pen.nodes.may_reach_frame(node, placed.radius) {
-                    visit(first + at as u32, node, placed);
-                }
-                at = (node.end - first) as usize;
-            } else {
-                at += 1;
-            }
-        }
-    }
-
-    /// The nodes of a block that are drawn.
-    fn list(&self, block: usize, height: u32) -> Vec<Drawn> {
-        let mut list = Vec::new();
-        self.drawn(
-            block,
-            self.paint.of_block(block),
-            #[inline(always)]
-            |index, node, placed| {
-                let rows = self.pen.rows(node, placed, height);
-                if !rows.is_empty() {
-                    list.push(Drawn { index, placed, rows: [rows.start, rows.end] });
-                }
-            },
-        );
-        list
-    }
-}
-
-/// A node that is drawn.
-struct Drawn {
-    index: u32,
-    placed: Placed,
-    /// The first pixel row that its light may reach, and the one behind the last.
-    rows: [u32; 2],
-}
-
 impl Sums {
     /// Empty ones, for a picture of this size.
     pub fn new(size: [usize; 2], has_bright: bool) -> Self {
@@ -175,59 +110,86 @@ impl Sums {
 
     /// Sets them to what a scene sends.
     pub fn set(&mut self, scene: &Scene, progress: &dyn Progress) -> Result<(), Cancelled> {
-        let height = self.free.dim.levels[0].height as u32;
         let blocks = (0..scene.pen.nodes.blocks.len()).into_par_iter();
-        let lists: Vec<(Vec<Drawn>, Range<u32>)> = blocks
+        let lists: Vec<_> = blocks
             .map(|block| {
-                let list = scene.list(block, height);
-                let first = list.iter().map(|drawn| drawn.rows[0]).min().unwrap_or(0);
-                let end = list.iter().map(|drawn| drawn.rows[1]).max().unwrap_or(0);
-                (list, first..end)
+                let list = scene.list(block, scene.paint.of_block(block));
+                let rows = rows_of(&list);
+                (list, rows)
             })
             .collect();
-        let bands: Vec<_> =
-            self.free.bands(BAND_ROWS).into_iter().zip(self.sharing.bands(BAND_ROWS)).collect();
+        let bands = self.bands();
         let (count, done) = (bands.len(), AtomicUsize::new(0));
-        bands.into_par_iter().enumerate().with_max_len(1).try_for_each(|(band, (mut free, mut sharing))| {
+        bands.into_par_iter().with_max_len(1).try_for_each(|mut band| {
             progress.check()?;
-            free.clear();
-            sharing.clear();
-            let first = band as u32 * BAND_ROWS;
-            let is_here = |rows: [u32; 2]| rows[0] < first + BAND_ROWS && rows[1] > first;
-            let lists = lists.iter().filter(|(_, rows)| is_here([rows.start, rows.end]));
-            with_widest_instructions(
-                #[inline(always)]
-                || {
-                    for drawn in lists.flat_map(|(list, _)| list).filter(|drawn| is_here(drawn.rows)) {
-                        let node = &scene.pen.nodes.nodes[drawn.index as usize];
-                        let canvas = if is_sharing(node, drawn.placed) { &mut sharing } else { &mut free };
-                        canvas.draw(&scene.pen, node, drawn.placed, 1);
-                    }
-                },
-            );
+            band.free.clear();
+            band.sharing.clear();
+            let here = band.rows.clone();
+            let lists = lists.iter().filter(|(_, rows)| meet(rows, &here)).map(|(list, _)| list);
+            band.draw(&scene.pen, lists, 1);
             progress.report((done.fetch_add(1, Ordering::Relaxed) + 1) as f32 / count as f32);
             Ok(())
         })
     }
 
-    /// Adds (`sign` 1) nodes, or takes them away (−1).
-    pub fn add(&mut self, pen: &Pen, drawn: &[(u32, Placed)], sign: i32) {
-        let (mut free, mut sharing) = (self.free.canvas(), self.sharing.canvas());
-        with_widest_instructions(
-            #[inline(always)]
-            || {
-                for &(index, placed) in drawn {
-                    let node = &pen.nodes.nodes[index as usize];
-                    let canvas = if is_sharing(node, placed) { &mut sharing } else { &mut free };
-                    canvas.draw(pen, node, placed, sign);
-                }
-            },
-        );
+    /// Takes away the nodes `removed`, and adds `added`.
+    pub fn change(&mut self, pen: &Pen, removed: &[Drawn], added: &[Drawn]) {
+        let rows = rows_of(removed.iter().chain(added));
+        let mut bands = self.bands();
+        bands.retain(|band| meet(&rows, &band.rows));
+        bands.into_par_iter().with_max_len(1).for_each(|mut band| {
+            band.draw(pen, [removed], -1);
+            band.draw(pen, [added], 1);
+        });
+    }
+
+    fn bands(&mut self) -> Vec<Band<'_>> {
+        let free = self.free.bands(BAND_ROWS).into_iter();
+        let both = free.zip(self.sharing.bands(BAND_ROWS)).zip((0..).step_by(BAND_ROWS as usize));
+        both.map(|((free, sharing), first)| Band { rows: first..first + BAND_ROWS, free, sharing }).collect()
     }
 
     /// The pixel rows `rows`: what is free, and what shares the rest.
     pub fn lines(&self, nodes: &Nodes, rows: Range<i32>) -> Result<[Option<Lines>; 2], Overflow> {
         Ok([self.free.lines(nodes, rows.clone())?, self.sharing.lines(nodes, rows)?])
+    }
+}
+
+/// Whether two ranges have anything in common.
+#[inline(always)]
+fn meet(a: &Range<u32>, b: &Range<u32>) -> bool {
+    a.start < b.end && b.start < a.end
+}
+
+/// Some pixel rows of both sums.
+struct Band<'a> {
+    rows: Range<u32>,
+    free: SumCanvas<'a>,
+    sharing: SumCanvas<'a>,
+}
+
+impl Band<'_> {
+    /// Adds (`sign` 1) the nodes of lists, or takes them away (−1).
+    fn draw<'d>(
+        &mut self,
+        pen: &Pen,
+        lists: impl IntoIterator<Item = impl IntoIterator<Item = &'d Drawn>>,
+        sign: i32,
+    ) {
+        with_widest_instructions(
+            #[inline(always)]
+            || {
+                for drawn in lists.into_iter().flatten() {
+                    if !meet(&drawn.rows(), &self.rows) {
+                        continue;
+                    }
+                    let node = &pen.nodes.nodes[drawn.index as usize];
+                    let is_sharing = is_sharing(node, drawn.placed);
+                    let canvas = if is_sharing { &mut self.sharing } else { &mut self.free };
+                    canvas.draw(pen, node, drawn.placed, sign);
+                }
+            },
+        );
     }
 }
 

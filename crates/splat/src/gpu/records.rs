@@ -1,11 +1,12 @@
 //! Which nodes are drawn, as the card reads it.
 
 use crate::draw::{Form, Pen};
+use crate::drawn::Scene;
 use crate::gpu::passes::KINDS;
 use crate::lens_in_use::Placed;
 use crate::nodes::SplatNode;
 use crate::stencil::Place;
-use crate::sums::{Scene, is_sharing};
+use crate::sums::is_sharing;
 use rayon::prelude::*;
 use std::ops::Range;
 

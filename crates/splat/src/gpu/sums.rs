@@ -1,6 +1,7 @@
 //! The sums on the card: accumulators, and what is drawn onto them.
 
 use crate::draw::Pen;
+use crate::drawn::{Changes, Scene};
 use crate::gpu::Gpu;
 use crate::gpu::device::Lost;
 use crate::gpu::passes::KINDS;
@@ -8,10 +9,8 @@ use crate::gpu::records::{self, LARGE, Records};
 use crate::gpu::resolve::Resolve;
 use crate::gpu::scene::Scene as Uploaded;
 use crate::gpu::shapes::Shapes;
-use crate::lens_in_use::Placed;
 use crate::nodes::Nodes;
 use crate::resolve::Overflow;
-use crate::sums::Scene;
 use lens::Picture;
 use progress::{Cancelled, Progress};
 use salf::tree::LEVELS;
@@ -173,20 +172,16 @@ impl GpuSums {
     }
 
     /// Takes nodes away and adds others; both in the hierarchy's order.
-    pub fn change(
-        &mut self,
-        pen: &Pen,
-        removed: &[(u32, Placed)],
-        added: &[(u32, Placed)],
-    ) -> Result<(), GpuError> {
+    pub fn change(&mut self, pen: &Pen, changes: &Changes) -> Result<(), GpuError> {
         self.take_up(pen)?;
         for chunk in 0..self.scene.chunks.len() {
             let first = self.scene.chunks[chunk].first;
             let end = self.scene.chunks.get(chunk + 1).map_or(u32::MAX, |next| next.first);
             let mut records = Records::default();
-            for (changed, sign) in [(removed, -1), (added, 1)] {
-                for &(index, placed) in changed.iter().filter(|(index, _)| (first..end).contains(index)) {
-                    records.push(pen, index, first, &pen.nodes.nodes[index as usize], placed, sign);
+            for (changed, sign) in [(&changes.removed, -1), (&changes.added, 1)] {
+                for drawn in changed.iter().filter(|drawn| (first..end).contains(&drawn.index)) {
+                    let node = &pen.nodes.nodes[drawn.index as usize];
+                    records.push(pen, drawn.index, first, node, drawn.placed, sign);
                 }
             }
             self.draw(pen, chunk, &records, &progress::Unwatched)?;

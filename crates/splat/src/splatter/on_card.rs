@@ -1,10 +1,9 @@
 //! Sums on a graphics card, and on the processor again once the card is lost.
 
 use super::{SplatError, Splatter, Wanted};
+use crate::drawn::{Changes, Scene};
 use crate::gpu::{Gpu, GpuError, GpuSums};
-use crate::lens_in_use::Placed;
 use crate::paint::Paint;
-use crate::sums::Scene;
 use progress::Progress;
 use std::ops::Range;
 
@@ -85,7 +84,8 @@ impl Splatter {
     ) -> Option<Result<(), SplatError>> {
         let (nodes, sums) = (self.nodes.as_ref()?, self.card.sums.as_mut()?);
         let (aperture, lens) = (&self.aperture, &self.lens);
-        let set = sums.set(&Scene { pen: aperture.pen(nodes, lens), lens, paint }, progress);
+        let height = self.salf.camera.height;
+        let set = sums.set(&Scene { pen: aperture.pen(nodes, lens), lens, paint, height }, progress);
         Some(self.card.came_of(set))
     }
 
@@ -103,14 +103,11 @@ impl Splatter {
         Some(self.card.came_of(resolved))
     }
 
-    /// Takes the first nodes away from the sums, and adds the others.
-    pub(super) fn change_on_card(
-        &mut self,
-        [removed, added]: [&[(u32, Placed)]; 2],
-    ) -> Option<Result<(), SplatError>> {
+    /// See [`Splatter::change`].
+    pub(super) fn change_on_card(&mut self, changes: &Changes) -> Option<Result<(), SplatError>> {
         let (nodes, sums) = (self.nodes.as_ref()?, self.card.sums.as_mut()?);
         let pen = self.aperture.pen(nodes, &self.lens);
-        let changed = sums.change(&pen, removed, added);
+        let changed = sums.change(&pen, changes);
         Some(self.card.came_of(changed))
     }
 }

@@ -1,0 +1,135 @@
+//! Which nodes are drawn, and how that changes with the paint.
+
+use crate::draw::Pen;
+use crate::lens_in_use::{LensInUse, NodeFocus, Placed};
+use crate::nodes::SplatNode;
+use crate::paint::Paint;
+use std::cmp::Ordering;
+use std::ops::Range;
+
+/// What is summed: nodes as a lens sees them, and their paint.
+pub struct Scene<'a> {
+    pub pen: Pen<'a>,
+    pub lens: &'a LensInUse,
+    pub paint: &'a Paint,
+    /// Pixel rows of the picture.
+    pub height: u32,
+}
+
+impl Scene<'_> {
+    /// Calls `visit` with each node of a block that is drawn, painted as `paint` says.
+    #[inline(always)]
+    pub fn drawn(
+        &self,
+        block: usize,
+        paint: Option<&[NodeFocus]>,
+        mut visit: impl FnMut(u32, &SplatNode, Placed),
+    ) {
+        let first = self.pen.nodes.blocks[block].start;
+        let nodes = self.pen.nodes.of_block(block);
+        let mut at = 0;
+        while at < nodes.len() {
+            let node = &nodes[at];
+            let focus = paint.map_or(NodeFocus::STANDARD, |paint| paint[at]);
+            let placed = self.lens.place(node, &focus);
+            if node.is_leaf || self.lens.may_merge(node, &focus, placed) {
+                if self.pen.nodes.may_reach_frame(node, placed.radius) {
+                    visit(first + at as u32, node, placed);
+                }
+                at = (node.end - first) as usize;
+            } else {
+                at += 1;
+            }
+        }
+    }
+
+    /// The nodes of a block that are drawn, painted as `paint` says, in order.
+    pub fn list(&self, block: usize, paint: Option<&[NodeFocus]>) -> Vec<Drawn> {
+        let mut list = Vec::new();
+        self.drawn(
+            block,
+            paint,
+            #[inline(always)]
+            |index, node, placed| {
+                let rows = self.pen.rows(node, placed, self.height);
+                if !rows.is_empty() {
+                    list.push(Drawn { index, placed, rows: [rows.start, rows.end] });
+                }
+            },
+        );
+        list
+    }
+
+    /// What is no longer drawn of a block, and what is now, since its paint was `before`.
+    pub fn changes(&self, block: usize, before: Option<&[NodeFocus]>) -> Changes {
+        let mut changes = Changes::default();
+        let now = self.paint.of_block(block);
+        if before == now {
+            return changes;
+        }
+        let mut old = self.list(block, before).into_iter().peekable();
+        let mut new = self.list(block, now).into_iter().peekable();
+        loop {
+            let order = match (old.peek(), new.peek()) {
+                (Some(a), Some(b)) => a.index.cmp(&b.index),
+                (Some(_), None) => Ordering::Less,
+                (None, Some(_)) => Ordering::Greater,
+                (None, None) => return changes,
+            };
+            match order {
+                Ordering::Less => changes.removed.extend(old.next()),
+                Ordering::Greater => changes.added.extend(new.next()),
+                Ordering::Equal => {
+                    let (was, is) = (old.next(), new.next());
+                    if was != is {
+                        changes.removed.extend(was);
+                        changes.added.extend(is);
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// A node that is drawn.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Drawn {
+    pub index: u32,
+    pub placed: Placed,
+    /// The first pixel row that its light may reach, and the one behind the last.
+    rows: [u32; 2],
+}
+
+impl Drawn {
+    /// The pixel rows that its light may reach.
+    #[inline(always)]
+    pub fn rows(&self) -> Range<u32> {
+        self.rows[0]..self.rows[1]
+    }
+}
+
+/// The pixel rows that the light of any of them may reach.
+pub fn rows_of<'a>(drawn: impl IntoIterator<Item = &'a Drawn>) -> Range<u32> {
+    let rows = drawn.into_iter().map(Drawn::rows);
+    rows.reduce(|a, b| a.start.min(b.start)..a.end.max(b.end)).unwrap_or(0..0)
+}
+
+/// What is no longer drawn, and what is now.
+#[derive(Clone, Debug, Default)]
+pub struct Changes {
+    pub removed: Vec<Drawn>,
+    pub added: Vec<Drawn>,
+}
+
+impl Changes {
+    /// Adds more of them.
+    pub fn join(&mut self, more: Self) {
+        self.removed.extend(more.removed);
+        self.added.extend(more.added);
+    }
+
+    /// The pixel rows that they change.
+    pub fn rows(&self) -> Range<u32> {
+        rows_of(self.removed.iter().chain(&self.added))
+    }
+}
