@@ -188,11 +188,6 @@ impl<W: Word> Accumulator<W> {
         self.levels.iter().map(|level| size_of_val(&*level.cells) + size_of_val(&*level.totals)).sum()
     }
 
-    /// All of it, to draw on.
-    pub fn canvas(&mut self) -> Canvas<'_, W> {
-        self.bands(i32::MAX).remove(0)
-    }
-
     /// Cut into bands of `rows` pixel rows each, a multiple of the coarsest level's pixel.
     pub fn bands(&mut self, rows: i32) -> Vec<Canvas<'_, W>> {
         let height = self.levels[0].height as i32;
@@ -218,6 +213,14 @@ impl<W: Word> Accumulator<W> {
             }
         }
         canvases
+    }
+}
+
+#[cfg(test)]
+impl<W: Word> Accumulator<W> {
+    /// All of it, to draw on.
+    pub fn canvas(&mut self) -> Canvas<'_, W> {
+        self.bands(i32::MAX).remove(0)
     }
 }
 

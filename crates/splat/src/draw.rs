@@ -14,7 +14,7 @@ mod stencilled;
 pub use image::WHOLE;
 pub use seen_runs::SeenRun;
 
-use crate::canvas::{Canvas, PIXEL, POSITION_BITS, Rows, Word};
+use crate::canvas::{Canvas, PIXEL, Rows, Word};
 use crate::fixed::mul_shift;
 use crate::lens_in_use::Placed;
 use crate::nodes::{Cells, Nodes, ONE, SplatNode};
@@ -284,16 +284,5 @@ impl<'a> Pen<'a> {
         let part = mul_shift(radius - self.stencil_radius, self.per_stencil_radius, 16);
         // Smoothly, or the coverage would show where it begins.
         mul_shift(mul_shift(part, part, 16), 3 * ONE - 2 * part, 16)
-    }
-
-    /// The rows of a picture of `height` rows that a node's light may reach.
-    #[inline(always)]
-    pub fn rows(&self, node: &SplatNode, placed: Placed, height: u32) -> std::ops::Range<u32> {
-        let center = (node.center[1] >> POSITION_BITS) as i64;
-        let reach = (placed.radius.unsigned_abs() as i64 >> POSITION_BITS) * 65 / 64
-            + (node.half_size[1] as i64 >> (POSITION_BITS - 1))
-            + (4 << node.level);
-        let row = |row: i64| row.clamp(0, height as i64) as u32;
-        row(center - reach)..row(center + reach + 1)
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::draw::Pen;
 use crate::lens_in_use::{LensInUse, NodeFocus, Placed};
-use crate::nodes::SplatNode;
+use crate::nodes::{Nodes, SplatNode};
 use crate::paint::Paint;
 use std::cmp::Ordering;
 use std::ops::Range;
@@ -51,7 +51,7 @@ impl Scene<'_> {
             paint,
             #[inline(always)]
             |index, node, placed| {
-                let rows = self.pen.rows(node, placed, self.height);
+                let rows = node.reach(1, placed, self.height);
                 if !rows.is_empty() {
                     list.push(Drawn { index, placed, rows: [rows.start, rows.end] });
                 }
@@ -110,8 +110,7 @@ impl Drawn {
 
 /// The pixel rows that the light of any of them may reach.
 pub fn rows_of<'a>(drawn: impl IntoIterator<Item = &'a Drawn>) -> Range<u32> {
-    let rows = drawn.into_iter().map(Drawn::rows);
-    rows.reduce(|a, b| a.start.min(b.start)..a.end.max(b.end)).unwrap_or(0..0)
+    hull(drawn.into_iter().map(Drawn::rows))
 }
 
 /// What is no longer drawn, and what is now.
@@ -128,8 +127,15 @@ impl Changes {
         self.added.extend(more.added);
     }
 
-    /// The pixel rows that they change.
-    pub fn rows(&self) -> Range<u32> {
-        rows_of(self.removed.iter().chain(&self.added))
+    /// The rows, and the columns of a picture `width` px wide, that they change.
+    pub fn window(&self, nodes: &Nodes, width: u32) -> [Range<u32>; 2] {
+        let all = || self.removed.iter().chain(&self.added);
+        let columns = |drawn: &Drawn| nodes.nodes[drawn.index as usize].reach(0, drawn.placed, width);
+        [rows_of(all()), hull(all().map(columns).filter(|columns| !columns.is_empty()))]
     }
+}
+
+/// The range from the first start to the last end.
+fn hull(ranges: impl Iterator<Item = Range<u32>>) -> Range<u32> {
+    ranges.reduce(|a, b| a.start.min(b.start)..a.end.max(b.end)).unwrap_or(0..0)
 }

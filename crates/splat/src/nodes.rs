@@ -1,6 +1,7 @@
 //! The light field's hierarchy in the integers of the sum.
 
-use crate::canvas::PIXEL;
+use crate::canvas::{PIXEL, POSITION_BITS};
+use crate::lens_in_use::Placed;
 use rayon::prelude::*;
 use salf::tree::{LEVELS, Node, NodeVisibility, Tree};
 use salf::{Salf, Visibility};
@@ -80,6 +81,17 @@ impl SplatNode {
     #[inline(always)]
     pub fn is_open(&self) -> bool {
         self.cells == OPEN
+    }
+
+    /// The columns (`axis` 0) or rows (1) of a picture of `side` of them that its light may reach.
+    #[inline(always)]
+    pub fn reach(&self, axis: usize, placed: Placed, side: u32) -> Range<u32> {
+        let center = (self.center[axis] >> POSITION_BITS) as i64;
+        let reach = (placed.radius.unsigned_abs() as i64 >> POSITION_BITS) * 65 / 64
+            + (self.half_size[axis] as i64 >> (POSITION_BITS - 1))
+            + (4 << self.level);
+        let within = |place: i64| place.clamp(0, side as i64) as u32;
+        within(center - reach)..within(center + reach + 1)
     }
 
     /// A sample of a large cell as samples of cells of `level`.

@@ -18,6 +18,7 @@
 
 use crate::fixed::ratio;
 use crate::resolve::Lines;
+use std::ops::Range;
 
 /// A pixel's factors.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -60,40 +61,45 @@ impl Share {
 /// What a pixel holds that nothing was thrown at.
 const BLACK: [f32; 4] = [0.0; 4];
 
-/// The pixels of `count` lines of either part, free and sharing.
-fn each(
-    [free, sharing]: &[Option<Lines>; 2],
-    width: usize,
-    count: usize,
-    mut visit: impl FnMut(usize, &[f32; 4], &[f32; 4]),
-) {
-    let black = if free.is_some() && sharing.is_some() { Vec::new() } else { vec![BLACK; width] };
-    let [mut free, mut sharing] = [free, sharing].map(|lines| lines.as_ref().map(Lines::rows));
-    for line in 0..count {
-        let free = free.as_mut().and_then(Iterator::next).unwrap_or(&black);
-        let sharing = sharing.as_mut().and_then(Iterator::next).unwrap_or(&black);
-        for (x, (free, sharing)) in free.iter().zip(sharing).enumerate() {
-            visit(line * width + x, free, sharing);
+/// Where the pixels of lines lie among some whole rows of the picture.
+#[derive(Clone)]
+pub struct Strip {
+    /// Pixels a row of the picture.
+    pub width: usize,
+    pub rows: Range<usize>,
+    pub columns: Range<usize>,
+}
+
+impl Strip {
+    /// Calls `visit` with each pixel's place, and with that pixel of either part, free and sharing.
+    fn each(self, parts: &[Option<Lines>; 2], mut visit: impl FnMut(usize, &[f32; 4], &[f32; 4])) {
+        let black = vec![BLACK; if parts.iter().all(Option::is_some) { 0 } else { self.columns.len() }];
+        let [mut free, mut sharing] = parts.each_ref().map(|lines| lines.as_ref().map(Lines::rows));
+        for row in self.rows {
+            let free = free.as_mut().and_then(Iterator::next).unwrap_or(&black);
+            let sharing = sharing.as_mut().and_then(Iterator::next).unwrap_or(&black);
+            let first = row * self.width + self.columns.start;
+            for (at, (free, sharing)) in (first..).zip(free.iter().zip(sharing)) {
+                visit(at, free, sharing);
+            }
         }
     }
 }
 
 /// Finds the factors of pixels from the lines of a standard picture, free and sharing.
-pub fn find_shares(parts: &[Option<Lines>; 2], width: usize, shares: &mut [Share]) {
-    each(parts, width, shares.len() / width, |at, free, sharing| {
-        shares[at] = Share::of(free[3], sharing[3]);
-    });
+pub fn find_shares(parts: &[Option<Lines>; 2], strip: Strip, shares: &mut [Share]) {
+    strip.each(parts, |at, free, sharing| shares[at] = Share::of(free[3], sharing[3]));
 }
 
 /// Joins lines, free and sharing, to pixels and their coverage; evened out if nothing is painted.
 pub fn join(
     parts: &[Option<Lines>; 2],
-    width: usize,
+    strip: Strip,
     shares: &[Share],
     is_painted: bool,
     (radiance, coverage): (&mut [[f32; 3]], &mut [f32]),
 ) {
-    each(parts, width, shares.len() / width, |at, free, sharing| {
+    strip.each(parts, |at, free, sharing| {
         let share = &shares[at];
         let even = if is_painted { 1.0 } else { share.even };
         let [r, g, b, covered] = std::array::from_fn(|c| even * (free[c] + share.partial * sharing[c]));

@@ -1,26 +1,58 @@
 //! Accumulators to pictures: running sums, and each level upsampled onto the next finer one.
 
-use crate::canvas::{Accumulator, Level, Row, Word};
+use crate::canvas::{Accumulator, Level, Pixel, Row, Word};
 use std::ops::Range;
 
 /// A pixel holds more light than its integers are sure to hold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Overflow;
 
-/// Sums of red, green, blue and coverage of some pixel rows, each 1 for a pixel of radiance 1.
+/// A rectangle of pixels of a level, in its rows and columns; −1 is the border.
+#[derive(Clone, Debug)]
+pub struct Window {
+    pub rows: Range<i32>,
+    pub columns: Range<i32>,
+}
+
+impl Window {
+    /// What of a coarser level's pixels this one's are made of.
+    fn on_level(&self, level: usize) -> Self {
+        let coarse = |fine: &Range<i32>| match level {
+            0 => fine.clone(),
+            _ => (fine.start >> level) - 1..((fine.end - 1) >> level) + 2,
+        };
+        Self { rows: coarse(&self.rows), columns: coarse(&self.columns) }
+    }
+
+    /// That of it which a level has.
+    fn within<W: Word>(self, level: &Level<W>) -> Self {
+        let within = |range: Range<i32>, side: usize| range.start.max(-1)..range.end.min(side as i32 + 1);
+        Self { rows: within(self.rows, level.height), columns: within(self.columns, level.width) }
+    }
+}
+
+/// Sums of red, green, blue and coverage of a window's pixels, each 1 for a pixel of radiance 1, row by row.
 pub struct Lines {
-    stride: usize,
-    /// Row by row, a column of border on either side.
+    window: Window,
     pixels: Vec<[f32; 4]>,
 }
 
 impl Lines {
-    /// The rows without their border.
-    pub fn rows(&self) -> impl Iterator<Item = &[[f32; 4]]> {
-        self.pixels.chunks_exact(self.stride).map(|line| &line[1..line.len() - 1])
+    fn black(window: Window) -> Self {
+        Self { pixels: vec![[0.0; 4]; window.rows.len() * window.columns.len()], window }
     }
 
-    /// Adds the light, not the coverage, of lines of the same size.
+    /// The rows.
+    pub fn rows(&self) -> impl Iterator<Item = &[[f32; 4]]> {
+        self.pixels.chunks_exact(self.window.columns.len().max(1))
+    }
+
+    fn row(&self, row: i32) -> Option<&[[f32; 4]]> {
+        let (rows, width) = (&self.window.rows, self.window.columns.len());
+        rows.contains(&row).then(|| &self.pixels[(row - rows.start) as usize * width..][..width])
+    }
+
+    /// Adds the light, not the coverage, of lines of the same window.
     pub fn add_light(&mut self, more: &Self) {
         for (pixel, more) in self.pixels.iter_mut().zip(&more.pixels) {
             (0..3).for_each(|c| pixel[c] += more[c]);
@@ -45,87 +77,104 @@ impl Quanta {
     }
 }
 
-/// The pixel rows `rows` of a sum; `None` if they are black.
+/// The pixels of a sum in a window of the picture; `None` if they are black.
 pub fn lines<W: Word>(
     accumulator: &Accumulator<W>,
     quanta: Quanta,
-    rows: Range<i32>,
+    window: &Window,
 ) -> Result<Option<Lines>, Overflow> {
-    let is_touched =
-        |level: &Level<W>, rows: &Range<i32>| with_halo(level, rows).any(|row| level.row(row).is_some());
-    let ranges: Vec<_> = (0..accumulator.levels.len() as i32)
-        .map(|k| if k == 0 { rows.clone() } else { (rows.start >> k) - 1..((rows.end - 1) >> k) + 2 })
-        .collect();
-    let levels = || accumulator.levels.iter().zip(&ranges);
-    let Some(coarsest) = levels().rposition(|(level, rows)| is_touched(level, rows)) else {
-        return Ok(None);
+    let levels = || {
+        let levels = accumulator.levels.iter().enumerate();
+        levels.map(|(k, level)| (level, window.on_level(k).within(level)))
     };
-    let mut above: Option<(Lines, Range<i32>)> = None;
-    for (level, rows) in levels().take(coarsest + 1).rev() {
-        let stride = level.width + 2;
+    let is_touched =
+        |(level, mut window): (&Level<W>, Window)| window.rows.any(|row| level.row(row).is_some());
+    let Some(coarsest) = levels().rposition(is_touched) else { return Ok(None) };
+    let mut above: Option<Lines> = None;
+    for (level, window) in levels().take(coarsest + 1).rev() {
         let mut here = match &above {
-            Some((coarse, coarse_rows)) => upsampled(coarse, coarse_rows, rows, stride),
-            None => Lines { stride, pixels: vec![[0.0; 4]; stride * rows.len()] },
+            Some(coarse) => upsampled(coarse, window.clone()),
+            None => Lines::black(window.clone()),
         };
-        for row in with_halo(level, rows) {
-            let first = (row - rows.start) as usize * stride;
-            level
-                .row(row)
-                .map_or(Ok(()), |row| integrate(&row, quanta, &mut here.pixels[first..first + stride]))?;
+        let width = window.columns.len();
+        for (row, line) in window.rows.clone().zip(here.pixels.chunks_exact_mut(width)) {
+            if let Some(row) = level.row(row) {
+                integrate(&row, level.width, quanta, &window.columns, line)?;
+            }
         }
-        above = Some((here, rows.clone()));
+        above = Some(here);
     }
-    Ok(above.map(|(lines, _)| lines))
+    Ok(above)
 }
 
-/// Adds the pixels of a row to a line.
+/// Adds the pixels of a row of a level, `width` wide, in some of its columns to a line.
 #[inline(always)]
-fn integrate<W: Word>(row: &Row<W>, quanta: Quanta, line: &mut [[f32; 4]]) -> Result<(), Overflow> {
+fn integrate<W: Word>(
+    row: &Row<W>,
+    width: usize,
+    quanta: Quanta,
+    columns: &Range<i32>,
+    line: &mut [[f32; 4]],
+) -> Result<(), Overflow> {
     let quantum = quanta.quantum as f32;
     let (mut sum, mut covered, mut largest) = ([W::default(); 4], 0i64, 0i64);
-    // What leaves the picture ends in a column behind it.
-    let pixels = line.iter_mut().skip(row.columns.start);
-    for (pixel, difference) in pixels.zip(row.differences) {
+    // In memory the border is column 0; what leaves the picture ends in a column behind the other border.
+    let first = row.columns.start;
+    let place = |column: usize| column.clamp(first, row.columns.end.min(width + 2).max(first)) - first;
+    let [start, end, last] = [(columns.start + 1) as usize, (columns.end + 1) as usize, width + 2].map(place);
+    let mut pass = |difference: &Pixel<W>| {
         for c in 0..4 {
             sum[c] = sum[c].plus(difference[c]);
-            pixel[c] += sum[c].float() * quantum;
         }
         covered = covered.wrapping_add(sum[3].wide());
         largest = largest.max(sum[3].wide());
+        sum
+    };
+    row.differences[..start].iter().for_each(|difference| {
+        pass(difference);
+    });
+    let line = line.iter_mut().skip((first + start) - (columns.start + 1) as usize);
+    for (pixel, difference) in line.zip(&row.differences[start..end]) {
+        let sum = pass(difference);
+        for c in 0..4 {
+            pixel[c] += sum[c].float() * quantum;
+        }
     }
+    row.differences[end..last].iter().for_each(|difference| {
+        pass(difference);
+    });
     if covered == row.total && largest <= quanta.largest_coverage { Ok(()) } else { Err(Overflow) }
 }
 
-/// Those of `rows` that a level has.
-fn with_halo<W: Word>(level: &Level<W>, rows: &Range<i32>) -> Range<i32> {
-    rows.start.max(-1)..rows.end.min(level.height as i32 + 1)
-}
-
-/// Bilinear: a fine pixel lies a quarter of a coarse one off its centre. Both begin with column −1.
-fn upsampled(coarse: &Lines, coarse_rows: &Range<i32>, rows: &Range<i32>, stride: usize) -> Lines {
+/// Bilinear: a fine pixel lies a quarter of a coarse one off its centre.
+fn upsampled(coarse: &Lines, window: Window) -> Lines {
     const NEAR: f32 = 0.75;
     const FAR: f32 = 0.25;
     let mix = |a: &[f32; 4], b: &[f32; 4]| -> [f32; 4] { std::array::from_fn(|c| NEAR * a[c] + FAR * b[c]) };
-    let black = vec![[0f32; 4]; coarse.stride];
-    let line_of = |row: i32| {
-        let first = (row - coarse_rows.start) as usize * coarse.stride;
-        if coarse_rows.contains(&row) { &coarse.pixels[first..first + coarse.stride] } else { &black }
-    };
+    let black = vec![[0f32; 4]; coarse.window.columns.len()];
     let mut mixed = black.clone();
-    let mut pixels = Vec::with_capacity(stride * rows.len() + 1);
-    for row in rows.clone() {
+    let (width, first) = (window.columns.len(), window.columns.start);
+    // Fine columns 2k − 1 and 2k lie between the coarse ones k − 1 and k.
+    let between = ((first + 1) >> 1) - 1 - coarse.window.columns.start;
+    let half = usize::from(first & 1 == 0);
+    let mut pixels = Vec::with_capacity(width * window.rows.len() + 2);
+    for row in window.rows.clone() {
         // A fine row's coarse one, and the neighbour it leans to.
-        let (near, far) = (line_of(row >> 1), line_of((row >> 1) + if row & 1 == 0 { -1 } else { 1 }));
+        let rows = [row >> 1, (row >> 1) + if row & 1 == 0 { -1 } else { 1 }];
+        let [near, far] = rows.map(|row| coarse.row(row).unwrap_or(&black));
         for ((out, near), far) in mixed.iter_mut().zip(near).zip(far) {
             *out = mix(near, far);
         }
-        // Fine columns −1 and 0 lie between the coarse ones −1 and 0, and so on.
-        let first = pixels.len();
-        let between = mixed.windows(2).take(stride.div_ceil(2));
-        pixels.extend(between.flat_map(|pair| [mix(&pair[0], &pair[1]), mix(&pair[1], &pair[0])]));
-        pixels.truncate(first + stride);
+        let end = pixels.len() + width;
+        let mut pairs = mixed[between as usize..].windows(2);
+        if half == 1 {
+            pixels.extend(pairs.next().map(|pair| mix(&pair[1], &pair[0])));
+        }
+        let pairs = pairs.take((end - pixels.len()).div_ceil(2));
+        pixels.extend(pairs.flat_map(|pair| [mix(&pair[0], &pair[1]), mix(&pair[1], &pair[0])]));
+        pixels.truncate(end);
     }
-    Lines { stride, pixels }
+    Lines { window, pixels }
 }
 
 #[cfg(test)]
@@ -135,14 +184,15 @@ mod tests {
 
     const FINE: Quanta = Quanta { quantum: 1.0 / 1024.0, largest_coverage: i64::MAX };
 
-    fn part(accumulator: &Accumulator<i32>, rows: Range<i32>) -> Vec<[f32; 4]> {
-        let black = vec![[0.0; 4]; accumulator.levels[0].width * rows.len()];
-        let lines = lines(accumulator, FINE, rows).unwrap();
+    fn part(accumulator: &Accumulator<i32>, window: &Window) -> Vec<[f32; 4]> {
+        let black = vec![[0.0; 4]; window.columns.len() * window.rows.len()];
+        let lines = lines(accumulator, FINE, window).unwrap();
         lines.map_or(black, |lines| lines.rows().flatten().copied().collect())
     }
 
     fn whole(accumulator: &Accumulator<i32>) -> Vec<[f32; 4]> {
-        part(accumulator, 0..accumulator.levels[0].height as i32)
+        let level = &accumulator.levels[0];
+        part(accumulator, &Window { rows: 0..level.height as i32, columns: 0..level.width as i32 })
     }
 
     #[test]
@@ -175,10 +225,13 @@ mod tests {
         let wanted = (300.0 * 64.0 + 1300.0 * 4.0 + 1300.0) / 256.0 * 1024.0;
         assert!((mass / wanted - 1.0).abs() < 1e-4, "{mass} {wanted}");
         for rows in [0..64, 3..4, 30..41, 63..64] {
-            assert_eq!(
-                part(&accumulator, rows.clone()),
-                lines[rows.start as usize * 64..rows.end as usize * 64]
-            );
+            for columns in [0..64, 5..6, 10..31, 12..30, 63..64] {
+                let window = Window { rows: rows.clone(), columns: columns.clone() };
+                let here = columns.start as usize..columns.end as usize;
+                let wanted = lines.chunks(64).map(|line| &line[here.clone()]);
+                let wanted = wanted.skip(rows.start as usize).take(rows.len()).flatten().copied();
+                assert_eq!(part(&accumulator, &window), wanted.collect::<Vec<_>>(), "{window:?}");
+            }
         }
     }
 }

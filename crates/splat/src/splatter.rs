@@ -7,8 +7,8 @@ use crate::drawn::{Changes, Scene};
 use crate::lens_in_use::{LensInUse, Tolerance};
 use crate::nodes::{Nodes, Scale};
 use crate::paint::Paint;
-use crate::partition::{Share, find_shares, join};
-use crate::resolve::Overflow;
+use crate::partition::{Share, Strip, find_shares, join};
+use crate::resolve::{Overflow, Window};
 use crate::seen::{Seen, seen};
 use crate::shape::Shape;
 use crate::stencil::Stencils;
@@ -183,13 +183,12 @@ impl Splatter {
         let has_shares = self.shares_of.as_ref() == Some(&self.lens);
         let standard = Stage::new(progress, 0.0, if is_painted { 0.5 } else { 1.0 });
         let painted = Stage::new(progress, if has_shares { 0.0 } else { 0.5 }, 1.0);
-        let rows = 0..self.salf.camera.height;
         if !has_shares {
             self.shares_of = None;
             let wanted = if is_painted { Wanted::Shares } else { Wanted::SharesAndPicture };
             self.in_finest_integers(|splatter| {
                 splatter.sum_nodes(&Paint::default(), &standard)?;
-                splatter.resolve(rows.clone(), wanted)
+                splatter.resolve(splatter.frame(), wanted)
             })?;
             self.shares_of = Some(self.lens.clone());
             if !is_painted || self.paint_over()? {
@@ -201,7 +200,7 @@ impl Splatter {
             let summed = splatter.sum_nodes(&paint, &painted);
             splatter.paint = paint;
             summed?;
-            splatter.resolve(rows.clone(), Wanted::Picture)
+            splatter.resolve(splatter.frame(), Wanted::Picture)
         })
     }
 
@@ -256,14 +255,15 @@ impl Splatter {
             let scene = Scene { pen: aperture.pen(nodes, lens), lens, paint: &self.paint, height };
             changes.join(scene.changes(block, before.as_deref()));
         }
-        let mut rows = changes.rows();
+        let mut window = changes.window(nodes, self.salf.camera.width);
         if nodes.scale != Scale::FINEST {
             return self.sum_again();
         }
         if was_standard != self.paint.is_standard() {
-            rows = 0..height;
+            window = self.frame();
         }
-        match self.change(&changes, rows.clone()) {
+        let rows = window[0].clone();
+        match self.change(&changes, window) {
             Ok(()) => Ok(rows),
             Err(SplatError::Overflow) => self.sum_again(),
             Err(_) if self.drop_lost_card() => self.sum_again(),
@@ -271,8 +271,8 @@ impl Splatter {
         }
     }
 
-    /// Changes the sums, and makes rows of the picture.
-    fn change(&mut self, changes: &Changes, rows: Range<u32>) -> Result<(), SplatError> {
+    /// Changes the sums, and makes some rows and columns of the picture.
+    fn change(&mut self, changes: &Changes, window: [Range<u32>; 2]) -> Result<(), SplatError> {
         if let Some(changed) = self.change_on_card(changes) {
             changed?;
         } else {
@@ -280,7 +280,7 @@ impl Splatter {
             let pen = self.aperture.pen(nodes, &self.lens);
             self.sums.change(&pen, &changes.removed, &changes.added);
         }
-        self.resolve(rows, Wanted::Picture)
+        self.resolve(window, Wanted::Picture)
     }
 
     /// Paints over the sums of the standard picture. Returns whether that is done: not where most is painted.
@@ -297,7 +297,7 @@ impl Splatter {
         let of_blocks: Vec<_> = blocks.map(|block| scene.changes(block, None)).collect();
         let mut changes = Changes::default();
         of_blocks.into_iter().for_each(|more| changes.join(more));
-        match self.change(&changes, 0..height) {
+        match self.change(&changes, self.frame()) {
             Err(SplatError::Overflow) => Ok(false),
             other => other.map(|()| true),
         }
@@ -309,9 +309,9 @@ impl Splatter {
         Ok(0..self.salf.camera.height)
     }
 
-    /// Integrates `rows` of the sums.
-    fn resolve(&mut self, rows: Range<u32>, wanted: Wanted) -> Result<(), SplatError> {
-        if rows.is_empty() {
+    /// Integrates the sums in some rows and columns; on a card in whole rows.
+    fn resolve(&mut self, [rows, columns]: [Range<u32>; 2], wanted: Wanted) -> Result<(), SplatError> {
+        if rows.is_empty() || columns.is_empty() {
             return Ok(());
         }
         if let Some(resolved) = self.resolve_on_card(rows.clone(), wanted) {
@@ -327,20 +327,28 @@ impl Splatter {
         let shares = self.shares.par_chunks_mut(RESOLVE_ROWS * width);
         let all = radiance.zip(coverage).zip(shares).enumerate().skip(chunks.start).take(chunks.len());
         all.try_for_each(|(chunk, ((radiance, coverage), shares))| {
-            let of_chunk = chunk_rows(chunk, coverage.len() / width);
-            let rows = of_chunk.start.max(rows.start as i32)..of_chunk.end.min(rows.end as i32);
-            let first = (rows.start - of_chunk.start) as usize * width;
-            let here = first..first + rows.len() * width;
-            let parts = sums.lines(nodes, rows)?;
+            let first = (chunk * RESOLVE_ROWS) as u32;
+            let here = rows.start.max(first)..rows.end.min(first + (coverage.len() / width) as u32);
+            let signed = |range: &Range<u32>| range.start as i32..range.end as i32;
+            let parts = sums.lines(nodes, &Window { rows: signed(&here), columns: signed(&columns) })?;
+            let strip = Strip {
+                width,
+                rows: (here.start - first) as usize..(here.end - first) as usize,
+                columns: columns.start as usize..columns.end as usize,
+            };
             if wanted.has_shares() {
-                find_shares(&parts, width, &mut shares[here.clone()]);
+                find_shares(&parts, strip.clone(), shares);
             }
             if wanted.has_picture() {
-                let out = (&mut radiance[here.clone()], &mut coverage[here.clone()]);
-                join(&parts, width, &shares[here], is_painted, out);
+                join(&parts, strip, shares, is_painted, (radiance, coverage));
             }
             Ok(())
         })
+    }
+
+    /// All rows and columns.
+    fn frame(&self) -> [Range<u32>; 2] {
+        [0..self.salf.camera.height, 0..self.salf.camera.width]
     }
 }
 
@@ -361,12 +369,6 @@ impl Wanted {
     fn has_picture(self) -> bool {
         self != Self::Shares
     }
-}
-
-/// The pixel rows of a chunk of `count` rows.
-fn chunk_rows(chunk: usize, count: usize) -> Range<i32> {
-    let first = (chunk * RESOLVE_ROWS) as i32;
-    first..first + count as i32
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@ use crate::draw::{Pen, SeenRun};
 use crate::drawn::{Drawn, Scene, rows_of};
 use crate::lens_in_use::Placed;
 use crate::nodes::{Nodes, SplatNode};
-use crate::resolve::{Lines, Overflow, Quanta, lines};
+use crate::resolve::{Lines, Overflow, Quanta, Window, lines};
 use crate::widest::with_widest_instructions;
 use progress::{Cancelled, Progress};
 use rayon::prelude::*;
@@ -60,14 +60,14 @@ impl Sum {
         self.dim.bytes() + self.bright.as_ref().map_or(0, Accumulator::bytes)
     }
 
-    /// Its pixel rows `rows`; `None` if they are black.
-    fn lines(&self, nodes: &Nodes, rows: Range<i32>) -> Result<Option<Lines>, Overflow> {
+    /// Its pixels in a window; `None` if they are black.
+    fn lines(&self, nodes: &Nodes, window: &Window) -> Result<Option<Lines>, Overflow> {
         let dim = Quanta::new(nodes.scale.dim_bits, 32, nodes.brightest.min(crate::nodes::BRIGHT as f64));
-        let mut found = lines(&self.dim, dim, rows.clone())?;
+        let mut found = lines(&self.dim, dim, window)?;
         if let Some(bright) = &self.bright {
             let quanta = Quanta::new(nodes.scale.bright_bits, 64, nodes.brightest);
             // Their coverage is among the ordinary ones'.
-            if let (Some(found), Some(light)) = (&mut found, lines(bright, quanta, rows)?) {
+            if let (Some(found), Some(light)) = (&mut found, lines(bright, quanta, window)?) {
                 found.add_light(&light);
             }
         }
@@ -149,9 +149,9 @@ impl Sums {
         both.map(|((free, sharing), first)| Band { rows: first..first + BAND_ROWS, free, sharing }).collect()
     }
 
-    /// The pixel rows `rows`: what is free, and what shares the rest.
-    pub fn lines(&self, nodes: &Nodes, rows: Range<i32>) -> Result<[Option<Lines>; 2], Overflow> {
-        Ok([self.free.lines(nodes, rows.clone())?, self.sharing.lines(nodes, rows)?])
+    /// The pixels in a window: what is free, and what shares the rest.
+    pub fn lines(&self, nodes: &Nodes, window: &Window) -> Result<[Option<Lines>; 2], Overflow> {
+        Ok([self.free.lines(nodes, window)?, self.sharing.lines(nodes, window)?])
     }
 }
 
