@@ -102,7 +102,7 @@ pub const HARDNESS_TIP: &str =
 
 /// The largest brush: a quarter of the scene.
 pub fn largest_radius(document: &Document) -> f64 {
-    let (low, high) = document.scene().bounds();
+    let (low, high) = document.stage.bounds;
     let diagonal = (high - low).length();
     if diagonal > 0.0 && diagonal.is_finite() { diagonal / 4.0 } else { 1.0 }
 }

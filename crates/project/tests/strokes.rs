@@ -73,7 +73,7 @@ fn what_is_written_is_read_to_the_bit_and_what_is_wrong_is_told() {
     let text = std::fs::read_to_string(&file).unwrap();
     let cases = [
         ("focus-brush strokes", "shopping list", "shopping list"),
-        ("\"version\":2", "\"version\":9", "update the program"),
+        ("\"version\":3", "\"version\":9", "update the program"),
         ("\"yfov\":0.7", "\"yfov\":-0.7", "step 1: its view"),
         ("\"hardness\":0.5", "\"hardness\":7", "step 1: brush: hardness"),
         ("\"points\":[[", "\"points\":[[\"a\",", "understood"),

@@ -83,7 +83,7 @@ impl Job {
         std::thread::Builder::new()
             .name(label.clone())
             .stack_size(STACK_BYTES)
-            .spawn(move || deliver(id, guarded(&doing, || work(&shared))))
+            .spawn(move || deliver(id, guarded(&doing, || among_others(|| work(&shared)))))
             .map_err(|e| {
                 SessionError::TryAgain(format!("{label}: no thread could be started: {e} (try again)"))
             })?;
@@ -98,6 +98,17 @@ impl Job {
             can_cancel: !self.progress.cancelled(),
         }
     }
+}
+
+/// Runs `work` with rayon threads of its own: in the common ones, what must be quick would wait for its long pieces. The
+/// system shares the processors out.
+pub(crate) fn among_others<T: Send>(
+    work: impl FnOnce() -> Result<T, SessionError> + Send,
+) -> Result<T, SessionError> {
+    let pool = rayon::ThreadPoolBuilder::new().stack_size(STACK_BYTES).build();
+    let pool =
+        pool.map_err(|e| SessionError::TryAgain(format!("no threads could be started: {e} (try again)")))?;
+    pool.install(work)
 }
 
 /// Runs `work`; a panic in it becomes an error.
@@ -124,6 +135,36 @@ mod tests {
 
         Job::start(JobId(2), "testing".into(), |_| Ok(7), move |id, r| send.send((id, r)).unwrap()).unwrap();
         assert_eq!(receive.recv_timeout(Duration::from_secs(10)).unwrap(), (JobId(2), Ok(7)));
+    }
+
+    #[test]
+    fn what_is_quick_does_not_wait_for_long_work() {
+        use rayon::prelude::*;
+        let (send, receive) = mpsc::channel();
+        let (begun, has_begun) = mpsc::channel();
+        let everybody = 4 * rayon::current_num_threads();
+        let job = Job::start(
+            JobId(1),
+            "working".into(),
+            move |progress| {
+                // More pieces than threads, none of which ends by itself.
+                (0..everybody).into_par_iter().for_each(|_| {
+                    begun.send(()).unwrap();
+                    while !progress.cancelled() {
+                        std::thread::sleep(Duration::from_millis(1));
+                    }
+                });
+                Ok(())
+            },
+            move |_, result: Result<(), _>| send.send(result).unwrap(),
+        )
+        .unwrap();
+        has_begun.recv_timeout(Duration::from_secs(10)).unwrap();
+        let quick: u32 = (0..1000u32).into_par_iter().sum();
+        assert_eq!(quick, 499_500);
+        assert!(receive.try_recv().is_err(), "the long work goes on");
+        job.progress.cancel();
+        assert_eq!(receive.recv_timeout(Duration::from_secs(10)).unwrap(), Ok(()));
     }
 
     #[test]

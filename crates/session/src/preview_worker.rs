@@ -1,6 +1,6 @@
 //! What the preview thread does with its wishes.
 
-use crate::job::guarded;
+use crate::job::{among_others, guarded};
 use crate::light_field::{Brought, Changes, LightField};
 use crate::picture_ring::{PictureRing, Rectangle, whole};
 use crate::preview::{Delivery, Shared, Wishes};
@@ -263,7 +263,7 @@ impl Worker {
         self.since = Changes::default();
         let (shared, stage, camera, epoch) = (self.shared.clone(), stage.clone(), camera.clone(), self.epoch);
         let work = move || {
-            let made = guarded("drawing the preview", || {
+            let make = || {
                 let mut field = match unsummed {
                     Some(field) => field,
                     None => {
@@ -273,7 +273,8 @@ impl Worker {
                 shared.helper_sums();
                 field.bring_up(&camera, &focus, &Share::new(&shared.progress, 0.7, 1.0))?;
                 Ok(field)
-            });
+            };
+            let made = guarded("drawing the preview", || among_others(make));
             shared.deliver(Delivery { made, epoch });
         };
         let thread = std::thread::Builder::new().name("light field".into()).stack_size(16 << 20).spawn(work);

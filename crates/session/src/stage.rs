@@ -3,7 +3,7 @@
 use crate::{SessionError, SurfaceHit};
 use atlas::{Atlas, AtlasError, TexelMap};
 use focus::Canvas;
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 use progress::Progress;
 use scene::{LoadOptions, Scene, SceneError};
 use std::path::Path;
@@ -14,6 +14,8 @@ use trace::Tracer;
 pub struct Stage {
     /// The scene.
     pub scene: Arc<Scene>,
+    /// Lowest and highest corner of its box.
+    pub bounds: (DVec3, DVec3),
     /// Where its triangles lie in the focus map.
     pub atlas: Arc<Atlas>,
     /// What answers rays.
@@ -72,6 +74,6 @@ impl Stage {
         let gutters: Vec<_> = texels.dilations.iter().map(|d| [place(d.texel), place(d.source)]).collect();
         let canvas = Arc::new(Canvas::new(&scene, &atlas, &texels.texels, &gutters));
         progress.report(1.0);
-        Ok(Self { scene, atlas, tracer, texels, canvas })
+        Ok(Self { bounds: scene.bounds(), scene, atlas, tracer, texels, canvas })
     }
 }

@@ -127,7 +127,7 @@ fn mirror_row(ui: &mut Ui, document: &Document, brush: &mut Brush) {
     let tip = "Paint the mirror image of every stroke as well: X is left and right, Y up and down, Z front and back.";
     row(ui, "Mirror", tip, |ui| {
         ui.horizontal(|ui| {
-            let (low, high) = document.scene().bounds();
+            let (low, high) = document.stage.bounds;
             let middle = ((low + high) / 2.0).to_array();
             let was_off = brush.mirror == [false; 3];
             for (axis, name) in ["X", "Y", "Z"].into_iter().enumerate() {
@@ -143,7 +143,7 @@ fn mirror_row(ui: &mut Ui, document: &Document, brush: &mut Brush) {
     });
     let tip = "Mirror at the scene's middle; else at the world's origin.";
     let is_on = !brush.symmetry().is_none();
-    let (low, high) = document.scene().bounds();
+    let (low, high) = document.stage.bounds;
     let middle = ((low + high) / 2.0).to_array();
     let mut about = brush.mirror_center == middle;
     let response = row(ui, "Mirror at", tip, |ui| {

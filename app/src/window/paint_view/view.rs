@@ -189,7 +189,7 @@ impl PaintView {
 
     /// Shows the whole scene.
     pub fn frame_all(&mut self, document: &Document) {
-        self.camera.frame(document.scene().bounds(), aspect(self.rect));
+        self.camera.frame(document.stage.bounds, aspect(self.rect));
     }
 
     /// Turns around what lies under the pointer from now on; around everything if that is nothing.
@@ -231,7 +231,7 @@ impl PaintView {
         let pointer = response.hover_pos().or_else(|| response.interact_pointer_pos());
         self.hover = pointer.and_then(|at| session.pick(&view_ray(&frame, view_position(rect, at))));
         let painter = ui.painter_at(rect);
-        self.paint_shot_camera(&painter, &document.camera, document.scene().bounds());
+        self.paint_shot_camera(&painter, &document.camera, document.stage.bounds);
         if look.focus_share > 0.0 {
             legend(&painter, rect);
         }
