@@ -35,11 +35,9 @@ wait "$app" 2>/dev/null
 start_app "$project" --replay "$root/tests/window/painting.json"
 for k in $(seq 1 400); do
     kill -0 "$app" 2>/dev/null || fail "painting: the program ended"
-    import -window root "$work/now.png"
-    # While a stroke is played, the title and the picture change; a star is in the title once anything is painted.
+    # A star is in the title once anything is painted.
     title=$(xdotool search --name "Focus Brush" getwindowname 2>/dev/null | tail -1)
-    case $title in *"*"*) cp "$work/now.png" "$out/02-painting-$(printf %02d "$k").png" ;; esac
-    steps=$((${steps:-0} + 1))
+    case $title in *"*"*) import -window root "$out/02-painting-$(printf %02d "$k").png" ;; esac
     [ "$(ls "$out" | grep -c '^02-painting')" -ge "${SERIES:-10}" ] && break
     sleep 1
 done
@@ -49,7 +47,7 @@ shot 03-finished
 key F7
 settle "the atlas"
 shot 10-atlas
-key F8
+key F8 # which also chooses the tool to look with
 click $((wide * 60 / 100)) $((high * 40 / 100))
 shot 11-aperture
 key F9
@@ -74,12 +72,11 @@ key Escape
 key F1
 shot 17-help
 key F1
-x=20
-for menu in file edit select view focus layer lens render help; do
-    click "$x" 12
-    import -window root "$out/18-menu-$menu.png"
+for menu in file:19 edit:51 select:90 view:131 focus:173 layer:215 lens:254 render:299 help:343; do
+    click "${menu#*:}" 12
+    import -window root "$out/18-menu-${menu%:*}.png"
     key Escape
-    x=$((x + 38))
+    away
 done
 palette "light"
 settle "the light theme"

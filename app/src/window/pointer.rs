@@ -65,11 +65,11 @@ impl StrokeInput {
         if hand.is_busy {
             return actions;
         }
-        // The modifiers of the press itself: a frame may hold more than one event.
+        // Place and modifiers of the press itself: a frame may hold more than one event, a whole click even.
         let pressed = ui.input(|input| {
             let press = |event: &Event| match event {
-                Event::PointerButton { button: PointerButton::Primary, pressed: true, modifiers, .. } => {
-                    Some(*modifiers)
+                Event::PointerButton { button: PointerButton::Primary, pressed: true, modifiers, pos } => {
+                    Some((*modifiers, *pos))
                 }
                 _ => None,
             };
@@ -105,8 +105,9 @@ impl StrokeInput {
             let picks = hand.tool.selects() || hand.tool == Tool::Clone;
             !navigation::claims_primary(ui.ctx(), *modifiers) && (picks || !modifiers.command)
         };
-        let start = pressed.filter(own).filter(|_| response.is_pointer_button_down_on());
-        if let (Some(modifiers), Some(at)) = (start, response.interact_pointer_pos()) {
+        let is_here = response.is_pointer_button_down_on() || response.clicked();
+        let start = pressed.filter(|(modifiers, _)| own(modifiers) && is_here);
+        if let Some((modifiers, at)) = start {
             response.request_focus();
             let tool = hand.tool;
             let hit = || session.pick(&view_ray(&frame, position(at)));

@@ -6,8 +6,10 @@ use egui::{Align, Layout, ProgressBar, Ui};
 use session::{Command, JobStatus, PreviewKind, Session};
 
 /// What lies under the pointer.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Hover {
+    /// The object's name.
+    pub object: String,
     /// Axial depth in the shot camera.
     pub depth: f64,
     /// Signed circle of confusion on the full-size picture, px.
@@ -19,7 +21,7 @@ pub struct Hover {
 }
 
 /// What the line says beside what the session knows.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct StatusNotes<'a> {
     /// What lies under the pointer.
     pub hover: Option<Hover>,
@@ -70,16 +72,18 @@ pub fn status_line(ui: &mut Ui, session: &Session, notes: StatusNotes<'_>, actio
             ui.separator();
         }
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            if let Some(hover) = notes.hover {
+            if let Some(hover) = &notes.hover {
                 let text = format!(
-                    "{} deep · {} · t {:.4} · anchor {:.2}",
+                    "{} · {} deep · {} · t {:.4} · anchor {:.2}",
+                    hover.object,
                     controls::length(hover.depth),
                     controls::circle(hover.circle_px),
                     hover.t,
                     hover.anchor
                 );
-                ui.label(text)
-                    .on_hover_text("What lies under the pointer: depth, blur, and the painted focus.");
+                ui.label(text).on_hover_text(
+                    "What lies under the pointer: its name, depth, blur, and the painted focus.",
+                );
                 ui.separator();
             }
             ui.with_layout(Layout::left_to_right(Align::Center), |ui| {

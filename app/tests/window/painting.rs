@@ -224,3 +224,21 @@ fn the_mirror_paints_both_sides_and_blur_can_be_typed_in_other_measures() {
     let like = optics.kappa(1.0 / 2.0, FocusOffset::STANDARD);
     assert!((painted - like).abs() < 1e-9 * like.abs(), "{painted} {like}");
 }
+
+#[test]
+fn a_click_within_one_frame_is_a_dab() {
+    let (mut person, _folder) = opened();
+    chooses_blur(&mut person);
+    let map = person.document().map.clone();
+    let pos = at(person.paint_rect(), 0.7, 0.5);
+    person.window.hover_at(pos);
+    person.window.step();
+    let button = egui::PointerButton::Primary;
+    for pressed in [true, false] {
+        person.window.event(egui::Event::PointerButton { pos, button, pressed, modifiers: Modifiers::NONE });
+    }
+    person.window.run_steps(3);
+    person.waits();
+    assert_ne!(person.document().map, map);
+    assert_eq!(person.document().undo_names().collect::<Vec<_>>(), ["Brush stroke"]);
+}

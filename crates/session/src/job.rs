@@ -100,15 +100,18 @@ impl Job {
     }
 }
 
-/// Runs `work` with rayon threads of its own: in the common ones, what must be quick would wait for its long pieces. The
-/// system shares the processors out.
+/// Rayon threads for work that takes its time: in the common ones, what the window needs at once would wait for its long
+/// pieces. The system shares the processors out.
+pub(crate) fn own_threads() -> Result<rayon::ThreadPool, SessionError> {
+    let pool = rayon::ThreadPoolBuilder::new().stack_size(STACK_BYTES).build();
+    pool.map_err(|e| SessionError::TryAgain(format!("no threads could be started: {e} (try again)")))
+}
+
+/// Runs `work` with threads of its own.
 pub(crate) fn among_others<T: Send>(
     work: impl FnOnce() -> Result<T, SessionError> + Send,
 ) -> Result<T, SessionError> {
-    let pool = rayon::ThreadPoolBuilder::new().stack_size(STACK_BYTES).build();
-    let pool =
-        pool.map_err(|e| SessionError::TryAgain(format!("no threads could be started: {e} (try again)")))?;
-    pool.install(work)
+    own_threads()?.install(work)
 }
 
 /// Runs `work`; a panic in it becomes an error.

@@ -15,7 +15,7 @@
 //! snapshots of the focus map (tiles are shared until one is painted on): neither ever waits for the other. What
 //! a newer wish makes useless is stopped. The last good picture is never taken away.
 
-use crate::job::{JobProgress, Waker};
+use crate::job::{JobProgress, Waker, own_threads};
 use crate::light_field::{BakedField, Changes, LightField};
 use crate::preview_worker::Worker;
 use crate::screen::Patch;
@@ -259,11 +259,11 @@ impl PreviewThread {
             published: Mutex::default(),
             waker,
         });
-        let theirs = shared.clone();
+        let (theirs, pool) = (shared.clone(), own_threads()?);
         let thread = std::thread::Builder::new()
             .name("preview".into())
             .stack_size(16 << 20)
-            .spawn(move || Worker::new(theirs).run())
+            .spawn(move || pool.install(|| Worker::new(theirs).run()))
             .map_err(|e| SessionError::TryAgain(format!("no preview thread: {e} (try again)")))?;
         Ok(Self { shared, thread: Some(thread) })
     }

@@ -78,8 +78,8 @@ impl AtlasView {
         };
         let point = |at| StrokePoint { at: StrokeTarget::Atlas(at), pressure: 1.0 };
         let pointer = response.interact_pointer_pos().map(place_of);
-        let pressed =
-            response.is_pointer_button_down_on() && ui.input(|input| input.pointer.primary_pressed());
+        let is_here = response.is_pointer_button_down_on() || response.clicked();
+        let pressed = is_here && ui.input(|input| input.pointer.primary_pressed());
         self.painting &= session.is_painting();
         if pressed && let Some(at) = pointer.filter(|at| document.stage.surface_at(*at).is_some()) {
             let mode = hand.tool.mode(document.brush.mode);

@@ -116,6 +116,9 @@ impl Drawer {
             Drawn::Histogram => self.histogram.ui(ui, session),
         }
         // As high as the user drew it, whatever is in it.
-        ui.allocate_space(ui.available_size());
+        let rest = ui.available_size();
+        if rest.y > ui.spacing().item_spacing.y {
+            ui.allocate_space(rest);
+        }
     }
 }
