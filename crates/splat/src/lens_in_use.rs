@@ -90,7 +90,7 @@ pub struct LensInUse {
     pub optics: Optics,
     /// The signed radius of the aperture's image, 1/4096 px, for κ = 1.
     radius_per_kappa: f64,
-    /// Whether every sample is drawn, as exactly as it can be.
+    /// Whether what is drawn is drawn as exactly as it can be.
     pub is_exact: bool,
     /// From which |radius| on, 1/4096 px, open nodes of each level may be drawn, and partly occluded ones.
     smallest_radius: [[f64; LEVELS]; 2],
@@ -102,6 +102,9 @@ const FINER_AT_OUTLINES: f64 = 1.5;
 /// The circles of confusion below a drawn node may differ by this share of its side.
 const FLAT: f64 = 0.3;
 
+/// From this share of a circle of confusion on small images are drawn in fewer parts: as coarse as the nodes.
+const COARSE: f64 = 0.1;
+
 impl LensInUse {
     pub fn new(optics: Optics, shape: &Shape, tolerance: Tolerance) -> Self {
         let deviation = (shape.variance.min_element()).sqrt();
@@ -112,7 +115,7 @@ impl LensInUse {
                 circle / (4.0 * deviation) * (1 << POSITION_BITS) as f64
             })
         };
-        let is_exact = tolerance == Tolerance::NONE;
+        let is_exact = tolerance.share_of_circle < COARSE;
         Self {
             optics,
             radius_per_kappa: optics.splat_radius_px(1.0) * (1 << POSITION_BITS) as f64,

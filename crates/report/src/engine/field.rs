@@ -5,7 +5,7 @@ use crate::engine::dab::Dabbed;
 use crate::engine::dense::dense_seconds;
 use crate::engine::{Check, EngineRecord, Measured};
 use crate::stopwatch::{median, timed};
-use lens::{FocusOffset, Picture};
+use lens::{Camera, FocusOffset, Picture};
 use salf::Salf;
 use scene::SurfaceField;
 use session::{SessionError, Steps};
@@ -53,18 +53,26 @@ impl Field {
         let mut splatter = Splatter::new(self.salf.clone());
         keep(self.record("hierarchy", copy, start.elapsed().as_secs_f64(), &splatter));
         let mut converged: Option<Picture> = None;
+        let mut errors = Vec::new();
         for share in SHARES {
             splatter.set_tolerance(Tolerance { share_of_circle: share });
             let camera = &self.salf.camera;
             let progress = steps.begin("splatting");
             splatter.render(camera, &*self.focus, &*progress)?;
-            let drawn = timed(|| Ok(splatter.refocus(camera, &*progress)?))?;
+            // Another focus distance each time, or what is kept for a lens would be kept.
+            let mut nudges = (1..).map(|k| 1.0 + 1e-9 * f64::from(k));
+            let drawn = timed(|| {
+                let focus_distance = camera.focus_distance * nudges.next().unwrap_or(1.0);
+                Ok(splatter.refocus(&Camera { focus_distance, ..camera.clone() }, &*progress)?)
+            })?;
+            splatter.refocus(camera, &*progress)?;
             let mut record = self.record("full_splat", copy, drawn.seconds, &splatter);
             record.tolerance = Some(share);
             match &converged {
                 None => converged = Some(splatter.picture().clone()),
                 Some(converged) => {
                     let found = compare(splatter.picture(), converged, &self.band);
+                    errors.push(found.psnr);
                     record.psnr = Some(found.psnr);
                     record.band_psnr = found.band_psnr;
                     record.band_coverage_rms = found.band_coverage_rms;
@@ -72,6 +80,7 @@ impl Field {
             }
             keep(record);
         }
+        measured.checks.push(self.check("the error grows with the tolerance", is_growing(&errors)));
         if self.with_dense {
             let mut record = self.record("full_splat", copy, dense_seconds(&self.salf), &splatter);
             (record.renderer, record.bytes) = ("dense_scatter".into(), 0);
@@ -147,4 +156,9 @@ impl Field {
         alone.install(|| splatter.refocus(camera, &*progress))?;
         Ok(&many == splatter.picture())
     }
+}
+
+/// Whether pictures get no closer to the converged one, dB, from the first to the last.
+fn is_growing(decibels: &[f64]) -> bool {
+    decibels.windows(2).all(|pair| pair[1] <= pair[0])
 }

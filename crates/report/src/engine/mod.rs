@@ -9,6 +9,7 @@ mod dab;
 mod dense;
 mod field;
 mod frame_copy;
+mod plots;
 mod record;
 mod synthetic;
 mod write;

@@ -1,6 +1,9 @@
 //! The engine's figures as files.
 
-use crate::engine::{EngineRecord, EngineReport};
+use crate::engine::plots::plots;
+use crate::engine::{Check, EngineRecord, EngineReport};
+use crate::markup::escaped;
+use crate::page;
 use crate::store::{to_json, write_files};
 use crate::table::Table;
 use serde_json::json;
@@ -13,23 +16,51 @@ pub fn write(report: &EngineReport, copy: f64, folder: &Path) -> Result<Vec<Path
     let files = [
         ("report.json", to_json(&report.records)?),
         ("engine.md", markdown(report, copy).into_bytes()),
+        ("engine.html", html(report, copy).into_bytes()),
         ("about.json", to_json(&about)?),
     ];
     write_files(folder, files)
 }
 
+const TITLE: &str = "The splat engine: speed and error";
+
+fn method(copy: f64) -> String {
+    format!(
+        "F = {:.2} ms: copying one RGB float frame with all threads in the same run. PSNR against the converged splat of \
+         the same light field, on linear values clipped to [0, 1]; outlines: within 6 px of depth discontinuities. \
+         Tolerance: the side of a node as a share of a circle of confusion of 16 px.",
+        copy * 1e3
+    )
+}
+
 fn markdown(report: &EngineReport, copy: f64) -> String {
-    let machine = &report.machine;
-    let mut text = format!(
-        "# The splat engine: speed and error\n\n{}, {} threads, {}, {}. F = {:.2} ms: copying one RGB float frame with all threads in \
-         the same run. PSNR against the converged splat of the same light field, on linear values clipped to [0, 1]; outlines: \
-         within 6 px of depth discontinuities. Tolerance: the side of a node as a share of a circle of confusion of 16 px.\n\n",
-        machine.processor,
-        machine.threads,
-        machine.system,
-        machine.date,
-        copy * 1e3,
-    );
+    let (machine, method) = (page::machine_sentence(&report.machine), method(copy));
+    let mut text = format!("# {TITLE}\n\n{machine} {method}\n\n{}", table(report).to_markdown());
+    text += "\nWhat must hold:\n\n";
+    for check in &report.checks {
+        text += &format!("- {}\n", outcome(check));
+    }
+    text
+}
+
+fn html(report: &EngineReport, copy: f64) -> String {
+    let (machine, method) = (escaped(&page::machine_sentence(&report.machine)), escaped(&method(copy)));
+    let mut body = format!("<h1>{TITLE}</h1>\n<p class=\"byline\">{machine}</p>\n<p>{method}</p>\n");
+    plots(&report.records).iter().for_each(|chart| body += &page::figure(chart));
+    body +=
+        &format!("<h2>All measurements</h2>\n{}\n<h2>What must hold</h2>\n<ul>\n", table(report).to_html());
+    for check in &report.checks {
+        body += &format!("<li>{}</li>\n", escaped(&outcome(check)));
+    }
+    page::document(TITLE, &(body + "</ul>\n"))
+}
+
+fn outcome(check: &Check) -> String {
+    let mark = if check.holds { "holds" } else { "DOES NOT HOLD" };
+    format!("{}, {}: {mark}", check.scene, check.what)
+}
+
+fn table(report: &EngineReport) -> Table {
     let titles = [
         "Scene",
         "What",
@@ -47,13 +78,7 @@ fn markdown(report: &EngineReport, copy: f64) -> String {
     ];
     let mut table = Table::new(&titles);
     report.records.iter().for_each(|record| table.push(row(record)));
-    text += &table.to_markdown();
-    text += "\nWhat must hold:\n\n";
-    for check in &report.checks {
-        let mark = if check.holds { "holds" } else { "DOES NOT HOLD" };
-        text += &format!("- {}, {}: {mark}\n", check.scene, check.what);
-    }
-    text
+    table
 }
 
 fn row(record: &EngineRecord) -> Vec<String> {

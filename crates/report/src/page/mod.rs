@@ -50,11 +50,16 @@ pub fn html(report: &Report) -> Result<String, SessionError> {
             body += &format!("<h3>{}</h3>\n{}\n", series_title(series), table.to_html());
         }
     }
-    Ok(format!(
+    Ok(document("Focus Brush: speed against error", &body))
+}
+
+/// A page of its own.
+pub fn document(title: &str, body: &str) -> String {
+    format!(
         "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n<meta name=\"viewport\" \
-         content=\"width=device-width, initial-scale=1\">\n<title>Focus Brush: speed against error</title>\n\
+         content=\"width=device-width, initial-scale=1\">\n<title>{title}</title>\n\
          <style>\n{STYLE}</style></head>\n<body>\n{body}</body></html>\n"
-    ))
+    )
 }
 
 /// What was measured, and how.
@@ -122,7 +127,8 @@ fn scene_section(scene: &SceneSummary, measured: &[Measured]) -> Result<String, 
     Ok(html)
 }
 
-fn figure(chart: &Chart) -> String {
+/// A plot, and what has no place in it.
+pub fn figure(chart: &Chart) -> String {
     let caption = match chart.left_out() {
         0 => String::new(),
         n => format!("<figcaption>{n} marks at 0 have no place on a logarithmic axis.</figcaption>"),
