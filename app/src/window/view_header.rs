@@ -7,7 +7,7 @@ use egui::{Button, Ui};
 use session::{CommandId, Session};
 
 /// Room for the picture's scale in percent, points: without it the number is left out.
-const PERCENT_WIDTH: f32 = 44.0;
+const PERCENT_WIDTH: f32 = 60.0;
 
 /// What the headers change.
 pub struct HeaderState<'a> {
