@@ -3,6 +3,7 @@
 use crate::view::View;
 use glam::{DVec2, DVec3};
 use lens::FocusOffset;
+use rayon::prelude::*;
 use scene::{Scene, SurfaceField};
 use trace::Tracer;
 
@@ -35,10 +36,10 @@ pub fn painted_margin_px(tracer: &Tracer, view: &View, focus: &dyn SurfaceField<
     let frame = DVec2::new(view.camera.width as f64, view.camera.height as f64);
     let mut margin: f64 = 0.0;
     loop {
-        let mut reach = margin;
         let extent = frame + 2.0 * margin;
         let steps = (extent / SPACING_PX).ceil();
-        for row in 0..steps.y as i64 {
+        let of_row = |row: i64| {
+            let mut reach = margin;
             for column in 0..steps.x as i64 {
                 let pixel = DVec2::new(column as f64 + 0.5, row as f64 + 0.5) / steps * extent - margin;
                 let (inverse_depth, offset) = match tracer.first_hit(&view.chief_ray(pixel)) {
@@ -51,7 +52,9 @@ pub fn painted_margin_px(tracer: &Tracer, view: &View, focus: &dyn SurfaceField<
                     reach = reach.max(radius * 1.05);
                 }
             }
-        }
+            reach
+        };
+        let reach = (0..steps.y as i64).into_par_iter().map(of_row).reduce(|| margin, f64::max);
         let reach = reach.min(largest_margin_px(view));
         if reach <= margin * 1.02 + 1.0 {
             return reach;

@@ -222,13 +222,7 @@ impl<'a> Pen<'a> {
                     Form::Tilted(share) => {
                         self.draw_image(&mut image, Some((&ALL, share)), rows, found, sign)
                     }
-                    Form::SeenBox => {
-                        let seen = &self.seen[node.cells as usize];
-                        image.shift(seen.mean.map(i32::from));
-                        image.share = seen.share;
-                        let half = seen.half.map(|half| u32::from(half) << 2);
-                        self.draw_box(&image, node.half_size.map(u32::from), half, rows, sign);
-                    }
+                    Form::SeenBox => self.draw_seen_box(&mut image, rows, sign),
                     Form::Seen => {
                         self.draw_image(&mut image, Some(self.seen_of(node)), rows, found, sign);
                     }

@@ -18,7 +18,7 @@ const STEEP: f32 = 0.75;
 /// Edge-on nodes are joined if their weights over the aperture, as shares of the largest, differ by at most this.
 const ALIKE_WEIGHTS: f32 = 0.5;
 
-/// What an edge-on node would send is scaled to what its children do by at most this factor.
+/// What a partly occluded node would send is scaled to what its children do by at most this factor.
 const MOST_SCALED: f32 = 1.5;
 
 pub fn build(salf: &Salf, highlight: f32) -> Tree {
@@ -176,8 +176,9 @@ impl Builder<'_> {
         let members: Vec<&Growing> = children.iter().map(|&index| &self.arena[index]).collect();
         let mut node = mean(level, &members);
         let cells = members[0].cells.is_some().then(|| most(&members));
-        if let Some(cells) = cells.as_ref().filter(|_| is_edge_on(&node)) {
-            // Their weights are cut off where they would be negative: sums of them are not quite linear.
+        if let Some(cells) = &cells {
+            // What most see is not what all see together; and weights of edge-on nodes are cut off where they would be
+            // negative, so that sums of them are not quite linear.
             let sent: f32 = members.iter().map(|member| member.sent()).sum();
             let sends = cells.sent(&node);
             let is_close = sent <= MOST_SCALED * sends && sends <= MOST_SCALED * sent && sent > 0.0;
@@ -315,8 +316,12 @@ impl Cells {
         }
     }
 
-    /// The sum over the cells of the weight that a node has toward them.
+    /// The sum over the cells of the weight that a node has toward them; unless it is edge-on, toward the centre.
     fn sent(&self, node: &Node) -> f32 {
+        if !is_edge_on(node) {
+            let seen: u32 = self.words.iter().map(|word| word.count_ones()).sum();
+            return node.weight * seen as f32;
+        }
         let cell = |k: usize| Vec2::new((k % 16) as f32 + 0.5, (k / 16) as f32 + 0.5) / 8.0 - 1.0;
         let is_seen = |k: &usize| self.words[k / 64] >> (k % 64) & 1 == 1;
         (0..256).filter(is_seen).map(|k| (node.weight + node.tilt.dot(cell(k))).max(0.0)).sum()

@@ -53,6 +53,16 @@ impl Pen<'_> {
         }
     }
 
+    /// One box of the light, mean and variance that a partly occluded node sends.
+    #[inline(always)]
+    pub fn draw_seen_box<W: Word>(&self, image: &mut Image, rows: &mut Rows<W>, sign: i32) {
+        let seen = &self.seen[image.node.cells as usize];
+        image.shift(seen.mean.map(i32::from));
+        image.share = seen.share;
+        let half_size = image.node.half_size.map(|half| u32::from(half) >> image.node.level);
+        self.draw_box(image, half_size, seen.half.map(|half| u32::from(half) << 2), rows, sign);
+    }
+
     /// A box of the variance of footprint and aperture together; `half` of the aperture as [`BoxPart::half`].
     #[inline(always)]
     pub fn draw_box<W: Word>(

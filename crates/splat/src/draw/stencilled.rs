@@ -44,7 +44,10 @@ impl Pen<'_> {
             }
             return;
         };
-        image.share = self.find_seen(image, cells, share, stencil, base, found);
+        let Some(scale) = self.find_seen(image, cells, share, stencil, base, found) else {
+            return self.draw_seen_box(image, rows, sign);
+        };
+        image.share = scale;
         for run in found.iter() {
             if run.row >= rows.first && run.row < rows.end {
                 let value = image.value(run.height, shift, run.row);
@@ -54,7 +57,8 @@ impl Pen<'_> {
     }
 
     /// Finds what `cells` let through of a stencil, and what it is to be scaled by (times 2²⁴) so that it is `share` (times
-    /// 2²⁴) of the light: rows of pixels and rows of cells meet only roughly.
+    /// 2²⁴) of the light: rows of pixels and rows of cells meet only roughly. `None` where a partly occluded node's few
+    /// cells are missed.
     #[inline(always)]
     fn find_seen(
         &self,
@@ -64,7 +68,7 @@ impl Pen<'_> {
         stencil: &Stencil,
         base: i32,
         found: &mut Vec<SeenRun>,
-    ) -> u32 {
+    ) -> Option<u32> {
         // Heights are as much finer as the stencil is larger.
         let finer = POSITION_BITS + stencil.height_bits - HEIGHT_BITS;
         let seen = SeenRuns::new(self, image);
@@ -80,7 +84,8 @@ impl Pen<'_> {
                 found.push(SeenRun { row: row.row, start, end, height });
             });
         }
-        ratio(share, passing, LARGEST_SCALE)
+        let is_missed = !image.node.is_open() && passing < share / LARGEST_SCALE;
+        (!is_missed).then(|| ratio(share, passing, LARGEST_SCALE))
     }
 
     /// The size of the stencil that, blurred by its level, has the variance of the footprint and the aperture's image;

@@ -267,6 +267,14 @@ fn draw_box(image: ptr<function, Image>, half_size: vec2<u32>, of_aperture: vec2
     }
 }
 
+fn draw_seen_box(image: ptr<function, Image>, through: u32) {
+    let mean = cells[through + 9u];
+    shift_to(image, vec2<i32>(low_half(mean), high_half(mean)));
+    (*image).share = cells[through + 8u];
+    let half = vec2<u32>(cells[through + 10u] & 0xFFFFu, cells[through + 10u] >> 16u);
+    draw_box(image, (*image).node.half_size >> vec2<u32>((*image).node.level), half << vec2<u32>(2u));
+}
+
 fn stretched(half_size: u32, tilt: i32, mean: i32, depth_share: i32) -> u32 {
     let slope = (tilt * depth_share) >> 14u;
     let factor = u32(max(abs(ONE + ((slope * mean) >> 14u)), ONE / 16));
@@ -437,6 +445,11 @@ fn draw_image(image: ptr<function, Image>, place: u32, cells: u32, share: u32) {
                     passing += seen_row(image, seen, row, v, span, stencils[at + 2u], shift, finer, is_found);
                 }
             }
+            if cells != OPEN && passing < share / LARGEST_SCALE {
+                // The few cells of a partly occluded node are missed.
+                draw_seen_box(image, cells);
+                return;
+            }
             (*image).share = ratio(share, passing, LARGEST_SCALE);
         }
     }
@@ -554,11 +567,7 @@ fn draw(@builtin(global_invocation_id) id: vec3<u32>, @builtin(workgroup_id) gro
             image.share = WHOLE - (far << 8u);
             draw_parts(&image, bitcast<i32>(of_form));
         } else if form == FORM_SEEN_BOX {
-            let mean = cells[through + 9u];
-            shift_to(&image, vec2<i32>(low_half(mean), high_half(mean)));
-            image.share = share;
-            let half = cells[through + 10u];
-            draw_box(&image, image.node.half_size, vec2<u32>(half & 0xFFFFu, half >> 16u) << vec2<u32>(2u));
+            draw_seen_box(&image, through);
         } else {
             image.share = WHOLE - (far << 8u);
             lean(&image);

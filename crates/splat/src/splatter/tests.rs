@@ -188,3 +188,42 @@ fn ripple_of_wall(slope: f64, tilt: f64, across: bool) -> f64 {
     let inside = |k: &usize| [k % 120, k / 120].iter().all(|c| (20..100).contains(c));
     (0..coverage.len()).filter(inside).map(|k| (coverage[k] as f64 - 1.0).abs()).fold(0.0, f64::max)
 }
+
+/// Samples that see one cell of the aperture each, painted to any blur: no picture row need meet that row of cells, but the
+/// light is that of a 256th of the aperture.
+#[test]
+fn what_sees_one_cell_loses_no_light() {
+    use lens::{Aperture, ApertureShape};
+    let square = Aperture { shape: ApertureShape::Square, ..Aperture::default() };
+    let camera = Camera { aperture: square, ..camera() };
+    let sample = |index: u32| {
+        let mut words = [0u64; 4];
+        words[index as usize % 4] = 1 << (index * 29 % 64);
+        Sample {
+            center: Vec2::new(30.5 + (index % 36) as f32, 25.5 + (index / 36) as f32),
+            half_size: Vec2::splat(0.5),
+            inverse_depth: 0.5,
+            weight: 1.0,
+            tilt: Vec2::ZERO,
+            radiance: Vec3::ONE,
+            surface: Some(SurfacePoint { triangle: index, barycentric: DVec2::ZERO }),
+            visibility: Visibility::Cells { words: words.into(), occluder_inverse_depth: 0.9 },
+        }
+    };
+    let samples: Vec<_> = (0..36 * 30).map(sample).collect();
+    let sent = samples.len() as f64 / 256.0;
+    let mut splatter = Splatter::new(Arc::new(Salf { camera: camera.clone(), margin_px: 0, samples }));
+    for tolerance in [Tolerance::NONE, Tolerance::VIEWING] {
+        splatter.set_tolerance(tolerance);
+        for radius_px in [0.3, 1.0, 1.7, 2.5, 4.0, 7.0, 15.0] {
+            // With the anchor 1, κ is (t − 1)/d.
+            let optics = camera.optics();
+            let t = 1.0 + radius_px / optics.splat_radius_px(1.0) * optics.image_distance;
+            let focus = ByTriangle(vec![FocusOffset::new(t, 1.0); 36 * 30]);
+            splatter.render(&camera, &focus, &Unwatched).unwrap();
+            let coverage = splatter.picture().coverage.iter();
+            let found: f64 = coverage.map(|&covered| f64::from(covered)).sum();
+            assert!((found / sent - 1.0).abs() < 1e-4, "{tolerance:?}, {radius_px} px: {found} of {sent}");
+        }
+    }
+}
