@@ -166,6 +166,7 @@ fn comparisons_are_stable_and_show_where() {
         "rmse_unclipped",
         "signed_mean_error",
         "signed_mean_error_clipped",
+        "undefined_pixels",
         "width",
     ];
     assert_eq!(keys, expected.into());
