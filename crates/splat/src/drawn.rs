@@ -4,6 +4,7 @@ use crate::draw::Pen;
 use crate::lens_in_use::{LensInUse, NodeFocus, Placed};
 use crate::nodes::{Nodes, SplatNode};
 use crate::paint::Paint;
+use rayon::prelude::*;
 use std::cmp::Ordering;
 use std::ops::Range;
 
@@ -60,8 +61,22 @@ impl Scene<'_> {
         list
     }
 
-    /// What is no longer drawn of a block, and what is now, since its paint was `before`.
-    pub fn changes(&self, block: usize, before: Option<&[NodeFocus]>) -> Changes {
+    /// What is no longer drawn of some blocks, and what is now, since the paint of each was the one beside it.
+    pub fn all_changes<'p>(
+        &self,
+        blocks: impl ParallelIterator<Item = (usize, Option<&'p [NodeFocus]>)>,
+    ) -> Changes {
+        let of_blocks: Vec<_> = blocks.map(|(block, before)| self.changes(block, before)).collect();
+        let mut changes = Changes::default();
+        for more in of_blocks {
+            changes.removed.extend(more.removed);
+            changes.added.extend(more.added);
+        }
+        changes
+    }
+
+    /// Those of one block.
+    fn changes(&self, block: usize, before: Option<&[NodeFocus]>) -> Changes {
         let mut changes = Changes::default();
         let now = self.paint.of_block(block);
         if before == now {
@@ -121,12 +136,6 @@ pub struct Changes {
 }
 
 impl Changes {
-    /// Adds more of them.
-    pub fn join(&mut self, more: Self) {
-        self.removed.extend(more.removed);
-        self.added.extend(more.added);
-    }
-
     /// The rows, and the columns of a picture `width` px wide, that they change.
     pub fn window(&self, nodes: &Nodes, width: u32) -> [Range<u32>; 2] {
         let all = || self.removed.iter().chain(&self.added);

@@ -85,6 +85,17 @@ impl ApertureInUse {
     fn pen<'a>(&'a self, nodes: &'a Nodes, lens: &LensInUse) -> Pen<'a> {
         Pen::new(nodes, &self.stencils, &self.seen, self.stop, lens.is_exact)
     }
+
+    /// What is summed of a picture of `height` rows.
+    fn scene<'a>(
+        &'a self,
+        nodes: &'a Nodes,
+        lens: &'a LensInUse,
+        paint: &'a Paint,
+        height: u32,
+    ) -> Scene<'a> {
+        Scene { pen: self.pen(nodes, lens), lens, paint, height }
+    }
 }
 
 impl Splatter {
@@ -225,9 +236,8 @@ impl Splatter {
             return summed;
         }
         let nodes = self.nodes.as_ref().ok_or(SplatError::Overflow)?;
-        let (aperture, lens) = (&self.aperture, &self.lens);
-        let height = self.salf.camera.height;
-        Ok(self.sums.set(&Scene { pen: aperture.pen(nodes, lens), lens, paint, height }, progress)?)
+        let scene = self.aperture.scene(nodes, &self.lens, paint, self.salf.camera.height);
+        Ok(self.sums.set(&scene, progress)?)
     }
 
     /// Moves the given samples to where `focus` now sends them. Returns the rows of the picture that changed.
@@ -244,17 +254,15 @@ impl Splatter {
             samples.iter().map(|&sample| nodes.node_of_sample[sample as usize]).collect();
         leaves.sort_unstable();
         let was_standard = self.paint.is_standard();
-        let (aperture, lens) = (&self.aperture, &self.lens);
-        let height = self.salf.camera.height;
-        let mut changes = Changes::default();
+        let mut before = Vec::new();
         let block_of = |leaf: &u32| nodes.block_of_node[*leaf as usize];
         for leaves in leaves.chunk_by(|a, b| block_of(a) == block_of(b)) {
             let block = block_of(&leaves[0]) as usize;
-            let before = self.paint.blocks[block].clone();
+            before.push((block, self.paint.blocks[block].clone()));
             self.paint.update(nodes, block, leaves, &self.salf.samples, focus);
-            let scene = Scene { pen: aperture.pen(nodes, lens), lens, paint: &self.paint, height };
-            changes.join(scene.changes(block, before.as_deref()));
         }
+        let scene = self.aperture.scene(nodes, &self.lens, &self.paint, self.salf.camera.height);
+        let changes = scene.all_changes(before.par_iter().map(|(block, paint)| (*block, paint.as_deref())));
         let mut window = changes.window(nodes, self.salf.camera.width);
         if nodes.scale != Scale::FINEST {
             return self.sum_again();
@@ -286,17 +294,14 @@ impl Splatter {
     /// Paints over the sums of the standard picture. Returns whether that is done: not where most is painted.
     fn paint_over(&mut self) -> Result<bool, SplatError> {
         let nodes = self.nodes.as_ref().ok_or(SplatError::Overflow)?;
-        let (lens, height) = (&self.lens, self.salf.camera.height);
         let painted = |block: &usize| self.paint.of_block(*block).is_some();
         let blocks = (0..nodes.blocks.len()).into_par_iter().filter(painted);
         let count: usize = blocks.clone().map(|block| nodes.blocks[block].len()).sum();
         if nodes.scale != Scale::FINEST || 2 * count > nodes.nodes.len() {
             return Ok(false);
         }
-        let scene = Scene { pen: self.aperture.pen(nodes, lens), lens, paint: &self.paint, height };
-        let of_blocks: Vec<_> = blocks.map(|block| scene.changes(block, None)).collect();
-        let mut changes = Changes::default();
-        of_blocks.into_iter().for_each(|more| changes.join(more));
+        let scene = self.aperture.scene(nodes, &self.lens, &self.paint, self.salf.camera.height);
+        let changes = scene.all_changes(blocks.map(|block| (block, None)));
         match self.change(&changes, self.frame()) {
             Err(SplatError::Overflow) => Ok(false),
             other => other.map(|()| true),

@@ -1,6 +1,7 @@
 //! The engine's figures as plots.
 
 use crate::engine::EngineRecord;
+use crate::page::plots::{error_axis, time_axis};
 use crate::plot::{Axis, Chart, Kind, Point, Series, plain, seconds};
 
 /// Pictures that are at least so close, dB, are the converged one: there is no error to draw.
@@ -19,7 +20,7 @@ pub fn plots(records: &[EngineRecord]) -> [Chart; 3] {
         },
         Chart {
             title: "time of a full splat against error".into(),
-            x: Axis { label: "time (log)".into(), kind: Kind::Log, number: seconds },
+            x: time_axis(),
             y: error_axis(),
             series: sweeps(records, |record| Some((record.ms_median / 1e3, rmse(record)?))),
             rules: Vec::new(),
@@ -32,10 +33,6 @@ pub fn plots(records: &[EngineRecord]) -> [Chart; 3] {
             rules: Vec::new(),
         },
     ]
-}
-
-fn error_axis() -> Axis {
-    Axis { label: "RMSE, linear, clipped to [0, 1] (log)".into(), kind: Kind::Log, number: plain }
 }
 
 /// From the PSNR on a range of 1.

@@ -1,7 +1,7 @@
 //! The page: everything in one HTML file, with nothing to load from elsewhere.
 
 mod pictures;
-mod plots;
+pub mod plots;
 
 use crate::findings::equal_errors;
 use crate::machine::Machine;

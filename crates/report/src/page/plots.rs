@@ -117,11 +117,13 @@ pub fn cost(series: Series, records: &[&Record]) -> Option<Chart> {
     })
 }
 
-fn time_axis() -> Axis {
+/// Times.
+pub fn time_axis() -> Axis {
     Axis { label: "time (log)".into(), kind: Kind::Log, number: seconds }
 }
 
-fn error_axis() -> Axis {
+/// Root mean square errors.
+pub fn error_axis() -> Axis {
     Axis { label: "RMSE, linear, clipped to [0, 1] (log)".into(), kind: Kind::Log, number: plain }
 }
 

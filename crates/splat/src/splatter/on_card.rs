@@ -1,7 +1,7 @@
 //! Sums on a graphics card, and on the processor again once the card is lost.
 
 use super::{SplatError, Splatter, Wanted};
-use crate::drawn::{Changes, Scene};
+use crate::drawn::Changes;
 use crate::gpu::{Gpu, GpuError, GpuSums};
 use crate::paint::Paint;
 use progress::Progress;
@@ -83,9 +83,8 @@ impl Splatter {
         progress: &dyn Progress,
     ) -> Option<Result<(), SplatError>> {
         let (nodes, sums) = (self.nodes.as_ref()?, self.card.sums.as_mut()?);
-        let (aperture, lens) = (&self.aperture, &self.lens);
-        let height = self.salf.camera.height;
-        let set = sums.set(&Scene { pen: aperture.pen(nodes, lens), lens, paint, height }, progress);
+        let scene = self.aperture.scene(nodes, &self.lens, paint, self.salf.camera.height);
+        let set = sums.set(&scene, progress);
         Some(self.card.came_of(set))
     }
 
