@@ -149,6 +149,36 @@ fn baselines_draw_and_fall_short() {
 }
 
 #[test]
+fn estimators_agree_within_their_errors_and_not_with_another_blur() {
+    let place = Workplace::new();
+    let render = |camera: &str, estimator: &str, file: &str| {
+        place.done(&format!(
+            "render quads.glb --camera {camera} --focus recipe.json --renderer truth --estimator {estimator} --spp 256 \
+             --exposure conserve --aov stderr,coverage -o {file}"
+        ));
+    };
+    render("camera.json", "sensor", "sensor.exr");
+    render("camera.json", "surface", "surface.exr");
+    let found = place.json("compare sensor.exr surface.exr --z-test --json");
+    for key in ["z_agree", "z_agree_luminance"] {
+        assert!(found[key].as_f64().unwrap() >= 0.995, "{found}");
+    }
+    assert!(found["z_agree_pixels"].as_f64().unwrap() > 0.98, "{found}");
+    // Negative control: an aperture a tenth larger.
+    let mut camera: serde_json::Value =
+        serde_json::from_str(&std::fs::read_to_string(place.path("camera.json")).unwrap()).unwrap();
+    camera["aperture_radius"] = (camera["aperture_radius"].as_f64().unwrap() * 1.1).into();
+    std::fs::write(place.path("wider.json"), camera.to_string()).unwrap();
+    render("wider.json", "sensor", "wider.exr");
+    let found = place.json("compare wider.exr sensor.exr --z-test --json");
+    for key in ["z_agree", "z_agree_luminance"] {
+        assert!(found[key].as_f64().unwrap() < 0.985, "{found}");
+    }
+    place.done("render quads.glb --camera camera.json --renderer blur -o blur.exr");
+    place.fails("compare blur.exr blur.exr --z-test", 3, &["--aov stderr"]);
+}
+
+#[test]
 fn comparisons_are_stable_and_show_where() {
     let place = Workplace::new();
     place.done("render quads.glb --camera camera.json --renderer blur -o a.exr");

@@ -205,7 +205,7 @@ pub struct RenderArguments {
     pub rays: u32,
     /// Pictures that come along: coverage (the sum for a scene of radiance 1), coc (signed diameter of the circle of
     /// confusion in px, negative when nearer than the focus), depth (axial; inf for the background), t (and anchor),
-    /// stderr (the ground truth's standard error: of radiance and coverage, and of their ratio)
+    /// stderr (the ground truth's standard error: of radiance, luminance and coverage, and of their ratios)
     #[arg(long, value_name = "NAMES", value_delimiter = ',', value_parser = aov)]
     pub aov: Vec<Aov>,
     /// normalise keeps a white scene white; conserve is the model's energy as it is (default: the project's, or
@@ -230,6 +230,10 @@ pub struct CompareArguments {
     /// Write where they differ: FLIP in false colours (.png), or difference and FLIP as layers (.exr)
     #[arg(long, value_name = "OUT.png|exr")]
     pub error_map: Option<PathBuf>,
+    /// Tell how much lies within three standard errors, with those that the files hold (`render --renderer truth --aov
+    /// stderr,coverage`); a file without any counts as exact
+    #[arg(long)]
+    pub z_test: bool,
     /// Write JSON to stdout
     #[arg(long)]
     pub json: bool,

@@ -4,7 +4,7 @@ use super::arguments::CompareArguments;
 use super::console::{say, say_json};
 use super::failure::Failure;
 use super::shot::check_picture_output;
-use project::{compare, read_picture, write_error_map};
+use project::{compare, read_picture, write_error_map, z_test};
 use serde_json::json;
 
 /// Tells how far a picture is from a reference, and writes where.
@@ -19,11 +19,18 @@ pub fn run(arguments: &CompareArguments) -> Result<(), Failure> {
         return Err(Failure::bad(format!("{files}: the picture is {sizes} (compare pictures of one size)")));
     }
     let found = compare(&a, &b)?;
+    let agreement = arguments.z_test.then(|| z_test(&a, &b)).transpose()?;
     if let Some(file) = &arguments.error_map {
         write_error_map(file, &a, &b)?;
     }
     if arguments.json {
-        say_json(&json!(found));
+        let mut object = json!(found);
+        if let (Some(object), Some(serde_json::Value::Object(agreement))) =
+            (object.as_object_mut(), agreement.map(|agreement| json!(agreement)))
+        {
+            object.extend(agreement);
+        }
+        say_json(&object);
         return Ok(());
     }
     say(format!("RMSE               {:.6}   (linear, clipped to [0, 1])", found.rmse));
@@ -32,6 +39,14 @@ pub fn run(arguments: &CompareArguments) -> Result<(), Failure> {
     say(format!("FLIP               {:.4}", found.flip));
     say(format!("signed mean error  {:+.4} %", found.signed_mean_error * 100.0));
     say(format!("largest difference {:.4}", found.largest_difference));
+    if let Some(z) = agreement {
+        let [values, luminance, pixels] = [z.values, z.luminance, z.pixels].map(|share| share * 100.0);
+        say("within three standard errors".to_string());
+        say(format!("  values           {values:.3} %   (99.73 % by chance)"));
+        say(format!("  luminance        {luminance:.3} %   of the pixels"));
+        say(format!("  whole pixels     {pixels:.3} %"));
+        say(format!("  distance, rms    {:.3} standard errors", z.rms));
+    }
     if found.undefined_pixels > 0 {
         let (undefined, pixels) = (found.undefined_pixels, a.width as usize * a.height as usize);
         say(format!(

@@ -90,6 +90,11 @@ pub enum ProjectError {
         /// Columns and rows of the other.
         b: [u32; 2],
     },
+    /// Two pictures whose errors are not known well enough to say whether they agree.
+    #[error(
+        "the pictures cannot be tested for agreement: {0} (render both with --aov stderr, in passes of the ground truth)"
+    )]
+    Untestable(String),
 }
 
 impl ProjectError {

@@ -4,7 +4,8 @@
 //! * [`read_recipe`]: focus by name, as JSON; [`read_focus`]: a recipe or a map, whichever the file is.
 //! * [`FocusMapFile`]: focus maps as EXR or 16-bit PNG.
 //! * [`write_picture`], [`read_picture`]: pictures as EXR, PNG and (reading only) HDR, with layers beside the colour.
-//! * [`compare`]: how far two pictures are apart; [`write_error_map`]: where.
+//! * [`compare`]: how far two pictures are apart; [`write_error_map`]: where; [`z_test`]: whether
+//!   chance explains it.
 //! * [`ProjectFile`]: the saved document.
 //!
 //! Everything is written atomically: the old file stays until the new one is complete.
@@ -27,6 +28,7 @@ mod recipe;
 mod recovery;
 mod strokes_file;
 mod texel_bytes;
+mod z_test;
 
 pub use camera::{camera_from_json, camera_to_json, read_aperture_mask, read_camera, write_camera};
 pub use compare::{Comparison, ErrorMaps, compare, error_maps};
@@ -41,3 +43,4 @@ pub use strokes_file::{
     RecordedFill, RecordedGradient, RecordedSelection, RecordedStep, RecordedStroke, SelectionShape,
     StrokeView, read_strokes, write_strokes,
 };
+pub use z_test::{ZAgreement, z_test};

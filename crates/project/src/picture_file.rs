@@ -40,6 +40,12 @@ pub struct PictureOptions {
     pub half: bool,
 }
 
+/// The attribute that says how the sum became the picture.
+const EXPOSURE: &str = "focusBrush.exposure";
+/// Its values.
+const EXPOSURES: [(Exposure, &str); 2] =
+    [(Exposure::Conserve, "conserve"), (Exposure::Normalise, "normalise")];
+
 /// Writes a picture as EXR or PNG, by extension, with further layers. Returns the files that were written,
 /// the picture first.
 pub fn write_picture(
@@ -48,10 +54,8 @@ pub fn write_picture(
     layers: &[Layer],
     options: PictureOptions,
 ) -> Result<Vec<PathBuf>, ProjectError> {
-    let exposure = match options.exposure {
-        Exposure::Conserve => "conserve",
-        Exposure::Normalise => "normalise",
-    };
+    let exposure =
+        EXPOSURES.iter().find(|(known, _)| *known == options.exposure).map_or("", |(_, name)| name);
     let samples = if options.half { ExrSamples::Half } else { ExrSamples::Float };
     let rgb = picture.exposed(options.exposure);
     let named = |layer: &Layer| (layer.name.clone(), layer.values.clone());
@@ -61,7 +65,7 @@ pub fn write_picture(
             let mut channels: BTreeMap<_, _> = color_channels(&rgb).into();
             channels.extend(layers.iter().map(named));
             let exposure = ExrAttribute::Text(exposure.to_string());
-            let attributes = [("focusBrush.exposure".to_string(), exposure)].into();
+            let attributes = [(EXPOSURE.to_string(), exposure)].into();
             let image = ExrImage { width: size[0], height: size[1], channels, attributes };
             write_exr(file, &image, samples)?;
             Ok(vec![file.to_owned()])
@@ -141,13 +145,16 @@ pub struct LinearPicture {
     pub rgb: Vec<[f32; 3]>,
     /// Further channels by name.
     pub layers: BTreeMap<String, Vec<f32>>,
+    /// How the model's sum became the picture, if that is known.
+    pub exposure: Option<Exposure>,
 }
 
 impl LinearPicture {
     /// A picture under an exposure, as [`write_picture`] followed by [`read_picture`] would give it.
     pub fn of(picture: &Picture, exposure: Exposure) -> Self {
         let layers = [("coverage".to_string(), picture.coverage.clone())].into();
-        Self { width: picture.width, height: picture.height, rgb: picture.exposed(exposure), layers }
+        let rgb = picture.exposed(exposure);
+        Self { width: picture.width, height: picture.height, rgb, layers, exposure: Some(exposure) }
     }
 }
 
@@ -194,5 +201,9 @@ fn from_exr(file: &Path, mut exr: ExrImage) -> Result<LinearPicture, ProjectErro
         let problem = format!("has no channels R, G, B, only {}", names.join(", "));
         return Err(ProjectError::content(file, problem, "give an EXR with R, G and B, or one channel"));
     };
-    Ok(LinearPicture { width: exr.width, height: exr.height, rgb, layers: exr.channels })
+    let exposure = EXPOSURES.iter().find(
+        |(_, name)| matches!(exr.attributes.get(EXPOSURE), Some(ExrAttribute::Text(text)) if text == name),
+    );
+    let exposure = exposure.map(|(exposure, _)| *exposure);
+    Ok(LinearPicture { width: exr.width, height: exr.height, rgb, layers: exr.channels, exposure })
 }

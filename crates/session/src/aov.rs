@@ -17,7 +17,7 @@ pub enum Aov {
     Depth,
     /// The focus offset t, and with it the anchor a.
     Focus,
-    /// The standard error of conserved radiance and coverage, and of their ratio. Only the ground truth knows
+    /// The standard error of conserved radiance, luminance and coverage, and of their ratios. Only the ground truth knows
     /// it; other renderers leave the layers out.
     StandardError,
 }
@@ -74,8 +74,10 @@ impl Aov {
                         .collect::<Vec<_>>()
                 };
                 let mut layers = rgb("stderr", &estimate.standard_error.radiance);
+                layers.push(layer("stderr.Y", estimate.luminance_error.clone()));
                 layers.push(layer("stderr.coverage", estimate.standard_error.coverage.clone()));
                 layers.extend(rgb("stderr.normalised", &estimate.normalised_error));
+                layers.push(layer("stderr.normalised.Y", estimate.normalised_luminance_error.clone()));
                 layers
             }
             _ => Vec::new(),

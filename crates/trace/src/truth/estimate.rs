@@ -18,8 +18,12 @@ pub struct Estimate {
     pub picture: Picture,
     /// The standard error of each radiance and coverage in `picture`; infinite after fewer than two passes.
     pub standard_error: Picture,
+    /// The standard error of each pixel's luminance (Rec. 709), whose channels err together.
+    pub luminance_error: Vec<f32>,
     /// The standard error of radiance over coverage, which err together; infinite like `standard_error`.
     pub normalised_error: Vec<[f32; 3]>,
+    /// The standard error of luminance over coverage.
+    pub normalised_luminance_error: Vec<f32>,
     /// Samples a pixel so far.
     pub samples_per_pixel: u32,
     /// Passes so far.
@@ -48,39 +52,44 @@ impl Estimate {
 /// all the same have exactly no scatter.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Moments {
-    /// Red, green, blue, coverage.
-    mean: [f64; 4],
+    /// Red, green, blue, luminance, coverage.
+    mean: [f64; 5],
     /// Σ w·(x − mean)².
-    squares: [f64; 4],
+    squares: [f64; 5],
     /// Σ w·(x − mean)·(coverage − its mean).
-    with_coverage: [f64; 3],
+    with_coverage: [f64; 4],
 }
 
+/// Rec. 709's luminance of linear red, green and blue.
+const LUMINANCE: [f64; 3] = [0.2126, 0.7152, 0.0722];
+
 impl Moments {
-    /// Adds a pass of mean `x`; `share` is what part of all samples so far it has.
-    fn add(&mut self, x: [f64; 4], weight: f64, share: f64) {
-        let before: [f64; 4] = std::array::from_fn(|c| x[c] - self.mean[c]);
-        for c in 0..4 {
+    /// Adds a pass of mean red, green, blue and coverage; `share` is what part of all samples so far it has.
+    fn add(&mut self, [r, g, b, coverage]: [f64; 4], weight: f64, share: f64) {
+        let luminance = LUMINANCE[0] * r + LUMINANCE[1] * g + LUMINANCE[2] * b;
+        let x = [r, g, b, luminance, coverage];
+        let before: [f64; 5] = std::array::from_fn(|c| x[c] - self.mean[c]);
+        for c in 0..5 {
             self.mean[c] += before[c] * share;
             self.squares[c] += weight * before[c] * (x[c] - self.mean[c]);
         }
-        let coverage = x[3] - self.mean[3];
+        let coverage = coverage - self.mean[4];
         for (sum, before) in self.with_coverage.iter_mut().zip(before) {
             *sum += weight * before * coverage;
         }
     }
 
-    /// The variances of radiance over coverage where the sums vary by `scale` times the scatter: to first
-    /// order (var L − 2r·cov(L, C) + r²·var C)/C² for r = L/C. 0 where nothing is covered.
-    fn ratio_variances(&self, scale: f64) -> [f64; 3] {
-        let coverage = self.mean[3];
+    /// The variances of radiance and of luminance over coverage where the sums vary by `scale` times the scatter:
+    /// to first order (var L − 2r·cov(L, C) + r²·var C)/C² for r = L/C. 0 where nothing is covered.
+    fn ratio_variances(&self, scale: f64) -> [f64; 4] {
+        let coverage = self.mean[4];
         if coverage <= 0.0 {
-            return [0.0; 3];
+            return [0.0; 4];
         }
         std::array::from_fn(|c| {
             let ratio = self.mean[c] / coverage;
             let scatter =
-                self.squares[c] - 2.0 * ratio * self.with_coverage[c] + ratio.powi(2) * self.squares[3];
+                self.squares[c] - 2.0 * ratio * self.with_coverage[c] + ratio.powi(2) * self.squares[4];
             (scatter.max(0.0) * scale) / coverage.powi(2)
         })
     }
@@ -113,24 +122,30 @@ impl Statistics {
     pub fn estimate(&self) -> Estimate {
         let mut picture = Picture::black(self.width, self.height);
         let mut standard_error = picture.clone();
+        let mut luminance_error = vec![f32::INFINITY; self.pixels.len()];
         let mut normalised_error = vec![[f32::INFINITY; 3]; self.pixels.len()];
+        let mut normalised_luminance_error = luminance_error.clone();
         // The variance of the mean: Σw(x − mean)²/((passes − 1)·Σw).
         let freedom = f64::from(self.passes.saturating_sub(1)) * f64::from(self.samples);
         let is_known = freedom > 0.0;
         let error = |variance: f64| if is_known { variance.sqrt() as f32 } else { f32::INFINITY };
         for (k, moments) in self.pixels.iter().enumerate() {
-            let [r, g, b, coverage] = moments.mean.map(|x| x as f32);
+            let [r, g, b, _, coverage] = moments.mean.map(|x| x as f32);
             (picture.radiance[k], picture.coverage[k]) = ([r, g, b], coverage);
-            let [r, g, b, coverage] = moments.squares.map(|squares| error(squares / freedom));
+            let [r, g, b, luminance, coverage] = moments.squares.map(|squares| error(squares / freedom));
             (standard_error.radiance[k], standard_error.coverage[k]) = ([r, g, b], coverage);
+            luminance_error[k] = luminance;
             if is_known {
-                normalised_error[k] = moments.ratio_variances(1.0 / freedom).map(error);
+                let [r, g, b, luminance] = moments.ratio_variances(1.0 / freedom).map(error);
+                (normalised_error[k], normalised_luminance_error[k]) = ([r, g, b], luminance);
             }
         }
         Estimate {
             picture,
             standard_error,
+            luminance_error,
             normalised_error,
+            normalised_luminance_error,
             samples_per_pixel: self.samples,
             passes: self.passes,
         }
@@ -160,6 +175,9 @@ mod tests {
         assert_eq!(estimate.standard_error.radiance, [[expected, 0.0, 0.0]]);
         assert_eq!(estimate.standard_error.coverage, [0.0]);
         assert_eq!(estimate.normalised_error, [[expected, 0.0, 0.0]]);
+        let luminance = (0.2126f64.powi(2) * 7.0 / 3.0).sqrt() as f32;
+        assert!((estimate.luminance_error[0] - luminance).abs() < 1e-6);
+        assert!((estimate.normalised_luminance_error[0] - luminance).abs() < 1e-6);
         assert_eq!((estimate.passes, estimate.samples_per_pixel), (3, 6));
         let rmse = estimate.expected_rmse(Exposure::Conserve);
         assert!((rmse - (7.0f64 / 9.0).sqrt()).abs() < 1e-6, "{rmse}");
@@ -170,6 +188,17 @@ mod tests {
         let estimate = statistics(&[(5, [1.0, 2.0, 3.0, 1.0])]);
         assert_eq!(estimate.standard_error.radiance, [[f32::INFINITY; 3]]);
         assert_eq!(estimate.normalised_error, [[f32::INFINITY; 3]]);
+        assert_eq!(estimate.luminance_error, [f32::INFINITY]);
+        assert_eq!(estimate.normalised_luminance_error, [f32::INFINITY]);
+    }
+
+    #[test]
+    fn luminance_knows_that_its_channels_err_together() {
+        let error = |passes: &[(u32, [f64; 4])]| statistics(passes).luminance_error[0];
+        let together = error(&[(1, [1.0, 1.0, 1.0, 1.0]), (1, [2.0, 2.0, 2.0, 1.0])]);
+        assert!((together - 0.5).abs() < 1e-6, "{together}");
+        let apart = error(&[(1, [1.0, 2.0, 1.0, 1.0]), (1, [2.0, 1.0, 2.0, 1.0])]);
+        assert!((f64::from(apart) - 0.5 * (0.7152 - 0.2126 - 0.0722)).abs() < 1e-6, "{apart}");
     }
 
     #[test]
