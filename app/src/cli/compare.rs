@@ -41,7 +41,7 @@ pub fn run(arguments: &CompareArguments) -> Result<(), Failure> {
     say(format!("largest difference {:.4}", found.largest_difference));
     if let Some(z) = agreement {
         let [values, luminance, pixels] = [z.values, z.luminance, z.pixels].map(|share| share * 100.0);
-        say("within three standard errors".to_string());
+        say("within three standard errors");
         say(format!("  values           {values:.3} %   (99.73 % by chance)"));
         say(format!("  luminance        {luminance:.3} %   of the pixels"));
         say(format!("  whole pixels     {pixels:.3} %"));
