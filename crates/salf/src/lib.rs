@@ -23,4 +23,5 @@ mod visibility;
 pub use bake::{BakeOptions, bake};
 pub use domain::{Cell, Domain};
 pub use file::{SalfFile, SalfFileError};
+pub use margin::LARGEST_MARGIN_HEIGHTS;
 pub use sample::{Salf, SalfStatistics, Sample, Visibility};

@@ -8,7 +8,7 @@ use scene::{Scene, SurfaceField};
 use trace::Tracer;
 
 /// Beyond this many picture heights outside the frame nothing is sampled.
-const LARGEST_MARGIN_HEIGHTS: f64 = 1.5;
+pub const LARGEST_MARGIN_HEIGHTS: f64 = 1.5;
 
 /// The margin of the standard picture, px: the largest circle of confusion (its radius) of any surface that the
 /// aperture sees through the frame, however far outside the frame the surface itself lies.

@@ -5,6 +5,7 @@ use focus::{Brush, Combine, Gradient, LayerEdit, ViewFrame};
 use glam::DVec2;
 use lens::{Exposure, FocusOffset};
 use project::{RecordedStep, SelectionShape, StrokeView};
+use splat::Tolerance;
 use std::ops::Range;
 use std::path::PathBuf;
 use trace::Ray;
@@ -52,6 +53,8 @@ pub enum Command {
     SetDisplay(Display),
     /// The longest side that the preview is drawn at, px; the picture's own size if that is smaller.
     SetPreviewSize(u32),
+    /// How coarse the live picture may be while one works.
+    SetTolerance(Tolerance),
 
     /// The brush of the strokes to come.
     SetBrush(Brush),

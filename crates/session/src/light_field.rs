@@ -1,5 +1,6 @@
 //! A baked light field with its running sum, and what it takes to bring the sum up to date.
 
+use crate::reach::Reach;
 use crate::render::light;
 use crate::sample_index::SampleIndex;
 use crate::{Modelled, SessionError, Stage};
@@ -22,6 +23,9 @@ const SMALLER_APERTURE: f64 = 0.7;
 
 /// When more than this share of the samples move, a whole sum is quicker: it runs on all cores, and removes nothing.
 const LARGEST_UPDATE: f64 = 0.25;
+
+/// Changes of more texels than these are not counted singly.
+const MOST_TEXELS: usize = 1 << 22;
 
 /// Texels of the focus map that a sum has not seen yet.
 #[derive(Clone, Debug)]
@@ -47,7 +51,9 @@ impl Changes {
     /// Takes up newer changes.
     pub fn join(&mut self, newer: &Changes) {
         match (&mut *self, newer) {
-            (Self::Texels(texels), Self::Texels(more)) => texels.extend(more),
+            (Self::Texels(texels), Self::Texels(more)) if texels.len() + more.len() <= MOST_TEXELS => {
+                texels.extend(more);
+            }
             _ => *self = Self::Everything,
         }
     }
@@ -64,6 +70,15 @@ pub(crate) enum Brought {
     Whole,
 }
 
+/// How a light field is baked and summed.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct FieldOptions {
+    /// How far outside the frame to sample at least, px.
+    pub least_margin_px: f64,
+    /// How coarse its sums may be.
+    pub tolerance: Tolerance,
+}
+
 /// A light field to look at.
 #[derive(Clone)]
 pub(crate) struct BakedField {
@@ -74,12 +89,15 @@ pub(crate) struct BakedField {
 /// A light field and its running sum.
 pub(crate) struct LightField {
     splatter: Splatter,
+    tolerance: Tolerance,
     index: Arc<SampleIndex>,
     modelled: Modelled,
     /// The lens of the sum; none while there is no valid sum.
     summed: Option<Camera>,
     /// What the sum has not seen.
     unseen: Changes,
+    /// Who reaches from further outside the frame than was baked; none until it was asked for, and after a whole sum.
+    reach: Option<Reach>,
     /// Seconds that the last whole sum took.
     whole_seconds: f64,
 }
@@ -94,14 +112,15 @@ impl From<SplatError> for SessionError {
 }
 
 impl LightField {
-    /// Bakes what `camera` and `focus` need.
+    /// Bakes what `camera` and `focus` need: a margin of at least `least_margin_px`.
     pub fn bake(
         stage: &Stage,
         camera: &Camera,
         focus: &Focus,
+        how: FieldOptions,
         progress: &dyn Progress,
     ) -> Result<Self, SessionError> {
-        let needed = BakeOptions::for_focus(&stage.tracer, camera, focus).margin_px;
+        let needed = BakeOptions::for_focus(&stage.tracer, camera, focus).margin_px.max(how.least_margin_px);
         let margin_px = needed + MARGIN_HEADROOM * camera.height as f64;
         let options = BakeOptions { margin_px, ..BakeOptions::default() };
         let radiance = light(&stage.tracer, camera);
@@ -111,15 +130,56 @@ impl LightField {
             modelled: Modelled::with_texels(&salf, &stage.tracer, Some(&stage.texels.texels)),
             splatter: {
                 let mut splatter = Splatter::new(salf);
-                splatter.set_tolerance(Tolerance::VIEWING);
+                splatter.set_tolerance(how.tolerance);
                 // Without a card, or one that works, the processor sums.
                 splatter.use_gpu(Gpu::open(BackendChoice::Auto, None).ok().flatten());
                 splatter
             },
+            tolerance: how.tolerance,
             summed: None,
             unseen: Changes::default(),
+            reach: None,
             whole_seconds: f64::INFINITY,
         })
+    }
+
+    /// What makes the same light field anew, to be summed without tolerance; that takes a while.
+    pub fn exact(&self) -> impl FnOnce() -> Self + Send + use<> {
+        let (salf, gpu) = (self.splatter.salf().clone(), self.splatter.gpu().cloned());
+        let (index, modelled) = (self.index.clone(), self.modelled);
+        move || {
+            let mut splatter = Splatter::new(salf);
+            splatter.use_gpu(gpu);
+            Self {
+                splatter,
+                tolerance: Tolerance::NONE,
+                index,
+                modelled,
+                summed: None,
+                unseen: Changes::default(),
+                reach: None,
+                whole_seconds: f64::INFINITY,
+            }
+        }
+    }
+
+    /// Whether it is the same light field, whatever is painted on it.
+    pub fn is_twin_of(&self, other: &Self) -> bool {
+        Arc::ptr_eq(self.splatter.salf(), other.splatter.salf())
+    }
+
+    /// Bytes that summing it takes: its hierarchy and its sums, not its samples.
+    pub fn summing_bytes(&self) -> usize {
+        self.splatter.bytes().iter().sum()
+    }
+
+    /// Sets how coarse sums may be: with another tolerance the next one is made whole.
+    pub fn set_tolerance(&mut self, tolerance: Tolerance) {
+        if tolerance != self.tolerance {
+            self.tolerance = tolerance;
+            self.splatter.set_tolerance(tolerance);
+            self.summed = None;
+        }
     }
 
     /// Whether it can show what `camera` sees.
@@ -128,11 +188,23 @@ impl LightField {
     }
 
     /// Whether another bake would serve better: paint or lens has come to spread light from further outside the
-    /// frame, or the aperture has become much smaller than the one whose cells were looked through.
-    pub fn is_outgrown(&self, stage: &Stage, camera: &Camera, focus: &Focus) -> bool {
+    /// frame, or the aperture has become much smaller than the one whose cells were looked through. The least margin, px,
+    /// of that bake.
+    ///
+    /// Quick after an update; after a whole sum every sample is looked at, unless [`Self::survey`] has done it.
+    pub fn is_outgrown(&mut self, camera: &Camera, focus: &Focus) -> Option<f64> {
+        self.survey(camera, focus);
         let salf = self.splatter.salf();
-        camera.aperture_radius < SMALLER_APERTURE * salf.camera.aperture_radius
-            || BakeOptions::for_focus(&stage.tracer, camera, focus).margin_px > salf.margin_px as f64
+        let exceeded = self.reach.as_ref().filter(|reach| reach.is_exceeded());
+        let is_stopped_down = camera.aperture_radius < SMALLER_APERTURE * salf.camera.aperture_radius;
+        let needed_px = exceeded.map(|reach| reach.needed_px(salf, camera, focus));
+        needed_px.or(is_stopped_down.then_some(0.0))
+    }
+
+    /// Looks how far samples reach, where that is not known. It must be summed for this lens and focus.
+    pub fn survey(&mut self, camera: &Camera, focus: &Focus) {
+        let salf = self.splatter.salf();
+        self.reach.get_or_insert_with(|| Reach::of_all(salf, camera, focus));
     }
 
     /// Notes changes of the focus map.
@@ -156,6 +228,11 @@ impl LightField {
         few.then_some(samples)
     }
 
+    /// Whether the sum shows this lens and all changes.
+    pub fn is_up_to_date(&self, camera: &Camera) -> bool {
+        self.summed.as_ref() == Some(camera) && self.unseen.is_none()
+    }
+
     /// Seconds that the last whole sum took; infinite before the first.
     pub fn whole_seconds(&self) -> f64 {
         self.whole_seconds
@@ -173,8 +250,15 @@ impl LightField {
         let was_summed = self.summed.take().is_some();
         let brought = match moved {
             Some(samples) if samples.is_empty() => Brought::Nothing,
-            Some(samples) => Brought::Update(self.splatter.update(focus, &samples)?),
+            Some(samples) => {
+                let rows = self.splatter.update(focus, &samples)?;
+                if let Some(reach) = &mut self.reach {
+                    reach.look_again(self.splatter.salf(), camera, focus, &samples);
+                }
+                Brought::Update(rows)
+            }
             None => {
+                self.reach = None;
                 let start = Instant::now();
                 if was_summed && self.unseen.is_none() {
                     self.splatter.refocus(camera, progress)?;
@@ -215,4 +299,117 @@ pub(crate) fn serves(baked: &Camera, camera: &Camera) -> bool {
         ..camera.clone()
     };
     like == *baked && camera.aperture_radius <= baked.aperture_radius
+}
+
+#[cfg(test)]
+#[path = "../tests/tiny_glb/mod.rs"]
+mod tiny_glb;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Document;
+    use glam::DVec3;
+    use lens::FocusOffset;
+    use progress::Unwatched;
+
+    /// The texels of the wall whose middle lies where `wanted` says, and the focus with `value` on them.
+    fn painted(
+        document: &Document,
+        value: FocusOffset,
+        wanted: impl Fn(DVec3) -> bool,
+    ) -> (Focus, Vec<[u32; 2]>) {
+        let stage = &document.stage;
+        let mut map = document.map.clone();
+        let [width, height] = map.size();
+        let inside = |[x, y]: &[u32; 2]| {
+            let texel = stage.texels.at(*x, *y);
+            texel.is_some_and(|texel| wanted(texel.centroid.position(&stage.scene)))
+        };
+        let all = (0..height).flat_map(|y| (0..width).map(move |x| [x, y]));
+        let texels: Vec<_> = all.filter(inside).collect();
+        texels.iter().for_each(|&[x, y]| map.set(x, y, [value.t as f32, value.anchor as f32]));
+        (Focus::painted(stage.scene.clone(), stage.atlas.clone(), Arc::new(map)), texels)
+    }
+
+    #[test]
+    fn a_stroke_tells_whether_the_margin_is_still_wide_enough_as_the_whole_frame_does() {
+        let folder = tempfile::tempdir().unwrap();
+        let scene = folder.path().join("quads.glb");
+        tiny_glb::write(&scene);
+        let document = Document::begin(&scene, None, None, &Default::default(), &Unwatched).unwrap();
+        let stage = &document.stage;
+        let camera = Camera { width: 90, height: 60, ..document.camera.clone() };
+        let (blank, none) = painted(&document, FocusOffset::STANDARD, |_| false);
+        assert!(none.is_empty());
+        let how = FieldOptions { least_margin_px: 0.0, tolerance: Tolerance::VIEWING };
+        let mut field = LightField::bake(stage, &camera, &blank, how, &Unwatched).unwrap();
+        field.bring_up(&camera, &blank, &Unwatched).unwrap();
+        field.survey(&camera, &blank);
+        assert_eq!(field.is_outgrown(&camera, &blank), None);
+
+        let in_view = |at: DVec3| at.z < -3.5 && at.x.abs() < 0.3 && at.y.abs() < 0.3;
+        let per_t = camera.optics().splat_radius_px(1.0 / camera.optics().image_distance);
+        let margin = f64::from(field.splatter.salf().margin_px);
+        let mut grew = 0;
+        for share in [0.5, 0.9, 1.3, 0.2, 2.0] {
+            // Anchored at the point: the radius is that of (t − 1)/d.
+            let value = FocusOffset::new(1.0 + share * margin / per_t, 1.0);
+            let (focus, texels) = painted(&document, value, in_view);
+            assert!(texels.len() > 10);
+            field.note(&Changes::Texels(texels));
+            field.bring_up(&camera, &focus, &Unwatched).unwrap();
+            let needed = BakeOptions::for_focus(&stage.tracer, &camera, &focus).margin_px;
+            let found = field.is_outgrown(&camera, &focus);
+            assert_eq!(found.is_some(), needed > margin, "{share} of the margin");
+            if let Some(found) = found {
+                assert!((found - share * margin).abs() < 1e-3 * margin, "{found} px of {margin}");
+                grew += 1;
+            }
+            field.reach = None;
+            assert_eq!(
+                field.is_outgrown(&camera, &focus),
+                found,
+                "whether all are asked or those that moved"
+            );
+        }
+        assert_eq!(grew, 2);
+
+        // Far outside the frame nothing reaches it, however blurred.
+        let beside = |at: DVec3| at.z < -3.5 && at.x > 3.5;
+        let (focus, texels) = painted(&document, FocusOffset::new(1.0 + 0.05 * margin / per_t, 1.0), beside);
+        assert!(!texels.is_empty());
+        field.note(&Changes::Everything);
+        field.bring_up(&camera, &focus, &Unwatched).unwrap();
+        assert_eq!(field.is_outgrown(&camera, &focus), None);
+        // A much smaller aperture is another reason.
+        let stopped = Camera { aperture_radius: camera.aperture_radius * 0.5, ..camera.clone() };
+        field.bring_up(&stopped, &focus, &Unwatched).unwrap();
+        assert_eq!(field.is_outgrown(&stopped, &focus), Some(0.0));
+    }
+
+    #[test]
+    fn the_exact_sum_follows_as_a_new_one_would() {
+        let folder = tempfile::tempdir().unwrap();
+        let scene = folder.path().join("quads.glb");
+        tiny_glb::write(&scene);
+        let document = Document::begin(&scene, None, None, &Default::default(), &Unwatched).unwrap();
+        let camera = Camera { width: 90, height: 60, ..document.camera.clone() };
+        let (blank, _) = painted(&document, FocusOffset::STANDARD, |_| false);
+        let how = FieldOptions { least_margin_px: 0.0, tolerance: Tolerance::VIEWING };
+        let field = LightField::bake(&document.stage, &camera, &blank, how, &Unwatched).unwrap();
+        let mut exact = field.exact()();
+        assert!(exact.is_twin_of(&field) && exact.summing_bytes() > 0);
+        assert!(!exact.is_up_to_date(&camera));
+        exact.bring_up(&camera, &blank, &Unwatched).unwrap();
+        assert!(exact.is_up_to_date(&camera));
+        let was = exact.picture().clone();
+        let dab = |at: DVec3| at.z < -3.5 && at.x.abs() < 0.3;
+        let (focus, texels) = painted(&document, FocusOffset::new(1.2, 1.0), dab);
+        exact.note(&Changes::Texels(texels));
+        assert!(matches!(exact.bring_up(&camera, &focus, &Unwatched), Ok(Brought::Update(_))));
+        let mut anew = field.exact()();
+        anew.bring_up(&camera, &focus, &Unwatched).unwrap();
+        assert!(exact.picture() == anew.picture() && *exact.picture() != was);
+    }
 }

@@ -14,9 +14,14 @@ pub(crate) type Rectangle = [Range<u32>; 2];
 const SNAPSHOTS: usize = 3;
 
 /// Snapshots of one picture, the newest last.
+///
+/// A better picture may be laid over the one that is followed ([`Self::overlay`]): what changes afterwards is shown as it is
+/// followed, the rest stays as good as it was.
 #[derive(Default)]
 pub(crate) struct PictureRing {
     snapshots: Vec<Snapshot>,
+    /// The picture that is followed, where another one lies over it.
+    beneath: Option<Arc<Picture>>,
 }
 
 struct Snapshot {
@@ -26,45 +31,75 @@ struct Snapshot {
 }
 
 impl PictureRing {
-    /// A snapshot of `picture`, which differs from the last one in these rows at most, and where it differs from that;
-    /// `None` where in nothing.
+    /// A snapshot of what is shown once `picture` has taken the place of the last one that was followed, from which it
+    /// differs in these rows at most; and where it differs from that, `None` where in nothing.
     pub fn follow(&mut self, picture: &Picture, rows: Range<u32>) -> (Arc<Picture>, Option<Rectangle>) {
-        let size = (picture.width, picture.height);
-        let newest = self.snapshots.last().map(|snapshot| &snapshot.picture);
-        let Some(newest) = newest.filter(|newest| (newest.width, newest.height) == size) else {
+        let Some(followed) = self.followed().filter(|followed| same_size(followed, picture)) else {
             return (self.begin(picture), Some(whole(picture)));
         };
-        let Some(changed) = difference(newest, picture, rows) else { return (newest.clone(), None) };
+        let changed = difference(&followed, picture, rows);
+        drop(followed);
+        if let (Some(beneath), Some(changed)) = (&mut self.beneath, &changed) {
+            copy(Arc::make_mut(beneath), picture, changed);
+        }
+        (self.show(picture, changed.as_ref()), changed)
+    }
+
+    /// Lays a better picture over the one that is followed; where it differs from what was shown.
+    pub fn overlay(&mut self, better: &Picture) -> (Arc<Picture>, Option<Rectangle>) {
+        let Some(followed) = self.followed().filter(|followed| same_size(followed, better)) else {
+            return (self.begin(better), Some(whole(better)));
+        };
+        self.beneath = Some(followed);
+        let shown = self.snapshots.last().map(|snapshot| &snapshot.picture);
+        let changed = shown.and_then(|shown| difference(shown, better, 0..better.height));
+        (self.show(better, changed.as_ref()), changed)
+    }
+
+    /// The picture that is followed.
+    pub fn followed(&self) -> Option<Arc<Picture>> {
+        self.beneath.as_ref().or(self.snapshots.last().map(|snapshot| &snapshot.picture)).cloned()
+    }
+
+    /// A snapshot of what was shown last, with a rectangle of `picture`, which is of the same size.
+    fn show(&mut self, picture: &Picture, changed: Option<&Rectangle>) -> Arc<Picture> {
+        let Some((last, older)) = self.snapshots.split_last_mut() else { return self.begin(picture) };
+        let newest = last.picture.clone();
+        let Some(changed) = changed else { return newest };
+        // One that nobody looks at any more is written; else a new one is made.
+        let free = older.iter_mut().position(|snapshot| Arc::get_mut(&mut snapshot.picture).is_some());
         for snapshot in &mut self.snapshots {
-            let stale = snapshot.stale.as_ref().map_or(changed.clone(), |stale| union(stale, &changed));
+            let stale = snapshot.stale.as_ref().map_or(changed.clone(), |stale| union(stale, changed));
             snapshot.stale = Some(stale);
         }
-        // One that nobody looks at any more is written; else a new one is made.
-        let free =
-            self.snapshots.iter_mut().position(|snapshot| Arc::get_mut(&mut snapshot.picture).is_some());
-        let next = match free.map(|index| self.snapshots.remove(index)) {
-            Some(mut snapshot) => {
-                if let (Some(old), Some(stale)) = (Arc::get_mut(&mut snapshot.picture), snapshot.stale.take())
-                {
-                    copy(old, picture, &stale);
+        let mut next = match free.map(|index| self.snapshots.remove(index)) {
+            Some(Snapshot { mut picture, stale }) => {
+                if let (Some(old), Some(stale)) = (Arc::get_mut(&mut picture), stale) {
+                    copy(old, &newest, &stale);
                 }
-                snapshot.picture
+                picture
             }
-            None => Arc::new(picture.clone()),
+            None => Arc::new((*newest).clone()),
         };
+        copy(Arc::make_mut(&mut next), picture, changed);
         self.snapshots.push(Snapshot { picture: next.clone(), stale: None });
         if self.snapshots.len() > SNAPSHOTS {
             self.snapshots.remove(0);
         }
-        (next, Some(changed))
+        next
     }
 
     /// A snapshot of a picture that has nothing to do with those of before.
     pub fn begin(&mut self, picture: &Picture) -> Arc<Picture> {
         let snapshot = Arc::new(picture.clone());
+        self.beneath = None;
         self.snapshots = vec![Snapshot { picture: snapshot.clone(), stale: None }];
         snapshot
     }
+}
+
+fn same_size(a: &Picture, b: &Picture) -> bool {
+    (a.width, a.height) == (b.width, b.height)
 }
 
 /// All of a picture.
@@ -127,5 +162,38 @@ mod tests {
         assert_eq!(changed, None);
         let (_, changed) = ring.follow(&Picture::black(4, 4), 0..0);
         assert_eq!(changed, Some([0..4, 0..4]), "another size is another picture");
+    }
+    #[test]
+    fn a_better_picture_stays_where_nothing_changes() {
+        let mut ring = PictureRing::default();
+        let mut followed = Picture::black(60, 30);
+        followed.coverage.fill(1.0);
+        ring.begin(&followed);
+        let mut better = followed.clone();
+        better.coverage.iter_mut().step_by(7).for_each(|coverage| *coverage = 1.25);
+        let (shown, changed) = ring.overlay(&better);
+        assert_eq!((&*shown, changed.map(|[columns, _]| columns)), (&better, Some(0..60)));
+        assert_eq!(*ring.followed().unwrap(), followed);
+        let mut expected = better.clone();
+        for k in 0..20 {
+            // A stroke changes what is followed: that shows, and the rest stays.
+            let [x, y] = [(k * 13) % 60, (k * 7) % 30];
+            followed.coverage[y * 60 + x] = 2.0 + k as f32;
+            expected.coverage[y * 60 + x] = 2.0 + k as f32;
+            let (shown, changed) = ring.follow(&followed, 0..30);
+            let at = |k: usize| k as u32..k as u32 + 1;
+            assert_eq!(changed, Some([at(x), at(y)]));
+            assert_eq!(*shown, expected);
+        }
+        let mut again = better.clone();
+        again.coverage[5] = 9.0;
+        let (shown, changed) = ring.overlay(&again);
+        assert_eq!(*shown, again);
+        assert!(changed.is_some_and(|[columns, rows]| columns.contains(&5) && rows.contains(&0)));
+        assert_eq!(*ring.followed().unwrap(), followed);
+        let (shown, _) = ring.overlay(&again);
+        assert_eq!(*shown, again, "nothing is left to change");
+        assert_eq!(*ring.begin(&followed), followed);
+        assert_eq!(*ring.followed().unwrap(), followed, "nothing lies over it");
     }
 }

@@ -11,6 +11,7 @@
 //! paint            updated until the fine one is there   updated
 //! ```
 //!
+//! When nothing has changed for a while, the fine one is summed once more without tolerance ([`crate::refinement`]).
 //! So a dab or a turned ring shows at once and sharpens by itself, however large the scene. The thread works on
 //! snapshots of the focus map (tiles are shared until one is painted on): neither ever waits for the other. What
 //! a newer wish makes useless is stopped. The last good picture is never taken away.
@@ -18,14 +19,16 @@
 use crate::job::{JobProgress, Waker, own_threads};
 use crate::light_field::{BakedField, Changes, LightField};
 use crate::preview_worker::Worker;
+use crate::refinement::Refined;
 use crate::screen::Patch;
 use crate::{Modelled, SessionError, Stage, Tone};
 use focus::FocusMap;
 use lens::{Camera, Picture};
 use progress::{Cancelled, Progress};
-use std::sync::atomic::{AtomicU8, Ordering};
+use splat::Tolerance;
+use std::sync::atomic::{AtomicBool, AtomicU8, Ordering};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 /// A picture of the preview.
 #[derive(Clone, Debug)]
@@ -36,8 +39,11 @@ pub struct Preview {
     pub picture: Arc<Picture>,
     /// How it was made.
     pub kind: PreviewKind,
-    /// Whether it is the quick picture of few pixels that a finer one is about to replace.
-    pub is_coarse: bool,
+    /// How good it is.
+    pub quality: Quality,
+    /// PSNR, dB, of the last picture of [`Quality::Viewing`] against the exact one; none until that is known for the lens
+    /// and the tolerance.
+    pub viewing_psnr: Option<f64>,
     /// The camera it was made with, at its own size.
     pub camera: Camera,
     /// Seconds that making it took.
@@ -59,6 +65,17 @@ pub enum PreviewKind {
     Splat,
     /// From the light field, only what paint moved.
     Update,
+}
+
+/// How good a preview is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Quality {
+    /// The quick picture of few pixels, or one without blur, that a finer one is about to replace.
+    Coarse,
+    /// Of full size, summed within the tolerance, at least where it changed since it was exact.
+    Viewing,
+    /// Summed without tolerance.
+    Exact,
 }
 
 /// What the preview is doing.
@@ -101,6 +118,10 @@ pub(crate) struct Wishes {
     pub changed: Changes,
     /// Another way to put pictures on screen.
     pub tone: Option<Tone>,
+    /// How coarse pictures may be while one works.
+    pub tolerance: Option<Tolerance>,
+    /// Nothing was wished for a while.
+    pub is_idle: bool,
     /// The light field is to be made anew.
     pub bake: bool,
     /// An edit is complete: room for what takes longer.
@@ -109,10 +130,21 @@ pub(crate) struct Wishes {
     pub hold: bool,
     /// What the helper brought.
     pub delivery: Option<Delivery>,
+    /// What became of the exact picture.
+    pub refined: Option<Refined>,
     /// Work under way was told to stop when these were posted.
     stops: bool,
     is_posted: bool,
     quit: bool,
+}
+
+/// What of the work under way a wish makes useless.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Stops {
+    Nothing,
+    /// The exact picture.
+    Refining,
+    Everything,
 }
 
 /// What the threads and the session share.
@@ -123,6 +155,9 @@ pub(crate) struct Shared {
     pub quick: JobProgress,
     /// Of what its helper does: long.
     pub progress: JobProgress,
+    /// Of the exact picture.
+    pub refining: JobProgress,
+    is_refining: AtomicBool,
     activity: AtomicU8,
     helper: AtomicU8,
     published: Mutex<Published>,
@@ -154,13 +189,19 @@ fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 }
 
 impl Shared {
-    /// Waits for the next wishes; none when the session goes.
-    pub fn next(&self) -> Option<Wishes> {
+    /// Waits for the next wishes; none when the session goes. When there are none for as long as `patience`, that is told.
+    pub fn next(&self, patience: Option<Duration>) -> Option<Wishes> {
         let mut wishes = lock(&self.wishes);
         self.activity.store(PreviewActivity::Idle as u8, Ordering::Relaxed);
         (self.waker)();
+        let until = patience.map(|patience| Instant::now() + patience);
         while !wishes.is_posted {
-            wishes = self.wake.wait(wishes).unwrap_or_else(PoisonError::into_inner);
+            let left = until.map(|until| until.saturating_duration_since(Instant::now()));
+            wishes = match left {
+                None => self.wake.wait(wishes).unwrap_or_else(PoisonError::into_inner),
+                Some(Duration::ZERO) => return Some(Wishes { is_idle: true, ..Wishes::default() }),
+                Some(left) => self.wake.wait_timeout(wishes, left).unwrap_or_else(PoisonError::into_inner).0,
+            };
         }
         // What was cancelled is over, and this is new.
         self.quick.reset();
@@ -172,11 +213,14 @@ impl Shared {
         (!wishes.quit).then_some(wishes)
     }
 
-    fn post(&self, stops: bool, change: impl FnOnce(&mut Wishes)) {
+    fn post(&self, stops: Stops, change: impl FnOnce(&mut Wishes)) {
         let mut wishes = lock(&self.wishes);
         change(&mut wishes);
         wishes.is_posted = true;
-        if stops {
+        if stops != Stops::Nothing {
+            self.refining.cancel();
+        }
+        if stops == Stops::Everything {
             wishes.stops = true;
             self.quick.cancel();
             self.progress.cancel();
@@ -202,6 +246,24 @@ impl Shared {
         true
     }
 
+    /// Notes that the exact picture is begun; false if something was wished meanwhile.
+    pub fn begin_refining(&self) -> bool {
+        let wishes = lock(&self.wishes);
+        if wishes.is_posted {
+            return false;
+        }
+        self.refining.reset();
+        self.is_refining.store(true, Ordering::Relaxed);
+        (self.waker)();
+        true
+    }
+
+    /// The exact picture is done, or given up.
+    pub fn refined(&self, refined: Refined) {
+        self.is_refining.store(false, Ordering::Relaxed);
+        self.post(Stops::Nothing, |wishes| wishes.refined = Some(refined));
+    }
+
     /// Notes that the helper has baked and sums now.
     pub fn helper_sums(&self) {
         self.helper.store(PreviewActivity::Splatting as u8, Ordering::Relaxed);
@@ -209,13 +271,13 @@ impl Shared {
 
     /// The helper is done.
     pub fn deliver(&self, delivery: Delivery) {
-        self.post(false, |wishes| wishes.delivery = Some(delivery));
+        self.post(Stops::Nothing, |wishes| wishes.delivery = Some(delivery));
     }
 
     /// Shows a picture, and what is new on screen by it.
     pub fn publish(&self, preview: Preview, patch: Option<Patch>) {
         let mut published = lock(&self.published);
-        if !preview.is_coarse {
+        if preview.quality > Quality::Coarse {
             published.news.finished.push((preview.map_serial, Instant::now()));
         }
         if let Some(patch) = patch {
@@ -248,12 +310,15 @@ pub(crate) struct PreviewThread {
 }
 
 impl PreviewThread {
-    pub fn start(waker: Waker) -> Result<Self, SessionError> {
+    /// Starts the thread. `exact_after`: for how long nothing must change until the exact picture is drawn; none: never.
+    pub fn start(waker: Waker, exact_after: Option<Duration>) -> Result<Self, SessionError> {
         let shared = Arc::new(Shared {
             wishes: Mutex::default(),
             wake: Condvar::new(),
             quick: JobProgress::default(),
             progress: JobProgress::default(),
+            refining: JobProgress::default(),
+            is_refining: AtomicBool::new(false),
             activity: AtomicU8::new(PreviewActivity::Idle as u8),
             helper: AtomicU8::new(PreviewActivity::Idle as u8),
             published: Mutex::default(),
@@ -263,14 +328,14 @@ impl PreviewThread {
         let thread = std::thread::Builder::new()
             .name("preview".into())
             .stack_size(16 << 20)
-            .spawn(move || pool.install(|| Worker::new(theirs).run()))
+            .spawn(move || pool.install(|| Worker::new(theirs, exact_after).run()))
             .map_err(|e| SessionError::TryAgain(format!("no preview thread: {e} (try again)")))?;
         Ok(Self { shared, thread: Some(thread) })
     }
 
     /// Another scene, with its focus.
     pub fn set_stage(&self, stage: (Arc<Stage>, u64), map: (FocusMap, u64), camera: Camera) {
-        self.shared.post(true, |wishes| {
+        self.shared.post(Stops::Everything, |wishes| {
             wishes.stage = Some(stage);
             (wishes.camera, wishes.map) = (Some(camera), Some(map));
             wishes.changed = Changes::Everything;
@@ -280,7 +345,8 @@ impl PreviewThread {
 
     /// Another camera, at the preview's size. `light_field_stays` where the old light field serves it.
     pub fn set_camera(&self, camera: Camera, light_field_stays: bool) {
-        self.shared.post(!light_field_stays, |wishes| {
+        let stops = if light_field_stays { Stops::Refining } else { Stops::Everything };
+        self.shared.post(stops, |wishes| {
             wishes.camera = Some(camera);
             wishes.settle = true;
             wishes.hold = false;
@@ -289,7 +355,7 @@ impl PreviewThread {
 
     /// Another state of the map, with how many changes it holds; `changed` is what is new in it.
     pub fn set_map(&self, map: (FocusMap, u64), changed: &Changes) {
-        self.shared.post(false, |wishes| {
+        self.shared.post(Stops::Refining, |wishes| {
             wishes.map = Some(map);
             wishes.changed.join(changed);
         });
@@ -297,12 +363,12 @@ impl PreviewThread {
 
     /// A stroke or another edit is complete.
     pub fn settle(&self) {
-        self.shared.post(false, |wishes| wishes.settle = true);
+        self.shared.post(Stops::Nothing, |wishes| wishes.settle = true);
     }
 
     /// Makes the light field anew.
     pub fn bake(&self) {
-        self.shared.post(true, |wishes| {
+        self.shared.post(Stops::Everything, |wishes| {
             wishes.bake = true;
             wishes.hold = false;
         });
@@ -310,7 +376,7 @@ impl PreviewThread {
 
     /// Stops what is going on; the last picture stays.
     pub fn cancel(&self) {
-        self.shared.post(true, |wishes| wishes.hold = true);
+        self.shared.post(Stops::Everything, |wishes| wishes.hold = true);
     }
 
     /// What is going on, and how far it is.
@@ -332,7 +398,20 @@ impl PreviewThread {
 
     /// Puts pictures on screen in another way.
     pub fn set_tone(&self, tone: Tone) {
-        self.shared.post(false, |wishes| wishes.tone = Some(tone));
+        self.shared.post(Stops::Nothing, |wishes| wishes.tone = Some(tone));
+    }
+
+    /// Sets how coarse pictures may be while one works.
+    pub fn set_tolerance(&self, tolerance: Tolerance) {
+        self.shared.post(Stops::Refining, |wishes| {
+            wishes.tolerance = Some(tolerance);
+            wishes.hold = false;
+        });
+    }
+
+    /// How far the exact picture is, while it is drawn.
+    pub fn refining(&self) -> Option<f32> {
+        self.shared.is_refining.load(Ordering::Relaxed).then(|| self.shared.refining.fraction())
     }
 
     /// Whether everything that was posted has been followed, and nothing newer than `id` waits to be taken.
@@ -349,7 +428,7 @@ impl PreviewThread {
 
 impl Drop for PreviewThread {
     fn drop(&mut self) {
-        self.shared.post(true, |wishes| wishes.quit = true);
+        self.shared.post(Stops::Everything, |wishes| wishes.quit = true);
         if let Some(thread) = self.thread.take() {
             // A thread that panicked has nothing left to hand over.
             let _ = thread.join();

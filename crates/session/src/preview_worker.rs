@@ -1,20 +1,22 @@
 //! What the preview thread does with its wishes.
 
 use crate::job::{among_others, guarded};
-use crate::light_field::{Brought, Changes, LightField};
+use crate::light_field::{Brought, Changes, FieldOptions, LightField};
 use crate::picture_ring::{PictureRing, Rectangle, whole};
 use crate::preview::{Delivery, Shared, Wishes};
+use crate::refinement::{Refined, Refinement, Task};
 use crate::render::light;
 use crate::screen::Patch;
 use crate::tone::rectangle_to_screen;
-use crate::{Modelled, Preview, PreviewActivity, PreviewKind, SessionError, Stage, Tone};
+use crate::{Modelled, Preview, PreviewActivity, PreviewKind, Quality, SessionError, Stage, Tone};
 use baselines::FirstHits;
 use focus::{Focus, FocusMap};
 use lens::{Camera, Picture};
 use progress::Stage as Share;
+use splat::Tolerance;
 use std::sync::Arc;
 use std::thread::JoinHandle;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 /// Sides of the coarse picture are this share of the preview's: a ninth of the work.
 const COARSE: f64 = 1.0 / 3.0;
@@ -45,6 +47,16 @@ pub(crate) struct Worker {
     is_new: bool,
     /// Makes or sums the fine light field.
     helper: Option<JoinHandle<()>>,
+    /// Draws the exact picture of the fine light field.
+    refinement: Refinement,
+    /// For how long nothing must change until it does; none: never.
+    exact_after: Option<Duration>,
+    /// A stroke goes on.
+    is_painting: bool,
+    /// How coarse sums may be.
+    tolerance: Tolerance,
+    /// How far a picture within the tolerance is from the exact one, PSNR in dB, where that is known.
+    viewing_psnr: Option<f64>,
     /// Counts scenes and bakes that were asked for anew: what is of an older epoch is of no use.
     epoch: u64,
     /// What changed since the helper took its snapshot of the map.
@@ -64,7 +76,8 @@ pub(crate) struct Worker {
 }
 
 impl Worker {
-    pub fn new(shared: Arc<Shared>) -> Self {
+    /// `exact_after`: for how long nothing must change until the exact picture is drawn; none: never.
+    pub fn new(shared: Arc<Shared>, exact_after: Option<Duration>) -> Self {
         Self {
             shared,
             stage: None,
@@ -75,6 +88,11 @@ impl Worker {
             fine: None,
             is_new: false,
             helper: None,
+            refinement: Refinement::default(),
+            exact_after,
+            is_painting: false,
+            tolerance: Tolerance::VIEWING,
+            viewing_psnr: None,
             epoch: 0,
             since: Changes::default(),
             is_settled: false,
@@ -89,7 +107,7 @@ impl Worker {
 
     /// Follows wishes until the session goes.
     pub fn run(mut self) {
-        while let Some(wishes) = self.shared.next() {
+        while let Some(wishes) = self.shared.next(self.exact_after.filter(|_| self.may_refine())) {
             match guarded("drawing the preview", || self.follow(wishes)) {
                 Ok(()) | Err(SessionError::Cancelled) => {}
                 Err(error) => {
@@ -105,10 +123,56 @@ impl Worker {
             // It was cancelled with everything else.
             let _ = helper.join();
         }
+        self.refinement.join();
     }
 
-    fn follow(&mut self, wishes: Wishes) -> Result<(), SessionError> {
-        self.take_in(wishes)?;
+    /// Whether the picture is up to date and could be better.
+    fn may_refine(&self) -> bool {
+        let is_viewing = self.shown.as_ref().is_some_and(|shown| shown.quality == Quality::Viewing);
+        let field = self.fine.as_ref().zip(self.camera.as_ref());
+        let is_up_to_date = field.is_some_and(|(fine, camera)| fine.is_up_to_date(camera));
+        let is_quiet = !self.is_held && !self.is_painting && self.helper.is_none();
+        is_viewing && is_up_to_date && is_quiet && !self.refinement.is_at_work()
+    }
+
+    /// Begins to draw the exact picture, if nothing was wished meanwhile.
+    fn refine(&mut self, camera: Camera, focus: Focus) {
+        let (Some(fine), Some(viewing)) = (&self.fine, self.pictures.followed()) else { return };
+        let (exposure, map_serial) = (self.tone.exposure, self.map_serial);
+        let task = Task { camera, focus, viewing, exposure, map_serial };
+        self.refinement.start(&self.shared, fine, task);
+    }
+
+    /// Shows the exact picture, unless something changed while it was drawn.
+    fn show_exact(&mut self, refined: Refined) -> Result<(), SessionError> {
+        let (exact, field) = match self.refinement.take_up(refined) {
+            Ok(drawn) => drawn,
+            Err(SessionError::Cancelled) => return Ok(()),
+            Err(error) => return Err(error),
+        };
+        let is_current = exact.map_serial == self.map_serial && self.camera.as_ref() == Some(&exact.camera);
+        let viewed = self.fine.as_ref().filter(|_| is_current);
+        let (Some(field), Some(viewed)) = (field, viewed) else { return Ok(()) };
+        if !field.is_twin_of(viewed) || !viewed.is_up_to_date(&exact.camera) {
+            return Ok(());
+        }
+        self.viewing_psnr = Some(exact.viewing_psnr);
+        let (picture, changed) = self.pictures.overlay(field.picture());
+        let (kind, modelled) = (PreviewKind::Splat, field.modelled());
+        let quality = Quality::Exact;
+        let made = Made { picture, changed, kind, quality, seconds: exact.seconds, modelled };
+        self.publish(made, &exact.camera);
+        self.refinement.tidy(self.fine.as_ref());
+        Ok(())
+    }
+
+    fn follow(&mut self, mut wishes: Wishes) -> Result<(), SessionError> {
+        let (is_idle, refined) = (wishes.is_idle, wishes.refined.take());
+        let taken_in = self.take_in(wishes);
+        if let Some(refined) = refined {
+            self.show_exact(refined)?;
+        }
+        taken_in?;
         let (Some(stage), Some(camera), Some(map)) = (&self.stage, &self.camera, &self.map) else {
             return Ok(());
         };
@@ -117,8 +181,14 @@ impl Worker {
         if self.is_held && self.fine.is_none() && self.coarse.is_none() {
             return Ok(());
         }
+        if is_idle && self.may_refine() {
+            self.refine(camera, focus);
+            return Ok(());
+        }
 
-        self.fine.take_if(|fine| !fine.serves(&camera));
+        if self.fine.take_if(|fine| !fine.serves(&camera)).is_some() {
+            self.refinement.forget();
+        }
         if let Some(fine) = &mut self.fine
             && (fine.whole_seconds() < QUICK_SECONDS || !fine.needs_whole_sum(&camera))
         {
@@ -137,21 +207,27 @@ impl Worker {
                 self.is_new = false;
                 let (kind, modelled) = (PreviewKind::from(&brought), fine.modelled());
                 let seconds = start.elapsed().as_secs_f64() + elsewhere;
-                self.publish(Made { picture, changed, kind, seconds, modelled }, &camera);
+                if matches!(brought, Brought::Whole) {
+                    self.viewing_psnr = None;
+                }
+                let quality =
+                    if self.tolerance == Tolerance::NONE { Quality::Exact } else { Quality::Viewing };
+                self.publish(Made { picture, changed, kind, quality, seconds, modelled }, &camera);
             }
-            let may_refine = self.is_settled && self.helper.is_none() && !self.is_held;
-            let fine = self.fine.as_ref().filter(|_| may_refine);
-            self.is_settled &= !may_refine;
-            if fine.is_some_and(|fine| fine.is_outgrown(&stage, &camera, &focus)) {
+            let may_bake = self.is_settled && self.helper.is_none() && !self.is_held;
+            let fine = self.fine.as_mut().filter(|_| may_bake);
+            self.is_settled &= !may_bake;
+            if let Some(least_margin_px) = fine.and_then(|fine| fine.is_outgrown(&camera, &focus)) {
                 self.coarse = None;
-                self.start_helper(&stage, &camera, focus, None);
+                self.start_helper(&stage, &camera, focus, Begin::Bake { least_margin_px });
             }
             return Ok(());
         }
         self.show_coarse(&stage, &camera, &focus)?;
         if self.helper.is_none() && !self.is_held {
-            let unsummed = self.fine.take();
-            self.start_helper(&stage, &camera, focus, unsummed);
+            let unsummed = self.fine.take().map(|fine| Begin::Sum(Box::new(fine)));
+            let begin = unsummed.unwrap_or(Begin::Bake { least_margin_px: 0.0 });
+            self.start_helper(&stage, &camera, focus, begin);
         }
         Ok(())
     }
@@ -159,6 +235,13 @@ impl Worker {
     /// Takes up what changed, and what the helper brought.
     fn take_in(&mut self, wishes: Wishes) -> Result<(), SessionError> {
         let mut failed = Ok(());
+        if let Some(tolerance) = wishes.tolerance.filter(|tolerance| *tolerance != self.tolerance) {
+            self.tolerance = tolerance;
+            self.viewing_psnr = None;
+            for field in [&mut self.coarse, &mut self.fine].into_iter().flatten() {
+                field.set_tolerance(tolerance);
+            }
+        }
         if let Some(delivery) = wishes.delivery {
             if let Some(helper) = self.helper.take() {
                 // Its result is here; its panics were caught.
@@ -168,6 +251,7 @@ impl Worker {
             match delivery.made {
                 Ok(mut field) => {
                     field.note(&since);
+                    field.set_tolerance(self.tolerance);
                     self.fine = Some(field).filter(|_| delivery.epoch == self.epoch);
                     self.is_new = true;
                     if let Some(field) = &self.fine {
@@ -178,18 +262,23 @@ impl Worker {
                 Err(error) => failed = Err(error),
             }
         }
+        let is_opened = wishes.stage.is_some();
         if let Some((stage, generation)) = wishes.stage {
             self.stage = Some(stage);
             self.generation = generation;
             (self.coarse, self.fine, self.shown) = (None, None, None);
+            self.refinement.forget();
             self.epoch += 1;
         }
         if wishes.bake {
             (self.coarse, self.fine) = (None, None);
+            self.refinement.forget();
             self.epoch += 1;
         }
         let wants_work = self.stage.is_some() && (wishes.camera.is_some() || wishes.bake || wishes.settle);
         self.is_held = wishes.hold || (self.is_held && !wants_work);
+        let is_complete = wishes.settle || is_opened;
+        self.is_painting = !is_complete && (self.is_painting || wishes.map.is_some());
         // A stroke that goes on is no time for more.
         self.is_settled = wishes.settle || (self.is_settled && wishes.map.is_none());
         self.camera = wishes.camera.or(self.camera.take());
@@ -204,6 +293,8 @@ impl Worker {
             field.note(&wishes.changed);
         }
         self.since.join(&wishes.changed);
+        self.refinement.note(&wishes.changed);
+        self.refinement.tidy(self.fine.as_ref());
         failed
     }
 
@@ -220,6 +311,7 @@ impl Worker {
                 changed: Some(whole(&picture)),
                 picture,
                 kind: PreviewKind::Pinhole,
+                quality: Quality::Coarse,
                 seconds: start.elapsed().as_secs_f64(),
                 modelled: Modelled::default(),
             };
@@ -231,7 +323,8 @@ impl Worker {
             Some(coarse) => coarse,
             None => {
                 self.shared.begin(PreviewActivity::Baking)?;
-                self.coarse.insert(LightField::bake(stage, &small, focus, &self.shared.quick)?)
+                let how = FieldOptions { least_margin_px: 0.0, tolerance: self.tolerance };
+                self.coarse.insert(LightField::bake(stage, &small, focus, how, &self.shared.quick)?)
             }
         };
         self.shared.begin(PreviewActivity::Splatting)?;
@@ -244,34 +337,33 @@ impl Worker {
             };
             let (kind, modelled) = (PreviewKind::from(&brought), coarse.modelled());
             let seconds = start.elapsed().as_secs_f64();
-            self.publish(Made { picture, changed, kind, seconds, modelled }, &small);
+            let quality = Quality::Coarse;
+            self.publish(Made { picture, changed, kind, quality, seconds, modelled }, &small);
         }
         Ok(())
     }
 
-    /// Makes the fine light field (or takes an `unsummed` one) and sums it, on a thread of its own.
-    fn start_helper(
-        &mut self,
-        stage: &Arc<Stage>,
-        camera: &Camera,
-        focus: Focus,
-        unsummed: Option<LightField>,
-    ) {
+    /// Makes the fine light field and sums it, on a thread of its own.
+    fn start_helper(&mut self, stage: &Arc<Stage>, camera: &Camera, focus: Focus, begin: Begin) {
         if !self.shared.begin_helper() {
             return;
         }
+        let tolerance = self.tolerance;
         self.since = Changes::default();
         let (shared, stage, camera, epoch) = (self.shared.clone(), stage.clone(), camera.clone(), self.epoch);
         let work = move || {
             let make = || {
-                let mut field = match unsummed {
-                    Some(field) => field,
-                    None => {
-                        LightField::bake(&stage, &camera, &focus, &Share::new(&shared.progress, 0.0, 0.7))?
+                let mut field = match begin {
+                    Begin::Sum(field) => *field,
+                    Begin::Bake { least_margin_px } => {
+                        let how = FieldOptions { least_margin_px, tolerance };
+                        let baking = Share::new(&shared.progress, 0.0, 0.7);
+                        LightField::bake(&stage, &camera, &focus, how, &baking)?
                     }
                 };
                 shared.helper_sums();
                 field.bring_up(&camera, &focus, &Share::new(&shared.progress, 0.7, 1.0))?;
+                field.survey(&camera, &focus);
                 Ok(field)
             };
             let made = guarded("drawing the preview", || among_others(make));
@@ -289,14 +381,14 @@ impl Worker {
 
     /// Shows a picture.
     fn publish(&mut self, made: Made, camera: &Camera) {
-        let Made { picture, changed, kind, seconds, modelled } = made;
+        let Made { picture, changed, kind, quality, seconds, modelled } = made;
         self.last_id += 1;
-        let full = self.camera.as_ref().map(|camera| (camera.width, camera.height));
         let preview = Preview {
             id: self.last_id,
-            is_coarse: full != Some((picture.width, picture.height)),
             picture,
             kind,
+            quality,
+            viewing_psnr: self.viewing_psnr,
             camera: camera.clone(),
             seconds,
             modelled,
@@ -327,12 +419,21 @@ impl Worker {
     }
 }
 
+/// What the helper begins with.
+enum Begin {
+    /// A light field that is there.
+    Sum(Box<LightField>),
+    /// None: it is baked, with a margin of at least this many pixels.
+    Bake { least_margin_px: f64 },
+}
+
 /// A picture that was made.
 struct Made {
     picture: Arc<Picture>,
     /// Where it differs from the one before.
     changed: Option<Rectangle>,
     kind: PreviewKind,
+    quality: Quality,
     seconds: f64,
     modelled: Modelled,
 }

@@ -41,6 +41,8 @@ pub struct SessionOptions {
     /// How long after a change unsaved work is written to its recovery file. With the time that writing takes, it
     /// is what a crash may cost.
     pub keep_after: Duration,
+    /// For how long nothing must change until the exact picture is drawn; none: the one within the tolerance is enough.
+    pub exact_after: Option<Duration>,
     /// Called from any thread when there is something to poll.
     pub waker: Waker,
 }
@@ -52,6 +54,7 @@ impl Default for SessionOptions {
             preview_size: 640,
             undo_budget_bytes: Document::UNDO_BUDGET_BYTES,
             keep_after: Duration::from_secs(15),
+            exact_after: None,
             waker: Arc::new(|| {}),
         }
     }
@@ -140,7 +143,7 @@ impl Session {
     pub fn new(options: SessionOptions) -> Result<Self, SessionError> {
         let (sender, outcomes) = mpsc::channel();
         Ok(Self {
-            preview_thread: PreviewThread::start(options.waker.clone())?,
+            preview_thread: PreviewThread::start(options.waker.clone(), options.exact_after)?,
             options,
             document: None,
             generation: 0,
@@ -206,12 +209,17 @@ impl Session {
         self.preview_thread.activity().0
     }
 
+    /// How far the exact picture is, in [0, 1], while it is drawn.
+    pub fn drawing_exactly(&self) -> Option<f32> {
+        self.preview_thread.refining()
+    }
+
     /// Whether a stroke or a gradient is going on.
     pub fn is_painting(&self) -> bool {
         self.underway.is_some()
     }
 
-    /// Whether all background work is done and the preview shows the document as it is.
+    /// Whether all background work is done and the preview shows the document as it is, within the tolerance.
     pub fn is_settled(&self) -> bool {
         self.jobs.is_empty() && self.preview_thread.is_settled(self.seen_preview)
     }
@@ -365,6 +373,10 @@ impl Session {
             Command::SetPreviewSize(size) => {
                 self.options.preview_size = size.max(1);
                 self.show_camera();
+                Ok(())
+            }
+            Command::SetTolerance(tolerance) => {
+                self.preview_thread.set_tolerance(tolerance);
                 Ok(())
             }
             Command::SetBrush(brush) => match brush.problem() {

@@ -1,6 +1,6 @@
 //! A rectangle of the picture, checked against the ground truth.
 
-use crate::{Preview, PreviewKind};
+use crate::{Preview, PreviewKind, Quality};
 use lens::{Camera, Exposure, Picture};
 use project::{LinearPicture, ProjectError, compare};
 use std::sync::Arc;
@@ -46,7 +46,7 @@ impl Verification {
         let estimate = self.estimate.as_ref()?;
         let shown = &preview.picture;
         let is_same = preview.kind != PreviewKind::Pinhole
-            && !preview.is_coarse
+            && preview.quality > Quality::Coarse
             && (shown.width, shown.height) == (self.camera.width, self.camera.height);
         is_same.then(|| {
             let truth = LinearPicture::of(&estimate.picture, exposure);

@@ -31,7 +31,8 @@ impl Session {
 
     /// Whether there is time for a picture to compare with: nothing else is going on.
     pub fn is_idle(&self) -> bool {
-        self.jobs.is_empty() && !self.is_painting() && self.preview_activity() == PreviewActivity::Idle
+        let is_drawing = self.preview_activity() != PreviewActivity::Idle || self.drawing_exactly().is_some();
+        self.jobs.is_empty() && !self.is_painting() && !is_drawing
     }
 
     /// Starts making a picture; an older wish for the same kind is given up.
