@@ -56,6 +56,7 @@ pub use view_settings::ViewSettings;
 
 use std::path::PathBuf;
 use std::sync::Arc;
+use std::time::Duration;
 
 /// What the window starts with.
 #[derive(Clone, Debug)]
@@ -68,6 +69,8 @@ pub struct WindowOptions {
     pub remember: bool,
     /// The longest side that the preview is drawn at, px; none for the user's setting.
     pub preview_size: Option<u32>,
+    /// For how long nothing must change until the exact picture is drawn; none: never.
+    pub exact_after: Option<Duration>,
     /// How scenes are unwrapped.
     pub unwrap: atlas::UnwrapOptions,
     /// Whether the system is asked for its file dialogs; else paths are typed.
@@ -85,6 +88,7 @@ impl Default for WindowOptions {
             demo: true,
             remember: true,
             preview_size: None,
+            exact_after: Some(Duration::from_millis(500)),
             unwrap: atlas::UnwrapOptions::default(),
             system_dialogs: system_dialogs(),
             replay: None,

@@ -85,6 +85,7 @@ impl Shell {
         let session = Session::new(SessionOptions {
             unwrap: options.unwrap,
             preview_size: options.preview_size.unwrap_or(settings.preview_size),
+            exact_after: options.exact_after,
             waker: Arc::new(move || context.request_repaint()),
             ..SessionOptions::default()
         })?;
@@ -277,6 +278,10 @@ impl Shell {
         let display = self.settings.display();
         if self.session.display() != display {
             self.apply(Command::SetDisplay(display));
+        }
+        let tolerance = self.settings.tolerance();
+        if self.session.tolerance() != tolerance {
+            self.apply(Command::SetTolerance(tolerance));
         }
     }
 

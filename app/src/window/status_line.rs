@@ -3,7 +3,7 @@
 use super::inspector::selected;
 use super::{Action, controls};
 use egui::{Align, Layout, ProgressBar, Ui};
-use session::{Command, JobStatus, PreviewKind, Session};
+use session::{Command, JobStatus, Preview, PreviewKind, Quality, Session};
 
 /// What lies under the pointer.
 #[derive(Clone, Debug, PartialEq)]
@@ -35,13 +35,10 @@ pub struct StatusNotes<'a> {
 pub fn status_line(ui: &mut Ui, session: &Session, notes: StatusNotes<'_>, actions: &mut Vec<Action>) {
     ui.horizontal(|ui| {
         if let Some(preview) = session.preview().filter(|_| session.document().is_some()) {
-            let what = match preview.kind {
-                PreviewKind::Pinhole => "pinhole",
-                PreviewKind::Splat => "splat",
-                PreviewKind::Update => "dab",
-            };
-            ui.label(format!("{what} {}", controls::seconds(preview.seconds))).on_hover_text(
-                "How long the last picture took to draw, and whether all or only the painted part was drawn.",
+            ui.label(standing(preview, session.drawing_exactly())).on_hover_text(
+                "How good the picture is, and how long it took to draw. Rough: few pixels or no blur, until there is a \
+                 better one. Live: drawn within the tolerance (section Picture) while you work. Exact: drawn without one, \
+                 once nothing changes. dB: how close live comes to exact; from about 45 on nobody sees a difference.",
             );
             ui.separator();
             let samples = preview.modelled.sample_count();
@@ -91,6 +88,19 @@ pub fn status_line(ui: &mut Ui, session: &Session, notes: StatusNotes<'_>, actio
             });
         });
     });
+}
+
+/// How good the picture is, in words, and what it took.
+fn standing(preview: &Preview, drawing_exactly: Option<f32>) -> String {
+    let took = controls::seconds(preview.seconds);
+    let close = preview.costs.viewing_psnr.map(|psnr| format!(" · {psnr:.0} dB")).unwrap_or_default();
+    let exact = drawing_exactly.map(|share| format!(" · exact {:.0} %", 100.0 * share)).unwrap_or_default();
+    match (preview.kind, preview.quality) {
+        (PreviewKind::Pinhole, _) => format!("no blur yet · {took}"),
+        (_, Quality::Coarse) => format!("rough · {took}"),
+        (_, Quality::Viewing) => format!("live · {took}{close}{exact}"),
+        (_, Quality::Exact) => format!("exact · {took}"),
+    }
 }
 
 fn job_ui(ui: &mut Ui, job: &JobStatus, actions: &mut Vec<Action>) {

@@ -5,10 +5,17 @@ use super::paint_view::SurfaceLook;
 use super::tool_settings::ToolSettings;
 use serde::{Deserialize, Serialize};
 use session::{Display, KeyMap, ToneCurve};
+use splat::Tolerance;
 use std::path::{Path, PathBuf};
 
 /// Files that the Open recent menu remembers.
 const RECENT: usize = 8;
+
+/// The largest tolerance of the live picture, px: as wide as the circle of confusion.
+pub const LARGEST_TOLERANCE_PX: f64 = 16.0;
+
+/// The tolerance of the live picture at first, px: a quarter of the circle of confusion.
+const TOLERANCE_PX: f64 = 4.0;
 
 /// The user's own settings of the window.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -24,6 +31,8 @@ pub struct ViewSettings {
     pub drawer: Option<Drawn>,
     /// The longest side that the preview is drawn at, px.
     pub preview_size: u32,
+    /// Sides of what the live picture draws as one where the circle of confusion is 16 px wide, px; 0: every sample.
+    pub tolerance_px: f64,
     /// Exposure of the display, stops.
     pub display_stops: f32,
     /// What the display makes of light brighter than white.
@@ -53,6 +62,7 @@ impl Default for ViewSettings {
             inspector: true,
             drawer: None,
             preview_size: 640,
+            tolerance_px: TOLERANCE_PX,
             display_stops: 0.0,
             tone_curve: ToneCurve::default(),
             light_theme: false,
@@ -75,6 +85,11 @@ impl ViewSettings {
     /// How pictures are put on screen.
     pub fn display(&self) -> Display {
         Display { stops: self.display_stops, curve: self.tone_curve }
+    }
+
+    /// How coarse the live picture may be.
+    pub fn tolerance(&self) -> Tolerance {
+        Tolerance::px(self.tolerance_px.clamp(0.0, LARGEST_TOLERANCE_PX))
     }
 
     /// Notes that a file was opened or saved.

@@ -32,14 +32,24 @@ impl Person {
 
     /// Opens the window with a file, or with nothing.
     pub fn starts(file: Option<&Path>) -> Self {
-        let options = WindowOptions {
+        Self::starts_with(Self::usual(file))
+    }
+
+    /// How the window is usually started by tests: small pictures, nothing remembered, nothing drawn unasked.
+    pub fn usual(file: Option<&Path>) -> WindowOptions {
+        WindowOptions {
             file: file.map(Path::to_path_buf),
             demo: false,
             remember: false,
             preview_size: Some(180),
+            exact_after: None,
             system_dialogs: false,
             ..WindowOptions::default()
-        };
+        }
+    }
+
+    /// Opens the window.
+    pub fn starts_with(options: WindowOptions) -> Self {
         let builder = Harness::builder().with_size([1280.0, 720.0]).with_max_steps(64).wgpu();
         let window = builder.build_eframe(move |creation| Shell::new(creation, options).unwrap());
         Self { window }

@@ -11,4 +11,5 @@ mod key_maps;
 mod layers;
 mod painting;
 mod panels;
+mod quality;
 mod small_scene;

@@ -64,7 +64,7 @@ pub use key_map::KeyMap;
 pub use modelled::{DENSE_SAMPLE_BYTES, Modelled, ModelledRow, TexelStatistics};
 pub use painter::replay;
 pub use picking::{SurfaceHit, chief_ray, pick, view_ray};
-pub use preview::{Preview, PreviewActivity, PreviewKind, Quality};
+pub use preview::{DrawingCosts, Preview, PreviewActivity, PreviewKind, Quality};
 pub use reference::{Reference, ReferenceKind};
 pub use render::{RenderCost, RenderOptions, Rendered, Renderer, bake, render, render_input};
 pub use salf_file::write_salf;

@@ -41,9 +41,8 @@ pub struct Preview {
     pub kind: PreviewKind,
     /// How good it is.
     pub quality: Quality,
-    /// PSNR, dB, of the last picture of [`Quality::Viewing`] against the exact one; none until that is known for the lens
-    /// and the tolerance.
-    pub viewing_psnr: Option<f64>,
+    /// What pictures of its light field cost.
+    pub costs: DrawingCosts,
     /// The camera it was made with, at its own size.
     pub camera: Camera,
     /// Seconds that making it took.
@@ -76,6 +75,17 @@ pub enum Quality {
     Viewing,
     /// Summed without tolerance.
     Exact,
+}
+
+/// What pictures within the tolerance and exact ones cost, as far as that is known.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct DrawingCosts {
+    /// Seconds to draw all of a picture of [`Quality::Viewing`].
+    pub viewing_seconds: Option<f64>,
+    /// PSNR, dB, of the last one against the exact picture, for the lens and the tolerance as they are.
+    pub viewing_psnr: Option<f64>,
+    /// Seconds to draw all of the exact picture.
+    pub exact_seconds: Option<f64>,
 }
 
 /// What the preview is doing.

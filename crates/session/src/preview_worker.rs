@@ -8,7 +8,9 @@ use crate::refinement::{Refined, Refinement, Task};
 use crate::render::light;
 use crate::screen::Patch;
 use crate::tone::rectangle_to_screen;
-use crate::{Modelled, Preview, PreviewActivity, PreviewKind, Quality, SessionError, Stage, Tone};
+use crate::{
+    DrawingCosts, Modelled, Preview, PreviewActivity, PreviewKind, Quality, SessionError, Stage, Tone,
+};
 use baselines::FirstHits;
 use focus::{Focus, FocusMap};
 use lens::{Camera, Picture};
@@ -55,8 +57,8 @@ pub(crate) struct Worker {
     is_painting: bool,
     /// How coarse sums may be.
     tolerance: Tolerance,
-    /// How far a picture within the tolerance is from the exact one, PSNR in dB, where that is known.
-    viewing_psnr: Option<f64>,
+    /// What pictures cost, where that is known.
+    costs: DrawingCosts,
     /// Counts scenes and bakes that were asked for anew: what is of an older epoch is of no use.
     epoch: u64,
     /// What changed since the helper took its snapshot of the map.
@@ -92,7 +94,7 @@ impl Worker {
             exact_after,
             is_painting: false,
             tolerance: Tolerance::VIEWING,
-            viewing_psnr: None,
+            costs: DrawingCosts::default(),
             epoch: 0,
             since: Changes::default(),
             is_settled: false,
@@ -156,7 +158,8 @@ impl Worker {
         if !field.is_twin_of(viewed) || !viewed.is_up_to_date(&exact.camera) {
             return Ok(());
         }
-        self.viewing_psnr = Some(exact.viewing_psnr);
+        self.costs.viewing_psnr = Some(exact.viewing_psnr);
+        self.costs.exact_seconds = Some(field.whole_seconds());
         let (picture, changed) = self.pictures.overlay(field.picture());
         let (kind, modelled) = (PreviewKind::Splat, field.modelled());
         let quality = Quality::Exact;
@@ -204,14 +207,20 @@ impl Worker {
                     }
                     _ => (self.pictures.begin(fine.picture()), Some(whole(fine.picture()))),
                 };
-                self.is_new = false;
                 let (kind, modelled) = (PreviewKind::from(&brought), fine.modelled());
                 let seconds = start.elapsed().as_secs_f64() + elsewhere;
-                if matches!(brought, Brought::Whole) {
-                    self.viewing_psnr = None;
+                let is_exact = self.tolerance == Tolerance::NONE;
+                let quality = if is_exact { Quality::Exact } else { Quality::Viewing };
+                if brought == Brought::Whole || self.is_new {
+                    self.costs.viewing_psnr = None;
+                    let known = if is_exact {
+                        &mut self.costs.exact_seconds
+                    } else {
+                        &mut self.costs.viewing_seconds
+                    };
+                    *known = Some(fine.whole_seconds());
                 }
-                let quality =
-                    if self.tolerance == Tolerance::NONE { Quality::Exact } else { Quality::Viewing };
+                self.is_new = false;
                 self.publish(Made { picture, changed, kind, quality, seconds, modelled }, &camera);
             }
             let may_bake = self.is_settled && self.helper.is_none() && !self.is_held;
@@ -237,7 +246,7 @@ impl Worker {
         let mut failed = Ok(());
         if let Some(tolerance) = wishes.tolerance.filter(|tolerance| *tolerance != self.tolerance) {
             self.tolerance = tolerance;
-            self.viewing_psnr = None;
+            (self.costs.viewing_psnr, self.costs.viewing_seconds) = (None, None);
             for field in [&mut self.coarse, &mut self.fine].into_iter().flatten() {
                 field.set_tolerance(tolerance);
             }
@@ -267,6 +276,7 @@ impl Worker {
             self.stage = Some(stage);
             self.generation = generation;
             (self.coarse, self.fine, self.shown) = (None, None, None);
+            self.costs = DrawingCosts::default();
             self.refinement.forget();
             self.epoch += 1;
         }
@@ -388,7 +398,7 @@ impl Worker {
             picture,
             kind,
             quality,
-            viewing_psnr: self.viewing_psnr,
+            costs: self.costs,
             camera: camera.clone(),
             seconds,
             modelled,

@@ -20,6 +20,7 @@ use atlas::UnwrapOptions;
 use focus::{Changed, FillTarget, union};
 use glam::DVec2;
 use lens::{Camera, FocusOffset};
+use splat::Tolerance;
 use std::cmp::Ordering;
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -106,6 +107,7 @@ pub struct Session {
     /// The preview as it is shown.
     screen: Screen,
     display: Display,
+    tolerance: Tolerance,
     /// The light field that the preview is made of.
     pub(crate) field: Option<BakedField>,
     /// Counts them.
@@ -151,6 +153,7 @@ impl Session {
             preview: None,
             screen: Screen::default(),
             display: Display::default(),
+            tolerance: Tolerance::VIEWING,
             field: None,
             fields: 0,
             finished: Vec::new(),
@@ -186,6 +189,11 @@ impl Session {
     /// How the screen shows any picture.
     pub fn display(&self) -> Display {
         self.display
+    }
+
+    /// How coarse the live picture may be.
+    pub fn tolerance(&self) -> Tolerance {
+        self.tolerance
     }
 
     /// The live picture as the screen shows it.
@@ -376,6 +384,7 @@ impl Session {
                 Ok(())
             }
             Command::SetTolerance(tolerance) => {
+                self.tolerance = tolerance;
                 self.preview_thread.set_tolerance(tolerance);
                 Ok(())
             }

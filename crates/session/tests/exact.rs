@@ -73,10 +73,10 @@ fn idle_makes_the_picture_exact_and_a_stroke_leaves_the_rest_of_it_as_it_is() {
     tiny_glb::write(&scene);
     let mut session = opened(&scene, Some(Duration::from_millis(300)));
     let viewing = wait_for(&mut session, Quality::Viewing);
-    assert_eq!(preview(&session).viewing_psnr, None, "nothing is known yet");
+    assert_eq!(preview(&session).costs.viewing_psnr, None, "nothing is known yet");
     let exact = wait_for(&mut session, Quality::Exact);
     assert!(exact != viewing && shows_preview(&session));
-    let psnr = preview(&session).viewing_psnr.expect("now it is known");
+    let psnr = preview(&session).costs.viewing_psnr.expect("now it is known");
     assert!((20.0..200.0).contains(&psnr), "{psnr} dB");
 
     // The first dab of all evens the whole picture out anew; those after it are local.
@@ -89,7 +89,7 @@ fn idle_makes_the_picture_exact_and_a_stroke_leaves_the_rest_of_it_as_it_is() {
     let changed = painted.radiance.iter().zip(&exact_of_first.radiance).filter(|(a, b)| a != b).count();
     assert!(changed > 50, "the dab shows");
     assert!(changed < painted.radiance.len() / 4, "and the exact picture stays beside it: {changed}");
-    assert!(preview(&session).viewing_psnr.is_some(), "what is known of the lens stays known");
+    assert!(preview(&session).costs.viewing_psnr.is_some(), "what is known of the lens stays known");
     let after = wait_for(&mut session, Quality::Exact);
     assert!(after != painted && shows_preview(&session));
 

@@ -2,10 +2,11 @@
 
 use super::shape_panel::shape_panel;
 use crate::window::controls::{self, finish, format_number, proportional, row, rows};
+use crate::window::view_settings::LARGEST_TOLERANCE_PX;
 use crate::window::{Action, ViewSettings};
-use egui::{Button, ComboBox, DragValue, Ui};
+use egui::{Button, ComboBox, DragValue, Slider, Ui};
 use lens::Exposure;
-use session::{CameraEdit, Command, CommandId, Document, ToneCurve};
+use session::{CameraEdit, Command, CommandId, Document, Session, ToneCurve};
 
 /// Full stops that the f-number's menu offers.
 const STOPS: [f64; 9] = [0.7, 1.0, 1.4, 2.0, 2.8, 4.0, 5.6, 8.0, 16.0];
@@ -145,6 +146,7 @@ fn scene_camera_row(ui: &mut Ui, document: &Document, actions: &mut Vec<Action>)
 /// Size, exposure, and how large the preview is drawn.
 pub fn picture_panel(
     ui: &mut Ui,
+    session: &Session,
     document: &Document,
     settings: &mut ViewSettings,
     actions: &mut Vec<Action>,
@@ -224,5 +226,26 @@ pub fn picture_panel(
                 })
                 .response
         });
+
+        let tip = "How much the live picture may save where it is blurred: the side of what is drawn as one in a blur of 16 px. 0 draws every sample. The exact picture follows by itself when nothing changes.";
+        row(ui, "Tolerance", tip, |ui| {
+            let slider = Slider::new(&mut settings.tolerance_px, 0.0..=LARGEST_TOLERANCE_PX);
+            ui.add(slider.max_decimals(1).suffix(" px"))
+        });
+        if let Some(saved) = saved(session) {
+            ui.label("");
+            ui.weak(saved).on_hover_text("What the tolerance costs: how close the live picture comes to the exact one (PSNR), and how long either takes to draw whole.");
+            ui.end_row();
+        }
     });
+}
+
+/// What the tolerance saves and costs, once that is known.
+fn saved(session: &Session) -> Option<String> {
+    let costs = session.preview()?.costs;
+    let live = costs.viewing_seconds.map(|seconds| format!("live {}", controls::seconds(seconds)));
+    let exact = costs.exact_seconds.map(|seconds| format!("exact {}", controls::seconds(seconds)));
+    let close = costs.viewing_psnr.map(|psnr| format!("{psnr:.0} dB"));
+    let known: Vec<String> = [live, exact, close].into_iter().flatten().collect();
+    (!known.is_empty()).then(|| known.join(" · "))
 }

@@ -55,7 +55,9 @@ impl Inspector {
             section(ui, "Brush", true, |ui| {
                 brush_panel::brush_panel(ui, document, settings, hover, actions);
             });
-            section(ui, "Picture", true, |ui| lens_panel::picture_panel(ui, document, settings, actions));
+            section(ui, "Picture", true, |ui| {
+                lens_panel::picture_panel(ui, session, document, settings, actions);
+            });
             section(ui, "Scene", false, |ui| self.scene.ui(ui, document, actions));
             section(ui, "What was modelled", false, |ui| {
                 modelled_panel::modelled_panel(ui, session, document)
