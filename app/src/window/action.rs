@@ -1,5 +1,6 @@
 //! What panels and views ask for. They read the document and emit; the shell carries out.
 
+use super::layout::Pane;
 use session::{Command, CommandId, SurfaceHit};
 use std::path::PathBuf;
 
@@ -16,8 +17,21 @@ pub enum Action {
     ChooseMask,
     /// Shows what of the aperture a point sees.
     Inspect(SurfaceHit),
+    /// Puts a panel elsewhere.
+    Place(Pane, Placing),
     /// A sentence for the user: something cannot be done.
     Complain(String),
+}
+
+/// What is done with a panel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Placing {
+    /// Over all others, or back.
+    Enlarge,
+    /// Afloat, or back.
+    Float,
+    /// Folded away.
+    Close,
 }
 
 impl From<Command> for Action {

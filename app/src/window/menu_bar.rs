@@ -44,7 +44,8 @@ fn begins_group(id: CommandId) -> bool {
             | Quit
             | PictureFit
             | ShowFocus
-            | ResetLayout
+            | ShowAtlas
+            | EnlargePanel
             | NextToneCurve
             | KeysBlender
             | SelectAll
@@ -91,8 +92,9 @@ fn with_what(name: &str, what: Option<&str>) -> String {
 pub fn is_possible(id: CommandId, state: &MenuState<'_>) -> bool {
     use CommandId::*;
     match id {
-        Open | OpenDemo | Quit | ResetLayout | ShowInspector | NextToneCurve | LightOrDark | ScaleUp
-        | ScaleDown | KeysBlender | KeysSubstance | KeysKrita | Palette | Shortcuts | About => true,
+        Open | OpenDemo | Quit | ResetLayout | EnlargePanel | FloatPanel | FullScreen | ShowInspector
+        | NextToneCurve | LightOrDark | ScaleUp | ScaleDown | KeysBlender | KeysSubstance | KeysKrita
+        | Palette | Shortcuts | About => true,
         SelectAll | InvertSelection | MaskFromSelection => {
             state.document.is_some_and(|document| document.selection.is_some())
         }

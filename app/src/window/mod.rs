@@ -4,7 +4,8 @@
 //! * `paint_view`: the scene in 3D in the colours of its blur. `picture_view`: the refocused picture.
 //!   Both are painted on by the same pointer code.
 //! * `blit`: puts pictures on the screen.
-//! * `drawer`: the atlas, the aperture view and the histogram, beneath the views.
+//! * `layout`: where the panels are: docked, in tabs, afloat, or one over all.
+//! * `drawer`: the atlas, the aperture view and the histogram, beneath the views at first.
 //! * `inspector`, `tool_bar`, `menu_bar`, `status_line`: read the document and emit [`Action`]s.
 //! * `palette`, `keys`, `help`, `menu_bar`: views of the one command table in `session`.
 //! * `player`: a recording played in the window, timed.
@@ -46,7 +47,8 @@ mod view_header;
 mod view_settings;
 
 pub use action::Action;
-pub use drawer::{Drawer, Drawn};
+pub use drawer::Drawer;
+pub use layout::{Layout, Pane};
 pub use paint_view::PaintView;
 pub use picture_view::{PictureView, Shown};
 pub use shell::Shell;

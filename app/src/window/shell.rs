@@ -11,13 +11,14 @@ mod commands;
 mod document;
 mod views;
 
+use super::action::Placing;
 use super::blit::Blitter;
 use super::brush_gesture::BrushGesture;
-use super::drawer::{Drawer, Drawn};
+use super::drawer::Drawer;
 use super::file_dialog::{FileDialog, Purpose};
 use super::help::Help;
 use super::inspector::Inspector;
-use super::layout::{self, Pane};
+use super::layout::{Layout, Pane};
 use super::menu_bar::{MenuState, is_possible, menu_bar};
 use super::paint_view::PaintView;
 use super::palette::Palette;
@@ -30,7 +31,6 @@ use super::unsaved_question::{Next, UnsavedQuestion};
 use super::{Action, Tool, ViewSettings, WindowOptions, keys, theme};
 use eframe::{CreationContext, Frame, Storage};
 use egui::{CentralPanel, Context, Panel, Ui, ViewportCommand};
-use egui_tiles::Tree;
 use session::{CameraEdit, Command, CommandId, Event, ReferenceKind, Session, SessionError, SessionOptions};
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -45,7 +45,9 @@ pub struct Shell {
     session: Session,
     tool: Tool,
     settings: ViewSettings,
-    layout: Tree<Pane>,
+    layout: Layout,
+    /// The panel that the pointer was over last.
+    pointed: Pane,
     paint: PaintView,
     picture: PictureView,
     inspector: Inspector,
@@ -79,8 +81,7 @@ impl Shell {
             |key| creation.storage.filter(|_| options.remember).and_then(|storage| storage.get_string(key));
         let settings: ViewSettings =
             stored(SETTINGS_KEY).and_then(|text| serde_json::from_str(&text).ok()).unwrap_or_default();
-        let tree = stored(LAYOUT_KEY).and_then(|text| serde_json::from_str(&text).ok());
-        let layout = tree.filter(layout::is_whole).unwrap_or_else(layout::initial);
+        let layout = stored(LAYOUT_KEY).and_then(|text| Layout::stored(&text)).unwrap_or_default();
         let context = creation.egui_ctx.clone();
         let session = Session::new(SessionOptions {
             unwrap: options.unwrap,
@@ -96,6 +97,7 @@ impl Shell {
             tool: Tool::default(),
             settings,
             layout,
+            pointed: Pane::Picture,
             paint: PaintView::new(state, blitter.as_ref()),
             picture: PictureView::new(blitter),
             inspector: Inspector::default(),
@@ -138,6 +140,11 @@ impl Shell {
     /// The picture view.
     pub fn picture_view(&self) -> &PictureView {
         &self.picture
+    }
+
+    /// Where the panels are.
+    pub fn layout(&self) -> &Layout {
+        &self.layout
     }
 
     /// How things are shown.
@@ -266,8 +273,11 @@ impl Shell {
                 Action::ChooseMask => self.ask_for(Purpose::ApertureMask, context),
                 Action::Inspect(hit) => {
                     self.drawer.inspect(hit);
-                    self.settings.drawer = Some(Drawn::Aperture);
+                    self.layout.open(Pane::Aperture);
                 }
+                Action::Place(pane, Placing::Enlarge) => self.layout.toggle_enlarged(pane),
+                Action::Place(pane, Placing::Float) => self.layout.toggle_floating(pane),
+                Action::Place(pane, Placing::Close) => self.layout.close(pane),
                 Action::Complain(text) => self.toasts.error(text),
             }
         }
@@ -343,22 +353,8 @@ impl eframe::App for Shell {
             let notes = StatusNotes { hover: self.hover_numbers(), drawing, tip };
             status_line(ui, &self.session, notes, &mut actions);
         });
-        if self.settings.inspector {
-            Panel::right("inspector").resizable(true).default_size(300.0).size_range(250.0..=460.0).show(
-                ui,
-                |ui| {
-                    let hover = self.hovered();
-                    self.inspector.ui(ui, &self.session, self.tool, &mut self.settings, hover, &mut actions);
-                },
-            );
-        }
-        if let Some(shown) = self.settings.drawer {
-            let panel = Panel::bottom("drawer").resizable(true).default_size(210.0).size_range(110.0..=520.0);
-            let hand = self.hand();
-            panel.show(ui, |ui| self.drawer.ui(ui, &self.session, shown, &hand, &mut actions));
-        }
-        // The views fill all of it.
-        CentralPanel::default().frame(egui::Frame::NONE).show(ui, |ui| self.views(ui, &mut actions));
+        // The panels fill all of it.
+        CentralPanel::default().frame(egui::Frame::NONE).show(ui, |ui| self.panels(ui, &mut actions));
         self.first_hint(&context);
         if let Some(id) = self.palette.show(&context) {
             actions.push(id.into());

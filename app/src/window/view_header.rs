@@ -1,13 +1,17 @@
-//! The line above each view: its name, and how it shows things.
+//! The line above each panel: its name, how it shows things, and what can be done with it.
 
-use super::layout::Pane;
+use super::action::Placing;
+use super::layout::{Docked, Pane};
 use super::picture_view::{PictureView, Shown};
 use super::{Action, ViewSettings, controls, keys};
 use egui::{Button, Ui};
 use session::{CommandId, Session};
 
-/// Room for the picture's scale in percent, points: without it the number is left out.
-const PERCENT_WIDTH: f32 = 60.0;
+/// Width of the picture's header with the picture's scale in percent, points: in a narrower one it is left out.
+const WIDTH_WITH_PERCENT: f32 = 505.0;
+
+/// Room for the panel's own menu, points.
+const MENU_WIDTH: f32 = 34.0;
 
 /// What the headers change.
 pub struct HeaderState<'a> {
@@ -17,38 +21,99 @@ pub struct HeaderState<'a> {
     pub picture: &'a mut PictureView,
 }
 
-/// The line above a view. Returns whether the view is being dragged elsewhere by its name.
+/// The line above a panel. Returns whether the panel is being dragged elsewhere by its name.
 pub fn view_header(
     ui: &mut Ui,
-    pane: Pane,
+    (pane, docked): (Pane, Docked),
     session: &Session,
     state: HeaderState<'_>,
     actions: &mut Vec<Action>,
 ) -> bool {
+    let is_view = matches!(pane, Pane::Paint | Pane::Picture);
+    // All that the line of another panel would say stands on its tab.
+    if !is_view && docked == Docked::Tab {
+        return false;
+    }
     let frame = egui::Frame::new().inner_margin(egui::Margin::symmetric(8, 3)).fill(ui.visuals().panel_fill);
-    let title = match pane {
-        Pane::Paint => "Paint",
-        Pane::Picture => "Picture",
-    };
-    frame
-        .show(ui, |ui| {
-            ui.set_width(ui.available_width());
-            // A narrow view wraps its header: it must not grow wider than itself.
-            ui.horizontal_wrapped(|ui| {
-                ui.spacing_mut().item_spacing.x = 5.0;
-                let name = egui::Label::new(egui::RichText::new(title).strong()).selectable(false);
-                let name = ui
-                    .add(name.sense(egui::Sense::drag()))
-                    .on_hover_text("Drag to place this view elsewhere.");
-                match pane {
-                    Pane::Paint => paint_header(ui, state.settings),
-                    Pane::Picture => picture_header(ui, session, state.picture, actions),
-                }
-                name.drag_started()
-            })
+    let line = frame.show(ui, |ui| {
+        ui.set_width(ui.available_width());
+        // The menu has its place at the right end, whatever wraps.
+        let menu_width = if docked == Docked::Tab { 0.0 } else { MENU_WIDTH };
+        let width = ui.available_width() - menu_width;
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Min), |ui| {
+            if docked != Docked::Tab {
+                panel_menu(ui, pane, docked, actions);
+            }
+            let controls = |ui: &mut Ui| {
+                ui.set_width(width);
+                ui.horizontal_wrapped(|ui| header_controls(ui, (pane, docked), session, state, actions)).inner
+            };
+            ui.allocate_ui_with_layout(
+                egui::vec2(width, 0.0),
+                egui::Layout::top_down(egui::Align::Min),
+                controls,
+            )
             .inner
         })
         .inner
+    });
+    line.inner
+}
+
+/// A narrow view wraps these: it must not grow wider than itself.
+fn header_controls(
+    ui: &mut Ui,
+    (pane, docked): (Pane, Docked),
+    session: &Session,
+    state: HeaderState<'_>,
+    actions: &mut Vec<Action>,
+) -> bool {
+    ui.spacing_mut().item_spacing.x = 5.0;
+    let title = egui::RichText::new(pane.title()).strong();
+    let is_dragged = match docked {
+        Docked::Beside => {
+            let name = egui::Label::new(title).selectable(false).sense(egui::Sense::drag());
+            let name = ui.add(name).on_hover_text("Drag to place this panel elsewhere, also into tabs.");
+            name.drag_started()
+        }
+        Docked::Alone => {
+            ui.add(egui::Label::new(title).selectable(false));
+            false
+        }
+        Docked::Tab | Docked::Floats => false,
+    };
+    match pane {
+        Pane::Paint => paint_header(ui, state.settings),
+        Pane::Picture => picture_header(ui, session, state.picture, actions),
+        _ => {}
+    }
+    is_dragged
+}
+
+/// What can be done with a panel.
+pub fn panel_menu(ui: &mut Ui, pane: Pane, docked: Docked, actions: &mut Vec<Action>) {
+    let response = ui.menu_button("…", |ui| {
+        let mut entry = |ui: &mut Ui, name: &str, placing: Placing, tip: &str| {
+            if ui.button(name).on_hover_text(tip).clicked() {
+                actions.push(Action::Place(pane, placing));
+                ui.close();
+            }
+        };
+        match docked {
+            Docked::Alone => entry(ui, "All panels", Placing::Enlarge, "Show the other panels again."),
+            _ => entry(ui, "Enlarge", Placing::Enlarge, "Show this panel alone, over all others."),
+        }
+        match docked {
+            Docked::Floats => entry(ui, "Dock", Placing::Float, "Put this panel back among the others."),
+            Docked::Alone => {}
+            _ => entry(ui, "Float", Placing::Float, "Let this panel float over the others."),
+        }
+        if pane.is_foldable() {
+            entry(ui, "Close", Placing::Close, "Fold this panel away; the View menu shows it again.");
+        }
+    });
+    controls::named(&response.response, &format!("{} panel's menu", pane.title()));
+    response.response.on_hover_text("What can be done with this panel.");
 }
 
 fn paint_header(ui: &mut Ui, settings: &mut ViewSettings) {
@@ -93,7 +158,7 @@ fn picture_header(ui: &mut Ui, session: &Session, picture: &mut PictureView, act
         }
     }
     if let Some(percent) = picture.percent(session, ui.ctx().pixels_per_point()).filter(|p| p.is_finite())
-        && ui.available_width() > PERCENT_WIDTH
+        && ui.max_rect().width() > WIDTH_WITH_PERCENT
     {
         ui.add(egui::Label::new(egui::RichText::new(format!("{percent:.0} %")).weak()).extend())
             .on_hover_text("Screen pixels of a picture pixel.");

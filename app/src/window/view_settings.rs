@@ -1,6 +1,5 @@
 //! How things are shown. Kept between runs, not part of any document.
 
-use super::drawer::Drawn;
 use super::paint_view::SurfaceLook;
 use super::tool_settings::ToolSettings;
 use serde::{Deserialize, Serialize};
@@ -25,10 +24,6 @@ pub struct ViewSettings {
     pub focus_share: f32,
     /// Contour lines of blur.
     pub contours: bool,
-    /// Whether the inspector is shown.
-    pub inspector: bool,
-    /// What the drawer shows; none while it is folded away.
-    pub drawer: Option<Drawn>,
     /// The longest side that the preview is drawn at, px.
     pub preview_size: u32,
     /// Sides of what the live picture draws as one where the circle of confusion is 16 px wide, px; 0: every sample.
@@ -59,8 +54,6 @@ impl Default for ViewSettings {
         Self {
             focus_share: look.focus_share,
             contours: look.contours,
-            inspector: true,
-            drawer: None,
             preview_size: 640,
             tolerance_px: TOLERANCE_PX,
             display_stops: 0.0,

@@ -96,7 +96,11 @@ fn every_command_runs_and_is_undone_or_has_nothing_to_undo() {
         }
         let shell = person.window.state_mut();
         match id {
-            CommandId::Shortcuts | CommandId::About | CommandId::ShowInspector => shell.run(id, &context),
+            CommandId::Shortcuts
+            | CommandId::About
+            | CommandId::ShowInspector
+            | CommandId::EnlargePanel
+            | CommandId::FloatPanel => shell.run(id, &context),
             // Nothing is to hold the machine up.
             CommandId::Bake | CommandId::RenderTruth => shell.apply(Command::CancelAll),
             CommandId::LayerAbove | CommandId::LayerBelow => shell.apply(Command::ActivateLayer(1)),

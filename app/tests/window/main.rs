@@ -2,6 +2,7 @@
 
 mod accessible;
 mod acting;
+mod arranging;
 mod commands;
 mod comparing;
 mod controls;

@@ -233,7 +233,7 @@ pub fn picture_panel(
             ui.add(slider.max_decimals(1).suffix(" px"))
         });
         if let Some(saved) = saved(session) {
-            ui.label("");
+            ui.allocate_exact_size(egui::Vec2::ZERO, egui::Sense::hover());
             ui.weak(saved).on_hover_text("What the tolerance costs: how close the live picture comes to the exact one (PSNR), and how long either takes to draw whole.");
             ui.end_row();
         }

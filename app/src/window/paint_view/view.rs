@@ -152,6 +152,11 @@ impl PaintView {
         self.hover
     }
 
+    /// The view is not drawn: nothing lies under the pointer.
+    pub fn left(&mut self) {
+        self.hover = None;
+    }
+
     /// Where a world point is on screen.
     pub fn screen_from_world(&self, point: DVec3) -> Option<Pos2> {
         let at = self.camera.project(point, aspect(self.rect))?;

@@ -113,6 +113,11 @@ impl PictureView {
         self.hover
     }
 
+    /// The view is not drawn: nothing lies under the pointer.
+    pub fn left(&mut self) {
+        self.hover = None;
+    }
+
     /// Screen pixels of a picture pixel, in percent.
     pub fn percent(&self, session: &Session, pixels_per_point: f32) -> Option<f32> {
         let width = session.document()?.camera.width as f32;

@@ -3,12 +3,13 @@
 use super::Shell;
 use crate::window::brush_gesture::BrushNumber;
 use crate::window::file_dialog::Purpose;
+use crate::window::layout::{Layout, Pane};
 use crate::window::paint_view::PaintView;
 use crate::window::picture_view::TRUTH_SAMPLES;
 use crate::window::tool_bar::{largest_radius, signed_circle_px};
 use crate::window::unsaved_question::Next;
-use crate::window::{Drawn, Tool, ViewSettings, layout};
-use egui::Context;
+use crate::window::{Tool, ViewSettings};
+use egui::{Context, ViewportCommand};
 use focus::{Brush, BrushMode, Combine, LayerEdit};
 use lens::{Exposure, FocusOffset};
 use project::SelectionShape;
@@ -50,20 +51,24 @@ impl Shell {
             CommandId::ShowFocus => self.settings.focus_share = ViewSettings::default().focus_share,
             CommandId::ShowSurface => self.settings.focus_share = 0.0,
             CommandId::ResetLayout => {
-                self.layout = layout::initial();
-                self.settings.inspector = true;
-                self.settings.drawer = None;
+                self.layout = Layout::default();
             }
-            CommandId::ShowInspector => self.settings.inspector = !self.settings.inspector,
-            CommandId::ShowAtlas => self.toggle_drawer(Drawn::Atlas),
+            CommandId::EnlargePanel => self.layout.toggle_enlarged(self.pointed),
+            CommandId::FloatPanel => self.layout.toggle_floating(self.pointed),
+            CommandId::FullScreen => {
+                let is_full = context.input(|input| input.viewport().fullscreen.unwrap_or(false));
+                context.send_viewport_cmd(ViewportCommand::Fullscreen(!is_full));
+            }
+            CommandId::ShowInspector => self.layout.toggle(Pane::Inspector),
+            CommandId::ShowAtlas => self.layout.toggle(Pane::Atlas),
             CommandId::ShowAperture => {
-                self.toggle_drawer(Drawn::Aperture);
+                self.layout.toggle(Pane::Aperture);
                 // The next click says from where.
-                if self.settings.drawer == Some(Drawn::Aperture) && !self.drawer.has_aperture_point() {
+                if self.layout.is_shown(Pane::Aperture) && !self.drawer.has_aperture_point() {
                     self.tool = Tool::Inspect;
                 }
             }
-            CommandId::ShowHistogram => self.toggle_drawer(Drawn::Histogram),
+            CommandId::ShowHistogram => self.layout.toggle(Pane::Histogram),
             CommandId::NextToneCurve => self.settings.tone_curve = self.settings.tone_curve.next(),
             CommandId::LightOrDark => self.settings.light_theme = !self.settings.light_theme,
             CommandId::ScaleUp => self.rescale(1),
@@ -186,11 +191,6 @@ impl Shell {
         if let Some(document) = self.session.document() {
             act(&mut self.paint, document);
         }
-    }
-
-    /// Shows something in the drawer, or folds it away.
-    fn toggle_drawer(&mut self, drawn: Drawn) {
-        self.settings.drawer = if self.settings.drawer == Some(drawn) { None } else { Some(drawn) };
     }
 
     /// Draws the contents larger or smaller, a step of [`SCALES`] up or down.

@@ -2,14 +2,18 @@
 
 use super::Shell;
 use crate::window::brush_ring::BrushRing;
-use crate::window::layout::{Pane, Panes};
+use crate::window::drawer::Drawer;
+use crate::window::inspector::Inspector;
+use crate::window::layout::{Docked, Pane, Panes};
+use crate::window::paint_view::PaintView;
+use crate::window::picture_view::PictureView;
 use crate::window::pointer::Hand;
 use crate::window::status_line::Hover;
 use crate::window::tool_bar::signed_circle_px;
-use crate::window::view_header::{HeaderState, view_header};
-use crate::window::{Action, Tool};
+use crate::window::view_header::{HeaderState, panel_menu, view_header};
+use crate::window::{Action, Tool, ViewSettings};
 use egui::{Context, Ui};
-use session::PreviewActivity;
+use session::{PreviewActivity, Session, SurfaceHit};
 
 /// Work shorter than this is not spoken of.
 const NOTICEABLE_SECONDS: f64 = 0.5;
@@ -69,26 +73,41 @@ impl Shell {
         }
     }
 
-    pub(super) fn views(&mut self, ui: &mut Ui, actions: &mut Vec<Action>) {
+    pub(super) fn panels(&mut self, ui: &mut Ui, actions: &mut Vec<Action>) {
         let hand = self.hand();
-        let Self { layout, paint, picture, session, settings, .. } = self;
-        let mut panes = Panes {
-            pane_ui: |ui: &mut Ui, pane: Pane| {
-                ui.spacing_mut().item_spacing.y = 0.0;
-                let dragged = view_header(ui, pane, session, HeaderState { settings, picture }, actions);
-                match pane {
-                    Pane::Paint => paint.ui(ui, session, &hand, settings.look(), actions),
-                    Pane::Picture => picture.ui(ui, session, &hand, settings.display(), actions),
-                }
-                dragged
-            },
+        let hover = self.hovered();
+        let Self { layout, paint, picture, session, settings, inspector, drawer, pointed, tool, .. } = self;
+        let mut contents = Contents {
+            paint,
+            picture,
+            inspector,
+            drawer,
+            session,
+            settings,
+            tool: *tool,
+            hand: &hand,
+            hover,
+            pointed,
+            drawn: Vec::new(),
+            actions,
         };
-        layout.ui(&mut panes, ui);
+        layout.ui(ui, &mut contents);
+        let drawn = contents.drawn;
+        // Nothing is under the pointer in a view that is not there.
+        if !drawn.contains(&Pane::Paint) {
+            self.paint.left();
+        }
+        if !drawn.contains(&Pane::Picture) {
+            self.picture.left();
+        }
     }
 
     /// The hint of the first start: three lines over the demo, until it is put away.
     pub(super) fn first_hint(&mut self, context: &Context) {
         if !self.showing_demo || self.settings.hint_seen || self.session.document().is_none() {
+            return;
+        }
+        if !self.layout.is_shown(Pane::Paint) {
             return;
         }
         let rect = self.paint.rect();
@@ -106,5 +125,59 @@ impl Shell {
                 self.settings.hint_seen = true;
             }
         });
+    }
+}
+
+/// What is in the panels.
+struct Contents<'a> {
+    paint: &'a mut PaintView,
+    picture: &'a mut PictureView,
+    inspector: &'a mut Inspector,
+    drawer: &'a mut Drawer,
+    session: &'a Session,
+    settings: &'a mut ViewSettings,
+    tool: Tool,
+    hand: &'a Hand,
+    hover: Option<SurfaceHit>,
+    /// The panel that the pointer was over last.
+    pointed: &'a mut Pane,
+    /// The panels that are there.
+    drawn: Vec<Pane>,
+    actions: &'a mut Vec<Action>,
+}
+
+impl Panes for Contents<'_> {
+    fn pane_ui(&mut self, ui: &mut Ui, pane: Pane, docked: Docked) -> bool {
+        self.drawn.push(pane);
+        if ui.rect_contains_pointer(ui.max_rect()) {
+            *self.pointed = pane;
+        }
+        let is_view = matches!(pane, Pane::Paint | Pane::Picture);
+        if !is_view {
+            ui.painter().rect_filled(ui.max_rect(), 0.0, ui.visuals().panel_fill);
+        }
+        let spacing = std::mem::take(&mut ui.spacing_mut().item_spacing.y);
+        let state = HeaderState { settings: self.settings, picture: self.picture };
+        let dragged = view_header(ui, (pane, docked), self.session, state, self.actions);
+        let Self { session, hand, actions, settings, .. } = self;
+        match pane {
+            Pane::Paint => self.paint.ui(ui, session, hand, settings.look(), actions),
+            Pane::Picture => self.picture.ui(ui, session, hand, settings.display(), actions),
+            Pane::Inspector | Pane::Atlas | Pane::Aperture | Pane::Histogram => {
+                ui.spacing_mut().item_spacing.y = spacing;
+                let frame = egui::Frame::new().inner_margin(egui::Margin::symmetric(8, 2));
+                frame.show(ui, |ui| match pane {
+                    Pane::Inspector => {
+                        self.inspector.ui(ui, session, self.tool, settings, self.hover, actions);
+                    }
+                    _ => self.drawer.ui(ui, session, pane, hand, actions),
+                });
+            }
+        }
+        dragged
+    }
+
+    fn tabs_ui(&mut self, ui: &mut Ui, pane: Pane) {
+        panel_menu(ui, pane, Docked::Tab, self.actions);
     }
 }

@@ -1,0 +1,352 @@
+//! Where the panels are: docked beside each other or in tabs, afloat over the others, or one over all.
+//!
+//! What is docked is a tree of tiles. A panel that floats keeps its (hidden) tile: it is put back there. What is folded
+//! away has a hidden tile too.
+
+mod panes;
+mod sizes;
+
+pub use panes::{Docked, Panes};
+
+use egui::{Rect, Ui, Vec2, pos2, vec2};
+use egui_tiles::{Container, Linear, LinearDir, Tile, TileId, Tiles, Tree};
+use serde::{Deserialize, Serialize};
+use session::CommandId;
+use sizes::NOMINAL;
+use std::collections::HashSet;
+
+/// Width of the inspector at first, points.
+const INSPECTOR_WIDTH: f32 = 300.0;
+
+/// Height of the tabs beneath the views at first, points.
+const DRAWER_HEIGHT: f32 = 210.0;
+
+/// Share of the views' width that the paint view has at first.
+const PAINT_SHARE: f32 = 0.46;
+
+/// A panel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub enum Pane {
+    /// The scene in 3D.
+    Paint,
+    /// The refocused picture.
+    Picture,
+    /// What the document is made of, section by section.
+    Inspector,
+    /// The focus map flat.
+    Atlas,
+    /// What of the aperture one point sees.
+    Aperture,
+    /// The circles of confusion of the picture.
+    Histogram,
+}
+
+impl Pane {
+    /// All.
+    pub const ALL: [Self; 6] =
+        [Self::Paint, Self::Picture, Self::Inspector, Self::Atlas, Self::Aperture, Self::Histogram];
+
+    /// What it is called.
+    pub fn title(self) -> &'static str {
+        match self {
+            Self::Paint => "Paint",
+            Self::Picture => "Picture",
+            Self::Inspector => "Inspector",
+            Self::Atlas => "Atlas",
+            Self::Aperture => "Aperture view",
+            Self::Histogram => "Blur histogram",
+        }
+    }
+
+    /// The command that shows it, or folds it away; none for the two views, one of which there always is.
+    pub fn command(self) -> Option<CommandId> {
+        match self {
+            Self::Paint | Self::Picture => None,
+            Self::Inspector => Some(CommandId::ShowInspector),
+            Self::Atlas => Some(CommandId::ShowAtlas),
+            Self::Aperture => Some(CommandId::ShowAperture),
+            Self::Histogram => Some(CommandId::ShowHistogram),
+        }
+    }
+
+    /// Whether it can be folded away.
+    pub fn is_foldable(self) -> bool {
+        self.command().is_some()
+    }
+}
+
+/// A panel over the others.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+struct Floating {
+    pane: Pane,
+    /// Left, top, width and height of what is in it, points.
+    place: [f32; 4],
+}
+
+/// Where the panels are.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Layout {
+    tree: Tree<Pane>,
+    floating: Vec<Floating>,
+    /// The panel that hides all others.
+    #[serde(skip)]
+    enlarged: Option<Pane>,
+    /// Width and height that the tiles were laid out in last, points.
+    size: [f32; 2],
+}
+
+impl Default for Layout {
+    fn default() -> Self {
+        let mut tiles = Tiles::default();
+        let mut pane = |pane| tiles.insert_pane(pane);
+        let [paint, picture, inspector, atlas, aperture, histogram] = Pane::ALL.map(&mut pane);
+        let views = Linear::new_binary(LinearDir::Horizontal, [paint, picture], PAINT_SHARE);
+        let views = tiles.insert_container(views);
+        let drawer = tiles.insert_tab_tile(vec![atlas, aperture, histogram]);
+        tiles.set_visible(drawer, false);
+        let drawer_share = DRAWER_HEIGHT / NOMINAL[1];
+        let left = Linear::new_binary(LinearDir::Vertical, [views, drawer], 1.0 - drawer_share);
+        let left = tiles.insert_container(left);
+        let inspector_share = INSPECTOR_WIDTH / NOMINAL[0];
+        let root = Linear::new_binary(LinearDir::Horizontal, [left, inspector], 1.0 - inspector_share);
+        let root = tiles.insert_container(root);
+        let tree = Tree::new(egui::Id::unique("panels"), root, tiles);
+        Self { tree, floating: Vec::new(), enlarged: None, size: NOMINAL }
+    }
+}
+
+impl Layout {
+    /// One that was stored: none unless every panel is there once, and one of the views is to be seen.
+    pub fn stored(text: &str) -> Option<Self> {
+        let layout: Self = serde_json::from_str(text).ok()?;
+        let panes = layout.tree.tiles.tiles().filter_map(|tile| match tile {
+            Tile::Pane(pane) => Some(*pane),
+            Tile::Container(_) => None,
+        });
+        let panes: Vec<Pane> = panes.collect();
+        let is_whole = panes.len() == Pane::ALL.len() && Pane::ALL.iter().all(|pane| panes.contains(pane));
+        let has_place = layout.floating.iter().flat_map(|floating| floating.place).all(f32::is_finite);
+        let has_size = layout.size.iter().all(|side| side.is_finite() && *side > 0.0);
+        let has_view = [Pane::Paint, Pane::Picture].iter().any(|view| layout.is_open(*view));
+        (is_whole && has_place && has_size && has_view).then_some(layout)
+    }
+
+    fn tile_of(&self, pane: Pane) -> Option<TileId> {
+        self.tree.tiles.find_pane(&pane)
+    }
+
+    /// The containers that a tile lies in, from the innermost out.
+    fn containers_of(&self, tile: TileId) -> Vec<TileId> {
+        std::iter::successors(self.tree.tiles.parent_of(tile), |id| self.tree.tiles.parent_of(*id)).collect()
+    }
+
+    /// Whether it is docked or floats, if perhaps behind another tab.
+    pub fn is_open(&self, pane: Pane) -> bool {
+        let is_visible = |tile: TileId| {
+            self.containers_of(tile).into_iter().chain([tile]).all(|tile| self.tree.is_visible(tile))
+        };
+        self.is_floating(pane) || self.tile_of(pane).is_some_and(is_visible)
+    }
+
+    /// Whether it is to be seen.
+    pub fn is_shown(&self, pane: Pane) -> bool {
+        if let Some(enlarged) = self.enlarged {
+            return enlarged == pane;
+        }
+        let Some(tile) = self.tile_of(pane) else { return false };
+        let mut child = tile;
+        let is_behind = self.containers_of(tile).into_iter().any(|id| {
+            let container = self.tree.tiles.get_container(id);
+            let is_behind = matches!(container, Some(Container::Tabs(tabs)) if !tabs.is_active(child));
+            child = id;
+            is_behind
+        });
+        self.is_floating(pane) || (self.is_open(pane) && !is_behind)
+    }
+
+    /// Whether it floats.
+    pub fn is_floating(&self, pane: Pane) -> bool {
+        self.floating.iter().any(|floating| floating.pane == pane)
+    }
+
+    /// The panel that hides all others.
+    pub fn enlarged(&self) -> Option<Pane> {
+        self.enlarged
+    }
+
+    /// Opens it, in front of the other tabs.
+    pub fn open(&mut self, pane: Pane) {
+        self.enlarged = self.enlarged.filter(|enlarged| *enlarged == pane);
+        if self.is_floating(pane) {
+            return;
+        }
+        let Some(tile) = self.tile_of(pane) else { return };
+        self.tree.set_visible(tile, true);
+        let mut child = tile;
+        for id in self.containers_of(tile) {
+            self.tree.set_visible(id, true);
+            if let Some(Tile::Container(Container::Tabs(tabs))) = self.tree.tiles.get_mut(id) {
+                tabs.set_active(child);
+            }
+            child = id;
+        }
+    }
+
+    /// Folds it away, with the tabs beside it if all of those can be.
+    pub fn close(&mut self, pane: Pane) {
+        if !pane.is_foldable() {
+            return;
+        }
+        self.enlarged = self.enlarged.filter(|enlarged| *enlarged != pane);
+        if self.is_floating(pane) {
+            self.floating.retain(|floating| floating.pane != pane);
+            return;
+        }
+        let Some(tile) = self.tile_of(pane) else { return };
+        let tabs = self.tree.tiles.parent_of(tile).filter(|parent| {
+            let container = self.tree.tiles.get_container(*parent);
+            container.is_some_and(|container| {
+                let foldable = |id: &TileId| self.tree.tiles.get_pane(id).is_some_and(|p| p.is_foldable());
+                matches!(container, Container::Tabs(_)) && container.children().all(foldable)
+            })
+        });
+        self.tree.set_visible(tabs.unwrap_or(tile), false);
+    }
+
+    /// Opens it in front, or folds it away where it is to be seen.
+    pub fn toggle(&mut self, pane: Pane) {
+        if self.is_shown(pane) { self.close(pane) } else { self.open(pane) }
+    }
+
+    /// Shows it over all others, or these again.
+    pub fn toggle_enlarged(&mut self, pane: Pane) {
+        if self.enlarged.take().is_none() {
+            self.open(pane);
+            self.enlarged = Some(pane);
+        }
+    }
+
+    /// Lets it float, over where it is now, or puts it back.
+    pub fn toggle_floating(&mut self, pane: Pane) {
+        self.enlarged = None;
+        if self.is_floating(pane) {
+            self.floating.retain(|floating| floating.pane != pane);
+            self.open(pane);
+            return;
+        }
+        let Some(tile) = self.tile_of(pane) else { return };
+        let rect = self.tree.tiles.rect(tile).filter(|_| self.is_shown(pane));
+        let rect = rect.unwrap_or(Rect::from_min_size(pos2(120.0, 120.0), vec2(420.0, 320.0)));
+        self.tree.set_visible(tile, false);
+        let place = [rect.left(), rect.top(), rect.width(), rect.height()];
+        self.floating.push(Floating { pane, place });
+    }
+
+    /// The panels whose names stand on tabs.
+    fn in_tabs(&self) -> HashSet<Pane> {
+        let tiles = &self.tree.tiles;
+        let tabs = tiles.tiles().filter_map(|tile| match tile {
+            Tile::Container(Container::Tabs(tabs)) => Some(tabs),
+            _ => None,
+        });
+        tabs.flat_map(|tabs| &tabs.children).filter_map(|child| tiles.get_pane(child).copied()).collect()
+    }
+
+    /// Draws all panels into the rest of `ui`.
+    pub fn ui(&mut self, ui: &mut Ui, panes: &mut dyn Panes) {
+        if let Some(pane) = self.enlarged {
+            panes::named(ui, pane);
+            panes.pane_ui(ui, pane, Docked::Alone);
+            return;
+        }
+        let size: Vec2 = ui.available_size();
+        self.fit(size.into());
+        let in_tabs = self.in_tabs();
+        self.tree.ui(&mut panes::Tiling { panes, in_tabs }, ui);
+        self.floating_ui(ui, panes);
+    }
+
+    fn floating_ui(&mut self, ui: &Ui, panes: &mut dyn Panes) {
+        let mut docked = None;
+        for floating in &mut self.floating {
+            let (pane, [left, top, width, height]) = (floating.pane, floating.place);
+            let mut is_open = true;
+            let title = egui::RichText::new(pane.title()).text_style(egui::TextStyle::Body).strong();
+            let window = egui::Window::new(title)
+                .id(egui::Id::unique(("floating", pane.title())))
+                .open(&mut is_open)
+                .collapsible(false)
+                .frame(egui::Frame::window(ui.style()).inner_margin(0.0))
+                .default_pos([left, top])
+                .default_size([width, height])
+                .min_size([180.0, 120.0]);
+            let shown = window.show(ui.ctx(), |ui| {
+                panes::named(ui, pane);
+                panes.pane_ui(ui, pane, Docked::Floats);
+                ui.min_rect().size()
+            });
+            if let Some(shown) = shown {
+                let at = shown.response.rect.min;
+                let size = shown.inner.unwrap_or(vec2(width, height));
+                floating.place = [at.x, at.y, size.x, size.y];
+            }
+            docked = docked.or((!is_open).then_some(pane));
+        }
+        if let Some(pane) = docked {
+            self.toggle_floating(pane);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn shown(layout: &Layout) -> Vec<Pane> {
+        Pane::ALL.into_iter().filter(|pane| layout.is_shown(*pane)).collect()
+    }
+
+    #[test]
+    fn panels_open_close_float_and_grow() {
+        let mut layout = Layout::default();
+        let first = [Pane::Paint, Pane::Picture, Pane::Inspector];
+        assert_eq!(shown(&layout), first);
+        layout.toggle(Pane::Aperture);
+        assert_eq!(shown(&layout), [Pane::Paint, Pane::Picture, Pane::Inspector, Pane::Aperture]);
+        assert!(layout.is_open(Pane::Atlas), "behind it, in a tab");
+        layout.toggle(Pane::Histogram);
+        assert_eq!(shown(&layout).last(), Some(&Pane::Histogram));
+        layout.toggle(Pane::Histogram);
+        assert_eq!(shown(&layout), first, "the tabs are folded away together");
+
+        layout.toggle_floating(Pane::Atlas);
+        assert!(layout.is_floating(Pane::Atlas) && layout.is_shown(Pane::Atlas));
+        layout.toggle(Pane::Aperture);
+        assert!(layout.is_shown(Pane::Atlas) && layout.is_shown(Pane::Aperture));
+        layout.close(Pane::Atlas);
+        assert!(!layout.is_open(Pane::Atlas));
+        layout.open(Pane::Atlas);
+        assert!(layout.is_shown(Pane::Atlas) && !layout.is_floating(Pane::Atlas), "back in its tab");
+
+        layout.toggle_enlarged(Pane::Picture);
+        assert_eq!(shown(&layout), [Pane::Picture]);
+        layout.toggle_enlarged(Pane::Paint);
+        assert_eq!(layout.enlarged(), None, "and back");
+        layout.close(Pane::Paint);
+        assert!(layout.is_shown(Pane::Paint), "a view stays");
+    }
+
+    #[test]
+    fn what_is_stored_comes_back_and_what_is_not_whole_does_not() {
+        let mut layout = Layout::default();
+        layout.toggle_floating(Pane::Histogram);
+        layout.toggle(Pane::Inspector);
+        let text = serde_json::to_string(&layout).unwrap();
+        let again = Layout::stored(&text).expect("it is whole");
+        assert_eq!(shown(&again), shown(&layout));
+        assert_eq!(Layout::stored(&text.replace("Histogram", "Atlas")), None, "a panel twice");
+        assert_eq!(Layout::stored("{}"), None);
+        let text = serde_json::to_string(&Layout { size: [0.0, 4.0], ..layout }).unwrap();
+        assert_eq!(Layout::stored(&text), None);
+    }
+}

@@ -1,0 +1,101 @@
+//! How the tiles look and what may be done with them.
+
+use super::Pane;
+use egui::accesskit::Role;
+use egui::{Ui, WidgetText};
+use egui_tiles::{Behavior, Container, SimplificationOptions, TileId, Tiles, UiResponse};
+use std::collections::HashSet;
+
+/// How a panel stands among the others.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Docked {
+    /// Beside others: its header names it, and drags it elsewhere.
+    Beside,
+    /// In a tab, which does that.
+    Tab,
+    /// Over the others, in a window with its name.
+    Floats,
+    /// Instead of all others.
+    Alone,
+}
+
+/// What is in the panels.
+pub trait Panes {
+    /// Draws one. Returns whether it is being dragged elsewhere by its header.
+    fn pane_ui(&mut self, ui: &mut Ui, pane: Pane, docked: Docked) -> bool;
+
+    /// Draws what stands at the right end of the bar of tabs, of which `pane` is in front.
+    fn tabs_ui(&mut self, ui: &mut Ui, pane: Pane);
+}
+
+/// Names a panel for screen readers.
+pub fn named(ui: &Ui, pane: Pane) {
+    ui.ctx().accesskit_node_builder(ui.unique_id(), |node| {
+        node.set_role(Role::Pane);
+        node.set_label(format!("{} panel", pane.title()));
+    });
+}
+
+/// The tiles.
+pub struct Tiling<'a> {
+    pub panes: &'a mut dyn Panes,
+    pub in_tabs: HashSet<Pane>,
+}
+
+impl Behavior<Pane> for Tiling<'_> {
+    fn pane_ui(&mut self, ui: &mut Ui, _tile: TileId, pane: &mut Pane) -> UiResponse {
+        named(ui, *pane);
+        let docked = if self.in_tabs.contains(pane) { Docked::Tab } else { Docked::Beside };
+        if self.panes.pane_ui(ui, *pane, docked) { UiResponse::DragStarted } else { UiResponse::None }
+    }
+
+    fn tab_title_for_pane(&mut self, pane: &Pane) -> WidgetText {
+        pane.title().into()
+    }
+
+    /// A tile of several is named after those.
+    fn tab_title_for_tile(&mut self, tiles: &Tiles<Pane>, tile: TileId) -> WidgetText {
+        fn names(tiles: &Tiles<Pane>, tile: TileId) -> Vec<&'static str> {
+            match (tiles.get_pane(&tile), tiles.get_container(tile)) {
+                (Some(pane), _) => vec![pane.title()],
+                (_, Some(container)) => container.children().flat_map(|id| names(tiles, *id)).collect(),
+                _ => Vec::new(),
+            }
+        }
+        names(tiles, tile).join(", ").into()
+    }
+
+    fn top_bar_right_ui(
+        &mut self,
+        tiles: &Tiles<Pane>,
+        ui: &mut Ui,
+        _tile: TileId,
+        tabs: &egui_tiles::Tabs,
+        _scroll_offset: &mut f32,
+    ) {
+        if let Some(pane) = tabs.active.and_then(|active| tiles.get_pane(&active)) {
+            ui.add_space(4.0);
+            self.panes.tabs_ui(ui, *pane);
+        }
+    }
+
+    fn tab_bar_color(&self, visuals: &egui::Visuals) -> egui::Color32 {
+        visuals.panel_fill
+    }
+
+    fn gap_width(&self, _style: &egui::Style) -> f32 {
+        4.0
+    }
+
+    fn min_size(&self) -> f32 {
+        120.0
+    }
+
+    fn is_tile_draggable(&self, tiles: &Tiles<Pane>, tile: TileId) -> bool {
+        !matches!(tiles.get_container(tile), Some(Container::Grid(_)))
+    }
+
+    fn simplification_options(&self) -> SimplificationOptions {
+        SimplificationOptions { all_panes_must_have_tabs: false, ..Default::default() }
+    }
+}

@@ -1,0 +1,97 @@
+//! Panels that can be folded away keep their size in points when the window's changes; the views take what is left.
+
+use super::{Layout, Pane};
+use egui_tiles::{Container, LinearDir, Tile, TileId, Tiles};
+
+/// Width and height, points, for which the shares of the first layout are made.
+pub const NOMINAL: [f32; 2] = [1280.0, 640.0];
+
+/// What panels that keep their size may take of a row or a column.
+const LARGEST_SHARE: f32 = 0.75;
+
+/// A change by fewer points than this is none.
+const LEAST_CHANGE: f32 = 0.5;
+
+impl Layout {
+    /// Takes up another size of the whole.
+    pub(super) fn fit(&mut self, size: [f32; 2]) {
+        let growth = [0, 1].map(|axis| size[axis] / self.size[axis]);
+        let is_other = [0, 1].map(|axis| (size[axis] - self.size[axis]).abs() > LEAST_CHANGE);
+        if !(is_other[0] || is_other[1]) || size.iter().any(|side| *side < 1.0) {
+            return;
+        }
+        self.size = size;
+        let ids: Vec<TileId> = self.tree.tiles.tile_ids().collect();
+        for id in ids {
+            let Some(Tile::Container(Container::Linear(linear))) = self.tree.tiles.get(id) else { continue };
+            let axis = usize::from(linear.dir == LinearDir::Vertical);
+            let is_kept = |child: &TileId| keeps_size(&self.tree.tiles, *child);
+            let shares = linear.children.iter().map(|child| (linear.shares[*child], is_kept(child)));
+            let new = rescaled(&shares.collect::<Vec<_>>(), growth[axis]);
+            if let Some(Tile::Container(Container::Linear(linear))) = self.tree.tiles.get_mut(id) {
+                for (child, share) in linear.children.clone().into_iter().zip(new) {
+                    linear.shares.set_share(child, share);
+                }
+            }
+        }
+    }
+}
+
+/// Whether all in it can be folded away.
+fn keeps_size(tiles: &Tiles<Pane>, tile: TileId) -> bool {
+    match tiles.get(tile) {
+        Some(Tile::Pane(pane)) => pane.is_foldable(),
+        Some(Tile::Container(container)) => container.children().all(|child| keeps_size(tiles, *child)),
+        None => false,
+    }
+}
+
+/// Shares of a row that grew: those that keep their size have less of it, the others more.
+fn rescaled(shares: &[(f32, bool)], growth: f32) -> Vec<f32> {
+    let total: f32 = shares.iter().map(|(share, _)| share).sum();
+    let kept: f32 = shares.iter().filter(|(_, is_kept)| *is_kept).map(|(share, _)| share).sum();
+    let rest = total - kept;
+    if kept <= 0.0 || rest <= 0.0 || growth <= 0.0 {
+        return shares.iter().map(|(share, _)| *share).collect();
+    }
+    let kept_after = (kept / total / growth).min(LARGEST_SHARE.max(kept / total));
+    let after = |(share, is_kept): &(f32, bool)| {
+        if *is_kept { share / kept * kept_after } else { share / rest * (1.0 - kept_after) }
+    };
+    shares.iter().map(after).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn kept_panels_have_the_same_points_and_views_the_rest() {
+        let before = [(0.5, false), (0.25, false), (0.25, true)];
+        let wider = rescaled(&before, 2.0);
+        // A row of 1000 points that comes to have 2000.
+        let points: Vec<f32> = wider.iter().map(|share| share * 2000.0).collect();
+        assert!((points[2] - 250.0).abs() < 1e-3, "{points:?}");
+        assert!((points[0] / points[1] - 2.0).abs() < 1e-5);
+        let narrow = rescaled(&before, 0.1);
+        assert!((narrow[2] - LARGEST_SHARE).abs() < 1e-6, "something is left for the views: {narrow:?}");
+        assert_eq!(rescaled(&[(1.0, false), (2.0, false)], 3.0), [1.0, 2.0]);
+        assert_eq!(rescaled(&[(1.0, true)], 3.0), [1.0]);
+    }
+
+    #[test]
+    fn the_inspector_is_as_wide_whatever_the_windows_size() {
+        let mut layout = Layout::default();
+        let width = |layout: &Layout| {
+            let tile = layout.tile_of(Pane::Inspector).unwrap();
+            let root = layout.tree.root().and_then(|root| layout.tree.tiles.get_container(root));
+            let Some(Container::Linear(linear)) = root else { panic!("a row") };
+            let total: f32 = linear.children.iter().map(|child| linear.shares[*child]).sum();
+            linear.shares[tile] / total * layout.size[0]
+        };
+        for size in [[1440.0, 800.0], [800.0, 450.0], [1920.0, 1000.0]] {
+            layout.fit(size);
+            assert!((width(&layout) - 300.0).abs() < 0.1, "{} at {size:?}", width(&layout));
+        }
+    }
+}
