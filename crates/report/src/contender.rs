@@ -207,8 +207,11 @@ fn splat(shot: Shot<'_>, options: &RenderOptions, steps: &dyn Steps) -> Result<D
         Ok(splatter)
     })?;
     let mut splatter = prepared.value;
+    // Another focus distance each time: what the splatter keeps of a lens must not help.
+    let mut nudges = (1..).map(|k| 1.0 + 1e-9 * f64::from(k));
     let drawn = timed(|| {
-        splatter.refocus(shot.camera, &*steps.begin("splatting"))?;
+        let focus_distance = shot.camera.focus_distance * nudges.next().unwrap_or(1.0);
+        splatter.refocus(&Camera { focus_distance, ..shot.camera.clone() }, &*steps.begin("splatting"))?;
         Ok(splatter.picture().clone())
     })?;
     let first = (prepared.seconds - drawn.seconds).max(0.0);

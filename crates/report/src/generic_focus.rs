@@ -15,8 +15,9 @@ const PAINTED_CIRCLE: f64 = 0.06;
 const LOOKS_A_SIDE: u32 = 64;
 
 /// A recipe by material (by node, where all is of one material). In the order of what fills most of the picture: sharp
-/// wherever it stands, far blur of a fixed size, nearer than the lens has it, and half way between the two anchors.
-/// Returns with it what it does, a sentence.
+/// wherever it stands, far blur of a fixed size, nearer than the lens has it, and half way between the two anchors. Where
+/// there is but one thing to paint, it is all half way, so that paint blurs something. Returns with it what it does, a
+/// sentence.
 pub fn generic_recipe(scene: &Scene, tracer: &Tracer, camera: &Camera) -> (FocusRecipe, String) {
     let by_material = by_sight(tracer, camera, |triangle| scene.material_of(triangle).name.clone());
     let is_by_material = by_material.len() > 1;
@@ -29,23 +30,32 @@ pub fn generic_recipe(scene: &Scene, tracer: &Tracer, camera: &Camera) -> (Focus
     let optics = camera.optics();
     let kappa = optics.kappa_for_circle_px(PAINTED_CIRCLE * camera.height as f64).unwrap_or_default();
     let shift = kappa * optics.image_distance;
+    let half_way = FocusOffset::new(1.0 + 0.5 * shift, 0.5);
     let focuses = [
         FocusOffset::new(1.0, 1.0),
         FocusOffset::new(1.0 + shift, 1.0),
         FocusOffset::new(1.0 - shift, 0.0),
-        FocusOffset::new(1.0 + 0.5 * shift, 0.5),
+        half_way,
     ];
+    let (used, circle) = (if names.len() > 1 { &focuses[..] } else { &[half_way] }, PAINTED_CIRCLE * 100.0);
+    let what = if names.len() > 1 {
+        format!(
+            "made up, in turn by {}: sharp wherever it stands, {circle:.0} % of the picture's height of far blur, as \
+             much nearer than the lens has it, half way between both anchors",
+            if is_by_material { "material" } else { "object" },
+        )
+    } else {
+        format!(
+            "made up: all half way between both anchors, with {:.0} % of the picture's height of far blur at the focus \
+             distance",
+            0.5 * circle
+        )
+    };
     let entries: Vec<_> = names
         .into_iter()
-        .zip(focuses.into_iter().cycle())
+        .zip(used.iter().copied().cycle())
         .map(|(name, focus)| (name, RecipeEntry::Value(focus)))
         .collect();
-    let what = format!(
-        "made up, in turn by {}: sharp wherever it stands, {circle:.0} % of the picture's height of far blur, as much \
-         nearer than the lens has it, half way between both anchors",
-        if is_by_material { "material" } else { "object" },
-        circle = PAINTED_CIRCLE * 100.0,
-    );
     let (materials, nodes) = if is_by_material { (entries, Vec::new()) } else { (Vec::new(), entries) };
     (FocusRecipe { materials, nodes, ..FocusRecipe::default() }, what)
 }

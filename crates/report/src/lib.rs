@@ -17,6 +17,7 @@
 //! measurement at once (so that a run that was stopped goes on where it was), `findings` draws conclusions, `page` and
 //! `tables` write them down with `plot`.
 
+mod band;
 mod contender;
 mod default_lens;
 mod engine;

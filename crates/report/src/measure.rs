@@ -1,5 +1,6 @@
 //! One measurement: a contender draws a setting and is compared with the reference.
 
+use crate::band::Band;
 use crate::contender::{Contender, Shot};
 use crate::memory::PeakMemory;
 use crate::record::{Record, Series};
@@ -15,6 +16,8 @@ pub struct Against<'a> {
     pub error: ReferenceError,
     /// The circle of confusion that 99 % of the pixels with a surface stay below, px.
     pub coc_px: f64,
+    /// The pixels beside outlines.
+    pub band: Band,
 }
 
 /// Names of what is measured.
@@ -53,6 +56,7 @@ pub fn measure(
         psnr: found.psnr,
         flip: found.flip,
         mean_error: found.signed_mean_error,
+        band_psnr: against.band.psnr(&picture.rgb, &against.picture.rgb),
         reference_psnr: against.error.psnr,
         series: named.series,
         width: shot.camera.width,

@@ -90,7 +90,7 @@ pub fn settings(subject: &Subject, options: &ReportOptions) -> Vec<Setting> {
 
 /// Every contender with its knob at several places.
 fn sweep(is_quick: bool) -> Vec<Contender> {
-    let tolerances: &[f64] = if is_quick { &[2.0] } else { &[8.0, 4.0, 2.0, 1.0, 0.5] };
+    let tolerances: &[f64] = if is_quick { &[2.0, 0.0] } else { &[8.0, 4.0, 2.0, 1.0, 0.5, 0.0] };
     let spps: &[u32] = if is_quick { &[4, 16, 64] } else { &[4, 8, 16, 32, 64, 128, 256] };
     let splats = tolerances.iter().map(|&tolerance_px| Contender::Splat { tolerance_px });
     let truths = spps.iter().map(|&samples_per_pixel| Contender::Truth { samples_per_pixel });

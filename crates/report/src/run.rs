@@ -1,5 +1,6 @@
 //! The run: from scenes to measurements, each kept as soon as it is done.
 
+use crate::band::Band;
 use crate::contender::{Contender, Shot};
 use crate::default_lens::quantile;
 use crate::fingerprint::{self, Fingerprint};
@@ -25,7 +26,7 @@ use std::time::Instant;
 use trace::Tracer;
 
 /// Results of other forms than this do not count.
-const FORM: &str = "2";
+const FORM: &str = "3";
 
 /// The tolerance of the finest light field, px.
 const FINEST_TOLERANCE_PX: f64 = 0.0;
@@ -131,7 +132,7 @@ impl Runner<'_> {
                 scene_print: &scene_print,
                 focus_print: &focus_prints[setting.focus],
             };
-            let mut reference = None;
+            let (mut reference, mut band) = (None, None);
             for &contender in &setting.contenders {
                 done += 1;
                 let name = self.measurement_name(&place, contender);
@@ -143,7 +144,10 @@ impl Runner<'_> {
                             Some(reference) => reference,
                             None => reference.insert(self.reference(&place)?),
                         };
-                        let against = Against { picture, error: about.error, coc_px: about.circles_px[2] };
+                        let band =
+                            band.get_or_insert_with(|| Band::of_scene(&subject.tracer, &setting.camera));
+                        let (error, coc_px) = (about.error, about.circles_px[2]);
+                        let against = Against { picture, error, coc_px, band: band.clone() };
                         let tracer = self.cut_tracer(&place, &mut cut)?;
                         report.new += 1;
                         let count = [done, total];

@@ -1,7 +1,7 @@
 //! The tables of the report, the same in Markdown and on the page.
 
 use crate::findings::EqualError;
-use crate::plot::{bytes, seconds, significant};
+use crate::plot::{bytes, seconds, significant, with_minus};
 use crate::record::Record;
 use crate::summary::{ModelledScene, SceneSummary};
 use crate::table::Table;
@@ -66,7 +66,7 @@ pub fn equal_errors(found: &[EqualError]) -> Table {
             format!("{}{mark}", seconds(found.truth_seconds)),
             factor(splat.seconds),
             factor(splat.picture_seconds),
-            format!("{:.2}", found.truth_slope),
+            with_minus(format!("{:.2}", found.truth_slope)),
         ]);
     }
     table
@@ -116,6 +116,7 @@ pub fn records<'a>(records: impl Iterator<Item = &'a Record>) -> Table {
         "#RMSE",
         "#relMSE",
         "#PSNR, dB",
+        "#outlines, dB",
         "#FLIP",
         "#mean error",
     ]);
@@ -137,8 +138,9 @@ pub fn records<'a>(records: impl Iterator<Item = &'a Record>) -> Table {
             significant(r.rmse),
             significant(r.relmse),
             format!("{:.2}", r.psnr),
+            r.band_psnr.map_or_else(|| "–".into(), |psnr| format!("{psnr:.2}")),
             format!("{:.4}", r.flip),
-            format!("{:+.3} %", r.mean_error * 100.0),
+            with_minus(format!("{:+.3} %", r.mean_error * 100.0)),
         ]);
     }
     table

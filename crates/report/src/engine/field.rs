@@ -1,6 +1,6 @@
 //! One light field under one focus, at every tolerance.
 
-use crate::engine::compare::{Band, compare};
+use crate::band::{Band, psnr_of};
 use crate::engine::dab::Dabbed;
 use crate::engine::dense::dense_seconds;
 use crate::engine::{Check, EngineRecord, Measured};
@@ -71,11 +71,12 @@ impl Field {
             match &converged {
                 None => converged = Some(splatter.picture().clone()),
                 Some(converged) => {
-                    let found = compare(splatter.picture(), converged, &self.band);
-                    errors.push(found.psnr);
-                    record.psnr = Some(found.psnr);
-                    record.band_psnr = found.band_psnr;
-                    record.band_coverage_rms = found.band_coverage_rms;
+                    let picture = splatter.picture();
+                    let psnr = psnr_of(&picture.radiance, &converged.radiance);
+                    errors.push(psnr);
+                    record.psnr = Some(psnr);
+                    record.band_psnr = self.band.psnr(&picture.radiance, &converged.radiance);
+                    record.band_coverage_rms = self.band.rms(&picture.coverage, &converged.coverage);
                 }
             }
             keep(record);

@@ -4,7 +4,6 @@
 //! each picture is compared with the converged one, as a whole and beside outlines, and each time with that of copying
 //! one frame in the same run.
 
-mod compare;
 mod dab;
 mod dense;
 mod field;
@@ -16,6 +15,7 @@ mod write;
 
 pub use record::EngineRecord;
 
+use crate::band::{Band, inverse_depths};
 use crate::machine::Machine;
 use crate::options::{ReportOptions, SceneRequest};
 use crate::subject::Subject;
@@ -104,7 +104,7 @@ fn measure_scene(
     record.bytes = salf.statistics().bytes as u64;
     note(&record.line());
     measured.records.push(record);
-    let band = compare::Band::of_scene(&subject.tracer, &subject.camera);
+    let band = Band::of_scene(&subject.tracer, &subject.camera);
     for named in &subject.focuses {
         let field = Field {
             scene: subject.name.clone(),
@@ -126,7 +126,7 @@ fn circle_of_confusion_px(tracer: &Tracer, camera: &lens::Camera) -> f64 {
     let optics = camera.optics();
     let circle =
         |inverse_depth: f32| optics.circle_of_confusion_px(optics.standard_kappa(inverse_depth.into()));
-    let mut circles: Vec<f64> = compare::inverse_depths(tracer, camera).into_iter().map(circle).collect();
+    let mut circles: Vec<f64> = inverse_depths(tracer, camera).into_iter().map(circle).collect();
     circles.sort_by(f64::total_cmp);
     circles.get(circles.len() * 99 / 100).copied().unwrap_or(0.0)
 }

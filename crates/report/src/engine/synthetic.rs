@@ -1,6 +1,6 @@
 //! Light fields that are made up: a case each, whose circles of confusion are known.
 
-use crate::engine::compare::Band;
+use crate::band::Band;
 use crate::engine::field::Field;
 use crate::engine::{EngineRecord, Measured};
 use crate::stopwatch::timed;

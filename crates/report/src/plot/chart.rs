@@ -145,7 +145,12 @@ impl Chart {
                 ),
             );
         }
-        self.series.iter().for_each(|series| draw_series(&mut svg, &frame, series, &mut labels));
+        // Labels are on top of all lines.
+        let mut texts = String::new();
+        for series in &self.series {
+            draw_series(&mut svg, &mut texts, &frame, series, &mut labels);
+        }
+        svg += &texts;
         for Entry { series, x, line } in legend {
             let y = TOP + PLOT_HEIGHT + BOTTOM + LEGEND_LINE * line as f64 + 10.0;
             let name = escaped(&series.name);
@@ -213,7 +218,8 @@ struct Entry<'a> {
     line: usize,
 }
 
-fn draw_series(svg: &mut String, frame: &Frame, series: &Series, labels: &mut Labels) {
+/// Draws lines and marks to `svg` and their labels to `texts`.
+fn draw_series(svg: &mut String, texts: &mut String, frame: &Frame, series: &Series, labels: &mut Labels) {
     let placed: Vec<(f64, f64, &str)> = series
         .points
         .iter()
@@ -237,9 +243,9 @@ fn draw_series(svg: &mut String, frame: &Frame, series: &Series, labels: &mut La
             let Some(Place { x, y, anchor }) = labels.place(x, y, label) else { continue };
             let colour = colour(series.style);
             add(
-                svg,
+                texts,
                 format_args!(
-                    r#"<text class="note" fill="{colour}" x="{x:.1}" y="{y:.1}" text-anchor="{anchor}">{text}</text>"#
+                    r#"<text class="mark" fill="{colour}" x="{x:.1}" y="{y:.1}" text-anchor="{anchor}">{text}</text>"#
                 ),
             );
         }

@@ -6,5 +6,5 @@ mod number;
 mod scale;
 
 pub use chart::{Axis, Chart, Point, Rule, Series};
-pub use number::{bytes, plain, seconds, significant};
+pub use number::{bytes, plain, seconds, significant, with_minus};
 pub use scale::Kind;

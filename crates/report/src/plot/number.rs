@@ -3,7 +3,7 @@
 /// `value` with three significant digits, without trailing zeros; powers of ten where the decimal form would be long.
 pub fn significant(value: f64) -> String {
     if value == 0.0 || !value.is_finite() {
-        return format!("{value}");
+        return with_minus(format!("{value}"));
     }
     let magnitude = value.abs().log10().floor() as i32;
     if !(-4..6).contains(&magnitude) {
@@ -12,11 +12,11 @@ pub fn significant(value: f64) -> String {
         return match rounded.as_str() {
             "1" => power_of_ten(magnitude),
             "10" => power_of_ten(magnitude + 1),
-            _ => format!("{rounded}·{}", power_of_ten(magnitude)),
+            _ => with_minus(format!("{rounded}·{}", power_of_ten(magnitude))),
         };
     }
     let decimals = (2 - magnitude).max(0) as usize;
-    trimmed(&format!("{value:.decimals$}"))
+    with_minus(trimmed(&format!("{value:.decimals$}")))
 }
 
 /// The same for a value without a unit, as on an axis.
@@ -41,6 +41,11 @@ pub fn bytes(value: f64) -> String {
         _ if value < 1e9 => format!("{} MB", significant(value / 1e6)),
         _ => format!("{} GB", significant(value / 1e9)),
     }
+}
+
+/// A formatted number with a minus sign in place of a hyphen.
+pub fn with_minus(number: String) -> String {
+    number.replace('-', "−")
 }
 
 fn trimmed(text: &str) -> String {
@@ -68,7 +73,8 @@ mod tests {
         assert_eq!(significant(0.012345), "0.0123");
         assert_eq!(significant(1.0), "1");
         assert_eq!(significant(123456.0), "123456");
-        assert_eq!(significant(-2.5), "-2.5");
+        assert_eq!(significant(-2.5), "−2.5");
+        assert_eq!(significant(f64::NEG_INFINITY), "−inf");
         assert_eq!(significant(1e-6), "10⁻⁶");
         assert_eq!(significant(2.5e7), "2.5·10⁷");
         assert_eq!(significant(9.999e-6), "10⁻⁵");
