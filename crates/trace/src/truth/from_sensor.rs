@@ -20,9 +20,9 @@ use super::options::{Sampler, TruthOptions};
 use super::reach::Reach;
 use super::samples;
 use super::sensor::{self, Sensor};
-use super::sheared::Sheared;
+use super::sheared::{Sheared, Spread};
 use super::survey::{self, Look, Survey};
-use super::view::View;
+use super::view::{Blur, View};
 use crate::random::hash;
 use crate::{Radiance, Ray};
 use glam::{DVec2, DVec3, Vec3};
@@ -70,6 +70,8 @@ struct Found {
     direction: DVec3,
     /// 1/depth, camera space; 0 for the background.
     inverse_depth: f64,
+    /// How it is focused.
+    blur: Blur,
     /// Where it lands, less where it left: px.
     displacement_px: DVec2,
 }
@@ -100,13 +102,19 @@ impl FromSensor {
             if self.suited.get().is_none() {
                 looked += 0.1;
                 let survey = exposure.survey(&Stage::new(progress, own_rays, looked))?;
-                let sheared = Sheared::new(self.seed, self.options.samples_per_pixel, survey.levels.clone());
+                let of_levels = survey.levels.iter().map(|&level| Spread { level, moved_px: 0.0 });
+                let spreads = survey.moved.into_iter().chain(of_levels).collect();
+                let sheared = Sheared::new(self.seed, self.options.samples_per_pixel, spreads);
                 self.suited.get_or_init(|| (survey, sheared));
             }
-            exposure.shared.push(self.pixel_samples(view, self.seed, &exposure.passed));
-            if let Some((_, sheared)) = self.suited.get() {
+            // In the order of the survey's choices.
+            let plain = self.pixel_samples(view, self.seed, &exposure.passed);
+            if let Some((survey, sheared)) = self.suited.get() {
                 let radius = view.camera.aperture_radius;
-                exposure.shared.extend(sheared.samples(&exposure.passed, radius, self.pixel_sample(view)));
+                let mut suited =
+                    sheared.samples(&exposure.passed, radius, self.pixel_sample(view)).into_iter();
+                let moved = survey.moved.and_then(|_| suited.next()).unwrap_or_else(|| plain.clone());
+                exposure.shared = [moved, plain].into_iter().chain(suited).collect();
             }
         }
         exposure.expose(&Stage::new(progress, looked, 1.0))
@@ -133,7 +141,7 @@ struct Exposure<'a> {
     view: &'a View<'a>,
     radiance: &'a dyn Radiance,
     sensor: &'a Sensor,
-    /// Low-discrepancy samples: those that pixels have in common, then those of each level in use.
+    /// Low-discrepancy samples by the survey's choice.
     shared: Vec<Vec<PixelSample>>,
     passed: Range<u32>,
 }
@@ -182,7 +190,7 @@ impl Exposure<'_> {
         } else {
             // What is seen from outside of the region goes elsewhere.
             let suited = self.estimator.suited.get().zip(self.sensor.pixel(corner));
-            let choice = suited.map_or(0, |((survey, _), pixel)| survey.choices[pixel]);
+            let choice = suited.map_or(survey::MOVED, |((survey, _), pixel)| survey.choices[pixel]);
             self.shared[usize::from(choice)].iter().for_each(&mut expose);
         }
         if let Some(pixel) = own {
@@ -197,10 +205,11 @@ impl Exposure<'_> {
         let rays = estimator.pixel_samples(view, hash([estimator.seed, SURVEY]), &(0..count));
         let look = |corner: DVec2, ray: &PixelSample| {
             let found = self.trace(corner + ray.within_px, ray.u);
-            (found.displacement_px == DVec2::ZERO).then(|| Look {
-                radius_px: view.optics.splat_radius_px(view.optics.standard_kappa(found.inverse_depth)),
-                light: self.light(&found, ray.u),
-            })
+            let standard = view.optics.standard_kappa(found.inverse_depth);
+            let [radius_px, moved_px] =
+                [standard, found.blur.kappa - standard].map(|kappa| view.optics.splat_radius_px(kappa));
+            let moved_px = if found.blur.is_standard { 0.0 } else { moved_px };
+            Look { radius_px, moved_px, light: self.light(&found, ray.u) }
         };
         Survey::of(region, &rays, view.camera.aperture_radius, look, progress)
     }
@@ -219,7 +228,7 @@ impl Exposure<'_> {
         let inverse_depth = hit.map_or(0.0, |hit| 1.0 / hit.t);
         let blur = view.blur(point, inverse_depth, u);
         let displacement_px = view.displacement_px(blur, inverse_depth, u);
-        Found { point, eye, direction, inverse_depth, displacement_px }
+        Found { point, eye, direction, inverse_depth, blur, displacement_px }
     }
 
     /// The radiance that a sample through the aperture point `u` carries.

@@ -15,6 +15,11 @@
 //! whatever the circle, and are as small. There are a few hundred such orders of the pool, for radii so close that
 //! what lies between costs little ([`Level`]); [`super::survey`] chooses each pixel's.
 //!
+//! Where paint sends light from x to l = x + m·U/R, what decides what a pixel shows is the same with l for x and the
+//! painted radius r + m for r. So samples are spread for the place l where light lands and x follows, modulo a pixel
+//! ([`Spread`]): a pixel that light reaches then has the samples of just such a sequence, if all that send it light have
+//! them.
+//!
 //! Every sample is evenly distributed over pixel and aperture whatever the order, so no choice makes a bias, if
 //! only it is made without regard to the samples' own values.
 
@@ -62,20 +67,48 @@ impl Level {
     }
 }
 
+/// What samples are spread for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Spread {
+    /// The circle of confusion, as painted.
+    pub level: Level,
+    /// The signed radius that paint adds to that of the standard lens, px: how far light moves that passes the
+    /// aperture's edge. 0 without paint.
+    pub moved_px: f64,
+}
+
+impl Spread {
+    /// Where on its pixel a sample leaves that is to land where `sample` lies.
+    fn leaving(self, sample: PixelSample, aperture_radius: f64) -> PixelSample {
+        let moved = self.moved_px * in_aperture(&sample, aperture_radius);
+        let left = sample.within_px - moved;
+        // Rounding may make a fraction of a tiny negative number 1.
+        let within_px = (left - left.floor()).min(DVec2::splat(1.0 - f64::EPSILON));
+        if self.moved_px == 0.0 { sample } else { PixelSample { within_px, ..sample } }
+    }
+}
+
+/// A sample's aperture point in units of the aperture's radius, in the picture's axes: its y is down, the aperture's
+/// is up.
+fn in_aperture(sample: &PixelSample, aperture_radius: f64) -> DVec2 {
+    let u = if aperture_radius > 0.0 { sample.u / aperture_radius } else { DVec2::ZERO };
+    DVec2::new(u.x, -u.y)
+}
+
 /// The points of the pool for each sample that is wanted: its own error must be small beside that of a choice of
 /// so many.
 const POOL: u64 = 16;
 
-/// Sequences of samples, one for each of a few levels.
+/// Sequences of samples, one for each of a few spreads.
 pub(super) struct Sheared {
     seed: u64,
     /// Points of a pool, a power of two. After so many samples another pool goes on.
     size: u64,
-    levels: Vec<Level>,
+    spreads: Vec<Spread>,
     latest: Mutex<Option<Arc<Pool>>>,
 }
 
-/// Points, and their orders by level.
+/// Points, and their orders by spread.
 struct Pool {
     number: u64,
     points: Vec<PixelSample>,
@@ -83,20 +116,20 @@ struct Pool {
 }
 
 impl Sheared {
-    /// Sequences for `levels`, of which about `samples_per_pixel` samples are wanted.
-    pub fn new(seed: u64, samples_per_pixel: u32, levels: Vec<Level>) -> Self {
+    /// Sequences for `spreads`, of which about `samples_per_pixel` samples are wanted.
+    pub fn new(seed: u64, samples_per_pixel: u32, spreads: Vec<Spread>) -> Self {
         let size = (POOL * u64::from(samples_per_pixel)).next_power_of_two().min(LONGEST_SEQUENCE);
-        Self { seed, size, levels, latest: Mutex::new(None) }
+        Self { seed, size, spreads, latest: Mutex::new(None) }
     }
 
-    /// Of every level the samples `passed`; `sample` makes one of four numbers.
+    /// Of every spread the samples `passed`; `sample` makes one of four numbers.
     pub fn samples(
         &self,
         passed: &Range<u32>,
         aperture_radius: f64,
         sample: impl Fn([f64; 4]) -> PixelSample,
     ) -> Vec<Vec<PixelSample>> {
-        let mut samples = vec![Vec::with_capacity(passed.len()); self.levels.len()];
+        let mut samples = vec![Vec::with_capacity(passed.len()); self.spreads.len()];
         let (mut from, end) = (u64::from(passed.start), u64::from(passed.end));
         while from < end {
             let number = from / self.size;
@@ -107,8 +140,9 @@ impl Sheared {
                 let square =
                     [0, 1].map(|axis| sobol_burley::sample((index % self.size) as u32, axis, scramble));
                 let address = address(square.map(f64::from), self.size);
-                for (samples, order) in samples.iter_mut().zip(&pool.orders) {
-                    samples.push(pool.points[order[address] as usize]);
+                for ((samples, order), spread) in samples.iter_mut().zip(&pool.orders).zip(&self.spreads) {
+                    let point = pool.points[order[address] as usize];
+                    samples.push(spread.leaving(point, aperture_radius));
                 }
             }
             from = until;
@@ -124,7 +158,8 @@ impl Sheared {
         let indices = number * self.size..(number + 1) * self.size;
         let seed = hash([self.seed, POINTS]);
         let points: Vec<_> = samples::points(Sampler::LowDiscrepancy, seed, indices).map(sample).collect();
-        let orders = self.levels.par_iter().map(|&level| order(&points, level, aperture_radius)).collect();
+        let orders =
+            self.spreads.par_iter().map(|spread| order(&points, spread.level, aperture_radius)).collect();
         latest.insert(Arc::new(Pool { number, points, orders })).clone()
     }
 }
@@ -136,11 +171,8 @@ const ADDRESSES: u64 = 2;
 /// The indices of `pool` by their address over w, first coordinate first; `aperture_radius` in scene units.
 pub(super) fn order(pool: &[PixelSample], level: Level, aperture_radius: f64) -> Vec<u32> {
     let radius = level.radius_px();
-    let crossing = |sample: &PixelSample| {
-        // The picture's y is down, the aperture's is up.
-        let u = if aperture_radius > 0.0 { sample.u / aperture_radius } else { DVec2::ZERO };
-        (sample.within_px - radius * DVec2::new(u.x, -u.y)).to_array()
-    };
+    let crossing =
+        |sample: &PixelSample| (sample.within_px - radius * in_aperture(sample, aperture_radius)).to_array();
     let crossings: Vec<[f64; 2]> = pool.iter().map(crossing).collect();
     let mut order: Vec<u32> = (0..pool.len() as u32).collect();
     halve(&mut order, &crossings, 0);
@@ -215,7 +247,7 @@ mod tests {
             u: aperture.sample(a, b) * 0.1,
         };
         let of = |radius: f64, seed: u64| {
-            let sheared = Sheared::new(seed, 256, vec![Level::of(radius)]);
+            let sheared = Sheared::new(seed, 256, vec![Spread { level: Level::of(radius), moved_px: 0.0 }]);
             let mut samples = sheared.samples(&(0..256), 0.1, sample).remove(0);
             samples.iter_mut().for_each(|sample| sample.u /= 0.1);
             samples
@@ -232,10 +264,45 @@ mod tests {
     }
 
     #[test]
+    fn what_paint_moves_is_even_where_it_lands() {
+        let aperture = lens::ApertureSampler::new(&lens::ApertureShape::Disc.into());
+        let sample =
+            |[x, y, a, b]: [f64; 4]| PixelSample { within_px: DVec2::new(x, y), u: aperture.sample(a, b) };
+        let of = |moved_px: f64, seed: u64| {
+            let spread = Spread { level: Level::of(1.0), moved_px };
+            Sheared::new(seed, 256, vec![spread]).samples(&(0..256), 1.0, sample).remove(0)
+        };
+        let landing = |samples: Vec<PixelSample>, by: f64| -> Vec<PixelSample> {
+            let land = |s: PixelSample| PixelSample {
+                within_px: (s.within_px + by * DVec2::new(s.u.x, -s.u.y)).rem_euclid(DVec2::ONE),
+                ..s
+            };
+            samples.into_iter().map(land).collect()
+        };
+        for moved in [0.7, -5.0] {
+            let left = of(moved, 1);
+            assert!(
+                left.iter()
+                    .all(|s| s.within_px.cmpge(DVec2::ZERO).all() && s.within_px.cmplt(DVec2::ONE).all())
+            );
+            // Where they leave they are spread over the pixel as well.
+            let mean = left.iter().map(|s| s.within_px).sum::<DVec2>() / 256.0;
+            assert!((mean - 0.5).abs().max_element() < 0.06, "{mean}");
+            let mean = |moved: f64, by: f64| {
+                (0..32).map(|seed| unevenness(&landing(of(moved, seed), by), 1.0)).sum::<f64>() / 32.0
+            };
+            // Negative control: as if nothing had been moved.
+            let (right, unmoved) = (mean(moved, moved), mean(0.0, moved));
+            assert!(right < 24.0 && unmoved > 1.5 * right, "{moved}: {right}, unmoved {unmoved}");
+        }
+    }
+
+    #[test]
     fn samples_go_on_over_passes_and_pools() {
         let sample =
             |[x, y, a, b]: [f64; 4]| PixelSample { within_px: DVec2::new(x, y), u: DVec2::new(a, b) };
-        let sheared = Sheared::new(3, 4, vec![Level::SHARP, Level::of(-2.0)]);
+        let sheared =
+            Sheared::new(3, 4, [0.0, -2.0].map(|r| Spread { level: Level::of(r), moved_px: 0.0 }).into());
         let whole = sheared.samples(&(0..150), 1.0, sample);
         let pieces: Vec<_> =
             [0..40, 40..130, 130..150].map(|piece| sheared.samples(&piece, 1.0, sample)).into();

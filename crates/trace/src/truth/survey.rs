@@ -5,14 +5,19 @@
 //! what lies in front. The rays are used for nothing else, so that the choice does not depend on the samples that it
 //! is made for.
 //!
-//! All pixels have the samples of one sequence in common where nothing is to be gained or lost: where all rays
-//! see the same; where no order helps much, as with an edge before a texture of another depth; and where paint sends
-//! light to other pixels, which then is even by construction (see [`super::samples`]).
+//! Where no order helps much, as with an edge before a texture of another depth, pixels have samples without one.
+//!
+//! All pixels whose light paint sends to other pixels have one sequence in common: what lands then is even by
+//! construction (see [`super::samples`]). If nearly all that is there to decide is of one circle of confusion and moved
+//! alike, that sequence suits it ([`Survey::moved`]); where several paints meet, no sequence suits them all.
+
+mod paint;
 
 use super::from_sensor::PixelSample;
 use super::options::{Region, TruthOptions};
-use super::sheared::{self, Level};
+use super::sheared::{self, Level, Spread};
 use glam::{DVec2, Vec3};
+use paint::Paint;
 use progress::{Cancelled, Progress};
 use rayon::prelude::*;
 use std::sync::OnceLock;
@@ -23,17 +28,28 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 pub(super) struct Look {
     /// The signed radius of its circle of confusion under the standard lens, px.
     pub radius_px: f64,
+    /// What paint adds to it, px.
+    pub moved_px: f64,
     /// The light that it brings.
     pub light: Vec3,
 }
 
-/// Every pixel's level.
+/// Every pixel's samples.
 pub(super) struct Survey {
-    /// Those in use.
+    /// What the samples suit that all pixels have in common whose light paint moves; none if it is of many kinds.
+    pub moved: Option<Spread>,
+    /// The levels in use where light stays.
     pub levels: Vec<Level>,
-    /// For every pixel of the region one more than the place of its level in `levels`; 0 for the common samples.
+    /// For every pixel of the region [`MOVED`], [`PLAIN`], or [`FIRST_LEVEL`] and the place of its level in `levels`.
     pub choices: Vec<u16>,
 }
+
+/// The choice of those samples that pixels have in common whose light paint moves.
+pub(super) const MOVED: u16 = 0;
+/// Of those without an order.
+pub(super) const PLAIN: u16 = 1;
+/// Of those of the first level.
+pub(super) const FIRST_LEVEL: u16 = 2;
 
 /// How many rays a pixel are looked at: an eighth of what the render will have, and none where that is too few to
 /// tell anything.
@@ -55,13 +71,12 @@ const WITHIN: f32 = 0.01;
 const APART: f64 = 0.1;
 
 impl Survey {
-    /// Of a region's pixels. `look` tells what the ray of a pixel with this upper left corner meets; `None` if its
-    /// light goes elsewhere.
+    /// Of a region's pixels. `look` tells what the ray of a pixel with this upper left corner meets.
     pub fn of(
         region: Region,
         rays: &[PixelSample],
         aperture_radius: f64,
-        look: impl Fn(DVec2, &PixelSample) -> Option<Look> + Sync,
+        look: impl Fn(DVec2, &PixelSample) -> Look + Sync,
         progress: &dyn Progress,
     ) -> Result<Self, Cancelled> {
         let mut found = vec![Finding::Nothing; region.pixels()];
@@ -76,8 +91,8 @@ impl Survey {
             for (column, pixel) in pixels.iter_mut().enumerate() {
                 let corner =
                     DVec2::new(f64::from(region.x) + column as f64, f64::from(region.y) + row as f64);
-                let looks: Option<Vec<Look>> = rays.iter().map(|ray| look(corner, ray)).collect();
-                *pixel = looks.map_or(Finding::Common, |looks| find(&looks, order));
+                let looks: Vec<Look> = rays.iter().map(|ray| look(corner, ray)).collect();
+                *pixel = find(&looks, order);
             }
             progress.report((done.fetch_add(1, Ordering::Relaxed) + 1) as f32 / region.height.max(1) as f32);
             Ok(())
@@ -87,9 +102,17 @@ impl Survey {
         let mut levels: Vec<Level> = chosen.iter().copied().flatten().collect();
         levels.sort_unstable();
         levels.dedup();
-        let choice = |level: Level| 1 + levels.partition_point(|&other| other < level) as u16;
-        let choices = chosen.into_iter().map(|level| level.map_or(0, choice)).collect();
-        Ok(Self { levels, choices })
+        let choice = |level: Level| FIRST_LEVEL + levels.partition_point(|&other| other < level) as u16;
+        let choose = |(level, finding): (Option<Level>, &Finding)| match finding {
+            Finding::Moved(_) => MOVED,
+            _ => level.map_or(PLAIN, choice),
+        };
+        let choices = chosen.into_iter().zip(&found).map(choose).collect();
+        let paints = found.iter().filter_map(|finding| match finding {
+            Finding::Moved(paint) => Some(*paint),
+            _ => None,
+        });
+        Ok(Self { moved: paint::suited(paints), levels, choices })
     }
 }
 
@@ -98,16 +121,20 @@ impl Survey {
 enum Finding {
     /// All see the same: its samples may be any.
     Nothing,
-    /// It should have the common samples.
-    Common,
+    /// No order helps.
+    Plain,
     /// It should have those of a level.
     Level(Level),
+    /// Paint sends light elsewhere.
+    Moved(Paint),
 }
 
 /// The level whose order suits what a pixel's rays meet.
 fn find<'a>(looks: &[Look], order: impl Fn(Level) -> &'a [u32]) -> Finding {
-    let is_dull = looks.windows(2).all(|pair| pair[0].light == pair[1].light);
-    if is_dull {
+    if looks.iter().any(|look| look.moved_px != 0.0) {
+        return Finding::Moved(Paint::of(looks));
+    }
+    if is_dull(looks) {
         return Finding::Nothing;
     }
     let mut by_radius = looks.to_vec();
@@ -125,7 +152,12 @@ fn find<'a>(looks: &[Look], order: impl Fn(Level) -> &'a [u32]) -> Finding {
     } else {
         scatter(front) + scatter(behind) < WITHIN * scatter(looks)
     };
-    if suits { Finding::Level(level) } else { Finding::Common }
+    if suits { Finding::Level(level) } else { Finding::Plain }
+}
+
+/// Whether all bring the same light.
+fn is_dull(looks: &[Look]) -> bool {
+    looks.windows(2).all(|pair| pair[0].light == pair[1].light)
 }
 
 /// How many of those looks, in the order of their radii, lie in front of the widest gap between depths; all if there
@@ -145,10 +177,10 @@ fn scatter(looks: &[Look]) -> f32 {
 }
 
 /// The level that most of a pixel and its neighbours agree on, its own if it can: few rays err, and miss what the
-/// neighbours see. `None` for the common samples.
+/// neighbours see. `None` for those without an order.
 fn agree(found: &[Finding], width: usize, pixel: usize) -> Option<Level> {
     let own = match found[pixel] {
-        Finding::Common => return None,
+        Finding::Plain | Finding::Moved(_) => return None,
         Finding::Nothing => None,
         Finding::Level(level) => Some(level),
     };
@@ -173,7 +205,7 @@ mod tests {
 
     /// Rays of a pixel whose front half, of the signed radius `front`, is bright to one side of a line; behind it is
     /// the radius `behind`, with light that `texture` gives at where the ray crosses that depth.
-    fn looks(
+    pub(super) fn looks(
         rays: &[PixelSample],
         [front, behind]: [f64; 2],
         line: f64,
@@ -184,12 +216,13 @@ mod tests {
         let look = |ray: &PixelSample| {
             let is_front = crossing(ray, front).dot(DVec2::new(0.8, 0.6)) < line;
             let light = if is_front { 5.0 } else { texture(crossing(ray, behind)) };
-            Look { radius_px: if is_front { front } else { behind }, light: Vec3::splat(light) }
+            let radius_px = if is_front { front } else { behind };
+            Look { radius_px, moved_px: 0.0, light: Vec3::splat(light) }
         };
         rays.iter().map(look).collect()
     }
 
-    fn rays() -> Vec<PixelSample> {
+    pub(super) fn rays() -> Vec<PixelSample> {
         let aperture = lens::ApertureSampler::new(&lens::ApertureShape::Disc.into());
         points(Sampler::LowDiscrepancy, 5, 0..u64::from(MOST_RAYS))
             .map(|[x, y, a, b]| PixelSample { within_px: DVec2::new(x, y), u: aperture.sample(a, b) })
@@ -215,7 +248,7 @@ mod tests {
     fn a_texture_has_its_own_level_but_behind_an_edge_none() {
         let texture = |place: DVec2| if place.x < 0.5 { 0.0 } else { 40.0 };
         assert_eq!(found([-6.0, 2.0], f64::NEG_INFINITY, texture), Finding::Level(Level::of(2.0)));
-        assert_eq!(found([-6.0, 2.0], 0.7, texture), Finding::Common);
+        assert_eq!(found([-6.0, 2.0], 0.7, texture), Finding::Plain);
     }
 
     #[test]
@@ -223,7 +256,7 @@ mod tests {
         assert_eq!(found([-6.0, 0.0], 0.7, |_| 5.0), Finding::Nothing);
         // Light without any order in space.
         let noise = |place: DVec2| (place.x * 12345.678).sin() as f32;
-        assert_eq!(found([2.0, 2.0], f64::NEG_INFINITY, noise), Finding::Common);
+        assert_eq!(found([2.0, 2.0], f64::NEG_INFINITY, noise), Finding::Plain);
     }
 
     #[test]
@@ -235,7 +268,7 @@ mod tests {
             edge,
             error,
             Finding::Nothing,
-            Finding::Common,
+            Finding::Plain,
             edge,
             Finding::Nothing,
             Finding::Nothing,

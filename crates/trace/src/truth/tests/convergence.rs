@@ -33,22 +33,57 @@ const BLURRED_Z: f64 = 6.0;
 /// What decides whether a ray meets an edge has as many dimensions d as it depends on of the four of a sample; the
 /// error of nets and of grids on a curve then falls with N to the −½ − 1/(2d) (He and Wang 2015, He and Owen 2016).
 /// A sharp edge has the two of the place, −¾. A blurred edge has all four, −⅝, but for samples that suit its circle
-/// of confusion: then the two of where a ray crosses its depth, −¾. Paint that sends light to other pixels keeps to
-/// the samples that all pixels have in common.
+/// of confusion: then the two of where a ray crosses its depth, −¾. So has one that paint moves alike everywhere. Where
+/// the blur that is painted grows across the surface, how many samples land in a pixel is itself a question of all
+/// four, everywhere on it, and no better than with independent samples.
 struct Edges {
     name: &'static str,
     camera: Camera,
     z: f64,
     focus: FocusOffset,
+    /// How much t − 1 grows with x and y, relative, for each unit of length.
+    growth: DVec2,
     reached: f64,
 }
 
-fn edges() -> [Edges; 6] {
+/// Paint that grows over the surfaces of a scene, from two thirds of its middle to four thirds.
+struct Growing {
+    scene: Arc<scene::Scene>,
+    middle: FocusOffset,
+    growth: DVec2,
+}
+
+impl Growing {
+    fn by(&self, x: f64) -> FocusOffset {
+        FocusOffset { t: 1.0 + (self.middle.t - 1.0) * (1.0 + x.clamp(-1.0 / 3.0, 1.0 / 3.0)), ..self.middle }
+    }
+}
+
+impl SurfaceField<FocusOffset> for Growing {
+    fn at(&self, point: SurfacePoint) -> FocusOffset {
+        self.by(self.growth.dot(point.position(&self.scene).truncate()))
+    }
+    fn at_infinity(&self) -> FocusOffset {
+        self.middle
+    }
+    fn bounds(&self, triangle: u32) -> Option<[FocusOffset; 2]> {
+        let corners = [DVec2::ZERO, DVec2::X, DVec2::Y]
+            .map(|barycentric| self.at(SurfacePoint { triangle, barycentric }).t);
+        let bound = |of: fn(f64, f64) -> f64| FocusOffset {
+            t: of(of(corners[0], corners[1]), corners[2]),
+            ..self.middle
+        };
+        Some([bound(f64::min), bound(f64::max)])
+    }
+}
+
+fn edges() -> [Edges; 7] {
     let blurred = |name, circle_px, reached| Edges {
         name,
         camera: camera_that_blurs(circle_px),
         z: BLURRED_Z,
         focus: FocusOffset::STANDARD,
+        growth: DVec2::ZERO,
         reached,
     };
     let sharp = Edges { name: "sharp", z: SHARP_Z, ..blurred("", 6.0, -0.7) };
@@ -56,7 +91,16 @@ fn edges() -> [Edges; 6] {
     let optics = sharp.camera.optics();
     let t = 1.0 + optics.standard_kappa(1.0 / BLURRED_Z) * optics.image_distance;
     let painted =
-        Edges { z: SHARP_Z, focus: FocusOffset::new(t, 1.0), ..blurred("6 px, by paint", 6.0, -0.57) };
+        Edges { z: SHARP_Z, focus: FocusOffset::new(t, 1.0), ..blurred("6 px, by paint", 6.0, -0.7) };
+    // From 4 to 8 px over the picture's width and height.
+    let width = 2.0 * SHARP_Z * optics.tan_half_yfov * sharp.camera.aspect();
+    let growing = Edges {
+        name: "4 to 8 px, by paint",
+        growth: DVec2::new(0.4, 0.4 * 0.75) / width,
+        reached: -0.5,
+        ..blurred("", 6.0, 0.0)
+    };
+    let growing = Edges { z: SHARP_Z, focus: FocusOffset::new(t, 1.0), ..growing };
     [
         sharp,
         blurred("1 px", 1.0, -0.7),
@@ -64,6 +108,7 @@ fn edges() -> [Edges; 6] {
         blurred("10 px", 10.0, -0.7),
         blurred("40 px", 40.0, -0.7),
         painted,
+        growing,
     ]
 }
 
@@ -74,7 +119,8 @@ fn rmse(edges: &Edges, samples: u32, sampler: Sampler, pairs: u32) -> [f64; 2] {
     for angle in ANGLES {
         let scene = edge(angle, edges.z);
         let tracer = Tracer::new(scene.clone());
-        let (radiance, focus) = (BaseColor(scene), Uniform(edges.focus));
+        let focus = Growing { scene: scene.clone(), middle: edges.focus, growth: edges.growth };
+        let radiance = BaseColor(scene);
         for pair in 0..pairs {
             let [a, b] = [2 * pair, 2 * pair + 1].map(|seed| {
                 let options = options(samples, seed, sampler);
