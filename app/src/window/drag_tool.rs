@@ -64,10 +64,10 @@ impl Drag {
             (true, _) => return None,
             (false, _) => GradientLine::View(view.frame, self.ends().map(view.position)),
         };
-        let brush = &session.document()?.brush;
-        let (from, to) = (brush.target, settings.gradient.to());
-        let gradient =
-            Gradient { shape: settings.gradient.shape, line, from, to, symmetry: brush.symmetry() };
+        let document = session.document()?;
+        let (from, to) = (document.brush.target, settings.gradient.to());
+        let symmetry = document.symmetry_at(self.hits[0].as_ref());
+        let gradient = Gradient { shape: settings.gradient.shape, line, from, to, symmetry };
         gradient.is_valid().then(|| Command::DragGradient(gradient).into())
     }
 

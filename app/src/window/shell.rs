@@ -364,7 +364,7 @@ impl eframe::App for Shell {
         self.toasts.show(&context);
         self.perform(actions, &context);
         // While work goes on, its progress is shown four times a second.
-        if !self.session.jobs().is_empty() {
+        if !self.session.jobs().is_empty() || self.session.drawing_exactly().is_some() {
             context.request_repaint_after_secs(0.25);
         }
     }

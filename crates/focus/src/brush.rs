@@ -1,6 +1,7 @@
 //! The brush: what a dab does to the texels under it.
 
-use crate::{Curve, Symmetry};
+use crate::symmetry::are_world_axes;
+use crate::{Curve, Symmetry, WORLD_AXES};
 use lens::FocusOffset;
 use serde::{Deserialize, Serialize};
 
@@ -42,6 +43,12 @@ pub struct Brush {
     pub radial: u32,
     /// What is mirrored and turned about, world.
     pub mirror_center: [f64; 3],
+    /// The axes that it is mirrored and turned along: unit directions in the world, at right angles.
+    #[serde(skip_serializing_if = "are_world_axes")]
+    pub mirror_axes: [[f64; 3]; 3],
+    /// Whether centre and axes are taken anew, where a stroke or a fill begins, from the object there.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub mirror_by_object: bool,
     /// How much a light pen weakens a dab: 0 not at all, 1 down to nothing.
     pub pressure_to_strength: f64,
     /// How much a light pen shrinks a dab: 0 not at all, 1 down to nothing.
@@ -123,6 +130,8 @@ impl Default for Brush {
             mirror: [false; 3],
             radial: 1,
             mirror_center: [0.0; 3],
+            mirror_axes: WORLD_AXES,
+            mirror_by_object: false,
             pressure_to_strength: 1.0,
             pressure_to_radius: 0.0,
         }
@@ -151,7 +160,9 @@ impl Brush {
                 Some("normal_limit_degrees must be in [0, 180]")
             }
             _ if !self.clone_offset.iter().all(|x| x.is_finite()) => Some("clone_offset must be finite"),
-            _ if !self.symmetry().is_valid() => Some("mirror_center must be finite, radial in [1, 64]"),
+            _ if !self.symmetry().is_valid() => Some(
+                "mirror_center must be finite, mirror_axes at right angles and of length 1, radial in [1, 64]",
+            ),
             _ if !unit.contains(&self.pressure_to_strength) => Some("pressure_to_strength must be in [0, 1]"),
             _ if !unit.contains(&self.pressure_to_radius) => Some("pressure_to_radius must be in [0, 1]"),
             _ => None,
@@ -188,7 +199,17 @@ impl Brush {
 
     /// Where else every dab, fill and gradient is painted.
     pub fn symmetry(&self) -> Symmetry {
-        Symmetry { mirror: self.mirror, radial: self.radial, center: self.mirror_center }
+        Symmetry {
+            mirror: self.mirror,
+            radial: self.radial,
+            center: self.mirror_center,
+            axes: self.mirror_axes,
+        }
+    }
+
+    /// Whether it says something that programs which only know the world's axes do not understand.
+    pub fn has_own_axes(&self) -> bool {
+        self.mirror_by_object || !self.symmetry().is_along_world()
     }
 
     /// The radius of a dab at a pen pressure.

@@ -59,7 +59,7 @@ pub use recipe::{FocusRecipe, RecipeEntry};
 pub use selection::{Combine, Selection, SelectionResult};
 pub use source::{Focus, FocusSource};
 pub use stroke::{Stroke, SurfaceHit};
-pub use symmetry::{Symmetry, SymmetryImage};
+pub use symmetry::{Symmetry, SymmetryImage, WORLD_AXES};
 pub use thumbnail::{Thumbnail, ThumbnailCell};
 pub use tile_grid::TILE_SIDE;
 pub use view_frame::ViewFrame;

@@ -3,22 +3,36 @@
 use glam::{DMat3, DVec3};
 use serde::{Deserialize, Serialize};
 
-/// Mirrors and turns about a point, along the world's axes.
+/// Mirrors and turns about a point, along axes of one's choice.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Symmetry {
     /// Mirrored left and right (x), up and down (y), front and back (z); several at once give all combinations.
     pub mirror: [bool; 3],
-    /// Images around the vertical through the centre, itself among them: 1 is none.
+    /// Images around the y axis through the centre, itself among them: 1 is none.
     pub radial: u32,
     /// What is mirrored and turned about, world.
     pub center: [f64; 3],
+    /// The axes x, y and z: unit directions in the world, at right angles.
+    #[serde(skip_serializing_if = "are_world_axes")]
+    pub axes: [[f64; 3]; 3],
 }
+
+/// The world's own axes.
+pub const WORLD_AXES: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+
+/// Whether these are the world's own axes.
+pub(crate) fn are_world_axes(axes: &[[f64; 3]; 3]) -> bool {
+    *axes == WORLD_AXES
+}
+
+/// How far axes may be from being at right angles and of length 1: what numbers lose that are written to a file.
+const AXES_TOLERANCE: f64 = 1e-6;
 
 impl Default for Symmetry {
     /// None.
     fn default() -> Self {
-        Self { mirror: [false; 3], radial: 1, center: [0.0; 3] }
+        Self { mirror: [false; 3], radial: 1, center: [0.0; 3], axes: WORLD_AXES }
     }
 }
 
@@ -52,6 +66,11 @@ impl Symmetry {
     /// Images around the vertical that there may be.
     pub const MOST_RADIAL: u32 = 64;
 
+    /// Whether it is along the world's own axes.
+    pub fn is_along_world(&self) -> bool {
+        are_world_axes(&self.axes)
+    }
+
     /// Whether there is any.
     pub fn is_none(&self) -> bool {
         self.mirror == [false; 3] && self.radial <= 1
@@ -59,12 +78,16 @@ impl Symmetry {
 
     /// Whether it can be used.
     pub fn is_valid(&self) -> bool {
-        (1..=Self::MOST_RADIAL).contains(&self.radial) && self.center.iter().all(|x| x.is_finite())
+        let axes = DMat3::from_cols_array_2d(&self.axes);
+        let are_square = (axes.transpose() * axes).abs_diff_eq(DMat3::IDENTITY, AXES_TOLERANCE);
+        let is_center_finite = self.center.iter().all(|x| x.is_finite());
+        (1..=Self::MOST_RADIAL).contains(&self.radial) && is_center_finite && are_square
     }
 
     /// All images, the thing itself first.
     pub fn images(&self) -> Vec<SymmetryImage> {
         let center = DVec3::from_array(self.center);
+        let axes = DMat3::from_cols_array_2d(&self.axes);
         let turns = self.radial.clamp(1, Self::MOST_RADIAL);
         let mut images: Vec<SymmetryImage> = Vec::new();
         for turn in 0..turns {
@@ -76,6 +99,7 @@ impl Symmetry {
                 }
                 let signs = DVec3::from_array(flips.map(|flipped| if flipped { -1.0 } else { 1.0 }));
                 let linear = DMat3::from_rotation_y(angle) * DMat3::from_diagonal(signs);
+                let linear = axes * linear * axes.transpose();
                 let is_identity = turn == 0 && bits == 0;
                 // A half turn is also the mirror image in x and z.
                 if images.iter().all(|image| !image.linear.abs_diff_eq(linear, 1e-9)) {
@@ -96,7 +120,7 @@ mod tests {
         let center = [1.0, 2.0, 3.0];
         let point = DVec3::new(1.5, 2.5, 3.25);
         let images = |mirror, radial| {
-            let images = Symmetry { mirror, radial, center }.images();
+            let images = Symmetry { mirror, radial, center, ..Symmetry::default() }.images();
             for image in &images {
                 assert!(image.original(image.point(point)).distance(point) < 1e-12);
             }
@@ -111,5 +135,14 @@ mod tests {
         assert!(three[0].distance(three[1]) > 0.5);
         assert_eq!(images([true, false, true], 2).len(), 4, "a half turn is both mirrors at once");
         assert_eq!(images([true, true, true], 4).len(), 16);
+
+        // Turned by a quarter about the vertical, left and right are front and back.
+        let axes = [[0.0, 0.0, -1.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]];
+        let turned = Symmetry { mirror: [true, false, false], radial: 1, center, axes };
+        let across: Vec<_> = turned.images().iter().map(|image| image.point(point)).collect();
+        assert_eq!(across, [point, DVec3::new(1.5, 2.5, 2.75)]);
+        assert!(turned.is_valid());
+        assert!(!Symmetry { axes: [[2.0, 0.0, 0.0], axes[1], axes[2]], ..turned }.is_valid());
+        assert!(!Symmetry { axes: [[f64::NAN; 3], axes[1], axes[2]], ..turned }.is_valid());
     }
 }

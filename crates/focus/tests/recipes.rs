@@ -25,6 +25,10 @@ fn material(name: &str) -> Material {
     }
 }
 
+fn node(name: &str) -> Node {
+    Node { name: name.into(), index: 0, world: glam::DMat4::IDENTITY }
+}
+
 /// One triangle a part: (left, wall), (left, roof), (right, wall), (right, roof); the last without UVs.
 fn scene() -> Arc<Scene> {
     let part = |i: u32| Part {
@@ -39,7 +43,7 @@ fn scene() -> Arc<Scene> {
         uv: [[Vec2::ZERO, Vec2::X, Vec2::Y].repeat(4), Vec::new()],
         triangles: (0..4).map(|i| Triangle { vertices: [3 * i, 3 * i + 1, 3 * i + 2], part: i }).collect(),
         parts: (0..4).map(part).collect(),
-        nodes: vec![Node { name: "left".into(), index: 0 }, Node { name: "right".into(), index: 1 }],
+        nodes: vec![node("left"), node("right")],
         materials: vec![material("wall"), material("roof")],
         ..Scene::default()
     })

@@ -33,7 +33,7 @@ const WORLD: Gradient = Gradient {
     line: GradientLine::World([DVec3::new(1.0, 0.5, 0.0), DVec3::new(3.0, 0.5, 0.0)]),
     from: FocusOffset::new(1.4, 1.0),
     to: None,
-    symmetry: Symmetry { mirror: [false; 3], radial: 1, center: [0.0; 3] },
+    symmetry: Symmetry { mirror: [false; 3], radial: 1, center: [0.0; 3], axes: focus::WORLD_AXES },
 };
 
 #[test]
@@ -73,7 +73,7 @@ fn gradients_run_evenly_across_charts_in_world_and_on_screen() {
     }
 
     // Mirrored about the middle: from both ends inward.
-    let symmetry = Symmetry { mirror: [true, false, false], radial: 1, center: [2.0, 0.0, 0.0] };
+    let symmetry = Symmetry { mirror: [true, false, false], center: [2.0, 0.0, 0.0], ..Symmetry::default() };
     let line = GradientLine::World([DVec3::new(0.0, 0.5, 0.0), DVec3::new(2.0, 0.5, 0.0)]);
     let both = drawn(&Gradient { line, symmetry, ..WORLD });
     for x in [0.3, 1.05, 1.7] {

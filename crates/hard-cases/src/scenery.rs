@@ -72,7 +72,7 @@ pub fn scene_of<'a>(meshes: impl IntoIterator<Item = (&'a Mesh, [f32; 3])>) -> A
         scene.positions.extend(&mesh.positions);
         let corners = mesh.triangles.iter().map(|t| t.map(|v| v + first_vertex));
         scene.triangles.extend(corners.map(|vertices| Triangle { vertices, part: index }));
-        scene.nodes.push(Node { name: format!("node {index}"), index });
+        scene.nodes.push(Node { name: format!("node {index}"), index, world: glam::DMat4::IDENTITY });
         scene.parts.push(Part {
             node: index,
             material: index,

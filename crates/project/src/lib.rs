@@ -28,6 +28,7 @@ mod recipe;
 mod recovery;
 mod strokes_file;
 mod texel_bytes;
+mod texel_set;
 mod z_test;
 
 pub use camera::{camera_from_json, camera_to_json, read_aperture_mask, read_camera, write_camera};
@@ -43,4 +44,5 @@ pub use strokes_file::{
     RecordedFill, RecordedGradient, RecordedSelection, RecordedStep, RecordedStroke, SelectionShape,
     StrokeView, read_strokes, write_strokes,
 };
+pub use texel_set::TexelSet;
 pub use z_test::{ZAgreement, z_test};

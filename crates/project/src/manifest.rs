@@ -18,9 +18,12 @@ pub(crate) const MANIFEST: &str = "manifest.json";
 const FORMAT: &str = "focus-brush project";
 
 /// The newest version. It changes when an older program would misread the file.
-pub(crate) const VERSION: u64 = 2;
+pub(crate) const VERSION: u64 = 3;
 
-/// The version of a project without layers: older programs lose nothing of it.
+/// The version of a project whose brush is mirrored along the world's axes, if at all: older programs lose nothing of it.
+const ALONG_WORLD_AXES: u64 = 2;
+
+/// The version of one without layers, too.
 const WITHOUT_LAYERS: u64 = 1;
 
 /// The largest manifest that is read, bytes.
@@ -46,6 +49,9 @@ pub(crate) struct Manifest {
     pub focus_map: Option<MapEntry>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub layers: Option<LayerEntries>,
+    /// What may be painted, where that is not everything. A program that does not know it lets everything be painted.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub selection: Option<MapEntry>,
     /// Checksum of every other entry by its name: hex SHA-256 of its unpacked bytes.
     #[serde(default)]
     pub checksums: BTreeMap<String, String>,
@@ -67,7 +73,8 @@ pub(crate) struct CameraEntry {
     pub camera: Value,
 }
 
-/// The focus map's entry: t and anchor of every texel, f32 little endian, row by row.
+/// An entry that says something of every texel, row by row: the focus map's t and anchor, f32 little endian; or whether it
+/// is selected, a bit each, the lowest first, the last byte filled up with 0.
 #[derive(Debug, Serialize, Deserialize)]
 pub(crate) struct MapEntry {
     pub entry: String,
@@ -77,8 +84,13 @@ pub(crate) struct MapEntry {
 
 impl Manifest {
     /// What a manifest calls the format, and the oldest version that can say it all.
-    pub fn format(has_layers: bool) -> (String, u64) {
-        (FORMAT.to_string(), if has_layers { VERSION } else { WITHOUT_LAYERS })
+    pub fn format(brush: &Brush, has_layers: bool) -> (String, u64) {
+        let version = match (brush.has_own_axes(), has_layers) {
+            (true, _) => VERSION,
+            (false, true) => ALONG_WORLD_AXES,
+            (false, false) => WITHOUT_LAYERS,
+        };
+        (FORMAT.to_string(), version)
     }
 
     /// Reads and checks the manifest.

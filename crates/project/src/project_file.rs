@@ -9,6 +9,7 @@
 //! | `atlas.bin` | the unwrapping, as the atlas writes it |
 //! | `focus.f32` | t and anchor a texel, f32 little endian, row by row: what all layers make together |
 //! | `layers/N.f32`, `layers/N.mask.f32` | the same of one layer, and its mask; where there are layers |
+//! | `selection.bits` | what may be painted, a bit a texel; where that is not everything |
 //! | `masks/N.f32` | the aperture mask of camera N: width and height as u32, then transmissions as f32 |
 //!
 //! The scene itself stays where it is; its path is kept relative to the project, so that both may be moved
@@ -21,6 +22,7 @@ use crate::disk::{read_bytes, write_verified};
 use crate::layer_entries;
 use crate::manifest::{CameraEntry, MANIFEST, Manifest, MapEntry, SceneReference, sha256_hex};
 use crate::texel_bytes::pairs;
+use crate::texel_set::TexelSet;
 use focus::{Brush, FocusLayer, FocusMap, LayerStack};
 use lens::{ApertureMask, ApertureShape, Camera, Exposure, FocusOffset};
 use serde_json::Value;
@@ -28,6 +30,7 @@ use std::path::{Component, Path, PathBuf};
 
 const ATLAS: &str = "atlas.bin";
 const FOCUS_MAP: &str = "focus.f32";
+const SELECTION: &str = "selection.bits";
 
 /// The largest atlas that is read, bytes.
 const LARGEST_ATLAS: u64 = 2 << 30;
@@ -71,6 +74,8 @@ pub struct ProjectFile {
     /// The layers that make the focus map; `None` where one plain layer does. The values of adjustment layers are
     /// not saved: they follow from curve and camera ([`LayerStack::evaluate`]).
     pub layers: Option<LayerStack>,
+    /// What may be painted; `None` for everything.
+    pub selection: Option<TexelSet>,
     /// The background's focus where there is no focus map; else the map's own counts.
     pub background_focus: FocusOffset,
 }
@@ -103,6 +108,7 @@ impl ProjectFile {
             atlas: None,
             focus_map: None,
             layers: None,
+            selection: None,
             background_focus: FocusOffset::STANDARD,
         })
     }
@@ -150,7 +156,8 @@ impl ProjectFile {
                 same.collect::<Vec<_>>()
             })
         };
-        (&self.scene_sha256, &self.focus_map) == (&other.scene_sha256, &other.focus_map)
+        (&self.scene_sha256, &self.focus_map, &self.selection)
+            == (&other.scene_sha256, &other.focus_map, &other.selection)
             && layers(self) == layers(other)
     }
 
@@ -170,6 +177,9 @@ impl ProjectFile {
         let size = self.focus_map.as_ref().map(FocusMap::size);
         if self.layers.as_ref().is_some_and(|layers| Some(layers.size()) != size) {
             return Err(error("its layers do not have the size of its focus map".to_string()));
+        }
+        if self.selection.as_ref().is_some_and(|selection| Some(selection.size()) != size) {
+            return Err(error("its selection does not have the size of its focus map".to_string()));
         }
         let usable = self.focus_map.as_ref().is_none_or(FocusMap::is_valid)
             && layers.into_iter().all(FocusLayer::is_valid)
@@ -201,7 +211,12 @@ impl ProjectFile {
         });
         let layers = self.layers.as_ref().map(|layers| layer_entries::write(layers, &mut entries));
         let background = self.focus_map.as_ref().map_or(self.background_focus, |map| map.background);
-        let (format, version) = Manifest::format(layers.is_some());
+        let selection = self.selection.as_ref().map(|selection| {
+            entries.push((SELECTION.to_string(), selection.to_bytes()));
+            let [width, height] = selection.size();
+            MapEntry { entry: SELECTION.to_string(), width, height }
+        });
+        let (format, version) = Manifest::format(&self.brush, layers.is_some());
         let manifest = Manifest {
             format,
             version,
@@ -218,6 +233,7 @@ impl ProjectFile {
             view: self.view.clone(),
             focus_map,
             layers,
+            selection,
             checksums: entries.iter().map(|(name, bytes)| (name.clone(), sha256_hex(bytes))).collect(),
         };
         let manifest = serde_json::to_vec_pretty(&manifest).map_err(std::io::Error::other)?;
@@ -273,6 +289,15 @@ impl ProjectFile {
             (Some(_), None) => return Err(error("has layers but no focus map".to_string())),
             (None, _) => None,
         };
+        let selection = match &manifest.selection {
+            Some(entry) => Some(read_selection(file, entry, &manifest, &mut container)?),
+            None => None,
+        };
+        if let (Some(set), map) = (&selection, &focus_map)
+            && Some(set.size()) != map.as_ref().map(FocusMap::size)
+        {
+            return Err(error("has a selection of another size than its focus map".to_string()));
+        }
         Ok(Self {
             scene: absolute_path(&manifest.scene.path, file),
             scene_sha256: manifest.scene.sha256.clone(),
@@ -284,6 +309,7 @@ impl ProjectFile {
             atlas,
             focus_map,
             layers,
+            selection,
             background_focus,
         })
     }
@@ -341,6 +367,23 @@ fn read_focus_map(
         return Err(container.error(&entry.entry, "has values that are not finite"));
     }
     Ok(map)
+}
+
+fn read_selection(
+    file: &Path,
+    entry: &MapEntry,
+    manifest: &Manifest,
+    container: &mut Container<'_>,
+) -> Result<TexelSet, ProjectError> {
+    let sides = 1..=LARGEST_SIDE;
+    if !sides.contains(&entry.width) || !sides.contains(&entry.height) {
+        let problem = format!("cannot have {}×{} texels", entry.width, entry.height);
+        return Err(container.error(&entry.entry, problem));
+    }
+    let size = (entry.width as u64 * entry.height as u64).div_ceil(8);
+    let bytes = manifest.entry(file, container, &entry.entry, size)?;
+    TexelSet::from_bytes([entry.width, entry.height], bytes)
+        .ok_or_else(|| container.error(&entry.entry, "does not have the size that the manifest says"))
 }
 
 fn mask_bytes(mask: &ApertureMask) -> Vec<u8> {

@@ -14,7 +14,7 @@
 //! A point is where the pen was in the view it painted in ((0, 0) the upper left corner, (1, 1) the lower right) and
 //! how hard it pressed, in [0, 1]. When is not recorded: dabs follow the path, not the clock. A stroke in the atlas laid
 //! flat has the atlas's hash for a view, `{"atlas": "…"}`. Version 1 held `"strokes": [{"layer": …}, …]` alone, version 2
-//! no strokes in the atlas; both are read as well.
+//! no strokes in the atlas, version 3 no axes of symmetry but the world's; all are read.
 
 use crate::ProjectError;
 use crate::disk::{read_bytes, write_verified};
@@ -27,8 +27,11 @@ use std::path::Path;
 /// What the file calls its format.
 const FORMAT: &str = "focus-brush strokes";
 
-/// The version that is written.
-const VERSION: u64 = 3;
+/// The newest version.
+const VERSION: u64 = 4;
+
+/// The version that is written where all symmetry is along the world's axes: older programs lose nothing of it.
+const ALONG_WORLD_AXES: u64 = 3;
 
 /// One thing that was done.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -63,6 +66,15 @@ impl RecordedStep {
             Self::Select(_) | Self::Layers(_) | Self::Mask | Self::Reset => 0,
         };
         size_of::<Self>() + own
+    }
+
+    /// Whether it is mirrored or turned along other axes than the world's.
+    fn has_own_axes(&self) -> bool {
+        match self {
+            Self::Stroke(stroke) => stroke.brush.has_own_axes(),
+            Self::Gradient(drawn) => !drawn.gradient.symmetry.is_along_world(),
+            _ => false,
+        }
     }
 
     /// What is wrong with it, if anything.
@@ -216,8 +228,8 @@ struct StrokesFile {
 
 /// Writes what was recorded.
 pub fn write_strokes(file: &Path, steps: &[RecordedStep]) -> Result<(), ProjectError> {
-    let content =
-        StrokesFile { format: FORMAT.into(), version: VERSION, steps: steps.to_vec(), strokes: Vec::new() };
+    let version = if steps.iter().any(RecordedStep::has_own_axes) { VERSION } else { ALONG_WORLD_AXES };
+    let content = StrokesFile { format: FORMAT.into(), version, steps: steps.to_vec(), strokes: Vec::new() };
     let bytes = serde_json::to_vec(&content).map_err(std::io::Error::other);
     let bytes = bytes.map_err(|source| ProjectError::Write { file: file.to_owned(), source })?;
     write_verified(file, &bytes, |back| match parse(file, back) {

@@ -6,8 +6,8 @@ use damage::{damage, is_one_line};
 use focus::{Brush, BrushMode, FocusMap};
 use lens::{Aperture, ApertureMask, ApertureShape, Camera, Exposure, FocusOffset};
 use project::{
-    NamedCamera, ProjectError, ProjectFile, SceneState, find_recovery, recovery_path_for, remove_recovery,
-    unsaved_recovery_path,
+    NamedCamera, ProjectError, ProjectFile, SceneState, TexelSet, find_recovery, recovery_path_for,
+    remove_recovery, unsaved_recovery_path,
 };
 use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
@@ -43,6 +43,33 @@ fn document(folder: &Path) -> ProjectFile {
         focus_map: Some(map),
         ..ProjectFile::new(&scene, cameras.into()).unwrap()
     }
+}
+
+#[test]
+fn the_selection_comes_back_and_a_brush_mirrored_by_objects_is_told_by_the_version() {
+    let folder = TempDir::new().unwrap();
+    let file = folder.path().join("selected.fbrush");
+    let texels =
+        (0..70).flat_map(|y| (0..130).map(move |x| [x, y])).filter(|[x, y]| (x * 7 + y * 3) % 5 == 0);
+    let selected =
+        ProjectFile { selection: Some(TexelSet::new([130, 70], texels)), ..document(folder.path()) };
+    selected.save(&file).unwrap();
+    assert_eq!(ProjectFile::load(&file).unwrap(), selected);
+    let version = |file: &Path| {
+        let mut zip = zip::ZipArchive::new(std::fs::File::open(file).unwrap()).unwrap();
+        let manifest = zip.by_name("manifest.json").unwrap();
+        serde_json::from_reader::<_, serde_json::Value>(manifest).unwrap()["version"].clone()
+    };
+    assert_eq!(version(&file), 1, "older programs let everything be painted");
+    let brush = Brush { mirror: [true, false, false], mirror_by_object: true, ..Brush::default() };
+    let mirrored = ProjectFile { brush, ..selected.clone() };
+    mirrored.save(&file).unwrap();
+    assert_eq!(ProjectFile::load(&file).unwrap(), mirrored);
+    assert_eq!(version(&file), 3, "older programs could not read the brush");
+    let wrong = ProjectFile { selection: Some(TexelSet::new([70, 130], std::iter::empty())), ..selected };
+    let error = wrong.save(&file).unwrap_err().to_string();
+    assert!(error.contains("selection"), "{error}");
+    assert_eq!(ProjectFile::load(&file).unwrap(), mirrored, "the old file stays");
 }
 
 #[test]
@@ -223,7 +250,7 @@ fn wrong_content_is_told_with_its_entry() {
     };
     assert!(load(&|_, bytes| bytes).is_ok());
     let cases: [(Change<'_>, &str); 8] = [
-        (&in_manifest("\"version\": 1", "\"version\": 3"), "update the program"),
+        (&in_manifest("\"version\": 1", "\"version\": 4"), "update the program"),
         (&in_manifest("focus-brush project", "shopping list"), "shopping list"),
         (&in_manifest("\"active_camera\": 1", "\"active_camera\": 2"), "camera 2 of 2"),
         (&in_manifest("\"width\": 130", "\"width\": 131"), "focus.f32"),

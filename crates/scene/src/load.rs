@@ -207,7 +207,7 @@ impl MeshNode<'_> {
             if scene.parts.len() > first_part {
                 let index = node.index();
                 let name = named(node.name()).unwrap_or_else(|| format!("node {index}"));
-                scene.nodes.push(Node { name, index: index as u32 });
+                scene.nodes.push(Node { name, index: index as u32, world: self.world * instance });
             }
         }
         primitives.into_iter().for_each(|(primitive, _)| primitive.release(document));

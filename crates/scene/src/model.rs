@@ -74,6 +74,8 @@ pub struct Node {
     pub name: String,
     /// Its index in the file.
     pub index: u32,
+    /// From its own axes to the world.
+    pub world: DMat4,
 }
 
 /// A material, reduced to what light transport here uses.

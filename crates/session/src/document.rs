@@ -4,15 +4,17 @@ use crate::input::{CameraChoice, Input, InputKind};
 use crate::undo::{HistoryStep, Undo};
 use crate::{SessionError, Stage, Steps};
 use atlas::UnwrapOptions;
-use focus::{Brush, Changed, FocusMap, FocusRecipe, LayerStack, RecipeEntry, Selection, Thumbnail};
+use focus::{
+    Brush, Changed, FocusMap, FocusRecipe, LayerStack, RecipeEntry, Selection, SelectionResult, Thumbnail,
+};
 use lens::{Camera, Exposure};
-use project::{FocusFile, NamedCamera, ProjectFile};
+use project::{FocusFile, NamedCamera, ProjectFile, TexelSet};
 use scene::{Scene, SceneCamera};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// An open document. Focus map and camera are saved and can be undone; selection can be undone and is not saved; brush, exposure and view are saved with
-/// them and are not part of the history.
+/// An open document. Focus map and camera are saved and can be undone. The selection can be undone and is saved with them,
+/// but is no change of theirs; brush, exposure and view are saved, too, and are not part of the history.
 pub struct Document {
     /// Scene, atlas and what works on them.
     pub stage: Arc<Stage>,
@@ -26,7 +28,7 @@ pub struct Document {
     pub exposure: Exposure,
     /// The brush of the strokes to come.
     pub brush: Brush,
-    /// What may be painted; everything where there is none. Part of the history, not of what is saved.
+    /// What may be painted; everything where there is none.
     pub selection: Option<Selection>,
     /// Layout and viewpoint as the window wants them, any JSON.
     pub view: serde_json::Value,
@@ -171,6 +173,7 @@ impl Document {
                 ProjectFile { brush, ..ProjectFile::new(&input.scene.path, vec![shot])? }
             }
         };
+        let selection = template.selection.as_ref().and_then(|saved| selected_of(&stage, saved));
         Ok(Self {
             stage: Arc::new(stage),
             layers,
@@ -185,7 +188,7 @@ impl Document {
             warnings: input.warnings,
             template,
             undo: Undo::new(Self::UNDO_BUDGET_BYTES),
-            selection: None,
+            selection,
             revision: 0,
             saved: 0,
         })
@@ -201,8 +204,16 @@ impl Document {
         project.atlas = Some(self.stage.atlas.to_bytes());
         project.background_focus = self.map.background;
         project.focus_map = Some(self.map.clone());
+        project.selection = self.selection.as_ref().map(|selection| self.saved_selection(selection));
         project.layers = (!self.layers.is_single()).then(|| self.layers.clone());
         project
+    }
+
+    /// The selection as a project keeps it.
+    fn saved_selection(&self, selection: &Selection) -> TexelSet {
+        let texels = self.stage.canvas.texels().iter().enumerate();
+        let chosen = texels.filter(|(index, _)| selection.contains(*index));
+        TexelSet::new(self.map.size(), chosen.map(|(_, texel)| [texel.x, texel.y]))
     }
 
     /// Brings the map up to date after `changed` texels of any layer have changed, or after any change (`None`).
@@ -277,6 +288,14 @@ impl Document {
     pub fn scene_cameras(&self) -> impl Iterator<Item = (&str, Camera)> {
         let cameras = self.stage.scene.cameras.iter();
         cameras.map(|camera| (camera.name.as_str(), camera_of(camera, &self.camera)))
+    }
+}
+
+/// The selection that a project kept; none where it chose nothing, or everything.
+fn selected_of(stage: &Stage, saved: &TexelSet) -> Option<Selection> {
+    match Selection::of(&stage.canvas, |texel| saved.contains([texel.x, texel.y])) {
+        SelectionResult::Some(selection) => Some(selection),
+        SelectionResult::Nothing | SelectionResult::Everything => None,
     }
 }
 

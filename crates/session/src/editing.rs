@@ -35,7 +35,7 @@ impl Document {
             FillRegion::Chart(_) => FillTarget::Chart(chart),
             FillRegion::Part(_) | FillRegion::All => FillTarget::Part(part),
         };
-        let (triangle, images) = (hit.point.triangle as usize, self.brush.symmetry().images());
+        let (triangle, images) = (hit.point.triangle as usize, self.symmetry_at(Some(&hit)).images());
         let own = target(stage.scene.triangles[triangle].part, stage.atlas.chart_of[triangle]);
         let others = images[1..].iter().filter_map(|image| {
             let index = stage.canvas.nearest(image.point(hit.position), |_| true)?;

@@ -27,6 +27,7 @@ mod job;
 mod key_map;
 mod light_field;
 mod modelled;
+mod object_axes;
 mod painter;
 mod picking;
 mod picture_ring;

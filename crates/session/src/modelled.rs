@@ -250,7 +250,7 @@ mod tests {
             positions,
             triangles: [corners(0, 0), corners(4, 1)].concat(),
             parts: vec![part(0), part(1)],
-            nodes: vec![scene::Node { name: "all".into(), index: 0 }],
+            nodes: vec![scene::Node { name: "all".into(), index: 0, world: glam::DMat4::IDENTITY }],
             materials: vec![material],
             ..Scene::default()
         })

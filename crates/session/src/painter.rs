@@ -2,7 +2,7 @@
 
 use crate::document::Document;
 use crate::picking::{pick, view_ray};
-use crate::{SessionError, StrokePoint, StrokeTarget};
+use crate::{SessionError, StrokePoint, StrokeTarget, SurfaceHit};
 use focus::{Brush, Changed, Channels, FocusLayer, FocusMap, Gradient, PenSample, Stroke, ViewFrame};
 use glam::DVec2;
 use project::{RecordedStep, RecordedStroke, StrokeView};
@@ -20,7 +20,8 @@ impl Painter {
     pub fn begin(document: &Document, point: &StrokePoint) -> Result<Self, SessionError> {
         let layer = document.layers.active();
         let channels = paintable(layer, document.brush.channels)?;
-        let brush = Brush { channels, ..document.brush.clone() };
+        let hit = hit_of(document, point);
+        let brush = Brush { channels, ..document.brush_at(hit.as_ref()) };
         let stroke = Stroke::begin(&layer.map, document.stage.canvas.clone(), brush.clone())?;
         let stroke = stroke.within(document.selection.clone());
         let view = match point.at {
@@ -43,12 +44,7 @@ impl Painter {
 
     /// Draws on to the next point. What changed in the layer.
     pub fn extend(&mut self, document: &mut Document, point: &StrokePoint) -> Changed {
-        let hit = match point.at {
-            StrokeTarget::Surface(hit) => Some(hit),
-            StrokeTarget::Ray(ray) => pick(&document.stage.tracer, &ray),
-            StrokeTarget::View(view, position) => pick(&document.stage.tracer, &view_ray(&view, position)),
-            StrokeTarget::Atlas(position) => document.stage.surface_at(position),
-        };
+        let hit = hit_of(document, point);
         match (point.at, &self.record.view) {
             (StrokeTarget::View(view, at), StrokeView::Scene(own)) if view == *own => self.note(at, point),
             (StrokeTarget::Atlas(at), StrokeView::Atlas { .. }) => self.note(at, point),
@@ -80,6 +76,17 @@ impl Painter {
     /// Takes the stroke back. What changed in the layer.
     pub fn abort(self, document: &mut Document) -> Changed {
         self.stroke.abort(&mut document.layers.active_mut().map)
+    }
+}
+
+/// The surface under a point of a stroke.
+fn hit_of(document: &Document, point: &StrokePoint) -> Option<SurfaceHit> {
+    let tracer = &document.stage.tracer;
+    match point.at {
+        StrokeTarget::Surface(hit) => Some(hit),
+        StrokeTarget::Ray(ray) => pick(tracer, &ray),
+        StrokeTarget::View(view, position) => pick(tracer, &view_ray(&view, position)),
+        StrokeTarget::Atlas(position) => document.stage.surface_at(position),
     }
 }
 

@@ -316,6 +316,7 @@ impl Session {
                 self.preview_thread.set_stage(stage, (document.map.clone(), self.map_serial), camera);
                 self.screen.clear();
                 self.events.push(Event::Opened);
+                self.events.extend(document.selection.is_some().then_some(Event::SelectionChanged));
                 self.events.extend(document.warnings.iter().cloned().map(Event::Notice));
                 // What was restored is in its file already; a document as saved has none.
                 self.recovery = Recovery {

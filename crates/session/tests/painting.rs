@@ -174,6 +174,10 @@ fn what_is_saved_is_opened_again() {
     session.apply(Command::CommitStroke).unwrap();
     session.apply(Command::Camera(CameraEdit::FocusDistance(2.5))).unwrap();
     session.apply(Command::SetView(serde_json::json!({"yaw": 0.25}))).unwrap();
+    let card = session.pick(&session.picture_ray(DVec2::new(0.4, 0.5)).unwrap()).unwrap();
+    session.apply(Command::SelectRegion(FillRegion::Node(card), focus::Combine::Replace)).unwrap();
+    let selection = session.document().unwrap().selection.clone();
+    assert!(selection.is_some());
     session.apply(Command::SaveAs(project.clone())).unwrap();
     let events = settle(&mut session);
     assert!(events.contains(&Event::Written(project.clone())));
@@ -185,6 +189,7 @@ fn what_is_saved_is_opened_again() {
     let mut again = opened(&project);
     let document = again.document().unwrap();
     assert!(document.map == map);
+    assert!(document.selection == selection, "what may be painted is kept");
     assert_eq!(document.camera.focus_distance, 2.5);
     assert_eq!(document.brush.mode, BrushMode::Set);
     assert_eq!(document.view["yaw"], 0.25);
@@ -422,6 +427,57 @@ fn recorded_strokes_paint_the_same_map_again_whatever_the_timing() {
     assert!(again.map == document.map && again.layers.layers()[0] == document.layers.layers()[0]);
     assert_eq!(again.undo_names().count(), 5);
     assert!(live.apply(Command::ExportStrokes(folder.path().join("none/strokes.json"))).is_err());
+}
+
+#[test]
+fn a_stroke_is_mirrored_about_the_object_it_begins_on_and_so_is_its_recording() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = folder.path().join("quads.glb");
+    tiny_glb::write(&scene);
+    let mut session = opened(&scene);
+    let target = FocusOffset::new(1.2, 1.0);
+    let brush = focus::Brush {
+        radius: 0.05,
+        target,
+        mirror: [true, false, false],
+        mirror_by_object: true,
+        ..focus::Brush::default()
+    };
+    session.apply(Command::SetBrush(brush.clone())).unwrap();
+    // On the card's right, 2 away: its middle is at x = −0.4.
+    let camera = session.document().unwrap().camera.clone();
+    let place = |x: f64| {
+        let pixel = camera.pixel_from_q(camera.optics().chief(glam::DVec3::new(x, 0.0, 2.0)));
+        pixel / DVec2::new(camera.width as f64, camera.height as f64)
+    };
+    let (right, left) = (place(-0.25), place(-0.55));
+    let view = shot_view(&session);
+    let point = StrokePoint { at: session::StrokeTarget::View(view, right), pressure: 1.0 };
+    session.apply(Command::BeginStroke(point)).unwrap();
+    session.apply(Command::CommitStroke).unwrap();
+    let focus_at = |session: &Session, at: DVec2| {
+        session.focus_at(&session.pick(&session.picture_ray(at).unwrap()).unwrap()).unwrap().t
+    };
+    assert!((focus_at(&session, right) - 1.2).abs() < 1e-6);
+    assert!((focus_at(&session, left) - 1.2).abs() < 1e-6, "its image on the card");
+    assert_eq!(focus_at(&session, place(0.25)), 1.0, "and none on the other side of the world");
+
+    let strokes = folder.path().join("strokes.json");
+    session.apply(Command::ExportStrokes(strokes.clone())).unwrap();
+    let text = std::fs::read_to_string(&strokes).unwrap();
+    assert!(text.contains("mirror_center") && !text.contains("mirror_by_object"), "{text}");
+    let steps = project::read_strokes(&strokes).unwrap();
+    let nobody = progress::Unwatched;
+    let mut again = session::Document::begin(&scene, None, None, &Default::default(), &nobody).unwrap();
+    assert_eq!(session::replay(&mut again, &steps).unwrap(), 1);
+    assert!(again.map == session.document().unwrap().map);
+
+    // A fill takes the object at the image of the click: on the card that is the card itself.
+    let card = session.pick(&session.picture_ray(right).unwrap()).unwrap();
+    let symmetry = session.document().unwrap().symmetry_at(Some(&card));
+    assert!((symmetry.center[0] + 0.4).abs() < 1e-6 && symmetry.is_along_world(), "{symmetry:?}");
+    let world = session.document().unwrap().symmetry_at(None);
+    assert_eq!(world.center, [0.0; 3], "where there is no object");
 }
 
 #[test]

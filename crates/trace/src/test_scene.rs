@@ -23,7 +23,10 @@ pub type Mesh = (Vec<DVec3>, Vec<[u32; 3]>);
 
 /// A scene with a part for each mesh.
 pub fn scene_of(meshes: &[(Mesh, Material)]) -> Arc<Scene> {
-    let mut scene = Scene { nodes: vec![Node { name: "node 0".into(), index: 0 }], ..Scene::default() };
+    let mut scene = Scene {
+        nodes: vec![Node { name: "node 0".into(), index: 0, world: glam::DMat4::IDENTITY }],
+        ..Scene::default()
+    };
     for (part, ((positions, triangles), material)) in meshes.iter().enumerate() {
         let first_vertex = scene.positions.len() as u32;
         let first = scene.triangles.len() as u32;

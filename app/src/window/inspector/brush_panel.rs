@@ -141,16 +141,50 @@ fn mirror_row(ui: &mut Ui, document: &Document, brush: &mut Brush) {
         })
         .response
     });
-    let tip = "Mirror at the scene's middle; else at the world's origin.";
+    let tip = "What strokes, fills and gradients are mirrored and turned about: the scene, the world, or the object on which they begin, along its own axes.";
     let is_on = !brush.symmetry().is_none();
     let (low, high) = document.stage.bounds;
     let middle = ((low + high) / 2.0).to_array();
-    let mut about = brush.mirror_center == middle;
-    let response = row(ui, "Mirror at", tip, |ui| {
-        ui.add_enabled(is_on, egui::Checkbox::new(&mut about, "the middle of the scene"))
+    let before = match brush.mirror_by_object {
+        true => About::Object,
+        false if brush.mirror_center == middle => About::Scene,
+        false => About::World,
+    };
+    let mut about = before;
+    row(ui, "Mirror at", tip, |ui| {
+        let combo = ComboBox::from_id_salt("mirror at").selected_text(about.name()).width(150.0);
+        let add = |ui: &mut Ui| {
+            let choice = combo.show_ui(ui, |ui| {
+                for choice in [About::Scene, About::World, About::Object] {
+                    ui.selectable_value(&mut about, choice, choice.name());
+                }
+            });
+            choice.response
+        };
+        ui.add_enabled_ui(is_on, add).inner
     });
-    if response.changed() {
-        brush.mirror_center = if about { middle } else { [0.0; 3] };
+    if about != before {
+        brush.mirror_by_object = about == About::Object;
+        brush.mirror_axes = focus::WORLD_AXES;
+        brush.mirror_center = if about == About::World { [0.0; 3] } else { middle };
+    }
+}
+
+/// What is mirrored about.
+#[derive(Clone, Copy, PartialEq)]
+enum About {
+    Scene,
+    World,
+    Object,
+}
+
+impl About {
+    fn name(self) -> &'static str {
+        match self {
+            Self::Scene => "the scene's middle",
+            Self::World => "the world's origin",
+            Self::Object => "the painted object",
+        }
     }
 }
 

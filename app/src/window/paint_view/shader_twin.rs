@@ -28,7 +28,7 @@ fn square(z: f64) -> Scene {
         positions: vec![corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)],
         triangles: vec![Triangle { vertices: [0, 1, 2], part: 0 }, Triangle { vertices: [0, 2, 3], part: 0 }],
         parts: vec![Part { node: 0, material: 0, triangles: 0..2, has_uv: [false; 2], mirrored: false }],
-        nodes: vec![Node { name: "square".into(), index: 0 }],
+        nodes: vec![Node { name: "square".into(), index: 0, world: glam::DMat4::IDENTITY }],
         materials: vec![Material {
             name: "white".into(),
             base_color: Vec4::ONE,

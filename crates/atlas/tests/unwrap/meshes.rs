@@ -30,7 +30,11 @@ pub fn scene(pieces: Vec<Piece>) -> Scene {
         );
         let triangles = first..scene.triangles.len() as u32;
         scene.parts.push(Part { node: part as u32, material: 0, triangles, has_uv, mirrored: false });
-        scene.nodes.push(Node { name: format!("node {part}"), index: part as u32 });
+        scene.nodes.push(Node {
+            name: format!("node {part}"),
+            index: part as u32,
+            world: glam::DMat4::IDENTITY,
+        });
     }
     scene
 }

@@ -30,7 +30,7 @@ const ABOVE: DVec3 = DVec3::new(0.3, 2.0, 0.4);
 
 fn scene_of(rectangles: &[Rectangle], lights: &[Light]) -> Scene {
     let mut scene = Scene { lights: lights.to_vec(), ..Scene::default() };
-    scene.nodes.push(Node { name: "node 0".into(), index: 0 });
+    scene.nodes.push(Node { name: "node 0".into(), index: 0, world: glam::DMat4::IDENTITY });
     for (part, Rectangle(corner, side, other, material)) in rectangles.iter().enumerate() {
         let (part, v) = (part as u32, scene.positions.len() as u32);
         scene.positions.extend([*corner, *corner + *side, *corner + *side + *other, *corner + *other]);
