@@ -16,10 +16,12 @@ project=$work/garden.fbrush
 cp "$root/assets/demo/demo.glb" "$work/"
 "$program" new "$work/demo.glb" --camera "$root/assets/demo/demo.camera.json" -o "$project" || fail "no project"
 
-at() { xdotool mousemove $(($1 * scale)) $(($2 * scale)); sleep 0.3; }
-click() { at "$1" "$2"; xdotool click 1; sleep 0.4; }
-key() { xdotool key "$1"; sleep 0.6; }
-palette() { key ctrl+shift+p; xdotool type --delay 40 "$1"; sleep 0.3; key Return; }
+# Tenths of a second: four times the pixels take four times as long to draw without a graphics card.
+pause() { sleep "$(($1 * scale * scale / 10)).$(($1 * scale * scale % 10))"; }
+at() { xdotool mousemove $(($1 * scale)) $(($2 * scale)); pause 3; }
+click() { at "$1" "$2"; xdotool click 1; pause 4; }
+key() { xdotool key "$1"; pause 6; }
+palette() { key ctrl+shift+p; xdotool type --delay 40 "$1"; pause 6; key Return; }
 # Points of the window as the layout has it at 1280 × 720 points.
 wide=$((width / scale))
 high=$((height / scale))
@@ -56,10 +58,10 @@ shot 12-histogram
 key F9
 at "$inspector" $((high / 2))
 xdotool click --repeat 8 --delay 60 5
-sleep 0.7
+pause 9
 import -window root "$out/13-inspector-middle.png"
 xdotool click --repeat 60 --delay 20 5
-sleep 0.7
+pause 9
 import -window root "$out/14-inspector-end.png"
 xdotool click --repeat 90 --delay 20 4
 key w
@@ -82,8 +84,7 @@ palette "light"
 settle "the light theme"
 shot 19-light-theme
 palette "light"
-xdotool key ctrl+shift+s
-sleep 0.6
+key ctrl+shift+s
 shot 20-save-as
 key Escape
 echo "all is well; screenshots in $out"

@@ -9,6 +9,7 @@
 //! * `inspector`, `tool_bar`, `menu_bar`, `status_line`: read the document and emit [`Action`]s.
 //! * `palette`, `keys`, `help`, `menu_bar`: views of the one command table in `session`.
 //! * `player`: a recording played in the window, timed.
+//! * `region_highlight`: what a click would take, outlined beforehand.
 //! * `pointer`, `drag_tool`, `brush_gesture`, `navigation`: what pointer and pen do.
 //! * `file_dialog`, `unsaved_question`, `toasts`: what the window asks and tells.
 
@@ -35,6 +36,7 @@ mod palette;
 mod picture_view;
 mod player;
 mod pointer;
+mod region_highlight;
 mod shell;
 mod status_line;
 mod theme;

@@ -8,7 +8,7 @@ use super::drag_tool::{Drag, DragView, combine};
 use super::tool_settings::ToolSettings;
 use super::{Action, Tool, navigation};
 use egui::{Event, Modifiers, PointerButton, Pos2, Response, Ui};
-use focus::{Combine, ViewFrame};
+use focus::{Combine, FillTarget, ViewFrame};
 use glam::{DVec2, DVec3};
 use lens::FocusOffset;
 use project::SelectionShape;
@@ -224,6 +224,25 @@ fn pen_pressure(events: &[Event]) -> f32 {
     events.iter().rev().find_map(force).map_or(1.0, |force| force.clamp(0.0, 1.0))
 }
 
+/// What a click of the tool takes whole.
+fn region(tool: Tool, hit: SurfaceHit) -> Option<FillRegion> {
+    match tool {
+        Tool::FillObject | Tool::SharpHere | Tool::SelectObject => Some(FillRegion::Node(hit)),
+        Tool::FillMaterial | Tool::SelectMaterial => Some(FillRegion::Material(hit)),
+        Tool::FillChart | Tool::SelectChart => Some(FillRegion::Chart(hit)),
+        _ => None,
+    }
+}
+
+impl Hand {
+    /// What a click at `hover` would take whole.
+    pub fn targets(&self, session: &Session, hover: Option<SurfaceHit>) -> Vec<FillTarget> {
+        let region = hover.and_then(|hit| region(self.tool, hit)).filter(|_| !self.is_busy);
+        let targets = |region| session.document().map(|document| document.targets_of(region));
+        region.and_then(targets).unwrap_or_default()
+    }
+}
+
 /// What a tool that is clicked does where it is.
 fn click(
     tool: Tool,
@@ -232,18 +251,13 @@ fn click(
     facing: SelectionShape,
     combine: Combine,
 ) -> Option<Action> {
-    let select = |region| Command::SelectRegion(region, combine);
-    if tool == Tool::Inspect {
-        return Some(Action::Inspect(hit));
-    }
     let command = match tool {
-        Tool::FillObject => Command::Fill(FillRegion::Node(hit), target),
-        Tool::FillMaterial => Command::Fill(FillRegion::Material(hit), target),
-        Tool::FillChart => Command::Fill(FillRegion::Chart(hit), target),
-        Tool::SharpHere => Command::Fill(FillRegion::Node(hit), FocusOffset::SHARP),
-        Tool::SelectObject => select(FillRegion::Node(hit)),
-        Tool::SelectMaterial => select(FillRegion::Material(hit)),
-        Tool::SelectChart => select(FillRegion::Chart(hit)),
+        Tool::Inspect => return Some(Action::Inspect(hit)),
+        Tool::SharpHere => Command::Fill(region(tool, hit)?, FocusOffset::SHARP),
+        Tool::FillObject | Tool::FillMaterial | Tool::FillChart => Command::Fill(region(tool, hit)?, target),
+        Tool::SelectObject | Tool::SelectMaterial | Tool::SelectChart => {
+            Command::SelectRegion(region(tool, hit)?, combine)
+        }
         Tool::SelectFacing => Command::Select(facing, combine),
         Tool::FocusHere => Command::FocusHere(hit),
         Tool::Pick => Command::Pick(hit),

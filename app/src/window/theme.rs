@@ -39,6 +39,8 @@ struct Greys {
     faint: u8,
     outline: u8,
     selected: [u8; 2],
+    /// Text that stands back.
+    weak: u8,
     /// Fill and text of what is still, can be used, is under the pointer, is pressed, and is open.
     widgets: [[u8; 2]; 5],
     messages: [Color32; 2],
@@ -51,6 +53,7 @@ fn dark() -> Visuals {
         inset: 24,
         faint: 43,
         outline: 56,
+        weak: 150,
         selected: [96, 250],
         widgets: [[38, 190], [58, 215], [74, 245], [92, 255], [52, 230]],
         messages: [WARNING, ERROR],
@@ -65,6 +68,7 @@ fn light() -> Visuals {
         inset: 240,
         faint: 208,
         outline: 176,
+        weak: 86,
         selected: [150, 0],
         widgets: [[214, 50], [196, 25], [182, 0], [164, 0], [204, 15]],
         messages: [Color32::from_rgb(122, 80, 0), Color32::from_rgb(160, 30, 10)],
@@ -85,6 +89,7 @@ fn visuals(mut visuals: Visuals, greys: &Greys) -> Visuals {
     visuals.selection.stroke = Stroke::new(1.0, grey(greys.selected[1]));
     visuals.hyperlink_color = grey(greys.widgets[1][1]);
     [visuals.warn_fg_color, visuals.error_fg_color] = greys.messages;
+    visuals.weak_text_color = Some(grey(greys.weak));
     visuals.slider_trailing_fill = true;
     let widgets = &mut visuals.widgets;
     let kinds = [

@@ -242,3 +242,39 @@ fn a_click_within_one_frame_is_a_dab() {
     assert_ne!(person.document().map, map);
     assert_eq!(person.document().undo_names().collect::<Vec<_>>(), ["Brush stroke"]);
 }
+
+#[test]
+fn what_a_fill_would_take_is_outlined_before_the_click() {
+    let (mut person, _folder) = opened();
+    let rect = person.picture_rect();
+    let map = person.document().map.clone();
+    let point = |person: &mut Person, x: f32, y: f32| {
+        person.window.hover_at(at(rect, x, y));
+        person.window.run_steps(4);
+        person.shell().picture_view().highlighted_share()
+    };
+    assert_eq!(point(&mut person, 0.25, 0.5), None, "a brush takes nothing whole");
+    person.presses(Modifiers::NONE, Key::G);
+    person.window.remove_cursor();
+    person.window.run_steps(2);
+    let before = person.window.render().unwrap();
+    let card = point(&mut person, 0.25, 0.5).expect("the card");
+    let after = person.window.render().unwrap();
+    let wall = point(&mut person, 0.8, 0.2).expect("the wall");
+    assert!((0.05..0.35).contains(&card) && wall > 0.5, "{card} {wall}");
+    assert!((card + wall - 1.0).abs() < 0.1, "together they are all there is: {card} {wall}");
+    assert_eq!(point(&mut person, 0.25, 0.5), Some(card));
+    let changed = before.pixels().zip(after.pixels()).filter(|(a, b)| a != b).count();
+    assert!(changed > 300, "it shows: {changed} pixels");
+    assert!(person.document().map == map && person.document().undo_name().is_none());
+    // With a mirror, what is filled at the image is outlined as well.
+    let brush = focus::Brush {
+        // Half way between card and wall: front is back.
+        mirror: [false, false, true],
+        mirror_center: [0.0, 0.0, -3.5],
+        ..person.document().brush.clone()
+    };
+    person.window.state_mut().apply(session::Command::SetBrush(brush));
+    let both = point(&mut person, 0.27, 0.5).expect("the card and what is at its image");
+    assert!(both > 0.9, "{both}");
+}

@@ -20,7 +20,7 @@ impl From<FocusError> for SessionError {
 
 impl Document {
     /// What a region covers. What lies at the images of the brush's symmetry belongs to it too.
-    pub(crate) fn targets_of(&self, region: FillRegion) -> Vec<FillTarget> {
+    pub fn targets_of(&self, region: FillRegion) -> Vec<FillTarget> {
         let hit = match region {
             FillRegion::Node(hit)
             | FillRegion::Part(hit)

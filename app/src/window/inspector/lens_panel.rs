@@ -232,12 +232,10 @@ pub fn picture_panel(
             let slider = Slider::new(&mut settings.tolerance_px, 0.0..=LARGEST_TOLERANCE_PX);
             ui.add(slider.max_decimals(1).suffix(" px"))
         });
-        if let Some(saved) = saved(session) {
-            ui.allocate_exact_size(egui::Vec2::ZERO, egui::Sense::hover());
-            ui.weak(saved).on_hover_text("What the tolerance costs: how close the live picture comes to the exact one (PSNR), and how long either takes to draw whole.");
-            ui.end_row();
-        }
     });
+    if let Some(saved) = saved(session) {
+        ui.weak(saved).on_hover_text("What the tolerance costs: how close the live picture comes to the exact one (PSNR), and how long either takes to draw whole.");
+    }
 }
 
 /// What the tolerance saves and costs, once that is known.

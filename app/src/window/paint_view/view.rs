@@ -8,6 +8,7 @@ use crate::window::blit::{Blitter, Drawable, Filter};
 use crate::window::brush_ring;
 use crate::window::navigation::{self, Motion};
 use crate::window::pointer::{Hand, StrokeInput};
+use crate::window::region_highlight::RegionHighlight;
 use crate::window::{Action, false_colour, theme};
 use egui::{Color32, Pos2, Rect, Response, Sense, Stroke, Ui, pos2, vec2};
 use focus::ViewFrame;
@@ -43,6 +44,7 @@ pub struct PaintView {
     stroke: StrokeInput,
     /// What lies under the pointer.
     hover: Option<SurfaceHit>,
+    highlight: RegionHighlight,
     rect: Rect,
     /// Its columns and rows, px.
     size: [u32; 2],
@@ -78,6 +80,7 @@ impl PaintView {
             camera: OrbitCamera::default(),
             stroke: StrokeInput::default(),
             hover: None,
+            highlight: RegionHighlight::default(),
             rect: Rect::NOTHING,
             size: [1; 2],
             look_through: false,
@@ -88,6 +91,7 @@ impl PaintView {
     /// Takes up another document: its surface is copied to the graphics card in the background.
     pub fn opened(&mut self, document: &Document, context: &egui::Context) {
         self.look_through();
+        self.highlight.forget();
         if let Some(camera) = stored_viewpoint(&document.view) {
             self.camera = camera;
             self.look_through = false;
@@ -241,6 +245,8 @@ impl PaintView {
             legend(&painter, rect);
         }
         self.stroke.paint(ui, rect);
+        let targets = hand.targets(session, self.hover.filter(|_| response.hovered()));
+        self.highlight.paint(ui, document, (frame, rect, rect), &targets);
         if let (Some(hit), Some(ring)) = (self.hover, hand.ring) {
             brush_ring::paint(&painter, &hit, ring, |point| self.screen_from_world(point));
         }

@@ -11,6 +11,7 @@ use super::brush_ring;
 use super::navigation::{self, Motion};
 use super::paint_view::hint;
 use super::pointer::{Hand, StrokeInput};
+use super::region_highlight::RegionHighlight;
 use super::{Action, controls, theme};
 use egui::{PointerButton, Pos2, Rect, Response, Sense, Ui, Vec2, vec2};
 use focus::ViewFrame;
@@ -51,6 +52,7 @@ pub struct PictureView {
     zoom: Zoom,
     stroke: StrokeInput,
     hover: Option<SurfaceHit>,
+    highlight: RegionHighlight,
     rect: Rect,
     image: Rect,
 }
@@ -67,6 +69,7 @@ impl PictureView {
             zoom: Zoom::Fit,
             stroke: StrokeInput::default(),
             hover: None,
+            highlight: RegionHighlight::default(),
             rect: Rect::NOTHING,
             image: Rect::NOTHING,
         }
@@ -106,6 +109,11 @@ impl PictureView {
     /// Where the picture is on screen.
     pub fn image_rect(&self) -> Rect {
         self.image
+    }
+
+    /// How much of the view a click would take; none where it takes nothing whole.
+    pub fn highlighted_share(&self) -> Option<f32> {
+        self.highlight.share()
     }
 
     /// What lies under the pointer.
@@ -156,12 +164,12 @@ impl PictureView {
         }
         self.ask_for_pictures(session, actions);
         let image = self.image;
+        let shot = &document.camera;
+        let frame =
+            ViewFrame { camera_to_world: shot.camera_to_world, yfov: shot.yfov, aspect: shot.aspect() };
         let is_selecting = self.verify.is_selecting();
         self.verify.select(ui, &response, image, actions);
         if !(is_wiping || is_selecting) || session.is_painting() {
-            let shot = &document.camera;
-            let frame =
-                ViewFrame { camera_to_world: shot.camera_to_world, yfov: shot.yfov, aspect: shot.aspect() };
             let position = |at: Pos2| picture_position(image, at);
             actions.extend(self.stroke.update(ui, &response, session, hand, frame, position));
         }
@@ -169,6 +177,8 @@ impl PictureView {
         let pointer = response.hover_pos().or_else(|| response.interact_pointer_pos());
         let pointer = pointer.filter(|at| image.contains(*at) && !is_wiping && !is_selecting);
         self.hover = pointer.and_then(|at| session.pick(&session.picture_ray(picture_position(image, at))?));
+        let targets = hand.targets(session, self.hover);
+        self.highlight.paint(ui, document, (frame, image, rect), &targets);
         if let (Some(hit), Some(ring)) = (self.hover, hand.ring) {
             brush_ring::paint(&painter, &hit, ring, |point| self.screen_from_world(&document.camera, point));
         }
