@@ -277,7 +277,11 @@ fn typed_dialog(context: &Context, purpose: Purpose, text: &mut String, wish: &m
         format_row(ui, purpose, text);
         ui.add_space(4.0);
         egui::ScrollArea::vertical().auto_shrink([false; 2]).max_height(240.0).show(ui, |ui| {
-            for entry in entries(purpose, text) {
+            let entries = entries(purpose, text);
+            if entries.is_empty() {
+                ui.weak("No files of this kind here yet.");
+            }
+            for entry in entries {
                 let name =
                     entry.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
                 let folder = entry.is_dir();

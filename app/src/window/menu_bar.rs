@@ -5,6 +5,9 @@ use super::{Action, ViewSettings, keys};
 use egui::{Button, Ui};
 use session::{COMMANDS, CommandId, CommandInfo, Document, Menu};
 
+/// Height of the menu bar and of the rim of an open menu, points.
+const ROOM_AROUND_MENU: f32 = 48.0;
+
 /// What the menus need to know.
 pub struct MenuState<'a> {
     /// The open document.
@@ -21,18 +24,26 @@ pub fn menu_bar(ui: &mut Ui, state: &MenuState<'_>, actions: &mut Vec<Action>) {
         for menu in Menu::ALL {
             ui.menu_button(menu.title(), |ui| {
                 ui.set_min_width(230.0);
-                for info in COMMANDS.iter().filter(|info| info.menu == menu) {
-                    if begins_group(info.id) {
-                        ui.separator();
-                    }
-                    item(ui, info, state, actions);
-                    if info.id == CommandId::Open {
-                        recent(ui, state.settings, actions);
-                    }
-                }
+                // In a low window a long menu scrolls.
+                let height = ui.ctx().content_rect().height() - ROOM_AROUND_MENU;
+                egui::ScrollArea::vertical().max_height(height).show(ui, |ui| {
+                    entries(ui, menu, state, actions);
+                });
             });
         }
     });
+}
+
+fn entries(ui: &mut Ui, menu: Menu, state: &MenuState<'_>, actions: &mut Vec<Action>) {
+    for info in COMMANDS.iter().filter(|info| info.menu == menu) {
+        if begins_group(info.id) {
+            ui.separator();
+        }
+        item(ui, info, state, actions);
+        if info.id == CommandId::Open {
+            recent(ui, state.settings, actions);
+        }
+    }
 }
 
 /// Whether a separator stands before the command.

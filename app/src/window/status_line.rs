@@ -14,6 +14,8 @@ pub struct Hover {
     pub depth: f64,
     /// Signed circle of confusion on the full-size picture, px.
     pub circle_px: f64,
+    /// What the tool in hand would make of it, px; none where that is no one blur.
+    pub becomes_px: Option<f64>,
     /// The painted t.
     pub t: f64,
     /// The painted anchor.
@@ -70,16 +72,18 @@ pub fn status_line(ui: &mut Ui, session: &Session, notes: StatusNotes<'_>, actio
         }
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             if let Some(hover) = &notes.hover {
+                let becomes = hover.becomes_px.map(|px| format!(" becomes {}", controls::circle(px)));
                 let text = format!(
-                    "{} · {} deep · {} · t {:.4} · anchor {:.2}",
+                    "{} · {} deep · {}{} · t {:.4} · anchor {:.2}",
                     hover.object,
                     controls::length(hover.depth),
                     controls::circle(hover.circle_px),
+                    becomes.unwrap_or_default(),
                     hover.t,
                     hover.anchor
                 );
                 ui.label(text).on_hover_text(
-                    "What lies under the pointer: its name, depth, blur, and the painted focus.",
+                    "What lies under the pointer: its name, depth, its blur and what the tool would make of that, and the painted focus.",
                 );
                 ui.separator();
             }

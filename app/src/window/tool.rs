@@ -1,6 +1,7 @@
 //! What the left button does in the two views.
 
-use focus::BrushMode;
+use focus::{Brush, BrushMode};
+use lens::FocusOffset;
 use session::CommandId;
 
 /// The chosen tool. Not part of the document.
@@ -155,6 +156,17 @@ impl Tool {
     /// Whether it paints strokes.
     pub fn paints(self) -> bool {
         matches!(self, Tool::Brush | Tool::Smooth | Tool::Sharpen | Tool::Clone | Tool::Reset)
+    }
+
+    /// The focus that it gives to what it is used on, where that is one.
+    pub fn paints_focus(self, brush: &Brush) -> Option<FocusOffset> {
+        match self {
+            Tool::Brush | Tool::Curve => (brush.mode == BrushMode::Set).then_some(brush.target),
+            Tool::FillObject | Tool::FillMaterial | Tool::FillChart => Some(brush.target),
+            Tool::SharpHere => Some(FocusOffset::SHARP),
+            Tool::Reset => Some(FocusOffset::STANDARD),
+            _ => None,
+        }
     }
 
     /// The brush mode of its strokes; `chosen` is the Brush tool's own.

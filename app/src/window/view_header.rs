@@ -8,10 +8,10 @@ use egui::{Button, Ui};
 use session::{CommandId, Session};
 
 /// Width of the picture's header with the picture's scale in percent, points: in a narrower one it is left out.
-const WIDTH_WITH_PERCENT: f32 = 505.0;
+const WIDTH_WITH_PERCENT: f32 = 500.0;
 
 /// Room for the panel's own menu, points.
-const MENU_WIDTH: f32 = 34.0;
+const MENU_WIDTH: f32 = 32.0;
 
 /// What the headers change.
 pub struct HeaderState<'a> {
@@ -40,20 +40,20 @@ pub fn view_header(
         // The menu has its place at the right end, whatever wraps.
         let menu_width = if docked == Docked::Tab { 0.0 } else { MENU_WIDTH };
         let width = ui.available_width() - menu_width;
-        ui.with_layout(egui::Layout::right_to_left(egui::Align::Min), |ui| {
-            if docked != Docked::Tab {
-                panel_menu(ui, pane, docked, actions);
-            }
-            let controls = |ui: &mut Ui| {
+        ui.horizontal_top(|ui| {
+            let spacing = std::mem::take(&mut ui.spacing_mut().item_spacing.x);
+            let wrapped = |ui: &mut Ui| {
                 ui.set_width(width);
+                ui.spacing_mut().item_spacing.x = spacing;
                 ui.horizontal_wrapped(|ui| header_controls(ui, (pane, docked), session, state, actions)).inner
             };
-            ui.allocate_ui_with_layout(
-                egui::vec2(width, 0.0),
-                egui::Layout::top_down(egui::Align::Min),
-                controls,
-            )
-            .inner
+            let layout = egui::Layout::top_down(egui::Align::Min);
+            let is_dragged = ui.allocate_ui_with_layout(egui::vec2(width, 0.0), layout, wrapped).inner;
+            if docked != Docked::Tab {
+                let layout = egui::Layout::right_to_left(egui::Align::Min);
+                ui.with_layout(layout, |ui| panel_menu(ui, pane, docked, actions));
+            }
+            is_dragged
         })
         .inner
     });
@@ -131,6 +131,7 @@ fn paint_header(ui: &mut Ui, settings: &mut ViewSettings) {
 /// A menu of the pictures that can be shown.
 fn choose_picture(ui: &mut Ui, name: &str, shown: &mut Shown) {
     let combo = egui::ComboBox::from_id_salt(name).selected_text(shown.name()).width(104.0);
+    let combo = combo.wrap_mode(egui::TextWrapMode::Truncate);
     let response = combo.show_ui(ui, |ui| {
         for choice in Shown::ALL {
             ui.selectable_value(shown, choice, choice.name()).on_hover_text(choice.tip());

@@ -260,6 +260,11 @@ fn what_a_fill_would_take_is_outlined_before_the_click() {
     let before = person.window.render().unwrap();
     let card = point(&mut person, 0.25, 0.5).expect("the card");
     let after = person.window.render().unwrap();
+    // What is there, and what the click makes of it: the brush paints sharp.
+    let says = |person: &Person, what: &str| {
+        person.window.query_all_by(|node| node.value().is_some_and(|text| text.contains(what))).count() > 0
+    };
+    assert!(says(&person, "px becomes sharp"));
     let wall = point(&mut person, 0.8, 0.2).expect("the wall");
     assert!((0.05..0.35).contains(&card) && wall > 0.5, "{card} {wall}");
     assert!((card + wall - 1.0).abs() < 0.1, "together they are all there is: {card} {wall}");

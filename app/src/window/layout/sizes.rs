@@ -7,7 +7,7 @@ use egui_tiles::{Container, LinearDir, Tile, TileId, Tiles};
 pub const NOMINAL: [f32; 2] = [1280.0, 640.0];
 
 /// What panels that keep their size may take of a row or a column.
-const LARGEST_SHARE: f32 = 0.75;
+const LARGEST_SHARE: f32 = 0.5;
 
 /// A change by fewer points than this is none.
 const LEAST_CHANGE: f32 = 0.5;

@@ -370,9 +370,18 @@ impl PaintView {
     }
 }
 
+/// In a view smaller than this there is no room for the legend, points.
+const LEAST_LEGEND_WIDTH: f32 = 120.0;
+const LEAST_LEGEND_HEIGHT: f32 = 120.0;
+
 /// What the colours mean, in the lower right corner.
 fn legend(painter: &egui::Painter, rect: Rect) {
-    let bar = Rect::from_min_size(rect.right_bottom() - vec2(226.0, 34.0), vec2(200.0, 8.0));
+    // Its box reaches 18 points further on either side, and stands 8 from the corner.
+    let width = (rect.width() - 60.0).min(200.0);
+    if width < LEAST_LEGEND_WIDTH || rect.height() < LEAST_LEGEND_HEIGHT {
+        return;
+    }
+    let bar = Rect::from_min_size(rect.right_bottom() - vec2(width + 26.0, 34.0), vec2(width, 8.0));
     painter.rect_filled(
         bar.expand2(vec2(18.0, 5.0)).with_max_y(bar.bottom() + 20.0),
         3.0,

@@ -45,11 +45,15 @@ impl Shell {
         let focus = self.session.focus_at(&hit)?;
         let depth = document.camera.camera_from_world(hit.position).z;
         let optics = document.camera.optics();
-        let circle_px = 2.0 * optics.splat_radius_px(optics.kappa(1.0 / depth, focus));
+        let circle_of = |focus| 2.0 * optics.splat_radius_px(optics.kappa(1.0 / depth, focus));
+        let becomes_px = self.tool.paints_focus(&document.brush).map(circle_of);
         let scene = document.scene();
         let node = scene.parts[scene.triangles[hit.point.triangle as usize].part as usize].node;
         let object = scene.nodes[node as usize].name.clone();
-        (depth > 0.0).then_some(Hover { object, depth, circle_px, t: focus.t, anchor: focus.anchor })
+        (depth > 0.0).then(|| {
+            let circle_px = circle_of(focus);
+            Hover { object, depth, circle_px, becomes_px, t: focus.t, anchor: focus.anchor }
+        })
     }
 
     pub(super) fn ring(&self) -> Option<BrushRing> {
