@@ -2,26 +2,27 @@
 
 mod comparing;
 mod files;
+mod history;
 mod painting;
+mod showing;
 mod verifying;
 
 use crate::document::Document;
 use crate::job::{Job, JobProgress, Waker};
-use crate::light_field::{BakedField, Changes, serves};
+use crate::light_field::BakedField;
 use crate::painter::Underway;
 use crate::picking::{chief_ray, pick};
 use crate::preview::PreviewThread;
-use crate::undo::{Undo, Undoable, Undone};
+use crate::undo::Undo;
 use crate::{
     CameraEdit, Command, Display, Event, JobId, JobStatus, Preview, PreviewActivity, Reference,
-    ReferenceKind, Screen, SessionError, SurfaceHit, Tone, Verification,
+    ReferenceKind, Screen, SessionError, SurfaceHit, Verification,
 };
 use atlas::UnwrapOptions;
-use focus::{Changed, FillTarget, union};
+use focus::FillTarget;
 use glam::DVec2;
 use lens::{Camera, FocusOffset};
 use splat::Tolerance;
-use std::cmp::Ordering;
 use std::collections::BTreeMap;
 use std::ops::Range;
 use std::path::PathBuf;
@@ -477,154 +478,5 @@ impl Session {
         })?;
         self.jobs.push(job);
         Ok(JobId(self.last_job))
-    }
-
-    fn step_back(&mut self) -> Result<(), SessionError> {
-        if self.underway.is_some() {
-            return self.abort_stroke();
-        }
-        let document = self.opened()?;
-        let Document { undo, layers, camera, selection, .. } = document;
-        let undone = undo.undo(Undoable { layers, camera, selection });
-        self.after_step(undone)
-    }
-
-    fn step_forward(&mut self) -> Result<(), SessionError> {
-        if self.underway.is_some() {
-            return Ok(());
-        }
-        let document = self.opened()?;
-        let Document { undo, layers, camera, selection, .. } = document;
-        let done = undo.redo(Undoable { layers, camera, selection });
-        self.after_step(done)
-    }
-
-    /// Takes steps back, or does them again, until this many are done.
-    fn go_to(&mut self, steps: usize) -> Result<(), SessionError> {
-        loop {
-            let done = self.opened()?.undo.names().count();
-            match done.cmp(&steps) {
-                Ordering::Greater => self.step_back()?,
-                Ordering::Less if self.opened()?.redo_name().is_some() => self.step_forward()?,
-                _ => return Ok(()),
-            }
-        }
-    }
-
-    fn after_step(&mut self, step: Option<Undone>) -> Result<(), SessionError> {
-        self.show_step(step)?;
-        self.opened()?.stepped();
-        Ok(())
-    }
-
-    fn show_step(&mut self, step: Option<Undone>) -> Result<(), SessionError> {
-        match step {
-            None => Ok(()),
-            Some(Undone::Camera) => {
-                self.opened()?.revision += 1;
-                self.events.push(Event::CameraChanged);
-                self.show_camera();
-                self.follow_camera()
-            }
-            Some(Undone::Paint { texels, .. }) => {
-                self.opened()?.revision += 1;
-                self.events.push(Event::LayersChanged);
-                self.show_layers(Some(Changed { texels }))
-            }
-            Some(Undone::Selection) => {
-                self.events.push(Event::SelectionChanged);
-                Ok(())
-            }
-            Some(Undone::Layers) => {
-                self.opened()?.revision += 1;
-                self.events.push(Event::LayersChanged);
-                self.show_layers(None)
-            }
-        }
-    }
-
-    fn edit_camera(&mut self, edit: CameraEdit) -> Result<(), SessionError> {
-        let document = self.opened()?;
-        let (name, after) = edit.applied_to(&document.camera);
-        after.validate().map_err(|error| SessionError::BadInput(error.to_string()))?;
-        if after == document.camera {
-            return Ok(());
-        }
-        let before = std::mem::replace(&mut document.camera, after.clone());
-        document.undo.push_camera(name, before, after);
-        document.revision += 1;
-        self.events.push(Event::CameraChanged);
-        self.show_camera();
-        self.follow_camera()
-    }
-
-    /// Depth curves follow the shot camera.
-    fn follow_camera(&mut self) -> Result<(), SessionError> {
-        let document = self.opened()?;
-        if !document.layers.has_curves() || document.curves_for == document.camera.camera_to_world {
-            return Ok(());
-        }
-        document.curves_for = document.camera.camera_to_world;
-        let stage = document.stage.clone();
-        document.layers.evaluate(&stage.canvas, &document.camera);
-        self.show_layers(None)
-    }
-
-    /// Brings the map up to date after a change of layers (of these texels, or of whatever) and shows it.
-    fn show_layers(&mut self, changed: Option<Changed>) -> Result<(), SessionError> {
-        let (changed, background) = self.opened()?.recomposite(changed.as_ref());
-        self.show_paint(changed, background)
-    }
-
-    /// Shows the whole map in the views.
-    fn show_everything(&mut self) -> Result<(), SessionError> {
-        let map = self.opened()?.map.clone();
-        self.map_serial += 1;
-        self.map_changes = BTreeMap::from([([0; 2], [0..map.width(), 0..map.height()])]);
-        self.preview_thread.set_map((map, self.map_serial), &Changes::Everything);
-        self.preview_thread.settle();
-        Ok(())
-    }
-
-    /// Shows changed texels in the views.
-    fn show_paint(&mut self, changed: Changed, background: bool) -> Result<(), SessionError> {
-        if changed.is_empty() && !background {
-            return Ok(());
-        }
-        for (tile, rectangle) in changed.rectangles() {
-            let known = self.map_changes.entry(tile).or_insert_with(|| rectangle.clone());
-            *known = union(known, &rectangle);
-        }
-        let map = self.opened()?.map.clone();
-        let changes = if background { Changes::Everything } else { Changes::Texels(changed.texels) };
-        self.map_serial += 1;
-        self.preview_thread.set_map((map, self.map_serial), &changes);
-        if self.underway.is_none() {
-            self.preview_thread.settle();
-        }
-        Ok(())
-    }
-
-    /// Shows the preview by the document's exposure.
-    fn show_tone(&self) {
-        let exposure = self.document.as_ref().map(|document| document.exposure).unwrap_or_default();
-        self.preview_thread.set_tone(Tone { exposure, display: self.display });
-    }
-
-    /// Shows the camera in the preview.
-    fn show_camera(&mut self) {
-        let Some(document) = &self.document else { return };
-        let camera = self.scaled_camera(&document.camera);
-        let stays = self.preview_camera.as_ref().is_some_and(|before| serves(before, &camera));
-        self.preview_camera = Some(camera.clone());
-        self.preview_thread.set_camera(camera, stays);
-    }
-
-    /// A camera scaled to the preview's size.
-    fn scaled_camera(&self, camera: &Camera) -> Camera {
-        let longest = camera.width.max(camera.height);
-        let scale = (self.options.preview_size as f64 / longest as f64).min(1.0);
-        let scaled = |side: u32| ((side as f64 * scale).round() as u32).max(1);
-        Camera { width: scaled(camera.width), height: scaled(camera.height), ..camera.clone() }
     }
 }

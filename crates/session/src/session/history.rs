@@ -1,0 +1,74 @@
+//! Undo and redo: steps taken back and done again, and shown.
+
+use super::Session;
+use crate::document::Document;
+use crate::undo::{Undoable, Undone};
+use crate::{Event, SessionError};
+use focus::Changed;
+use std::cmp::Ordering;
+
+impl Session {
+    pub(super) fn step_back(&mut self) -> Result<(), SessionError> {
+        if self.underway.is_some() {
+            return self.abort_stroke();
+        }
+        let document = self.opened()?;
+        let Document { undo, layers, camera, selection, .. } = document;
+        let undone = undo.undo(Undoable { layers, camera, selection });
+        self.after_step(undone)
+    }
+
+    pub(super) fn step_forward(&mut self) -> Result<(), SessionError> {
+        if self.underway.is_some() {
+            return Ok(());
+        }
+        let document = self.opened()?;
+        let Document { undo, layers, camera, selection, .. } = document;
+        let done = undo.redo(Undoable { layers, camera, selection });
+        self.after_step(done)
+    }
+
+    /// Takes steps back, or does them again, until this many are done.
+    pub(super) fn go_to(&mut self, steps: usize) -> Result<(), SessionError> {
+        loop {
+            let done = self.opened()?.undo.names().count();
+            match done.cmp(&steps) {
+                Ordering::Greater => self.step_back()?,
+                Ordering::Less if self.opened()?.redo_name().is_some() => self.step_forward()?,
+                _ => return Ok(()),
+            }
+        }
+    }
+
+    fn after_step(&mut self, step: Option<Undone>) -> Result<(), SessionError> {
+        self.show_step(step)?;
+        self.opened()?.stepped();
+        Ok(())
+    }
+
+    fn show_step(&mut self, step: Option<Undone>) -> Result<(), SessionError> {
+        match step {
+            None => Ok(()),
+            Some(Undone::Camera) => {
+                self.opened()?.revision += 1;
+                self.events.push(Event::CameraChanged);
+                self.show_camera();
+                self.follow_camera()
+            }
+            Some(Undone::Paint { texels, .. }) => {
+                self.opened()?.revision += 1;
+                self.events.push(Event::LayersChanged);
+                self.show_layers(Some(Changed { texels }))
+            }
+            Some(Undone::Selection) => {
+                self.events.push(Event::SelectionChanged);
+                Ok(())
+            }
+            Some(Undone::Layers) => {
+                self.opened()?.revision += 1;
+                self.events.push(Event::LayersChanged);
+                self.show_layers(None)
+            }
+        }
+    }
+}

@@ -1,0 +1,95 @@
+//! What changes in the document, brought to the views: camera, paint, exposure.
+
+use super::Session;
+use crate::light_field::{Changes, serves};
+use crate::{CameraEdit, Event, SessionError, Tone};
+use focus::{Changed, union};
+use lens::Camera;
+use std::collections::BTreeMap;
+
+impl Session {
+    pub(super) fn edit_camera(&mut self, edit: CameraEdit) -> Result<(), SessionError> {
+        let document = self.opened()?;
+        let (name, after) = edit.applied_to(&document.camera);
+        after.validate().map_err(|error| SessionError::BadInput(error.to_string()))?;
+        if after == document.camera {
+            return Ok(());
+        }
+        let before = std::mem::replace(&mut document.camera, after.clone());
+        document.undo.push_camera(name, before, after);
+        document.revision += 1;
+        self.events.push(Event::CameraChanged);
+        self.show_camera();
+        self.follow_camera()
+    }
+
+    /// Depth curves follow the shot camera.
+    pub(super) fn follow_camera(&mut self) -> Result<(), SessionError> {
+        let document = self.opened()?;
+        if !document.layers.has_curves() || document.curves_for == document.camera.camera_to_world {
+            return Ok(());
+        }
+        document.curves_for = document.camera.camera_to_world;
+        let stage = document.stage.clone();
+        document.layers.evaluate(&stage.canvas, &document.camera);
+        self.show_layers(None)
+    }
+
+    /// Brings the map up to date after a change of layers (of these texels, or of whatever) and shows it.
+    pub(super) fn show_layers(&mut self, changed: Option<Changed>) -> Result<(), SessionError> {
+        let (changed, background) = self.opened()?.recomposite(changed.as_ref());
+        self.show_paint(changed, background)
+    }
+
+    /// Shows the whole map in the views.
+    pub(super) fn show_everything(&mut self) -> Result<(), SessionError> {
+        let map = self.opened()?.map.clone();
+        self.map_serial += 1;
+        self.map_changes = BTreeMap::from([([0; 2], [0..map.width(), 0..map.height()])]);
+        self.preview_thread.set_map((map, self.map_serial), &Changes::Everything);
+        self.preview_thread.settle();
+        Ok(())
+    }
+
+    /// Shows changed texels in the views.
+    pub(super) fn show_paint(&mut self, changed: Changed, background: bool) -> Result<(), SessionError> {
+        if changed.is_empty() && !background {
+            return Ok(());
+        }
+        for (tile, rectangle) in changed.rectangles() {
+            let known = self.map_changes.entry(tile).or_insert_with(|| rectangle.clone());
+            *known = union(known, &rectangle);
+        }
+        let map = self.opened()?.map.clone();
+        let changes = if background { Changes::Everything } else { Changes::Texels(changed.texels) };
+        self.map_serial += 1;
+        self.preview_thread.set_map((map, self.map_serial), &changes);
+        if self.underway.is_none() {
+            self.preview_thread.settle();
+        }
+        Ok(())
+    }
+
+    /// Shows the preview by the document's exposure.
+    pub(super) fn show_tone(&self) {
+        let exposure = self.document.as_ref().map(|document| document.exposure).unwrap_or_default();
+        self.preview_thread.set_tone(Tone { exposure, display: self.display });
+    }
+
+    /// Shows the camera in the preview.
+    pub(super) fn show_camera(&mut self) {
+        let Some(document) = &self.document else { return };
+        let camera = self.scaled_camera(&document.camera);
+        let stays = self.preview_camera.as_ref().is_some_and(|before| serves(before, &camera));
+        self.preview_camera = Some(camera.clone());
+        self.preview_thread.set_camera(camera, stays);
+    }
+
+    /// A camera scaled to the preview's size.
+    pub(super) fn scaled_camera(&self, camera: &Camera) -> Camera {
+        let longest = camera.width.max(camera.height);
+        let scale = (self.options.preview_size as f64 / longest as f64).min(1.0);
+        let scaled = |side: u32| ((side as f64 * scale).round() as u32).max(1);
+        Camera { width: scaled(camera.width), height: scaled(camera.height), ..camera.clone() }
+    }
+}
