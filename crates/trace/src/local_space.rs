@@ -64,6 +64,11 @@ impl LocalSpace {
         (world - self.center) * self.scale
     }
 
+    /// A difference of two positions in this space.
+    pub fn direction(&self, world: DVec3) -> DVec3 {
+        world * self.scale
+    }
+
     /// The box around a triangle.
     pub fn bounds(&self, corners: &[DVec3; 3]) -> Aabb {
         let [a, b, c] = corners.map(|corner| self.position(corner));

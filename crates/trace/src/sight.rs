@@ -11,11 +11,17 @@
 //! once and tried on all places with two multiplications each. Two triangles that share an edge have exactly opposite
 //! functions there, so that no ray passes between them. Toward a point at infinity the same holds with its direction.
 
+mod places;
+mod projection;
+
 use crate::Ray;
 use crate::hierarchy::Halfspaces;
 use crate::local_space::LocalSpace;
 use crate::watertight::in_plane;
 use glam::{DVec2, DVec3, Vec4};
+pub use places::Places;
+pub(crate) use projection::Outline;
+use projection::Projection;
 use scene::SurfacePoint;
 
 /// A square of points in the world: `center` + u·`right` + v·`up`, u and v in [−1, 1].
@@ -41,67 +47,6 @@ impl Square {
 
     fn axis(&self) -> DVec3 {
         self.right.cross(self.up).normalize_or_zero()
-    }
-}
-
-/// Places on a square, up to 64.
-#[derive(Clone, Debug, Default)]
-pub struct Places {
-    /// By fours; what the last four do not use is at the square's middle.
-    coordinates: Vec<[Vec4; 2]>,
-    count: usize,
-}
-
-/// A box of places.
-#[derive(Clone, Copy, Debug)]
-struct Bounds {
-    low: [f32; 2],
-    high: [f32; 2],
-}
-
-impl Bounds {
-    const ALL: Self = Self { low: [f32::NEG_INFINITY; 2], high: [f32::INFINITY; 2] };
-
-    /// Whether it has nothing of the square.
-    fn is_outside(&self) -> bool {
-        (0..2).any(|k| self.low[k] > 1.0 || self.high[k] < -1.0)
-    }
-}
-
-impl Places {
-    /// As many as fit into a word.
-    pub const MOST: usize = 64;
-
-    /// From their coordinates in [−1, 1].
-    ///
-    /// # Panics
-    /// If there are more than [`Self::MOST`].
-    pub fn new(places: &[DVec2]) -> Self {
-        assert!(places.len() <= Self::MOST, "at most {} places", Self::MOST);
-        let four = |four: &[DVec2]| {
-            let of = |axis: usize| {
-                Vec4::from_array(std::array::from_fn(|k| four.get(k).map_or(0.0, |p| p[axis] as f32)))
-            };
-            [of(0), of(1)]
-        };
-        Self { coordinates: places.chunks(4).map(four).collect(), count: places.len() }
-    }
-
-    /// A bit for each of them.
-    pub fn all(&self) -> u64 {
-        if self.count == 0 { 0 } else { u64::MAX >> (Self::MOST - self.count) }
-    }
-
-    /// How many there are.
-    #[allow(clippy::len_without_is_empty, reason = "nobody asks for no places")]
-    pub fn len(&self) -> usize {
-        self.count
-    }
-
-    /// The coordinates of the place at `index`, as they are used: in f32.
-    pub fn at(&self, index: usize) -> DVec2 {
-        let [u, v] = self.coordinates[index / 4];
-        DVec2::new(f64::from(u[index % 4]), f64::from(v[index % 4]))
     }
 }
 
@@ -135,9 +80,10 @@ struct Linear([f32; 3]);
 impl Linear {
     /// a·u + b·v + c, scaled.
     fn new(a: f64, b: f64, c: f64) -> Self {
-        // The scale is that of the function with the opposite sign too.
+        // A power of two, that of the function with the opposite sign too.
         let largest = a.abs().max(b.abs()).max(c.abs());
-        let scale = if largest > 0.0 { 1.0 / largest } else { 0.0 };
+        let exponent = (largest.to_bits() >> 52).min(2045);
+        let scale = f64::from_bits((2046 - exponent) << 52);
         Self([a, b, c].map(|part| (part * scale) as f32))
     }
 
@@ -170,27 +116,18 @@ pub(crate) struct Looking<'a> {
     places: &'a Places,
     /// The square's axis, away from the viewpoint.
     axis: DVec3,
-    /// `right` and `up` over the squares of their lengths: what measures u and v.
-    per_right: DVec3,
-    per_up: DVec3,
+    projection: Projection,
 }
 
 impl<'a> Looking<'a> {
-    pub fn new(eye: Eye, square: &'a Square, places: &'a Places) -> Self {
+    pub fn new(eye: Eye, square: &'a Square, places: &'a Places, space: &LocalSpace) -> Self {
         let axis = square.axis();
         let away = match eye {
             Eye::At(point) => square.center - point,
             Eye::Toward(direction) => -direction,
         };
-        let per = |side: DVec3| side / side.length_squared();
-        Self {
-            eye,
-            square,
-            places,
-            axis: if axis.dot(away) < 0.0 { -axis } else { axis },
-            per_right: per(square.right),
-            per_up: per(square.up),
-        }
+        let axis = if axis.dot(away) < 0.0 { -axis } else { axis };
+        Self { eye, square, places, axis, projection: Projection::new(eye, square, axis, space) }
     }
 
     /// The part of the world between the two, generously, and the direction in which it widens.
@@ -222,38 +159,6 @@ impl<'a> Looking<'a> {
                 Ray { origin: place, direction, t_min: 0.0, t_max: f64::INFINITY, skip: None }
             }
         }
-    }
-
-    /// Where a triangle's corners lie on the square, as the viewpoint sees them.
-    #[inline(always)]
-    fn bounds(&self, corners: &[DVec3; 3]) -> Bounds {
-        /// More than rounding makes of coordinates near the square.
-        const SLACK: f64 = 1e-5;
-        let mut bounds = Bounds { low: [f32::INFINITY; 2], high: [f32::NEG_INFINITY; 2] };
-        for &corner in corners {
-            let from_center = match self.eye {
-                Eye::At(point) => {
-                    let (to_corner, to_square) = (corner - point, self.square.center - point);
-                    let depth = self.axis.dot(to_corner);
-                    let distance = self.axis.dot(to_square);
-                    // Nearly beside the viewpoint, or behind it.
-                    if depth <= 1e-9 * distance {
-                        return Bounds::ALL;
-                    }
-                    to_corner * (distance / depth) - to_square
-                }
-                Eye::Toward(direction) => {
-                    let from_center = corner - self.square.center;
-                    from_center - direction * (self.axis.dot(from_center) / self.axis.dot(direction))
-                }
-            };
-            for (k, per) in [self.per_right, self.per_up].into_iter().enumerate() {
-                let at = per.dot(from_center);
-                bounds.low[k] = bounds.low[k].min((at - SLACK) as f32);
-                bounds.high[k] = bounds.high[k].max((at + SLACK) as f32);
-            }
-        }
-        bounds
     }
 
     #[inline(always)]
@@ -289,17 +194,19 @@ impl<'a> Looking<'a> {
         }
     }
 
-    /// Those of the places that a triangle hides and that are not `hidden` yet.
+    /// Those of the places that a triangle may hide, and some that it does not.
     #[inline(always)]
-    pub fn newly_hidden(&self, corners: &[DVec3; 3], hidden: u64) -> u64 {
-        let bounds = self.bounds(corners);
-        if bounds.is_outside() {
-            return 0;
+    pub fn may_hide(&self, outline: &Outline) -> u64 {
+        match self.projection.bounds(outline) {
+            Some(bounds) if bounds.is_outside() => 0,
+            Some(bounds) => self.places.near(&bounds),
+            None => self.places.all(),
         }
-        let near = self.places.within(&bounds) & !hidden;
-        if near == 0 {
-            return 0;
-        }
+    }
+
+    /// Those of the places `near` it that a triangle hides.
+    #[inline(always)]
+    pub fn newly_hidden(&self, corners: &[DVec3; 3], near: u64) -> u64 {
         let Some(shadow) = self.shadow(corners) else { return 0 };
         let bits = self.places.behind(&shadow, near);
         // A line that starts in a plane does not meet it again.
@@ -321,47 +228,5 @@ impl<'a> Looking<'a> {
         };
         let t = normal.dot(corners[0] - place) / normal.dot(direction);
         1.0 / (t * self.axis.dot(direction)).abs()
-    }
-}
-
-impl Places {
-    /// Those in a box.
-    #[inline(always)]
-    fn within(&self, bounds: &Bounds) -> u64 {
-        let [low_u, low_v] = bounds.low.map(Vec4::splat);
-        let [high_u, high_v] = bounds.high.map(Vec4::splat);
-        let mut bits = 0;
-        for (chunk, [u, v]) in self.coordinates.iter().enumerate() {
-            let within = u.cmpge(low_u) & u.cmple(high_u) & v.cmpge(low_v) & v.cmple(high_v);
-            bits |= u64::from(within.bitmask()) << (4 * chunk);
-        }
-        bits & self.all()
-    }
-
-    /// Those of `bits` that lie in a shadow.
-    #[inline(always)]
-    fn behind(&self, shadow: &Shadow, bits: u64) -> u64 {
-        let [a, b, c] = shadow.edges;
-        let (mut found, mut left) = (0, bits);
-        while left != 0 {
-            let chunk = left.trailing_zeros() / 4;
-            let at = self.coordinates[chunk as usize];
-            let within = a.of(at).min(b.of(at)).min(c.of(at)).cmpge(Vec4::ZERO);
-            let behind = within & shadow.beyond.of(at).cmpgt(Vec4::ZERO);
-            found |= u64::from(behind.bitmask()) << (4 * chunk);
-            left &= !(0b1111 << (4 * chunk));
-        }
-        found & bits
-    }
-}
-
-impl Places {
-    /// The place of each bit.
-    pub(crate) fn of_bits(&self, mut bits: u64) -> impl Iterator<Item = (usize, DVec2)> + '_ {
-        std::iter::from_fn(move || {
-            let index = (bits != 0).then(|| bits.trailing_zeros() as usize)?;
-            bits &= bits - 1;
-            Some((index, self.at(index)))
-        })
     }
 }

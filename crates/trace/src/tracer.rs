@@ -3,7 +3,7 @@
 use crate::hierarchy::Hierarchy;
 use crate::local_space::LocalSpace;
 use crate::presence::is_there;
-use crate::sight::{Eye, Looking, Places, RecentOccluders, Sight, Square, Viewpoint};
+use crate::sight::{Eye, Looking, Outline, Places, RecentOccluders, Sight, Square, Viewpoint};
 use crate::watertight::{ShearedRay, has_area, in_plane};
 use crate::{Hit, Ray};
 use glam::{DVec2, DVec3};
@@ -28,6 +28,8 @@ pub struct Tracer {
     hierarchy: Hierarchy,
     /// In the order of the hierarchy's leaves.
     triangles: Vec<LeafTriangle>,
+    /// Of the same.
+    outlines: Vec<Outline>,
 }
 
 /// A triangle as the inner loop wants it.
@@ -52,7 +54,7 @@ impl Tracer {
         };
         let boxes: Vec<_> = with_area.iter().map(|&index| space.bounds(&scene.corners(index))).collect();
         let (hierarchy, order) = Hierarchy::build(&boxes);
-        let triangles = order
+        let triangles: Vec<_> = order
             .into_iter()
             .map(|place| {
                 let index = with_area[place as usize];
@@ -60,7 +62,8 @@ impl Tracer {
                 LeafTriangle { corners: scene.corners(index), index, may_be_transparent }
             })
             .collect();
-        Self { scene, space, hierarchy, triangles }
+        let outlines = triangles.iter().map(|triangle| Outline::new(&triangle.corners, &space)).collect();
+        Self { scene, space, hierarchy, triangles, outlines }
     }
 
     /// The scene it traces.
@@ -70,7 +73,9 @@ impl Tracer {
 
     /// Bytes that the hierarchy and its triangles take, the scene itself not counted.
     pub fn bytes(&self) -> usize {
-        self.hierarchy.bytes() + size_of_val(self.triangles.as_slice())
+        self.hierarchy.bytes()
+            + size_of_val(self.triangles.as_slice())
+            + size_of_val(self.outlines.as_slice())
     }
 
     /// The first surface that the ray meets.
@@ -132,14 +137,15 @@ impl Tracer {
             Viewpoint::Surface(point) => (Eye::At(point.position(&self.scene)), Some(point.triangle)),
             Viewpoint::Infinity(direction) => (Eye::Toward(direction.normalize_or_zero()), None),
         };
-        let looking = Looking::new(eye, square, places);
+        let looking = Looking::new(eye, square, places, &self.space);
         let mut sight = Sight::default();
         let hide = |sight: &mut Sight, place: usize| {
+            let near = looking.may_hide(&self.outlines[place]) & !sight.hidden;
             let triangle = &self.triangles[place];
-            if skip == Some(triangle.index) {
+            if near == 0 || skip == Some(triangle.index) {
                 return false;
             }
-            let mut new = looking.newly_hidden(&triangle.corners, sight.hidden);
+            let mut new = looking.newly_hidden(&triangle.corners, near);
             if new != 0 && triangle.may_be_transparent {
                 new = self.opaque_of(triangle, &looking, places.of_bits(new));
             }
