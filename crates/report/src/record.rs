@@ -50,11 +50,11 @@ pub struct Record {
     pub flip: f64,
     /// Mean of picture − reference over the mean of the reference.
     pub mean_error: f64,
-    /// PSNR of the pixels at most 6 px from an outline, dB; null where there is none.
-    pub band_psnr: Option<f64>,
     /// PSNR of the reference itself against the exact picture, by its own error estimate, dB: what is measured as better is
     /// not.
     pub reference_psnr: f64,
+    /// PSNR of the pixels at most 6 px from an outline, dB; null where there is none.
+    pub band_psnr: Option<f64>,
 
     /// What it is part of.
     pub series: Series,

@@ -30,9 +30,10 @@ pub(super) struct Projection {
     side_error: f32,
 }
 
-/// What rounding to f32, and sums of three such products, change a coordinate of local space by at most: eight units in the last
-/// place of 1.
-const ROUNDING: f64 = 8.0 / (1u32 << 24) as f64;
+/// What rounding coordinates to f32, and the sum of three products of theirs, change a length of local space by at most: a
+/// rounding each of corner, origin, difference, side, product and two sums, of lengths up to 2√3, is less than 16 units in
+/// the last place of 1.
+const ROUNDING: f64 = 16.0 / (1u32 << 23) as f64;
 
 /// What rounding changes u and v by near the square, beside.
 const SLACK: f32 = 1e-5;
