@@ -18,8 +18,12 @@ pub struct Band(Option<Arc<Vec<bool>>>);
 impl Band {
     /// Around the depth discontinuities of a scene's pinhole picture.
     pub fn of_scene(tracer: &Tracer, camera: &Camera) -> Self {
+        Self::of_depths(&inverse_depths(tracer, camera), camera)
+    }
+
+    /// The same, of the picture's [`inverse_depths`].
+    pub fn of_depths(depths: &[f32], camera: &Camera) -> Self {
         let (width, height) = (camera.width as usize, camera.height as usize);
-        let depths = inverse_depths(tracer, camera);
         let per_depth = camera.optics().splat_radius_px(1.0);
         let jumps = |a: usize, b: usize| f64::from((depths[a] - depths[b]).abs()) * per_depth > JUMP_PX;
         let is_edge = |x: usize, y: usize| {
@@ -47,9 +51,7 @@ impl Band {
         }
         Self(band.contains(&true).then(|| Arc::new(band)))
     }
-}
 
-impl Band {
     /// PSNR within the band, dB, on linear values clipped to [0, 1]; 200 for equal pictures, `None` without a band.
     pub fn psnr(&self, a: &[[f32; 3]], b: &[[f32; 3]]) -> Option<f64> {
         let within = a.iter().zip(b).zip(self.0.as_ref()?.iter()).filter(|(_, within)| **within);

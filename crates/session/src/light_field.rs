@@ -125,42 +125,41 @@ impl LightField {
         let options = BakeOptions { margin_px, ..BakeOptions::default() };
         let radiance = light(&stage.tracer, camera);
         let salf = Arc::new(salf::bake(&stage.tracer, &radiance, camera, &options, progress)?);
-        Ok(Self {
-            index: Arc::new(SampleIndex::new(&salf, &stage.atlas)),
-            modelled: Modelled::with_texels(&salf, &stage.tracer, Some(&stage.texels.texels)),
-            splatter: {
-                let mut splatter = Splatter::new(salf);
-                splatter.set_tolerance(how.tolerance);
-                // Without a card, or one that works, the processor sums.
-                splatter.use_gpu(Gpu::open(BackendChoice::Auto, None).ok().flatten());
-                splatter
-            },
-            tolerance: how.tolerance,
+        let index = Arc::new(SampleIndex::new(&salf, &stage.atlas));
+        let modelled = Modelled::with_texels(&salf, &stage.tracer, Some(&stage.texels.texels));
+        // Without a card, or one that works, the processor sums.
+        let gpu = Gpu::open(BackendChoice::Auto, None).ok().flatten();
+        Ok(Self::new(salf, index, modelled, gpu, how.tolerance))
+    }
+
+    /// A light field that is not summed yet.
+    fn new(
+        salf: Arc<Salf>,
+        index: Arc<SampleIndex>,
+        modelled: Modelled,
+        gpu: Option<Gpu>,
+        tolerance: Tolerance,
+    ) -> Self {
+        let mut splatter = Splatter::new(salf);
+        splatter.set_tolerance(tolerance);
+        splatter.use_gpu(gpu);
+        Self {
+            splatter,
+            tolerance,
+            index,
+            modelled,
             summed: None,
             unseen: Changes::default(),
             reach: None,
             whole_seconds: f64::INFINITY,
-        })
+        }
     }
 
     /// What makes the same light field anew, to be summed without tolerance; that takes a while.
     pub fn exact(&self) -> impl FnOnce() -> Self + Send + use<> {
         let (salf, gpu) = (self.splatter.salf().clone(), self.splatter.gpu().cloned());
         let (index, modelled) = (self.index.clone(), self.modelled);
-        move || {
-            let mut splatter = Splatter::new(salf);
-            splatter.use_gpu(gpu);
-            Self {
-                splatter,
-                tolerance: Tolerance::NONE,
-                index,
-                modelled,
-                summed: None,
-                unseen: Changes::default(),
-                reach: None,
-                whole_seconds: f64::INFINITY,
-            }
-        }
+        move || Self::new(salf, index, modelled, gpu, Tolerance::NONE)
     }
 
     /// Whether it is the same light field, whatever is painted on it.
@@ -313,6 +312,14 @@ mod tests {
     use lens::FocusOffset;
     use progress::Unwatched;
 
+    /// A scene of few quads.
+    fn quads() -> Document {
+        let folder = tempfile::tempdir().unwrap();
+        let scene = folder.path().join("quads.glb");
+        tiny_glb::write(&scene);
+        Document::begin(&scene, None, None, &Default::default(), &Unwatched).unwrap()
+    }
+
     /// The texels of the wall whose middle lies where `wanted` says, and the focus with `value` on them.
     fn painted(
         document: &Document,
@@ -334,10 +341,7 @@ mod tests {
 
     #[test]
     fn a_stroke_tells_whether_the_margin_is_still_wide_enough_as_the_whole_frame_does() {
-        let folder = tempfile::tempdir().unwrap();
-        let scene = folder.path().join("quads.glb");
-        tiny_glb::write(&scene);
-        let document = Document::begin(&scene, None, None, &Default::default(), &Unwatched).unwrap();
+        let document = quads();
         let stage = &document.stage;
         let camera = Camera { width: 90, height: 60, ..document.camera.clone() };
         let (blank, none) = painted(&document, FocusOffset::STANDARD, |_| false);
@@ -390,10 +394,7 @@ mod tests {
 
     #[test]
     fn the_exact_sum_follows_as_a_new_one_would() {
-        let folder = tempfile::tempdir().unwrap();
-        let scene = folder.path().join("quads.glb");
-        tiny_glb::write(&scene);
-        let document = Document::begin(&scene, None, None, &Default::default(), &Unwatched).unwrap();
+        let document = quads();
         let camera = Camera { width: 90, height: 60, ..document.camera.clone() };
         let (blank, _) = painted(&document, FocusOffset::STANDARD, |_| false);
         let how = FieldOptions { least_margin_px: 0.0, tolerance: Tolerance::VIEWING };

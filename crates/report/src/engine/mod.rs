@@ -25,7 +25,6 @@ use session::{RenderOptions, SessionError, Steps, bake};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
-use trace::Tracer;
 
 /// What was measured of the engine.
 #[derive(Clone, Debug)]
@@ -104,7 +103,9 @@ fn measure_scene(
     record.bytes = salf.statistics().bytes as u64;
     note(&record.line());
     measured.records.push(record);
-    let band = Band::of_scene(&subject.tracer, &subject.camera);
+    let depths = inverse_depths(&subject.tracer, &subject.camera);
+    let band = Band::of_depths(&depths, &subject.camera);
+    let coc_px = circle_of_confusion_px(&depths, &subject.camera);
     for named in &subject.focuses {
         let field = Field {
             scene: subject.name.clone(),
@@ -112,7 +113,7 @@ fn measure_scene(
             salf: salf.clone(),
             focus: Arc::new(named.focus.clone()),
             band: band.clone(),
-            coc_px: circle_of_confusion_px(&subject.tracer, &subject.camera),
+            coc_px,
             with_dense: false,
             with_dab: true,
         };
@@ -122,11 +123,11 @@ fn measure_scene(
 }
 
 /// The circle of confusion that 99 % of the picture stays below under the standard lens, px.
-fn circle_of_confusion_px(tracer: &Tracer, camera: &lens::Camera) -> f64 {
+fn circle_of_confusion_px(inverse_depths: &[f32], camera: &lens::Camera) -> f64 {
     let optics = camera.optics();
     let circle =
-        |inverse_depth: f32| optics.circle_of_confusion_px(optics.standard_kappa(inverse_depth.into()));
-    let mut circles: Vec<f64> = inverse_depths(tracer, camera).into_iter().map(circle).collect();
+        |&inverse_depth: &f32| optics.circle_of_confusion_px(optics.standard_kappa(inverse_depth.into()));
+    let mut circles: Vec<f64> = inverse_depths.iter().map(circle).collect();
     circles.sort_by(f64::total_cmp);
     circles.get(circles.len() * 99 / 100).copied().unwrap_or(0.0)
 }
