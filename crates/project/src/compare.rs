@@ -48,6 +48,11 @@ pub struct ErrorMaps {
     pub flip: Vec<f32>,
 }
 
+/// The peak signal-to-noise ratio, dB, of a mean square error for a peak of 1: −10 log₁₀, at most 200.
+pub fn psnr(mean_square: f64) -> f64 {
+    if mean_square < 1e-20 { HIGHEST_PSNR } else { -10.0 * mean_square.log10() }
+}
+
 /// Compares `a` with the reference `b`. An error unless they have the same size. Pixels that are not finite
 /// make every number they enter not finite.
 pub fn compare(a: &LinearPicture, b: &LinearPicture) -> Result<Comparison, ProjectError> {
@@ -62,12 +67,11 @@ pub fn compare(a: &LinearPicture, b: &LinearPicture) -> Result<Comparison, Proje
     let undefined_pixels = a.rgb.iter().zip(&b.rgb).filter(is_undefined).count();
     let flip = || f64::from(FlipPool::from_image(&flip_image(a, b)).mean());
     let relative = |difference: f64, mean: f64| if difference == 0.0 { 0.0 } else { difference / mean };
-    let psnr = if mean_square < 1e-20 { HIGHEST_PSNR } else { -10.0 * mean_square.log10() };
     Ok(Comparison {
         width: a.width,
         height: a.height,
         rmse: mean_square.sqrt(),
-        psnr,
+        psnr: psnr(mean_square),
         rmse_unclipped: (sums.square / count).sqrt(),
         rel_mse: sums.relative_square / count,
         signed_mean_error: relative(sums.difference, sums.reference),

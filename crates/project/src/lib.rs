@@ -32,7 +32,7 @@ mod texel_set;
 mod z_test;
 
 pub use camera::{camera_from_json, camera_to_json, read_aperture_mask, read_camera, write_camera};
-pub use compare::{Comparison, ErrorMaps, compare, error_maps};
+pub use compare::{Comparison, ErrorMaps, compare, error_maps, psnr};
 pub use error::ProjectError;
 pub use error_map_file::{error_colours, write_error_map};
 pub use focus_map_file::{FocusMapFile, write_focus_map};

@@ -79,9 +79,9 @@ fn square((a, b): (&[f32; 3], &[f32; 3])) -> f64 {
     (0..3).map(|c| f64::from(a[c].clamp(0.0, 1.0) - b[c].clamp(0.0, 1.0)).powi(2)).sum()
 }
 
+/// Of the sum of their squared differences.
 fn psnr(sum: f64, pixels: usize) -> f64 {
-    let mean = sum / (3 * pixels) as f64;
-    if mean > 0.0 { -10.0 * mean.log10() } else { 200.0 }
+    project::psnr(sum / (3 * pixels) as f64)
 }
 
 /// 1/z of the nearest surface at the middle of each pixel; 0 where there is none.

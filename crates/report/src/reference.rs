@@ -53,17 +53,16 @@ pub fn trace_reference(
     let rmse = compare(&a, &b)?.rmse / 2.0;
     let mean = |(a, b): (&[f32; 3], &[f32; 3])| [0, 1, 2].map(|k| (a[k] + b[k]) / 2.0);
     let rgb = a.rgb.iter().zip(&b.rgb).map(mean).collect();
-    let error =
-        ReferenceError { spp: 2 * half_spp, seconds: start.elapsed().as_secs_f64(), rmse, psnr: psnr(rmse) };
+    let error = ReferenceError {
+        spp: 2 * half_spp,
+        seconds: start.elapsed().as_secs_f64(),
+        rmse,
+        psnr: project::psnr(rmse * rmse),
+    };
     Ok((LinearPicture { width: a.width, height: a.height, rgb, ..LinearPicture::default() }, error))
 }
 
 /// A picture under the exposure that errors are measured with.
 pub fn conserved(picture: &Picture) -> LinearPicture {
     LinearPicture::of(picture, Exposure::Conserve)
-}
-
-/// The PSNR of a root mean square error for a peak of 1, dB; at most 200, as `compare` has it.
-fn psnr(rmse: f64) -> f64 {
-    (-20.0 * rmse.log10()).min(200.0)
 }

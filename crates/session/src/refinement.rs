@@ -19,9 +19,6 @@ use std::time::Instant;
 /// The second sum is kept while it takes no more bytes than these: a picture of 1920 × 1080 of the demo takes half of it.
 const KEPT_BYTES: usize = 1 << 30;
 
-/// The mean square error that is not told from none: a PSNR of 200 dB.
-const LEAST_SQUARE: f64 = 1e-20;
-
 /// The exact sum, at rest or at work.
 #[derive(Default)]
 pub(crate) struct Refinement {
@@ -144,20 +141,19 @@ fn draw(field: &mut LightField, task: Task, shared: &Shared) -> Result<Exact, Se
     let start = Instant::now();
     field.bring_up(&camera, &focus, &Share::new(&shared.refining, 0.0, 1.0))?;
     let seconds = start.elapsed().as_secs_f64();
-    let viewing_psnr = psnr(&viewing, field.picture(), exposure);
+    let viewing_psnr = psnr_between(&viewing, field.picture(), exposure);
     Ok(Exact { map_serial, camera, seconds, viewing_psnr })
 }
 
-/// How far `picture` is from `exact`, of the same size: PSNR in dB of linear values clipped to [0, 1], as `compare` has it;
-/// 200 at most.
-fn psnr(picture: &Picture, exact: &Picture, exposure: Exposure) -> f64 {
+/// How far `picture` is from `exact`, of the same size: PSNR in dB of linear values clipped to [0, 1].
+fn psnr_between(picture: &Picture, exact: &Picture, exposure: Exposure) -> f64 {
     let [a, b] = [picture, exact].map(|picture| picture.exposed(exposure));
     let square = |(a, b): (&[f32; 3], &[f32; 3])| -> f64 {
         let of = |k: usize| f64::from(a[k].clamp(0.0, 1.0)) - f64::from(b[k].clamp(0.0, 1.0));
         (0..3).map(|k| of(k) * of(k)).sum()
     };
     let sum: f64 = a.par_iter().zip(&b).map(square).sum();
-    -10.0 * (sum / (3 * a.len()).max(1) as f64).max(LEAST_SQUARE).log10()
+    project::psnr(sum / (3 * a.len()).max(1) as f64)
 }
 
 #[cfg(test)]
@@ -170,10 +166,10 @@ mod tests {
         let mut near = exact.clone();
         near.radiance[1] = [0.5, 0.7, 0.5];
         let expected = -10.0 * (0.2f64 * 0.2 / 12.0).log10();
-        assert!((psnr(&near, &exact, Exposure::Conserve) - expected).abs() < 1e-5);
-        assert_eq!(psnr(&exact, &exact, Exposure::Conserve), 200.0);
+        assert!((psnr_between(&near, &exact, Exposure::Conserve) - expected).abs() < 1e-5);
+        assert_eq!(psnr_between(&exact, &exact, Exposure::Conserve), 200.0);
         let dimmer = Picture { radiance: vec![[0.25; 3]; 4], coverage: vec![0.5; 4], ..exact.clone() };
-        assert_eq!(psnr(&dimmer, &exact, Exposure::Normalise), 200.0);
-        assert!(psnr(&dimmer, &exact, Exposure::Conserve) < 13.0);
+        assert_eq!(psnr_between(&dimmer, &exact, Exposure::Normalise), 200.0);
+        assert!(psnr_between(&dimmer, &exact, Exposure::Conserve) < 13.0);
     }
 }
