@@ -177,7 +177,7 @@ fn the_window_can_be_light_and_twice_as_large_and_tones_are_mapped() {
     let white = at(person.picture_rect(), 0.9, 0.9);
     let clipped = color_at(&person.window.render().unwrap(), white);
     person.presses(Modifiers::NONE, Key::T);
-    person.window.run_steps(2);
+    person.waits();
     let neutral = color_at(&person.window.render().unwrap(), white);
     assert_ne!(clipped, neutral, "another tone");
     person.does(CommandId::LightOrDark);
