@@ -27,10 +27,14 @@ pub trait Word: Copy + Default + PartialEq + Send + Sync {
     fn plus(self, other: Self) -> Self;
     /// The difference, wrapping.
     fn minus(self, other: Self) -> Self;
+    /// What it is made of: an unsigned integer of as many bits.
+    type Bits: Copy + Default;
     /// Of a value that fits.
-    fn of(value: u64) -> Self;
-    /// ⌊value·(4096 − fraction)/4096⌋ of a value that fits.
-    fn near(value: u64, fraction: u32) -> Self;
+    fn bits(value: u64) -> Self::Bits;
+    /// The integer of these bits.
+    fn of(bits: Self::Bits) -> Self;
+    /// ⌊bits·part/4096⌋ of a value that fits; `part` ≤ 4096.
+    fn near(bits: Self::Bits, part: u32) -> Self;
 }
 
 impl Word for i32 {
@@ -50,14 +54,20 @@ impl Word for i32 {
     fn minus(self, other: Self) -> Self {
         self.wrapping_sub(other)
     }
+    type Bits = u32;
     #[inline(always)]
-    fn of(value: u64) -> Self {
-        value as i32
+    fn bits(value: u64) -> u32 {
+        value as u32
     }
     #[inline(always)]
-    fn near(value: u64, fraction: u32) -> Self {
-        // Both factors have 32 bits.
-        (((value & u32::MAX as u64) * (PIXEL as u32 - fraction) as u64) >> POSITION_BITS) as i32
+    fn of(bits: u32) -> Self {
+        bits as i32
+    }
+    #[inline(always)]
+    fn near(bits: u32, part: u32) -> Self {
+        // ⌊(4096·high + low)·part/4096⌋: products of 32 bits.
+        let (high, low) = (bits >> POSITION_BITS, bits & (PIXEL as u32 - 1));
+        (high.wrapping_mul(part).wrapping_add(low.wrapping_mul(part) >> POSITION_BITS)) as i32
     }
 }
 
@@ -78,13 +88,18 @@ impl Word for i64 {
     fn minus(self, other: Self) -> Self {
         self.wrapping_sub(other)
     }
+    type Bits = u64;
     #[inline(always)]
-    fn of(value: u64) -> Self {
-        value as i64
+    fn bits(value: u64) -> u64 {
+        value
     }
     #[inline(always)]
-    fn near(value: u64, fraction: u32) -> Self {
-        ((value * (PIXEL as u32 - fraction) as u64) >> POSITION_BITS) as i64
+    fn of(bits: u64) -> Self {
+        bits as i64
+    }
+    #[inline(always)]
+    fn near(bits: u64, part: u32) -> Self {
+        ((bits * part as u64) >> POSITION_BITS) as i64
     }
 }
 
@@ -241,22 +256,18 @@ pub struct Rows<'a, W> {
     touched: &'a mut [Touched],
 }
 
-impl<W: Word> Canvas<'_, W> {
-    /// Makes it black.
+impl<W: Word> Rows<'_, W> {
+    /// Makes them black.
     pub fn clear(&mut self) {
-        for rows in &mut self.levels {
-            let stride = rows.width + 3;
-            for (place, touched) in rows.touched.iter_mut().enumerate() {
-                let Some(columns) = touched.columns() else { continue };
-                rows.cells[place * stride..][columns].fill([W::default(); 4]);
-                rows.totals[place] = 0;
-                *touched = Touched::NONE;
-            }
+        let stride = self.width + 3;
+        for (place, touched) in self.touched.iter_mut().enumerate() {
+            let Some(columns) = touched.columns() else { continue };
+            self.cells[place * stride..][columns].fill([W::default(); 4]);
+            self.totals[place] = 0;
+            *touched = Touched::NONE;
         }
     }
-}
 
-impl<W: Word> Rows<'_, W> {
     /// A position (1/4096 px) no further outside than needs be told apart.
     #[inline(always)]
     pub fn clamped(&self, x: i32) -> i32 {
@@ -271,22 +282,24 @@ impl<W: Word> Rows<'_, W> {
         let line = &mut self.cells[place * stride..][..stride];
         // The border is column 0.
         let [from, to] = [start, end].map(|at| (at >> POSITION_BITS) + 1);
-        let (begun, ended) = (near::<W>(&value, start), near::<W>(&value, end));
-        let mut whole = [W::default(); 4];
+        let (mut bits, mut whole) = ([W::Bits::default(); 4], [W::default(); 4]);
         for c in 0..4 {
-            whole[c] = W::of(value[c]);
+            bits[c] = W::bits(value[c]);
+            whole[c] = W::of(bits[c]);
         }
+        let (begun, ended) = (near::<W>(&bits, start), near::<W>(&bits, end));
         let last = stride - 1;
         let touched = &mut self.touched[place];
-        let total = if (from as u32 as usize) < last && (to as u32 as usize) < last {
-            let (from, to) = (from as usize, to as usize);
-            add(&mut line[from], &begun, sign);
-            add(&mut line[from + 1], &rest(&whole, &begun), sign);
-            add(&mut line[to], &ended, -sign);
-            add(&mut line[to + 1], &rest(&whole, &ended), -sign);
-            touched.first = touched.first.min(from as u32);
-            touched.end = touched.end.max(to as u32 + 2);
-            whole[3].wide() * (to - from) as i64 + begun[3].wide() - ended[3].wide()
+        // Columns before the border are far beyond the last one too.
+        let [first, second] = [from, to].map(|column| column as u32 as usize);
+        let total = if first < last && second < last {
+            add(&mut line[first], &begun, sign);
+            add(&mut line[first + 1], &rest(&whole, &begun), sign);
+            add(&mut line[second], &ended, -sign);
+            add(&mut line[second + 1], &rest(&whole, &ended), -sign);
+            touched.first = touched.first.min(first as u32);
+            touched.end = touched.end.max(second as u32 + 2);
+            whole[3].wide() * (second as i64 - first as i64) + begun[3].wide() - ended[3].wide()
         } else {
             let mut throw = |at: i32, near: &Pixel<W>, sign: i32| {
                 let far = rest(&whole, near);
@@ -299,17 +312,18 @@ impl<W: Word> Rows<'_, W> {
             };
             throw(from, &begun, sign) - throw(to, &ended, -sign)
         };
-        self.totals[place] = self.totals[place].wrapping_add(if sign < 0 { -total } else { total });
+        let row = &mut self.totals[place];
+        *row = if sign < 0 { row.wrapping_sub(total) } else { row.wrapping_add(total) };
     }
 }
 
 /// What of a pixel's `value` falls into the nearer of the two columns that the position `at` lies between.
 #[inline(always)]
-fn near<W: Word>(value: &[u64; 4], at: i32) -> Pixel<W> {
-    let fraction = (at & (PIXEL - 1)) as u32;
+fn near<W: Word>(value: &[W::Bits; 4], at: i32) -> Pixel<W> {
+    let part = (PIXEL - (at & (PIXEL - 1))) as u32;
     let mut near = [W::default(); 4];
     for c in 0..4 {
-        near[c] = W::near(value[c], fraction);
+        near[c] = W::near(value[c], part);
     }
     near
 }

@@ -8,13 +8,15 @@
 mod boxes;
 mod image;
 mod large;
+mod paper;
 mod seen_runs;
+mod small;
 mod stencilled;
 
 pub use image::WHOLE;
-pub use seen_runs::SeenRun;
+pub use paper::Paper;
 
-use crate::canvas::{Canvas, PIXEL, Rows, Word};
+use crate::canvas::{PIXEL, Word};
 use crate::fixed::mul_shift;
 use crate::lens_in_use::Placed;
 use crate::nodes::{Cells, Nodes, ONE, SplatNode};
@@ -137,22 +139,21 @@ impl<'a> Pen<'a> {
         }
     }
 
-    /// Adds (`sign` 1) a node's `light` (see [`SplatNode::light`]) to a sum, or takes it away (−1).
+    /// Adds (`sign` 1) a node's `light` (see [`SplatNode::light`]) to the levels of a sum, or takes it away (−1): at the
+    /// latest when each is [finished](Paper::finish) with that sign.
     #[inline(always)]
     pub fn draw<W: Word>(
         &self,
         node: &SplatNode,
         light: [f32; 4],
         placed: Placed,
-        canvas: &mut Canvas<W>,
-        found: &mut Vec<SeenRun>,
+        levels: &mut [Paper<W>],
         sign: i32,
     ) {
         if placed.level < node.level {
-            return self.draw_split(node, light, placed, canvas, found, sign);
+            return self.draw_split(node, light, placed, levels, sign);
         }
-        let rows = &mut canvas.levels[node.level as usize];
-        self.draw_whole(node, light, placed, rows, found, sign);
+        self.draw_whole(node, light, placed, &mut levels[node.level as usize], sign);
     }
 
     /// A sample of a large cell, as samples of smaller ones.
@@ -162,13 +163,12 @@ impl<'a> Pen<'a> {
         node: &SplatNode,
         light: [f32; 4],
         placed: Placed,
-        canvas: &mut Canvas<W>,
-        found: &mut Vec<SeenRun>,
+        levels: &mut [Paper<W>],
         sign: i32,
     ) {
-        let rows = &mut canvas.levels[placed.level as usize];
+        let paper = &mut levels[placed.level as usize];
         for piece in node.pieces(placed.level) {
-            self.draw_whole(&piece, light, placed, rows, found, sign);
+            self.draw_whole(&piece, light, placed, paper, sign);
         }
     }
 
@@ -185,15 +185,13 @@ impl<'a> Pen<'a> {
         }
     }
 
-    #[allow(clippy::too_many_arguments, reason = "all of them are the inner loop's, inlined")]
     #[inline(always)]
     fn draw_whole<W: Word>(
         &self,
         node: &SplatNode,
         light: [f32; 4],
         placed: Placed,
-        rows: &mut Rows<W>,
-        found: &mut Vec<SeenRun>,
+        paper: &mut Paper<W>,
         sign: i32,
     ) {
         let image = self.image(node, light, placed);
@@ -208,23 +206,21 @@ impl<'a> Pen<'a> {
                         image.share = share;
                         image.lean(node, self.tilt_shift);
                         image.shift(self.mean);
-                        self.draw_box(&image, node.half_size.map(u32::from), self.half, rows, sign);
+                        self.draw_box(&image, node.half_size.map(u32::from), self.half, paper, sign);
                     }
                     Form::Parts(share) => {
                         image.share = share;
-                        self.draw_parts(&image, placed.depth_share, rows, sign);
+                        self.draw_parts(&image, placed.depth_share, paper, sign);
                     }
                     Form::Image(share) => {
                         image.share = share;
                         image.lean(node, self.tilt_shift);
-                        self.draw_image(&mut image, None, rows, found, sign);
+                        self.draw_image(&mut image, None, paper, sign);
                     }
-                    Form::Tilted(share) => {
-                        self.draw_image(&mut image, Some((&ALL, share)), rows, found, sign)
-                    }
-                    Form::SeenBox => self.draw_seen_box(&mut image, rows, sign),
+                    Form::Tilted(share) => self.draw_image(&mut image, Some((&ALL, share)), paper, sign),
+                    Form::SeenBox => self.draw_seen_box(&mut image, paper, sign),
                     Form::Seen => {
-                        self.draw_image(&mut image, Some(self.seen_of(node)), rows, found, sign);
+                        self.draw_image(&mut image, Some(self.seen_of(node)), paper, sign);
                     }
                 }
             },

@@ -4,6 +4,7 @@ use crate::draw::Pen;
 use crate::lens_in_use::{LensInUse, NodeFocus, Placed};
 use crate::nodes::{Nodes, SplatNode};
 use crate::paint::Paint;
+use crate::widest::with_widest_instructions;
 use rayon::prelude::*;
 use std::cmp::Ordering;
 use std::ops::Range;
@@ -44,21 +45,25 @@ impl Scene<'_> {
         }
     }
 
-    /// The nodes of a block that are drawn, painted as `paint` says, in order.
-    pub fn list(&self, block: usize, paint: Option<&[NodeFocus]>) -> Vec<Drawn> {
-        let mut list = Vec::new();
-        self.drawn(
-            block,
-            paint,
+    /// Makes `list` the nodes of a block that are drawn, painted as `paint` says, in order.
+    pub fn list(&self, block: usize, paint: Option<&[NodeFocus]>, list: &mut Vec<Drawn>) {
+        list.clear();
+        with_widest_instructions(
             #[inline(always)]
-            |index, node, placed| {
-                let rows = node.reach(1, placed, self.height);
-                if !rows.is_empty() {
-                    list.push(Drawn { index, placed, rows: [rows.start, rows.end] });
-                }
+            || {
+                self.drawn(
+                    block,
+                    paint,
+                    #[inline(always)]
+                    |index, node, placed| {
+                        let rows = node.reach(1, placed, self.height);
+                        if !rows.is_empty() {
+                            list.push(Drawn { index, placed, rows: [rows.start, rows.end] });
+                        }
+                    },
+                )
             },
         );
-        list
     }
 
     /// What is no longer drawn of some blocks, and what is now, since the paint of each was the one beside it.
@@ -82,8 +87,9 @@ impl Scene<'_> {
         if before == now {
             return changes;
         }
-        let mut old = self.list(block, before).into_iter().peekable();
-        let mut new = self.list(block, now).into_iter().peekable();
+        let mut lists = [Vec::new(), Vec::new()];
+        lists.iter_mut().zip([before, now]).for_each(|(list, paint)| self.list(block, paint, list));
+        let [mut old, mut new] = lists.map(|list| list.into_iter().peekable());
         loop {
             let order = match (old.peek(), new.peek()) {
                 (Some(a), Some(b)) => a.index.cmp(&b.index),
@@ -121,6 +127,14 @@ impl Drawn {
     pub fn rows(&self) -> Range<u32> {
         self.rows[0]..self.rows[1]
     }
+}
+
+/// What is drawn of a block.
+#[derive(Default)]
+pub struct BlockList {
+    pub drawn: Vec<Drawn>,
+    /// The pixel rows that its light may reach.
+    pub rows: Range<u32>,
 }
 
 /// The pixel rows that the light of any of them may reach.

@@ -38,7 +38,7 @@ pub fn ratio(numerator: u32, denominator: u32, most: u32) -> u32 {
 }
 
 /// 2 to 31 + `bits` over a number.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Reciprocal {
     /// From 2²⁶ (for 2¹⁸) to 2³¹.
     pub value: u32,

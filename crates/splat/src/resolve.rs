@@ -37,9 +37,27 @@ pub struct Lines {
     pixels: Vec<[f32; 4]>,
 }
 
+/// Room for pixels, used again and again.
+#[derive(Default)]
+pub struct Room(Vec<Vec<[f32; 4]>>);
+
+impl Room {
+    fn take(&mut self) -> Vec<[f32; 4]> {
+        let mut pixels = self.0.pop().unwrap_or_default();
+        pixels.clear();
+        pixels
+    }
+
+    /// Lines that nobody needs any more.
+    pub fn give_back(&mut self, lines: Lines) {
+        self.0.push(lines.pixels);
+    }
+}
+
 impl Lines {
-    fn black(window: Window) -> Self {
-        Self { pixels: vec![[0.0; 4]; window.rows.len() * window.columns.len()], window }
+    fn black(window: Window, mut pixels: Vec<[f32; 4]>) -> Self {
+        pixels.resize(window.rows.len() * window.columns.len(), [0.0; 4]);
+        Self { window, pixels }
     }
 
     /// The rows.
@@ -82,6 +100,7 @@ pub fn lines<W: Word>(
     accumulator: &Accumulator<W>,
     quanta: Quanta,
     window: &Window,
+    room: &mut Room,
 ) -> Result<Option<Lines>, Overflow> {
     let levels = || {
         let levels = accumulator.levels.iter().enumerate();
@@ -92,9 +111,13 @@ pub fn lines<W: Word>(
     let Some(coarsest) = levels().rposition(is_touched) else { return Ok(None) };
     let mut above: Option<Lines> = None;
     for (level, window) in levels().take(coarsest + 1).rev() {
-        let mut here = match &above {
-            Some(coarse) => upsampled(coarse, window.clone()),
-            None => Lines::black(window.clone()),
+        let mut here = match above.take() {
+            Some(coarse) => {
+                let here = upsampled(&coarse, window.clone(), room.take());
+                room.give_back(coarse);
+                here
+            }
+            None => Lines::black(window.clone(), room.take()),
         };
         let width = window.columns.len();
         for (row, line) in window.rows.clone().zip(here.pixels.chunks_exact_mut(width)) {
@@ -147,7 +170,7 @@ fn integrate<W: Word>(
 }
 
 /// Bilinear: a fine pixel lies a quarter of a coarse one off its centre.
-fn upsampled(coarse: &Lines, window: Window) -> Lines {
+fn upsampled(coarse: &Lines, window: Window, mut pixels: Vec<[f32; 4]>) -> Lines {
     const NEAR: f32 = 0.75;
     const FAR: f32 = 0.25;
     let mix = |a: &[f32; 4], b: &[f32; 4]| -> [f32; 4] { std::array::from_fn(|c| NEAR * a[c] + FAR * b[c]) };
@@ -157,7 +180,7 @@ fn upsampled(coarse: &Lines, window: Window) -> Lines {
     // Fine columns 2k − 1 and 2k lie between the coarse ones k − 1 and k.
     let between = ((first + 1) >> 1) - 1 - coarse.window.columns.start;
     let half = usize::from(first & 1 == 0);
-    let mut pixels = Vec::with_capacity(width * window.rows.len() + 2);
+    pixels.reserve(width * window.rows.len() + 2);
     for row in window.rows.clone() {
         // A fine row's coarse one, and the neighbour it leans to.
         let rows = [row >> 1, (row >> 1) + if row & 1 == 0 { -1 } else { 1 }];
@@ -186,7 +209,7 @@ mod tests {
 
     fn part(accumulator: &Accumulator<i32>, window: &Window) -> Vec<[f32; 4]> {
         let black = vec![[0.0; 4]; window.columns.len() * window.rows.len()];
-        let lines = lines(accumulator, FINE, window).unwrap();
+        let lines = lines(accumulator, FINE, window, &mut Room::default()).unwrap();
         lines.map_or(black, |lines| lines.rows().flatten().copied().collect())
     }
 

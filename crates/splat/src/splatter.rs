@@ -3,12 +3,12 @@
 mod on_card;
 
 use crate::draw::Pen;
-use crate::drawn::{Changes, Scene};
+use crate::drawn::{BlockList, Changes, Drawn, Scene};
 use crate::lens_in_use::{LensInUse, Tolerance};
 use crate::nodes::{Nodes, Scale};
 use crate::paint::Paint;
 use crate::partition::{Share, Strip, find_shares, join};
-use crate::resolve::{Overflow, Window};
+use crate::resolve::{Overflow, Room, Window};
 use crate::seen::{Seen, seen};
 use crate::shape::Shape;
 use crate::stencil::Stencils;
@@ -55,6 +55,8 @@ pub struct Splatter {
     lens: LensInUse,
     paint: Paint,
     sums: Sums,
+    /// Room for what is drawn.
+    lists: Vec<BlockList>,
     /// What each pixel's sums are multiplied by.
     shares: Vec<Share>,
     /// The lens whose standard picture they are those of.
@@ -113,6 +115,7 @@ impl Splatter {
             tolerance,
             paint: Paint::default(),
             sums: Sums::new([width, height], nodes.as_ref().is_some_and(|nodes| nodes.has_bright)),
+            lists: Vec::new(),
             shares: vec![Share::NONE; width * height],
             shares_of: None,
             picture: Picture::black(camera.width, camera.height),
@@ -137,10 +140,12 @@ impl Splatter {
         &self.picture
     }
 
-    /// Bytes of the hierarchy and of the sums, a card's among them; the light field's own are not.
+    /// Bytes of the hierarchy and of the sums, a card's and the lists of what is drawn among them; the light field's own
+    /// are not.
     pub fn bytes(&self) -> [usize; 2] {
         let [nodes, sums] = self.card.bytes();
-        [nodes + self.nodes.as_ref().map_or(0, Nodes::bytes), sums + self.sums.bytes()]
+        let lists: usize = self.lists.iter().map(|list| list.drawn.capacity() * size_of::<Drawn>()).sum();
+        [nodes + self.nodes.as_ref().map_or(0, Nodes::bytes), sums + self.sums.bytes() + lists]
     }
 
     /// Sums the whole picture for a lens (`camera` may differ from the baked one in focus distance, aperture shape and a
@@ -237,7 +242,7 @@ impl Splatter {
         }
         let nodes = self.nodes.as_ref().ok_or(SplatError::Overflow)?;
         let scene = self.aperture.scene(nodes, &self.lens, paint, self.salf.camera.height);
-        Ok(self.sums.set(&scene, progress)?)
+        Ok(self.sums.set(&scene, &mut self.lists, progress)?)
     }
 
     /// Moves the given samples to where `focus` now sends them. Returns the rows of the picture that changed.
@@ -331,11 +336,12 @@ impl Splatter {
         let coverage = self.picture.coverage.par_chunks_mut(RESOLVE_ROWS * width);
         let shares = self.shares.par_chunks_mut(RESOLVE_ROWS * width);
         let all = radiance.zip(coverage).zip(shares).enumerate().skip(chunks.start).take(chunks.len());
-        all.try_for_each(|(chunk, ((radiance, coverage), shares))| {
+        all.try_for_each_init(Room::default, |room, (chunk, ((radiance, coverage), shares))| {
             let first = (chunk * RESOLVE_ROWS) as u32;
             let here = rows.start.max(first)..rows.end.min(first + (coverage.len() / width) as u32);
             let signed = |range: &Range<u32>| range.start as i32..range.end as i32;
-            let parts = sums.lines(nodes, &Window { rows: signed(&here), columns: signed(&columns) })?;
+            let parts =
+                sums.lines(nodes, &Window { rows: signed(&here), columns: signed(&columns) }, room)?;
             let strip = Strip {
                 width,
                 rows: (here.start - first) as usize..(here.end - first) as usize,
@@ -347,6 +353,7 @@ impl Splatter {
             if wanted.has_picture() {
                 join(&parts, strip, shares, is_painted, (radiance, coverage));
             }
+            parts.into_iter().flatten().for_each(|lines| room.give_back(lines));
             Ok(())
         })
     }

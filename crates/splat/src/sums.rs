@@ -1,11 +1,11 @@
 //! All nodes of a light field, summed band by band of the picture.
 
-use crate::canvas::{Accumulator, Canvas};
-use crate::draw::{Pen, SeenRun};
-use crate::drawn::{Drawn, Scene, rows_of};
+use crate::canvas::{Accumulator, Word};
+use crate::draw::{Paper, Pen};
+use crate::drawn::{BlockList, Drawn, Scene, rows_of};
 use crate::lens_in_use::Placed;
 use crate::nodes::{Nodes, SplatNode};
-use crate::resolve::{Lines, Overflow, Quanta, Window, lines};
+use crate::resolve::{Lines, Overflow, Quanta, Room, Window, lines};
 use crate::widest::with_widest_instructions;
 use progress::{Cancelled, Progress};
 use rayon::prelude::*;
@@ -34,10 +34,9 @@ pub struct Sums {
 
 /// Rows of a sum to draw on.
 struct SumCanvas<'a> {
-    dim: Canvas<'a, i32>,
-    bright: Option<Canvas<'a, i64>>,
-    /// Room to work in.
-    found: Vec<SeenRun>,
+    /// Level by level.
+    dim: Vec<Paper<'a, i32>>,
+    bright: Option<Vec<Paper<'a, i64>>>,
 }
 
 impl Sum {
@@ -49,11 +48,10 @@ impl Sum {
     }
 
     fn bands(&mut self, rows: u32) -> Vec<SumCanvas<'_>> {
-        let mut bright = self.bright.as_mut().map(|bright| bright.bands(rows as i32).into_iter());
-        let dim = self.dim.bands(rows as i32).into_iter();
-        let canvas =
-            |dim| SumCanvas { dim, bright: bright.as_mut().and_then(Iterator::next), found: Vec::new() };
-        dim.map(canvas).collect()
+        let mut bright = self.bright.as_mut().map(|bright| papers(bright, rows));
+        papers(&mut self.dim, rows)
+            .map(|dim| SumCanvas { dim, bright: bright.as_mut().and_then(Iterator::next) })
+            .collect()
     }
 
     fn bytes(&self) -> usize {
@@ -61,38 +59,48 @@ impl Sum {
     }
 
     /// Its pixels in a window; `None` if they are black.
-    fn lines(&self, nodes: &Nodes, window: &Window) -> Result<Option<Lines>, Overflow> {
+    fn lines(&self, nodes: &Nodes, window: &Window, room: &mut Room) -> Result<Option<Lines>, Overflow> {
         let dim = Quanta::new(nodes.scale.dim_bits, 32, nodes.brightest.min(crate::nodes::BRIGHT as f64));
-        let mut found = lines(&self.dim, dim, window)?;
+        let mut found = lines(&self.dim, dim, window, room)?;
         if let Some(bright) = &self.bright {
             let quanta = Quanta::new(nodes.scale.bright_bits, 64, nodes.brightest);
             // Their coverage is among the ordinary ones'.
-            if let (Some(found), Some(light)) = (&mut found, lines(bright, quanta, window)?) {
+            if let (Some(found), Some(light)) = (&mut found, lines(bright, quanta, window, room)?) {
                 found.add_light(&light);
+                room.give_back(light);
             }
         }
         Ok(found)
     }
 }
 
+/// Bands of `rows` pixel rows of an accumulator, level by level.
+fn papers<W: Word>(accumulator: &mut Accumulator<W>, rows: u32) -> impl Iterator<Item = Vec<Paper<'_, W>>> {
+    let bands = accumulator.bands(rows as i32).into_iter();
+    bands.map(|canvas| canvas.levels.into_iter().map(Paper::new).collect())
+}
+
 impl SumCanvas<'_> {
     fn clear(&mut self) {
-        self.dim.clear();
-        if let Some(bright) = &mut self.bright {
-            bright.clear();
-        }
+        self.dim.iter_mut().for_each(|paper| paper.rows.clear());
+        self.bright.iter_mut().flatten().for_each(|paper| paper.rows.clear());
+    }
+
+    /// Draws what waits.
+    fn finish(&mut self, sign: i32) {
+        self.dim.iter_mut().for_each(|paper| paper.finish(sign));
+        self.bright.iter_mut().flatten().for_each(|paper| paper.finish(sign));
     }
 
     #[inline(always)]
     fn draw(&mut self, pen: &Pen, node: &SplatNode, placed: Placed, sign: i32) {
         // All coverage is summed alike, so that how bright a sample is leaves no trace in it.
-        let found = &mut self.found;
         match &mut self.bright {
             Some(bright) if node.is_bright => {
-                pen.draw(node, node.light, placed, bright, found, sign);
-                pen.draw(node, pen.nodes.dim_coverage(node), placed, &mut self.dim, found, sign);
+                pen.draw(node, node.light, placed, bright, sign);
+                pen.draw(node, pen.nodes.dim_coverage(node), placed, &mut self.dim, sign);
             }
-            _ => pen.draw(node, node.light, placed, &mut self.dim, found, sign),
+            _ => pen.draw(node, node.light, placed, &mut self.dim, sign),
         }
     }
 }
@@ -108,16 +116,19 @@ impl Sums {
         self.free.bytes() + self.sharing.bytes()
     }
 
-    /// Sets them to what a scene sends.
-    pub fn set(&mut self, scene: &Scene, progress: &dyn Progress) -> Result<(), Cancelled> {
-        let blocks = (0..scene.pen.nodes.blocks.len()).into_par_iter();
-        let lists: Vec<_> = blocks
-            .map(|block| {
-                let list = scene.list(block, scene.paint.of_block(block));
-                let rows = rows_of(&list);
-                (list, rows)
-            })
-            .collect();
+    /// Sets them to what a scene sends. `lists` is room to work in.
+    pub fn set(
+        &mut self,
+        scene: &Scene,
+        lists: &mut Vec<BlockList>,
+        progress: &dyn Progress,
+    ) -> Result<(), Cancelled> {
+        lists.resize_with(scene.pen.nodes.blocks.len(), BlockList::default);
+        lists.par_iter_mut().enumerate().for_each(|(block, list)| {
+            scene.list(block, scene.paint.of_block(block), &mut list.drawn);
+            list.rows = rows_of(&list.drawn);
+        });
+        let lists = &*lists;
         let bands = self.bands();
         let (count, done) = (bands.len(), AtomicUsize::new(0));
         bands.into_par_iter().with_max_len(1).try_for_each(|mut band| {
@@ -125,8 +136,8 @@ impl Sums {
             band.free.clear();
             band.sharing.clear();
             let here = band.rows.clone();
-            let lists = lists.iter().filter(|(_, rows)| meet(rows, &here)).map(|(list, _)| list);
-            band.draw(&scene.pen, lists, 1);
+            let lists = lists.iter().filter(|list| meet(&list.rows, &here));
+            band.draw(&scene.pen, lists.map(|list| &list.drawn), 1);
             progress.report((done.fetch_add(1, Ordering::Relaxed) + 1) as f32 / count as f32);
             Ok(())
         })
@@ -150,8 +161,13 @@ impl Sums {
     }
 
     /// The pixels in a window: what is free, and what shares the rest.
-    pub fn lines(&self, nodes: &Nodes, window: &Window) -> Result<[Option<Lines>; 2], Overflow> {
-        Ok([self.free.lines(nodes, window)?, self.sharing.lines(nodes, window)?])
+    pub fn lines(
+        &self,
+        nodes: &Nodes,
+        window: &Window,
+        room: &mut Room,
+    ) -> Result<[Option<Lines>; 2], Overflow> {
+        Ok([self.free.lines(nodes, window, room)?, self.sharing.lines(nodes, window, room)?])
     }
 }
 
@@ -176,20 +192,38 @@ impl Band<'_> {
         lists: impl IntoIterator<Item = impl IntoIterator<Item = &'d Drawn>>,
         sign: i32,
     ) {
-        with_widest_instructions(
-            #[inline(always)]
-            || {
-                for drawn in lists.into_iter().flatten() {
-                    if !meet(&drawn.rows(), &self.rows) {
-                        continue;
-                    }
-                    let node = &pen.nodes.nodes[drawn.index as usize];
-                    let is_sharing = is_sharing(node, drawn.placed);
-                    let canvas = if is_sharing { &mut self.sharing } else { &mut self.free };
-                    canvas.draw(pen, node, drawn.placed, sign);
-                }
-            },
-        );
+        // Compiled for either sign.
+        if sign > 0 {
+            with_widest_instructions(
+                #[inline(always)]
+                || self.draw_signed(pen, lists, 1),
+            );
+        } else {
+            with_widest_instructions(
+                #[inline(always)]
+                || self.draw_signed(pen, lists, -1),
+            );
+        }
+    }
+
+    #[inline(always)]
+    fn draw_signed<'d>(
+        &mut self,
+        pen: &Pen,
+        lists: impl IntoIterator<Item = impl IntoIterator<Item = &'d Drawn>>,
+        sign: i32,
+    ) {
+        for drawn in lists.into_iter().flatten() {
+            if !meet(&drawn.rows(), &self.rows) {
+                continue;
+            }
+            let node = &pen.nodes.nodes[drawn.index as usize];
+            let is_sharing = is_sharing(node, drawn.placed);
+            let canvas = if is_sharing { &mut self.sharing } else { &mut self.free };
+            canvas.draw(pen, node, drawn.placed, sign);
+        }
+        self.free.finish(sign);
+        self.sharing.finish(sign);
     }
 }
 

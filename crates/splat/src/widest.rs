@@ -7,6 +7,7 @@ pub fn with_widest_instructions<R>(work: impl FnOnce() -> R) -> R {
     #[cfg(target_arch = "x86_64")]
     {
         #[target_feature(enable = "avx2,bmi1,bmi2,lzcnt")]
+        #[inline(never)]
         fn wide<R>(work: impl FnOnce() -> R) -> R {
             work()
         }

@@ -1,8 +1,8 @@
 //! Small images as boxes.
 
 use crate::canvas::{PIXEL, POSITION_BITS, Rows, Word};
-use crate::draw::Pen;
-use crate::draw::image::Image;
+use crate::draw::image::{Image, Light};
+use crate::draw::{Paper, Pen};
 use crate::fixed::{Reciprocal, hypotenuse, mul_shift};
 use crate::nodes::ONE;
 use crate::stencil::HEIGHT_BITS;
@@ -11,7 +11,7 @@ use crate::stencil::HEIGHT_BITS;
 const LARGEST_HALF: u32 = 10 << POSITION_BITS;
 
 /// Half the shortest side of a box, 1/4096 px.
-const SMALLEST_HALF: u32 = PIXEL as u32 / 32;
+pub const SMALLEST_HALF: u32 = PIXEL as u32 / 32;
 
 /// A part of the aperture: its share times 2²⁴, mean and variance times 16384, √3 deviations times 65536.
 #[derive(Clone, Copy)]
@@ -28,7 +28,7 @@ impl Pen<'_> {
     /// Across a slanted surface the radius r changes, and neighbours move apart or together by 1 + u·∂r/∂x; the footprint
     /// is stretched as much, so that they still meet. For an unpainted surface ∂r/∂x is its weight's relative tilt.
     #[inline(always)]
-    pub fn draw_parts<W: Word>(&self, image: &Image, depth_share: i32, rows: &mut Rows<W>, sign: i32) {
+    pub fn draw_parts<W: Word>(&self, image: &Image, depth_share: i32, paper: &mut Paper<W>, sign: i32) {
         let node = image.node;
         let tilt = [0, 1].map(|k| (node.tilt[k] as i32 * self.stop) >> 14);
         for (index, part_of) in self.parts.iter().enumerate() {
@@ -49,18 +49,18 @@ impl Pen<'_> {
                 let factor = (ONE + ((slope * part_of.mean[k]) >> 14)).abs().max(ONE / 16) as u32;
                 mul_shift(node.half_size[k] as u32, factor, 14).min(LARGEST_HALF)
             };
-            self.draw_box(&part, [stretched(0), stretched(1)], part_of.half, rows, sign);
+            self.draw_box(&part, [stretched(0), stretched(1)], part_of.half, paper, sign);
         }
     }
 
     /// One box of the light, mean and variance that a partly occluded node sends.
     #[inline(always)]
-    pub fn draw_seen_box<W: Word>(&self, image: &mut Image, rows: &mut Rows<W>, sign: i32) {
+    pub fn draw_seen_box<W: Word>(&self, image: &mut Image, paper: &mut Paper<W>, sign: i32) {
         let seen = &self.seen[image.node.cells as usize];
         image.shift(seen.mean.map(i32::from));
         image.share = seen.share;
         let half_size = image.node.half_size.map(|half| u32::from(half) >> image.node.level);
-        self.draw_box(image, half_size, seen.half.map(|half| u32::from(half) << 2), rows, sign);
+        self.draw_box(image, half_size, seen.half.map(|half| u32::from(half) << 2), paper, sign);
     }
 
     /// A box of the variance of footprint and aperture together; `half` of the aperture as [`BoxPart::half`].
@@ -70,30 +70,74 @@ impl Pen<'_> {
         image: &Image,
         half_size: [u32; 2],
         half: [u32; 2],
-        rows: &mut Rows<W>,
+        paper: &mut Paper<W>,
         sign: i32,
     ) {
         let radius = image.radius.unsigned_abs();
-        let widened = |k: usize| hypotenuse(half_size[k], mul_shift(radius, half[k], 16)).max(SMALLEST_HALF);
-        let half = [widened(0), widened(1)];
-        let [top, bottom] = [image.center[1] - half[1] as i32, image.center[1] + half[1] as i32];
+        let half = half.map(|half| mul_shift(radius, half, 16));
+        let found = UnsizedBox { image, legs: [[half_size[0], half[0]], [half_size[1], half[1]]] };
+        if found.is_small() { paper.add(&found, sign) } else { found.sized().draw(&mut paper.rows, sign) }
+    }
+}
+
+/// The box of an image. Half its side along each axis is √(a² + b²), a the footprint's part and b the aperture's.
+pub struct UnsizedBox<'a> {
+    pub image: &'a Image<'a>,
+    /// By axis a and b, 1/4096 px.
+    pub legs: [[u32; 2]; 2],
+}
+
+impl UnsizedBox<'_> {
+    /// Whether its half sides' squares fit 31 bits.
+    #[inline(always)]
+    fn is_small(&self) -> bool {
+        let [[a, b], [c, d]] = self.legs;
+        a | b | c | d < 1 << 15
+    }
+
+    #[inline(always)]
+    fn sized(&self) -> SizedBox {
+        let half = self.legs.map(|[a, b]| hypotenuse(a, b).max(SMALLEST_HALF));
+        let Image { center, share, light, dither, .. } = *self.image;
+        SizedBox { center, half, per_half: half.map(Reciprocal::of), share, light, dither }
+    }
+}
+
+/// A box of known size.
+pub struct SizedBox {
+    /// On its level, 1/4096 px of it.
+    pub center: [i32; 2],
+    /// Half its sides, 1/4096 px.
+    pub half: [u32; 2],
+    /// Their reciprocals.
+    pub per_half: [Reciprocal; 2],
+    /// How much of the light is drawn, times 2²⁴.
+    pub share: u32,
+    pub light: Light,
+    pub dither: u32,
+}
+
+impl SizedBox {
+    #[inline(always)]
+    pub fn draw<W: Word>(&self, rows: &mut Rows<W>, sign: i32) {
+        let Self { center, half: [half, half_height], per_half: [across, down], .. } = *self;
+        let [top, bottom] = [center[1] - half_height as i32, center[1] + half_height as i32];
         let first = (top >> POSITION_BITS).max(rows.first);
         let last = ((bottom - 1) >> POSITION_BITS).min(rows.end - 1);
         if first > last {
             return;
         }
-        let [across, down] = half.map(Reciprocal::of);
         // The share goes in before anything is rounded.
-        let density = mul_shift(across.value, image.share, 26);
-        let whole = Image { share: crate::draw::WHOLE, ..*image };
-        let shift = image.light.shift(HEIGHT_BITS);
+        let density = mul_shift(across.value, self.share, 26);
+        let shift = self.light.shift(HEIGHT_BITS);
+        let [start, end] = [center[0] - half as i32, center[0] + half as i32];
+        let middle = center[1] >> POSITION_BITS;
         for row in first..=last {
             let overlap = bottom.min((row + 1) << POSITION_BITS) - top.max(row << POSITION_BITS);
             let share = mul_shift(overlap as u32, down.value, down.bits + 1);
             let height = mul_shift(share, density, across.bits + 25);
-            let value = whole.value(height, shift, row);
-            let reach = half[0] as i32;
-            rows.add_run(row, image.center[0] - reach, image.center[0] + reach, value, sign);
+            let value = self.light.in_pixel(height, shift, self.dither, row - middle);
+            rows.add_run(row, start, end, value, sign);
         }
     }
 }

@@ -8,7 +8,7 @@ use crate::nodes::SplatNode;
 pub const WHOLE: u32 = 1 << 24;
 
 /// Red, green, blue and coverage: `mantissa`·2^`exponent` quanta. The largest mantissa has 31 bits.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Light {
     pub mantissa: [u32; 4],
     pub exponent: i32,
@@ -34,6 +34,20 @@ impl Light {
     #[inline(always)]
     pub fn shift(&self, bits: u32) -> u32 {
         (bits as i32 - self.exponent).clamp(0, 63) as u32
+    }
+
+    /// That of a pixel of `height` (see [`Self::shift`]), rounded up or down at random so that the mean is kept: by where
+    /// the node's dither starts, and the row from its centre's.
+    #[inline(always)]
+    pub fn in_pixel(&self, height: u32, shift: u32, dither: u32, row: i32) -> [u64; 4] {
+        let hash = dither.wrapping_add((row as u32).wrapping_mul(0x9E37_79B1));
+        let hash = (hash ^ hash >> 15).wrapping_mul(0x2C1B_3C6D) as u64;
+        let dither = (hash << shift.saturating_sub(32)) >> 32u32.saturating_sub(shift);
+        let mut value = [0; 4];
+        for (value, mantissa) in value.iter_mut().zip(self.mantissa) {
+            *value = (mantissa as u64 * height as u64 + dither) >> shift;
+        }
+        value
     }
 }
 
@@ -64,20 +78,16 @@ impl Image<'_> {
         self.center = [self.center[0].wrapping_add(x), self.center[1].wrapping_sub(y)];
     }
 
-    /// The light of a pixel of `height` (see [`Light::shift`]), rounded up or down at random so that the mean is kept.
+    /// The light of a pixel of `height` (see [`Light::in_pixel`]).
     #[inline(always)]
     pub fn value(&self, height: u32, shift: u32, row: i32) -> [u64; 4] {
-        // By the row from the centre's, so that a frame's crop has the same bits.
-        let row = (row - (self.center[1] >> POSITION_BITS)) as u32;
-        let hash = self.dither.wrapping_add(row.wrapping_mul(0x9E37_79B1));
-        let hash = (hash ^ hash >> 15).wrapping_mul(0x2C1B_3C6D) as u64;
-        let dither = (hash << shift.saturating_sub(32)) >> 32u32.saturating_sub(shift);
-        let height = mul_shift(height, self.share, 24) as u64;
-        let mut value = [0; 4];
-        for (value, mantissa) in value.iter_mut().zip(self.light.mantissa) {
-            *value = (mantissa as u64 * height + dither) >> shift;
-        }
-        value
+        self.light.in_pixel(mul_shift(height, self.share, 24), shift, self.dither, self.from_center(row))
+    }
+
+    /// A row from the centre's, so that a frame's crop has the same bits.
+    #[inline(always)]
+    fn from_center(&self, row: i32) -> i32 {
+        row - (self.center[1] >> POSITION_BITS)
     }
 }
 

@@ -1,9 +1,9 @@
 //! Images as stencils.
 
-use crate::canvas::{PIXEL, POSITION_BITS, Rows, Word};
-use crate::draw::Pen;
+use crate::canvas::{PIXEL, POSITION_BITS, Word};
 use crate::draw::image::Image;
 use crate::draw::seen_runs::{Row, SeenRun, SeenRuns};
+use crate::draw::{Paper, Pen};
 use crate::fixed::{mul_shift, ratio};
 use crate::nodes::{Cells, ONE};
 use crate::stencil::{HEIGHT_BITS, Stencil, StencilSize};
@@ -18,13 +18,13 @@ impl Pen<'_> {
         &self,
         image: &mut Image,
         cells: Option<(&Cells, u32)>,
-        rows: &mut Rows<W>,
-        found: &mut Vec<SeenRun>,
+        paper: &mut Paper<W>,
         sign: i32,
     ) {
         let Some(size) = self.stencil_size_of(image) else {
-            return self.draw_large(image, cells, rows, sign);
+            return self.draw_large(image, cells, &mut paper.rows, sign);
         };
+        let rows = &mut paper.rows;
         // Most of what misses these rows is found out before its stencil is fetched.
         let reach = image.radius.abs() + image.radius.abs() / 2 + 2 * PIXEL;
         if (image.center[1] + reach) >> POSITION_BITS < rows.first
@@ -44,11 +44,11 @@ impl Pen<'_> {
             }
             return;
         };
-        let Some(scale) = self.find_seen(image, cells, share, stencil, base, found) else {
-            return self.draw_seen_box(image, rows, sign);
+        let Some(scale) = self.find_seen(image, cells, share, stencil, base, &mut paper.found) else {
+            return self.draw_seen_box(image, paper, sign);
         };
         image.share = scale;
-        for run in found.iter() {
+        for run in &paper.found {
             if run.row >= rows.first && run.row < rows.end {
                 let value = image.value(run.height, shift, run.row);
                 rows.add_run(run.row, run.start, run.end, value, sign);

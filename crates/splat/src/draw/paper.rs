@@ -1,0 +1,47 @@
+//! What is drawn on.
+
+use crate::canvas::{Rows, Word};
+use crate::draw::boxes::UnsizedBox;
+use crate::draw::seen_runs::SeenRun;
+use crate::draw::small::SmallBoxes;
+use crate::widest::with_widest_instructions;
+
+/// Some rows of a level, and what waits to be drawn on them.
+pub struct Paper<'a, W> {
+    pub rows: Rows<'a, W>,
+    small: SmallBoxes,
+    /// Room to work in.
+    pub found: Vec<SeenRun>,
+}
+
+impl<'a, W: Word> Paper<'a, W> {
+    /// Nothing waits.
+    pub fn new(rows: Rows<'a, W>) -> Self {
+        Self { rows, small: SmallBoxes::default(), found: Vec::new() }
+    }
+
+    /// A small box, drawn with others.
+    #[inline(always)]
+    pub fn add(&mut self, found: &UnsizedBox, sign: i32) {
+        self.small.add(found);
+        if self.small.is_full() {
+            self.finish(sign);
+        }
+    }
+
+    /// Draws what waits.
+    pub fn finish(&mut self, sign: i32) {
+        // Compiled for either sign.
+        if sign > 0 {
+            with_widest_instructions(
+                #[inline(always)]
+                || self.small.draw(&mut self.rows, 1),
+            );
+        } else {
+            with_widest_instructions(
+                #[inline(always)]
+                || self.small.draw(&mut self.rows, -1),
+            );
+        }
+    }
+}
