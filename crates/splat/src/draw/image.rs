@@ -81,12 +81,17 @@ impl Image<'_> {
     /// The light of a pixel of `height` (see [`Light::in_pixel`]).
     #[inline(always)]
     pub fn value(&self, height: u32, shift: u32, row: i32) -> [u64; 4] {
-        self.light.in_pixel(mul_shift(height, self.share, 24), shift, self.dither, self.from_center(row))
+        self.light.in_pixel(
+            mul_shift(height, self.share, 24),
+            shift,
+            self.dither,
+            self.rows_below_center(row),
+        )
     }
 
-    /// A row from the centre's, so that a frame's crop has the same bits.
+    /// How far below the centre a row is: a frame's crop has the same bits.
     #[inline(always)]
-    fn from_center(&self, row: i32) -> i32 {
+    fn rows_below_center(&self, row: i32) -> i32 {
         row - (self.center[1] >> POSITION_BITS)
     }
 }
