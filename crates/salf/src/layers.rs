@@ -8,7 +8,7 @@ use crate::sample::{Sample, Visibility};
 use crate::view::View;
 use glam::{DVec2, Vec3};
 use scene::SurfacePoint;
-use trace::{Radiance, Ray, Tracer};
+use trace::{Beam, Hit, Radiance, Ray, Tracer};
 
 /// Surfaces along one chief ray beyond which nothing is looked for.
 const DEEPEST_LAYER: usize = 12;
@@ -53,13 +53,15 @@ pub struct Layers {
 /// Traces the chief rays of a cell: to the nearest surface, or, if `hidden`, through all of them.
 pub fn trace_cell(tracer: &Tracer, view: &View, placement: &Placement, cell: Cell, hidden: bool) -> Layers {
     let mut layers = Layers { groups: Vec::new(), depth_range: [0.0, f32::INFINITY], has_gap: false };
-    for sub_cell in 0..Cell::RAYS {
-        let seed = cell.corner.as_uvec2();
+    let beam = view.beam(cell);
+    let seed = cell.corner.as_uvec2();
+    let pixels: [_; Cell::RAYS] = std::array::from_fn(|sub_cell| {
         let [jx, jy, _] = jitter(seed.x, seed.y, sub_cell as u32);
-        let pixel = cell.sub_corner(sub_cell) + DVec2::new(jx, jy) * cell.sub_side();
-        let mut ray = view.chief_ray(pixel);
-        for layer in 0..DEEPEST_LAYER {
-            let hit = tracer.first_hit(&ray);
+        cell.sub_corner(sub_cell) + DVec2::new(jx, jy) * cell.sub_side()
+    });
+    let met = surfaces_along(tracer, &beam, pixels.map(|pixel| view.chief_ray(pixel)), hidden);
+    for (sub_cell, pixel) in pixels.into_iter().enumerate() {
+        for (layer, hit) in met.iter().map_while(|layer| layer[sub_cell]).enumerate() {
             let inverse_depth = hit.map_or(0.0, |hit| 1.0 / hit.t);
             let point = hit.map(|hit| hit.point);
             if layer == 0 {
@@ -74,13 +76,40 @@ pub fn trace_cell(tracer: &Tracer, view: &View, placement: &Placement, cell: Cel
             } else if layer == 0 {
                 layers.has_gap = true;
             }
-            match hit {
-                Some(hit) if hidden => ray = Ray { t_min: hit.t, skip: Some(hit.point.triangle), ..ray },
-                _ => break,
-            }
         }
     }
     layers
+}
+
+/// What the rays of a beam meet, layer by layer: for each ray that got there `Some`, of a surface or of none behind
+/// the last.
+fn surfaces_along(
+    tracer: &Tracer,
+    beam: &Beam,
+    rays: [Ray; Cell::RAYS],
+    hidden: bool,
+) -> Vec<[Option<Option<Hit>>; Cell::RAYS]> {
+    let mut met = Vec::new();
+    let mut open: Vec<(usize, Ray)> = rays.into_iter().enumerate().collect();
+    for _ in 0..if hidden { DEEPEST_LAYER } else { 1 } {
+        if open.is_empty() {
+            break;
+        }
+        let rays: Vec<Ray> = open.iter().map(|(_, ray)| *ray).collect();
+        let hits = tracer.first_hits(beam, &rays);
+        let mut layer = [None; Cell::RAYS];
+        let mut hits = hits.into_iter();
+        open.retain_mut(|(sub_cell, ray)| {
+            let hit = hits.next().flatten();
+            layer[*sub_cell] = Some(hit);
+            if let Some(hit) = hit {
+                *ray = Ray { t_min: hit.t, skip: Some(hit.point.triangle), ..*ray };
+            }
+            hit.is_some()
+        });
+        met.push(layer);
+    }
+    met
 }
 
 impl Layers {

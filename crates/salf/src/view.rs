@@ -1,10 +1,11 @@
 //! The baked camera, ready for rays: pixels to chief rays, aperture points to the world.
 
 use crate::bake::BakeOptions;
-use glam::{DVec2, DVec3};
+use crate::domain::Cell;
+use glam::{DVec2, DVec3, IVec2};
 use lens::{Camera, Optics};
 use scene::Scene;
-use trace::{Ray, Square};
+use trace::{Beam, Ray, Square};
 
 /// A camera with its axes in the world.
 pub struct View<'a> {
@@ -39,6 +40,13 @@ impl<'a> View<'a> {
         let q = self.camera.q_from_pixel(pixel) * self.optics.tan_half_yfov;
         let direction = self.camera.world_direction(q.extend(1.0));
         Ray { origin: self.eye, direction, t_min: 0.0, t_max: f64::INFINITY, skip: None }
+    }
+
+    /// The chief rays of a cell.
+    pub fn beam(&self, cell: Cell) -> Beam {
+        let edges = [IVec2::ZERO, IVec2::X, IVec2::ONE, IVec2::Y]
+            .map(|step| self.chief_ray((cell.corner + step * cell.side).as_dvec2()).direction);
+        Beam { origin: self.eye, axis: self.camera.world_direction(DVec3::Z), edges }
     }
 
     /// The world position of the aperture point R·u.

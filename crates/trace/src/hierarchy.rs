@@ -74,57 +74,56 @@ impl Hierarchy {
         }
     }
 
-    /// Calls `visit` for the items of every leaf whose box reaches into `space`, nearer ones first by and large; `visit` returns whether to go on.
-    pub fn walk_within(&self, space: &Halfspaces, visit: impl FnMut(Range<usize>) -> bool) {
+    /// Calls `visit` for the items of every leaf whose box reaches into `space` and comes nearer than `far` (see
+    /// [`Halfspaces::height`]), nearer ones first by and large; `visit` returns the new `far`: −∞ ends
+    /// the walk.
+    pub fn walk_within(&self, space: &Halfspaces, far: f32, visit: impl FnMut(Range<usize>) -> f32) {
         if self.stack_size <= SHALLOW_STACK {
-            self.walk_within_with(&mut [(0.0, 0); SHALLOW_STACK], space, visit);
+            self.walk_within_with(&mut [Pending::default(); SHALLOW_STACK], space, far, visit);
         } else {
-            self.walk_within_with(&mut vec![(0.0, 0); self.stack_size], space, visit);
+            self.walk_within_with(&mut vec![Pending::default(); self.stack_size], space, far, visit);
         }
     }
 
     #[inline(always)]
     fn walk_within_with(
         &self,
-        stack: &mut [(f32, u32)],
+        stack: &mut [Pending],
         space: &Halfspaces,
-        mut visit: impl FnMut(Range<usize>) -> bool,
+        mut far: f32,
+        mut visit: impl FnMut(Range<usize>) -> f32,
     ) {
         let mut waiting = usize::from(!self.nodes.is_empty());
+        if waiting > 0 {
+            stack[0] = Pending { near: f32::NEG_INFINITY, first: 0, count: 0 };
+        }
         while waiting > 0 {
             waiting -= 1;
-            let node = &self.nodes[stack[waiting].1 as usize];
-            let [low, high] = node.sides[0];
-            let mut reached = low.cmple(high).bitmask();
-            for (normal, offset) in &space.planes[..space.count] {
-                let mut farthest = Vec4::splat(*offset);
-                for axis in 0..3 {
-                    farthest += node.sides[axis][usize::from(normal[axis] >= 0.0)] * normal[axis];
-                }
-                reached &= farthest.cmpge(Vec4::ZERO).bitmask();
+            let Pending { near, first, count } = stack[waiting];
+            if near > far {
+                continue;
             }
-            let mut nearest = Vec4::ZERO;
-            for axis in 0..3 {
-                nearest += node.sides[axis][usize::from(space.toward[axis] < 0.0)] * space.toward[axis];
+            if count > 0 {
+                far = visit(first as usize..(first + count) as usize);
+                continue;
             }
-            let nearest = nearest.to_array();
+            let node = &self.nodes[first as usize];
+            let (mut reached, near) = space.reached(node);
+            reached &= near.cmple(Vec4::splat(far)).bitmask();
+            let near = near.to_array();
             let base = waiting;
             while reached != 0 {
                 let child = (reached.trailing_zeros() & 3) as usize;
                 reached &= reached - 1;
-                let (first, count) = (node.first[child], node.count[child]);
-                if count == 0 {
-                    // The nearest on top.
-                    let mut place = waiting;
-                    while place > base && stack[place - 1].0 < nearest[child] {
-                        stack[place] = stack[place - 1];
-                        place -= 1;
-                    }
-                    stack[place] = (nearest[child], first);
-                    waiting += 1;
-                } else if !visit(first as usize..(first + count) as usize) {
-                    return;
+                let new = Pending { near: near[child], first: node.first[child], count: node.count[child] };
+                // The nearest on top.
+                let mut place = waiting;
+                while place > base && stack[place - 1].near < new.near {
+                    stack[place] = stack[place - 1];
+                    place -= 1;
                 }
+                stack[place] = new;
+                waiting += 1;
             }
         }
     }
@@ -224,6 +223,31 @@ impl Halfspaces {
         let slack = Self::SLACK * (2.0 + offset.abs());
         self.planes[self.count] = (normal.as_vec3(), (offset + slack) as f32);
         self.count += 1;
+    }
+
+    /// How high along `toward` a position lies: none of the boxes that hold it count as higher.
+    pub fn height(toward: DVec3, position: DVec3) -> f32 {
+        let height = toward.dot(position);
+        (height + Self::SLACK * (2.0 + height.abs())) as f32
+    }
+
+    /// A bit for each of a node's boxes that reaches in here, and where each begins along `toward`.
+    #[inline(always)]
+    fn reached(&self, node: &Node) -> (u32, Vec4) {
+        let [low, high] = node.sides[0];
+        let mut reached = low.cmple(high).bitmask();
+        for (normal, offset) in &self.planes[..self.count] {
+            let mut farthest = Vec4::splat(*offset);
+            for axis in 0..3 {
+                farthest += node.sides[axis][usize::from(normal[axis] >= 0.0)] * normal[axis];
+            }
+            reached &= farthest.cmpge(Vec4::ZERO).bitmask();
+        }
+        let mut nearest = Vec4::ZERO;
+        for axis in 0..3 {
+            nearest += node.sides[axis][usize::from(self.toward[axis] < 0.0)] * self.toward[axis];
+        }
+        (reached, nearest)
     }
 }
 

@@ -2,8 +2,11 @@
 //!
 //! [`Tracer`] answers what a ray meets. Its way: a ray enters the f32 space of the boxes (`local_space`),
 //! walks the tree (`hierarchy`), meets triangles in f64 (`watertight`) whose points may be cut away
-//! (`presence`). What a point sees of a whole [`Square`] takes one walk (`sight`). [`truth`] sums such rays to the picture that everything else is measured against.
+//! (`presence`). What a point sees of a whole [`Square`] takes one
+//! walk (`sight`), and so does what the rays of a [`Beam`] meet. [`truth`] sums such rays to the picture that everything
+//! else is measured against.
 
+mod beam;
 mod hierarchy;
 mod local_space;
 mod presence;
@@ -16,6 +19,7 @@ mod tracer;
 pub mod truth;
 mod watertight;
 
+pub use beam::Beam;
 pub use ray::{Hit, Ray};
 pub use sight::{Places, RecentOccluders, Sight, Square, Viewpoint};
 pub use tracer::Tracer;

@@ -1,10 +1,11 @@
 //! The scene's triangles in a bounding volume hierarchy.
 
+use crate::beam::Beam;
 use crate::hierarchy::Hierarchy;
 use crate::local_space::LocalSpace;
 use crate::presence::is_there;
 use crate::sight::{Eye, Looking, Outline, Places, RecentOccluders, Sight, Square, Viewpoint};
-use crate::watertight::{ShearedRay, has_area, in_plane};
+use crate::watertight::{ShearedRay, ShearedRays, has_area, in_plane};
 use crate::{Hit, Ray};
 use glam::{DVec2, DVec3};
 use scene::{Scene, SurfacePoint};
@@ -37,6 +38,14 @@ struct LeafTriangle {
     corners: [DVec3; 3],
     index: u32,
     may_be_transparent: bool,
+}
+
+/// What a ray met so far.
+#[derive(Clone, Copy)]
+struct Nearest {
+    hit: Option<Hit>,
+    /// Nothing at or behind this counts any more.
+    t_max: f64,
 }
 
 impl Tracer {
@@ -82,26 +91,73 @@ impl Tracer {
     pub fn first_hit(&self, ray: &Ray) -> Option<Hit> {
         let local = self.space.ray(ray)?;
         let sheared = ShearedRay::new(ray.origin, ray.direction);
-        let mut first: Option<Hit> = None;
-        let mut t_max = ray.t_max;
-        self.hierarchy.walk(&local, local.local_t(t_max), |leaf| {
+        let mut nearest = Nearest { hit: None, t_max: ray.t_max };
+        self.hierarchy.walk(&local, local.local_t(ray.t_max), |leaf| {
             for triangle in &self.triangles[leaf] {
-                let Some(crossing) = sheared.cross(&triangle.corners) else { continue };
-                let t = crossing.t;
-                let nearer =
-                    t < t_max || first.is_some_and(|hit| t == hit.t && triangle.index < hit.point.triangle);
-                if !(t > ray.t_min && nearer) || ray.skip == Some(triangle.index) {
-                    continue;
-                }
-                let point = SurfacePoint { triangle: triangle.index, barycentric: crossing.barycentric };
-                if !triangle.may_be_transparent || is_there(&self.scene, point, ray) {
-                    first = Some(Hit { point, t });
-                    t_max = t;
+                self.take(&mut nearest, triangle, ray, &sheared);
+            }
+            Some(local.local_t(nearest.t_max))
+        });
+        nearest.hit
+    }
+
+    /// What each ray of a beam meets first: the same as [`Self::first_hit`] says, for the cost of a few. At most
+    /// [`Beam::MOST_RAYS`] rays; all start at the beam's origin and lie between its edges.
+    pub fn first_hits(&self, beam: &Beam, rays: &[Ray]) -> [Option<Hit>; Beam::MOST_RAYS] {
+        assert!(rays.len() <= Beam::MOST_RAYS, "more rays than a beam has");
+        let is_usable = |ray: &Ray| ray.direction.is_finite() && ray.direction != DVec3::ZERO;
+        let one_by_one = || std::array::from_fn(|at| rays.get(at).and_then(|ray| self.first_hit(ray)));
+        if rays.is_empty() || !rays.iter().all(is_usable) {
+            return one_by_one();
+        }
+        let ray = |at: usize| &rays[at.min(rays.len() - 1)];
+        let sheared: [_; Beam::MOST_RAYS] =
+            std::array::from_fn(|at| ShearedRay::new(ray(at).origin, ray(at).direction));
+        let Some(together) = ShearedRays::new(&sheared) else { return one_by_one() };
+        let mut nearest: [_; Beam::MOST_RAYS] =
+            std::array::from_fn(|at| Nearest { hit: None, t_max: ray(at).t_max });
+        let all = u32::MAX >> (32 - rays.len());
+        let shaft = beam.shaft(&self.space);
+        let far = |nearest: &[Nearest]| {
+            let farthest =
+                nearest[..rays.len()].iter().fold(f64::NEG_INFINITY, |far, ray| far.max(ray.t_max));
+            if farthest.is_finite() { beam.height(&self.space, farthest) } else { f32::INFINITY }
+        };
+        let mut farthest = far(&nearest);
+        self.hierarchy.walk_within(&shaft, farthest, |leaf| {
+            let mut is_changed = false;
+            for triangle in &self.triangles[leaf] {
+                let mut near = together.near(&triangle.corners) & all;
+                while near != 0 {
+                    let at = near.trailing_zeros() as usize;
+                    near &= near - 1;
+                    is_changed |= self.take(&mut nearest[at], triangle, &rays[at], &sheared[at]);
                 }
             }
-            Some(local.local_t(t_max))
+            if is_changed {
+                farthest = far(&nearest);
+            }
+            farthest
         });
-        first
+        nearest.map(|nearest| nearest.hit)
+    }
+
+    /// Takes a triangle for the nearest, if it is.
+    #[inline(always)]
+    fn take(&self, nearest: &mut Nearest, triangle: &LeafTriangle, ray: &Ray, sheared: &ShearedRay) -> bool {
+        let Some(crossing) = sheared.cross(&triangle.corners) else { return false };
+        let t = crossing.t;
+        let is_nearer = t < nearest.t_max
+            || nearest.hit.is_some_and(|hit| t == hit.t && triangle.index < hit.point.triangle);
+        if !(t > ray.t_min && is_nearer) || ray.skip == Some(triangle.index) {
+            return false;
+        }
+        let point = SurfacePoint { triangle: triangle.index, barycentric: crossing.barycentric };
+        let is_met = !triangle.may_be_transparent || is_there(&self.scene, point, ray);
+        if is_met {
+            *nearest = Nearest { hit: Some(Hit { point, t }), t_max: t };
+        }
+        is_met
     }
 
     /// Whether anything lies strictly between a surface point and the world position `eye`.
@@ -158,9 +214,9 @@ impl Tracer {
         };
         occluders.0.retain(|&place| hide(&mut sight, place as usize));
         if sight.hidden != places.all() {
-            self.hierarchy.walk_within(&looking.shaft(&self.space), |leaf| {
+            self.hierarchy.walk_within(&looking.shaft(&self.space), f32::INFINITY, |leaf| {
                 occluders.0.extend(leaf.filter(|&place| hide(&mut sight, place)).map(|place| place as u32));
-                sight.hidden != places.all()
+                if sight.hidden == places.all() { f32::NEG_INFINITY } else { f32::INFINITY }
             });
         }
         sight

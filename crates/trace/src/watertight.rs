@@ -69,6 +69,47 @@ impl ShearedRay {
     }
 }
 
+/// Several rays from one origin that are longest along the same axis.
+pub(crate) struct ShearedRays {
+    origin: DVec3,
+    axes: [usize; 3],
+    /// dx/dz and dy/dz of each.
+    shear: [[f64; ShearedRays::MOST]; 2],
+}
+
+impl ShearedRays {
+    /// How many there can be.
+    pub const MOST: usize = 16;
+
+    /// `None` if they are not longest along the same axis.
+    pub fn new(rays: &[ShearedRay; Self::MOST]) -> Option<Self> {
+        let ShearedRay { origin, axes, .. } = rays[0];
+        let shear = [0, 1].map(|k| rays.map(|ray| ray.shear[k]));
+        rays.iter().all(|ray| ray.axes == axes).then_some(Self { origin, axes, shear })
+    }
+
+    /// A bit for each ray whose line does not pass beside the triangle: the signs that [`ShearedRay::cross`] looks at.
+    #[inline(always)]
+    pub fn near(&self, corners: &[DVec3; 3]) -> u32 {
+        let [x, y, z] = self.axes;
+        let [a, b, c] = corners.map(|corner| (corner - self.origin).to_array());
+        let mut is_near = [false; Self::MOST];
+        for at in 0..Self::MOST {
+            let (sx, sy) = (self.shear[0][at], self.shear[1][at]);
+            let (ax, ay) = (a[x] - sx * a[z], a[y] - sy * a[z]);
+            let (bx, by) = (b[x] - sx * b[z], b[y] - sy * b[z]);
+            let (cx, cy) = (c[x] - sx * c[z], c[y] - sy * c[z]);
+            let u = cx * by - cy * bx;
+            let v = ax * cy - ay * cx;
+            let w = bx * ay - by * ax;
+            let is_negative = (u < 0.0) | (v < 0.0) | (w < 0.0);
+            let is_positive = (u > 0.0) | (v > 0.0) | (w > 0.0);
+            is_near[at] = !(is_negative & is_positive);
+        }
+        (0..Self::MOST).map(|at| u32::from(is_near[at]) << at).sum()
+    }
+}
+
 /// Whether a triangle has an area: more than rounding makes of three corners on a line. Non-finite corners
 /// have none.
 pub(crate) fn has_area([a, b, c]: &[DVec3; 3]) -> bool {

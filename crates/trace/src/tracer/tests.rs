@@ -67,6 +67,63 @@ fn agrees_with_testing_every_triangle() {
     }
 }
 
+/// Rays in a random pyramid of a beam from `origin` around `aim`, `width` wide at a depth of 1.
+fn beam(random: &mut Random, origin: DVec3, aim: DVec3, width: f64, count: usize) -> (Beam, Vec<Ray>) {
+    let axis = (aim - origin).normalize();
+    let side = axis.any_orthonormal_vector() * width;
+    let other = axis.cross(side);
+    let at = |u: f64, v: f64| axis + (u - 0.5) * side + (v - 0.5) * other;
+    let edges = [at(0.0, 0.0), at(1.0, 0.0), at(1.0, 1.0), at(0.0, 1.0)];
+    let rays = (0..count).map(|_| ray(origin, at(random.unit(), random.unit())));
+    (Beam { origin, axis, edges }, rays.collect())
+}
+
+#[test]
+fn the_rays_of_a_beam_meet_what_they_meet_alone() {
+    let mut random = Random(11);
+    let key = |hit: Hit| (hit.point.triangle, hit.t.to_bits(), hit.point.barycentric.to_array());
+    let glass =
+        Material { alpha: AlphaMode::Blend, base_color: glam::Vec4::new(1.0, 1.0, 1.0, 0.6), ..WHITE };
+    for (count, size, material) in [(1, 1.0, WHITE), (400, 0.3, glass), (2000, 0.02, WHITE)] {
+        for offset in OFFSETS {
+            let (mut positions, triangles) = random_triangles(&mut random, count, size);
+            positions.iter_mut().for_each(|p| *p += offset);
+            let tracer = Tracer::new(scene_of(&[((positions, triangles), material.clone())]));
+            let (mut hits, mut together) = (0, 0);
+            for k in 0..600 {
+                let distance = [0.5, 3.0, 1e3, 1e6][k % 4];
+                let (origin, aim) = (offset + random.in_cube() * distance, offset + random.in_cube() * 0.7);
+                let width = [0.01, 0.3, 1e-9][k % 3] / distance;
+                let (beam, mut rays) = beam(&mut random, origin, aim, width, 1 + k % Beam::MOST_RAYS);
+                // Through all surfaces, one after the other.
+                for _ in 0..6 {
+                    let found = tracer.first_hits(&beam, &rays);
+                    for (ray, found) in rays.iter().zip(found) {
+                        let alone = tracer.first_hit(ray);
+                        assert_eq!(found.map(key), alone.map(key), "{beam:?} {ray:?}");
+                        hits += usize::from(alone.is_some());
+                    }
+                    assert!(found[rays.len()..].iter().all(Option::is_none));
+                    together += usize::from(found.iter().filter(|hit| hit.is_some()).count() > 1);
+                    for (ray, hit) in rays.iter_mut().zip(found) {
+                        let Some(hit) = hit else { continue };
+                        *ray = Ray { t_min: hit.t, skip: Some(hit.point.triangle), ..*ray };
+                    }
+                }
+                rays[0].t_max = 0.0;
+                assert!(tracer.first_hits(&beam, &rays)[0].is_none());
+            }
+            assert!(hits > 50 && together > 5, "{hits} hits, {together} of beams");
+        }
+    }
+    let tracer = Tracer::new(scene_of(&[(sphere(DVec3::ZERO, 1.0, 24), WHITE)]));
+    let (around, mut rays) = beam(&mut random, DVec3::ZERO, DVec3::ONE, 3.0, 16);
+    assert!(tracer.first_hits(&around, &rays).iter().all(Option::is_some), "along different axes");
+    rays[3].direction = DVec3::NAN;
+    assert_eq!(tracer.first_hits(&around, &rays).iter().filter(|hit| hit.is_none()).count(), 1);
+    assert!(tracer.first_hits(&around, &[]).iter().all(Option::is_none));
+}
+
 #[test]
 fn no_ray_leaves_a_closed_mesh() {
     let mut random = Random(2);
