@@ -94,7 +94,7 @@ impl ShearedRays {
         let [x, y, z] = self.axes;
         let [a, b, c] = corners.map(|corner| (corner - self.origin).to_array());
         let mut is_near = [false; Self::MOST];
-        for at in 0..Self::MOST {
+        for (at, is_near) in is_near.iter_mut().enumerate() {
             let (sx, sy) = (self.shear[0][at], self.shear[1][at]);
             let (ax, ay) = (a[x] - sx * a[z], a[y] - sy * a[z]);
             let (bx, by) = (b[x] - sx * b[z], b[y] - sy * b[z]);
@@ -104,9 +104,9 @@ impl ShearedRays {
             let w = bx * ay - by * ax;
             let is_negative = (u < 0.0) | (v < 0.0) | (w < 0.0);
             let is_positive = (u > 0.0) | (v > 0.0) | (w > 0.0);
-            is_near[at] = !(is_negative & is_positive);
+            *is_near = !(is_negative & is_positive);
         }
-        (0..Self::MOST).map(|at| u32::from(is_near[at]) << at).sum()
+        is_near.iter().enumerate().map(|(at, &is_near)| u32::from(is_near) << at).sum()
     }
 }
 
