@@ -8,7 +8,7 @@ use crate::sample::{Sample, Visibility};
 use crate::view::View;
 use glam::{DVec2, Vec3};
 use scene::SurfacePoint;
-use trace::{Beam, Hit, Radiance, Ray, Tracer};
+use trace::{Hit, Radiance, Tracer};
 
 /// Surfaces along one chief ray beyond which nothing is looked for.
 const DEEPEST_LAYER: usize = 12;
@@ -59,9 +59,21 @@ pub fn trace_cell(tracer: &Tracer, view: &View, placement: &Placement, cell: Cel
         let [jx, jy, _] = jitter(seed.x, seed.y, sub_cell as u32);
         cell.sub_corner(sub_cell) + DVec2::new(jx, jy) * cell.sub_side()
     });
-    let met = surfaces_along(tracer, &beam, pixels.map(|pixel| view.chief_ray(pixel)), hidden);
+    let rays = pixels.map(|pixel| view.chief_ray(pixel));
+    let most = if hidden { DEEPEST_LAYER } else { 1 };
+    let met: Vec<(usize, Hit)> = if hidden {
+        tracer.all_hits(&beam, &rays, most)
+    } else {
+        let first = tracer.first_hits(&beam, &rays).into_iter().enumerate();
+        first.filter_map(|(sub_cell, hit)| Some((sub_cell, hit?))).collect()
+    };
+    let mut met = met.as_slice();
     for (sub_cell, pixel) in pixels.into_iter().enumerate() {
-        for (layer, hit) in met.iter().map_while(|layer| layer[sub_cell]).enumerate() {
+        let (mine, others) = met.split_at(met.iter().take_while(|(of, _)| *of == sub_cell).count());
+        met = others;
+        // Behind the last surface lies the background.
+        let hits = mine.iter().map(|(_, hit)| Some(*hit)).chain([None]).take(most);
+        for (layer, hit) in hits.enumerate() {
             let inverse_depth = hit.map_or(0.0, |hit| 1.0 / hit.t);
             let point = hit.map(|hit| hit.point);
             if layer == 0 {
@@ -79,37 +91,6 @@ pub fn trace_cell(tracer: &Tracer, view: &View, placement: &Placement, cell: Cel
         }
     }
     layers
-}
-
-/// What the rays of a beam meet, layer by layer: for each ray that got there `Some`, of a surface or of none behind
-/// the last.
-fn surfaces_along(
-    tracer: &Tracer,
-    beam: &Beam,
-    rays: [Ray; Cell::RAYS],
-    hidden: bool,
-) -> Vec<[Option<Option<Hit>>; Cell::RAYS]> {
-    let mut met = Vec::new();
-    let mut open: Vec<(usize, Ray)> = rays.into_iter().enumerate().collect();
-    for _ in 0..if hidden { DEEPEST_LAYER } else { 1 } {
-        if open.is_empty() {
-            break;
-        }
-        let rays: Vec<Ray> = open.iter().map(|(_, ray)| *ray).collect();
-        let hits = tracer.first_hits(beam, &rays);
-        let mut layer = [None; Cell::RAYS];
-        let mut hits = hits.into_iter();
-        open.retain_mut(|(sub_cell, ray)| {
-            let hit = hits.next().flatten();
-            layer[*sub_cell] = Some(hit);
-            if let Some(hit) = hit {
-                *ray = Ray { t_min: hit.t, skip: Some(hit.point.triangle), ..*ray };
-            }
-            hit.is_some()
-        });
-        met.push(layer);
-    }
-    met
 }
 
 impl Layers {

@@ -96,12 +96,18 @@ fn the_rays_of_a_beam_meet_what_they_meet_alone() {
                 let width = [0.01, 0.3, 1e-9][k % 3] / distance;
                 let (beam, mut rays) = beam(&mut random, origin, aim, width, 1 + k % Beam::MOST_RAYS);
                 // Through all surfaces, one after the other.
-                for _ in 0..6 {
+                let most = 6;
+                let mut all = tracer.all_hits(&beam, &rays, most);
+                for _ in 0..most {
                     let found = tracer.first_hits(&beam, &rays);
                     for (ray, found) in rays.iter().zip(found) {
                         let alone = tracer.first_hit(ray);
                         assert_eq!(found.map(key), alone.map(key), "{beam:?} {ray:?}");
                         hits += usize::from(alone.is_some());
+                    }
+                    for (at, hit) in found.into_iter().enumerate().filter_map(|(at, hit)| Some((at, hit?))) {
+                        let place = all.iter().position(|(of, _)| *of == at).expect("all hits have it");
+                        assert_eq!(key(all.remove(place).1), key(hit), "in their order");
                     }
                     assert!(found[rays.len()..].iter().all(Option::is_none));
                     together += usize::from(found.iter().filter(|hit| hit.is_some()).count() > 1);
@@ -110,6 +116,7 @@ fn the_rays_of_a_beam_meet_what_they_meet_alone() {
                         *ray = Ray { t_min: hit.t, skip: Some(hit.point.triangle), ..*ray };
                     }
                 }
+                assert!(all.is_empty(), "nothing else: {all:?}");
                 rays[0].t_max = 0.0;
                 assert!(tracer.first_hits(&beam, &rays)[0].is_none());
             }
