@@ -22,4 +22,4 @@ start_app "$work/demo.fbrush" --replay "$root/tests/window/latency.json" --trace
 wait "$app"
 app=
 [ -s "$trace" ] || fail "no trace was written"
-cat "$trace"
+cat "$trace"; cp "$work/app.log" "${LOG:-/dev/null}"

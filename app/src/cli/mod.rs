@@ -25,7 +25,7 @@ use clap::Parser;
 use clap::error::ErrorKind;
 use console::Console;
 use failure::Failure;
-use session::InputKind;
+use session::{InputKind, LightFieldStore};
 use std::process::ExitCode;
 use std::sync::Mutex;
 
@@ -96,8 +96,18 @@ fn open_window(arguments: Arguments) -> Result<(), Failure> {
     }
     // What is measured does not depend on what the window was like when it was last closed.
     let remember = trace.is_none();
-    let options =
-        window::WindowOptions { file, unwrap, replay, trace, preview_size, remember, ..Default::default() };
+    let folders = directories::ProjectDirs::from("", "", "focus-brush");
+    let light_fields = folders.map(|folders| LightFieldStore::new(folders.cache_dir().join("light-fields")));
+    let options = window::WindowOptions {
+        file,
+        unwrap,
+        replay,
+        trace,
+        preview_size,
+        remember,
+        light_fields,
+        ..Default::default()
+    };
     window::run(options).map_err(|error| {
         let why = format!("{error:#}").replace('\n', " ");
         Failure::bad(format!("no window: {why} (`focus-brush doctor` says what is missing)"))

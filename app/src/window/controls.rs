@@ -95,6 +95,15 @@ pub fn seconds(seconds: f64) -> String {
     }
 }
 
+/// How long something will still take, for people: no finer than such a guess is.
+pub fn time_left(seconds: u32) -> String {
+    match seconds {
+        0..10 => format!("{seconds} s left"),
+        10..90 => format!("{} s left", seconds.div_ceil(5) * 5),
+        _ => format!("{} min left", seconds.div_ceil(60)),
+    }
+}
+
 /// A signed circle of confusion in words: `near 12 px`, `sharp`, `far 3.1 px`.
 pub fn circle(px: f64) -> String {
     match px {

@@ -22,6 +22,8 @@ pub enum Purpose {
     SaveAs,
     /// The picture.
     ExportPicture,
+    /// The picture as it is on screen.
+    ExportShown,
     /// The focus map.
     ExportFocusMap,
     /// The unwrapped scene.
@@ -40,6 +42,7 @@ impl Purpose {
             Self::Open => "Open a scene or a project",
             Self::SaveAs => "Save the project as",
             Self::ExportPicture => "Export the picture",
+            Self::ExportShown => "Export the picture as shown",
             Self::ExportFocusMap => "Export the focus map",
             Self::ExportScene => "Export the unwrapped scene",
             Self::ExportStrokes => "Export the strokes",
@@ -52,7 +55,7 @@ impl Purpose {
         match self {
             Self::Open => &["glb", "gltf", "fbrush"],
             Self::SaveAs => &["fbrush"],
-            Self::ExportPicture | Self::ExportFocusMap => &["exr", "png"],
+            Self::ExportPicture | Self::ExportShown | Self::ExportFocusMap => &["exr", "png"],
             Self::ImportFocusMap => &["exr", "png", "json"],
             Self::ExportScene => &["glb"],
             Self::ExportStrokes => &["json"],
@@ -63,7 +66,7 @@ impl Purpose {
     /// Where there is a choice of formats: extension, name, and what it is for.
     fn formats(self) -> &'static [(&'static str, &'static str, &'static str)] {
         match self {
-            Self::ExportPicture => &[
+            Self::ExportPicture | Self::ExportShown => &[
                 ("png", "PNG", "The picture as the screen shows it, for everyone."),
                 ("exr", "OpenEXR", "Linear light, unclipped, for grading and compositing."),
             ],
@@ -81,6 +84,7 @@ impl Purpose {
             self,
             Self::SaveAs
                 | Self::ExportPicture
+                | Self::ExportShown
                 | Self::ExportFocusMap
                 | Self::ExportScene
                 | Self::ExportStrokes
@@ -91,9 +95,9 @@ impl Purpose {
         match self {
             Self::Open => "Open",
             Self::SaveAs => "Save",
-            Self::ExportPicture | Self::ExportFocusMap | Self::ExportScene | Self::ExportStrokes => "Export",
+            _ if self.writes() => "Export",
             Self::ImportFocusMap => "Import",
-            Self::ApertureMask => "Choose",
+            _ => "Choose",
         }
     }
 }
@@ -121,12 +125,14 @@ enum Wish {
 pub struct FileDialog {
     system: bool,
     asking: Option<(Purpose, PathBuf, State)>,
+    /// What is to be known before answering.
+    note: Option<String>,
 }
 
 impl FileDialog {
     /// No question yet. `system` is whether the system's dialogs are asked for.
     pub fn new(system: bool) -> Self {
-        Self { system, asking: None }
+        Self { system, asking: None, note: None }
     }
 
     /// Asks for a file; `suggestion` is where to begin (a file name with its folder).
@@ -137,6 +143,12 @@ impl FileDialog {
             None => typed(purpose, &suggestion),
         };
         self.asking = Some((purpose, suggestion, state));
+        self.note = None;
+    }
+
+    /// What is to be known before answering the question that was asked last.
+    pub fn note(&mut self, note: Option<String>) {
+        self.note = note;
     }
 
     /// Whether a question is open.
@@ -156,7 +168,7 @@ impl FileDialog {
                 Err(mpsc::TryRecvError::Disconnected) => Step::Type,
                 Err(mpsc::TryRecvError::Empty) => waiting(context, purpose),
             },
-            State::Typed { text, wish } => typed_dialog(context, purpose, text, wish),
+            State::Typed { text, wish } => typed_dialog(context, (purpose, self.note.as_deref()), text, wish),
         };
         match step {
             Step::Wait => None,
@@ -250,7 +262,12 @@ fn typed(purpose: Purpose, suggestion: &Path) -> State {
 }
 
 /// The path field, what lies in its folder, and the two buttons.
-fn typed_dialog(context: &Context, purpose: Purpose, text: &mut String, wish: &mut Wish) -> Step {
+fn typed_dialog(
+    context: &Context,
+    (purpose, note): (Purpose, Option<&str>),
+    text: &mut String,
+    wish: &mut Wish,
+) -> Step {
     let mut step = Step::Wait;
     let frame = egui::Frame::popup(&context.global_style()).inner_margin(14.0);
     let modal = egui::Modal::new(Id::unique("file dialog")).frame(frame).show(context, |ui| {
@@ -275,6 +292,9 @@ fn typed_dialog(context: &Context, purpose: Purpose, text: &mut String, wish: &m
             state.store(ui.ctx(), response.id);
         }
         format_row(ui, purpose, text);
+        if let Some(note) = note {
+            ui.weak(note);
+        }
         ui.add_space(4.0);
         egui::ScrollArea::vertical().auto_shrink([false; 2]).max_height(240.0).show(ui, |ui| {
             let entries = entries(purpose, text);

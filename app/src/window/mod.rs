@@ -75,6 +75,8 @@ pub struct WindowOptions {
     pub preview_size: Option<u32>,
     /// For how long nothing must change until the exact picture is drawn; none: never.
     pub exact_after: Option<Duration>,
+    /// Where light fields are kept from one run to the next; none: they are baked every time.
+    pub light_fields: Option<session::LightFieldStore>,
     /// How scenes are unwrapped.
     pub unwrap: atlas::UnwrapOptions,
     /// Whether the system is asked for its file dialogs; else paths are typed.
@@ -93,6 +95,7 @@ impl Default for WindowOptions {
             remember: true,
             preview_size: None,
             exact_after: Some(Duration::from_millis(500)),
+            light_fields: None,
             unwrap: atlas::UnwrapOptions::default(),
             system_dialogs: system_dialogs(),
             replay: None,

@@ -2,16 +2,19 @@
 //!
 //! The points of a stroke fall due at the rate of a pen, whether or not the window has time for them. What is measured:
 //! the time from when the window is told of a point, as of any event, until the pixels of a picture that shows it stand
-//! finished, ready for the screen; the same from when the point fell due, waiting for the window included; and the time
-//! from one frame on the screen to the next.
+//! finished, ready for the screen, and where that time goes; the same from when the point fell due, waiting for the window
+//! included; and the time from one frame on the screen to the next.
 
 use project::{LinearPicture, RecordedStep, compare};
 use serde_json::{Value, json};
-use session::{Command, Session, SessionError, StrokePoint};
+use session::{Command, PictureTimes, Session, SessionError, StrokePoint};
 use std::time::{Duration, Instant};
 
 /// Time between two points: a tablet's 125 reports a second.
 const POINT_EVERY: Duration = Duration::from_millis(8);
+
+/// How many of the slowest points a trace tells of.
+const SLOWEST: usize = 12;
 
 /// A recording that is being played.
 pub struct Player {
@@ -20,10 +23,8 @@ pub struct Player {
     stroke: Option<Played>,
     /// What was painted and is not in any finished picture yet.
     unseen: Vec<Painted>,
-    /// Of every point, from when the window was told until its picture stood finished.
-    pictures: Vec<Duration>,
-    /// The same, from when the point fell due.
-    since_due: Vec<Duration>,
+    /// What was painted and when its picture stood finished.
+    seen: Vec<Seen>,
     /// From one frame of the window to the next, while strokes were painted.
     frames: Vec<Duration>,
     last_frame: Option<Instant>,
@@ -35,6 +36,40 @@ struct Painted {
     serial: u64,
     due: Instant,
     told: Instant,
+    /// When the map held it and the preview was told.
+    painted: Instant,
+}
+
+/// What comes between the window being told of a point and its picture: the brush's work on the map, with that of the
+/// points told before it in the same frame; waiting for the preview to be done with what came before; bringing the sum up
+/// to date; a snapshot of the picture and the pixels of the screen.
+const STEPS: [&str; 4] = ["painting", "waiting", "summing", "showing"];
+
+/// A point that came to be seen.
+struct Seen {
+    /// Which of all points that changed the map.
+    point: usize,
+    /// From when it fell due until the window was told.
+    late: Duration,
+    /// How long each of [`STEPS`] took.
+    steps: [Duration; 4],
+}
+
+impl Seen {
+    fn new(point: usize, painted: &Painted, times: &PictureTimes) -> Self {
+        let begun = times.begun.max(painted.painted);
+        let instants = [painted.told, painted.painted, begun, times.summed, times.finished];
+        Self {
+            point,
+            late: painted.told.saturating_duration_since(painted.due),
+            steps: std::array::from_fn(|k| instants[k + 1].saturating_duration_since(instants[k])),
+        }
+    }
+
+    /// From when the window was told until the picture stood finished.
+    fn event_to_picture(&self) -> Duration {
+        self.steps.iter().sum()
+    }
 }
 
 /// The stroke that is being played.
@@ -52,8 +87,7 @@ impl Player {
             next: 0,
             stroke: None,
             unseen: Vec::new(),
-            pictures: Vec::new(),
-            since_due: Vec::new(),
+            seen: Vec::new(),
             frames: Vec::new(),
             last_frame: None,
         }
@@ -115,7 +149,8 @@ impl Player {
             played.next_point += 1;
             // A point between two dabs changes nothing.
             if session.map_serial() != before {
-                self.unseen.push(Painted { serial: session.map_serial(), due, told: now });
+                let painted = Instant::now();
+                self.unseen.push(Painted { serial: session.map_serial(), due, told: now, painted });
             }
         }
         self.stroke = None;
@@ -124,11 +159,10 @@ impl Player {
 
     /// Notes which points have come to be seen.
     fn look(&mut self, session: &Session) {
-        for &(serial, finished) in session.finished_pictures() {
-            let seen = self.unseen.partition_point(|painted| painted.serial <= serial);
+        for times in session.finished_pictures() {
+            let seen = self.unseen.partition_point(|painted| painted.serial <= times.map_serial);
             for painted in self.unseen.drain(..seen) {
-                self.pictures.push(finished.saturating_duration_since(painted.told));
-                self.since_due.push(finished.saturating_duration_since(painted.due));
+                self.seen.push(Seen::new(self.seen.len(), &painted, times));
             }
         }
     }
@@ -138,29 +172,45 @@ impl Player {
         let (Some(document), Some(preview)) = (session.document(), session.preview()) else {
             return Err(SessionError::NothingOpen);
         };
-        let stage = &document.stage;
-        let map = std::sync::Arc::new(document.map.clone());
-        let focus = focus::Focus::painted(stage.scene.clone(), stage.atlas.clone(), map);
-        let options = session::RenderOptions::default();
-        let nobody = progress::Unwatched;
-        let exact = session::render(&stage.tracer, &preview.camera, &focus, &options, &nobody)?.picture;
+        let exact = session.exact_picture()?;
         let [shown, exact] =
             [&*preview.picture, &exact].map(|picture| LinearPicture::of(picture, document.exposure));
         let error = compare(&shown, &exact)?;
+        let all = |of: fn(&Seen) -> Duration| statistics(self.seen.iter().map(of));
+        let of_step = |k: usize| statistics(self.seen.iter().map(|seen| seen.steps[k]));
+        let of_steps: serde_json::Map<_, _> =
+            (STEPS.iter().enumerate()).map(|(k, name)| (name.to_string(), of_step(k))).collect();
         Ok(json!({
             "steps": self.steps.len(),
             "picture": { "width": preview.camera.width, "height": preview.camera.height },
-            "event_to_picture_ms": statistics(&self.pictures),
-            "due_to_picture_ms": statistics(&self.since_due),
-            "frame_ms": statistics(&self.frames),
+            "event_to_picture_ms": all(Seen::event_to_picture),
+            "of_which_ms": of_steps,
+            "slowest": self.slowest(),
+            "due_to_picture_ms": all(|seen| seen.late + seen.event_to_picture()),
+            "frame_ms": statistics(self.frames.iter().copied()),
             "error_against_exact": { "psnr": error.psnr, "signed_mean_error": error.signed_mean_error },
         }))
     }
+
+    /// The slowest points, and what each waited for, ms.
+    fn slowest(&self) -> Vec<Value> {
+        let mut slowest: Vec<&Seen> = self.seen.iter().collect();
+        slowest.sort_by_key(|seen| std::cmp::Reverse(seen.event_to_picture()));
+        let told = |seen: &&Seen| {
+            let steps: Vec<f64> = seen.steps.iter().copied().map(ms).collect();
+            json!({ "point": seen.point, "ms": ms(seen.event_to_picture()), "steps_ms": steps })
+        };
+        slowest.iter().take(SLOWEST).map(told).collect()
+    }
+}
+
+fn ms(duration: Duration) -> f64 {
+    duration.as_secs_f64() * 1e3
 }
 
 /// Median, 99th percentile and greatest, ms.
-fn statistics(durations: &[Duration]) -> Value {
-    let mut ms: Vec<f64> = durations.iter().map(|duration| duration.as_secs_f64() * 1e3).collect();
+fn statistics(durations: impl Iterator<Item = Duration>) -> Value {
+    let mut ms: Vec<f64> = durations.map(ms).collect();
     ms.sort_by(f64::total_cmp);
     let at = |share: f64| {
         let last = ms.len().checked_sub(1)?;
@@ -176,8 +226,8 @@ mod tests {
     #[test]
     fn percentiles_are_of_the_sorted_times() {
         let times: Vec<_> = (0..101).rev().map(Duration::from_millis).collect();
-        let found = statistics(&times);
+        let found = statistics(times.into_iter());
         assert_eq!(found, json!({ "count": 101, "median": 50.0, "p99": 99.0, "max": 100.0 }));
-        assert_eq!(statistics(&[])["median"], Value::Null);
+        assert_eq!(statistics(std::iter::empty())["median"], Value::Null);
     }
 }

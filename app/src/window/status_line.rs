@@ -108,9 +108,14 @@ fn standing(preview: &Preview, drawing_exactly: Option<f32>) -> String {
 }
 
 fn job_ui(ui: &mut Ui, job: &JobStatus, actions: &mut Vec<Action>) {
-    ui.label(&job.label);
+    let step = if job.step.is_empty() { String::new() } else { format!(": {}", job.step) };
+    ui.label(format!("{}{step}", job.label));
     let bar = ProgressBar::new(job.fraction).desired_width(90.0).show_percentage();
     controls::named(&ui.add(bar), &job.label);
+    if let Some(left) = job.seconds_left {
+        let left = controls::time_left(left);
+        ui.label(left).on_hover_text("How long this step will take, going by how long it has taken so far.");
+    }
     if ui.add_enabled(job.can_cancel, egui::Button::new("Stop")).on_hover_text("Stop this work.").clicked() {
         actions.push(Command::Cancel(job.id).into());
     }

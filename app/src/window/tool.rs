@@ -106,31 +106,15 @@ impl Tool {
         Self::BAR.into_iter().flatten().copied().find(|tool| tool.command() == id)
     }
 
-    /// Its word in the tool bar.
-    pub fn label(self) -> &'static str {
-        match self {
-            Tool::Brush => "Brush",
-            Tool::Curve => "Curve",
-            Tool::Smooth => "Smooth",
-            Tool::Sharpen => "Sharpen",
-            Tool::Clone => "Clone",
-            Tool::Reset => "Reset",
-            Tool::FillObject => "Fill",
-            Tool::FillMaterial => "Fill material",
-            Tool::FillChart => "Fill chart",
-            Tool::Gradient => "Gradient",
-            Tool::SharpHere => "Make sharp",
-            Tool::SelectLasso => "Lasso",
-            Tool::SelectBox => "Box",
-            Tool::SelectObject => "Select object",
-            Tool::SelectMaterial => "Select material",
-            Tool::SelectChart => "Select chart",
-            Tool::SelectFacing => "Select facing",
-            Tool::SelectDepth => "Select depth",
-            Tool::FocusHere => "Focus here",
-            Tool::Pick => "Pick",
-            Tool::Inspect => "Inspect",
-        }
+    /// Its word in the tool bar: that of its command, with what the menu says above it.
+    pub fn label(self) -> String {
+        let info = self.command().info();
+        if self.selects() { format!("Select {}", info.name.to_lowercase()) } else { info.name.into() }
+    }
+
+    /// One line for the status line.
+    pub fn tip(self) -> &'static str {
+        self.command().info().tooltip
     }
 
     /// Whether it is dragged from one place to another.
@@ -177,41 +161,6 @@ impl Tool {
             Tool::Clone => BrushMode::Clone,
             Tool::Reset => BrushMode::Reset,
             _ => chosen,
-        }
-    }
-
-    /// One line for the status line.
-    pub fn tip(self) -> &'static str {
-        match self {
-            Tool::Brush => {
-                "Drag in either view to paint the chosen focus. Shift+click draws a straight line, Esc takes a stroke back."
-            }
-            Tool::Curve => {
-                "Click points in one view: a stroke runs through them. Enter or a double click ends it, Esc gives it up."
-            }
-            Tool::Smooth => "Drag in either view to even out the focus.",
-            Tool::Sharpen => "Drag in either view to turn soft changes of focus into hard ones.",
-            Tool::Clone => {
-                "Ctrl+click takes the focus from a place, then drag: the brush paints it elsewhere."
-            }
-            Tool::Reset => "Drag in either view to give the ordinary lens back.",
-            Tool::FillObject => "Click an object in either view to give it the chosen focus.",
-            Tool::FillMaterial => "Click a material in either view to give it the chosen focus.",
-            Tool::FillChart => "Click a chart in either view to give it the chosen focus.",
-            Tool::Gradient => {
-                "Drag a line in either view: the chosen focus at its start leads to what is there, or another."
-            }
-            Tool::SharpHere => "Click an object in either view to make it sharp; everything else stays.",
-            Tool::SelectLasso | Tool::SelectBox => {
-                "Drag around what may be painted; all else is frozen. Shift adds, Ctrl takes away."
-            }
-            Tool::SelectObject | Tool::SelectMaterial | Tool::SelectChart | Tool::SelectFacing => {
-                "Click what may be painted; all else is frozen. Shift adds, Ctrl takes away."
-            }
-            Tool::SelectDepth => "Drag from the nearest to the farthest thing that may be painted.",
-            Tool::FocusHere => "Click in either view to focus the lens there.",
-            Tool::Inspect => "Click in either view to see the aperture as that point sees it.",
-            Tool::Pick => "Click in either view to take the focus from there.",
         }
     }
 }

@@ -13,39 +13,40 @@ const WIDTH_WITH_PERCENT: f32 = 500.0;
 /// Room for the panel's own menu, points.
 const MENU_WIDTH: f32 = 32.0;
 
-/// What the headers change.
-pub struct HeaderState<'a> {
+/// The line above a panel, to be drawn.
+pub struct ViewHeader<'a> {
+    /// Whose it is.
+    pub pane: Pane,
+    /// Where that is.
+    pub docked: Docked,
+    /// What is shown.
+    pub session: &'a Session,
     /// How the paint view looks.
     pub settings: &'a mut ViewSettings,
     /// Which picture is shown.
     pub picture: &'a mut PictureView,
 }
 
-/// The line above a panel. Returns whether the panel is being dragged elsewhere by its name.
-pub fn view_header(
-    ui: &mut Ui,
-    (pane, docked): (Pane, Docked),
-    session: &Session,
-    state: HeaderState<'_>,
-    actions: &mut Vec<Action>,
-) -> bool {
-    let is_view = matches!(pane, Pane::Paint | Pane::Picture);
-    // All that the line of another panel would say stands on its tab.
-    if !is_view && docked == Docked::Tab {
-        return false;
-    }
-    let frame = egui::Frame::new().inner_margin(egui::Margin::symmetric(8, 3)).fill(ui.visuals().panel_fill);
-    let line = frame.show(ui, |ui| {
-        ui.set_width(ui.available_width());
-        // The menu has its place at the right end, whatever wraps.
-        let menu_width = if docked == Docked::Tab { 0.0 } else { MENU_WIDTH };
-        let width = ui.available_width() - menu_width;
-        ui.horizontal_top(|ui| {
+impl ViewHeader<'_> {
+    /// Draws it. Returns whether the panel is being dragged elsewhere by its name.
+    pub fn show(self, ui: &mut Ui, actions: &mut Vec<Action>) -> bool {
+        let (pane, docked) = (self.pane, self.docked);
+        let is_view = matches!(pane, Pane::Paint | Pane::Picture);
+        // All that the line of another panel would say stands on its tab.
+        if !is_view && docked == Docked::Tab {
+            return false;
+        }
+        let margin = egui::Margin::symmetric(8, 3);
+        let frame = egui::Frame::new().inner_margin(margin).fill(ui.visuals().panel_fill);
+        let line = |ui: &mut Ui| {
             let spacing = std::mem::take(&mut ui.spacing_mut().item_spacing.x);
+            // The menu has its place at the right end, whatever wraps.
+            let menu_width = if docked == Docked::Tab { 0.0 } else { MENU_WIDTH };
+            let width = ui.available_width() - menu_width;
             let wrapped = |ui: &mut Ui| {
                 ui.set_width(width);
                 ui.spacing_mut().item_spacing.x = spacing;
-                ui.horizontal_wrapped(|ui| header_controls(ui, (pane, docked), session, state, actions)).inner
+                ui.horizontal_wrapped(|ui| self.controls(ui, actions)).inner
             };
             let layout = egui::Layout::top_down(egui::Align::Min);
             let is_dragged = ui.allocate_ui_with_layout(egui::vec2(width, 0.0), layout, wrapped).inner;
@@ -54,40 +55,37 @@ pub fn view_header(
                 ui.with_layout(layout, |ui| panel_menu(ui, pane, docked, actions));
             }
             is_dragged
-        })
-        .inner
-    });
-    line.inner
-}
-
-/// A narrow view wraps these: it must not grow wider than itself.
-fn header_controls(
-    ui: &mut Ui,
-    (pane, docked): (Pane, Docked),
-    session: &Session,
-    state: HeaderState<'_>,
-    actions: &mut Vec<Action>,
-) -> bool {
-    ui.spacing_mut().item_spacing.x = 5.0;
-    let title = egui::RichText::new(pane.title()).strong();
-    let is_dragged = match docked {
-        Docked::Beside => {
-            let name = egui::Label::new(title).selectable(false).sense(egui::Sense::drag());
-            let name = ui.add(name).on_hover_text("Drag to place this panel elsewhere, also into tabs.");
-            name.drag_started()
-        }
-        Docked::Alone => {
-            ui.add(egui::Label::new(title).selectable(false));
-            false
-        }
-        Docked::Tab | Docked::Floats => false,
-    };
-    match pane {
-        Pane::Paint => paint_header(ui, state.settings),
-        Pane::Picture => picture_header(ui, session, state.picture, actions),
-        _ => {}
+        };
+        let framed = frame.show(ui, |ui| {
+            ui.set_width(ui.available_width());
+            ui.horizontal_top(line).inner
+        });
+        framed.inner
     }
-    is_dragged
+
+    /// A narrow view wraps these: it must not grow wider than itself.
+    fn controls(self, ui: &mut Ui, actions: &mut Vec<Action>) -> bool {
+        ui.spacing_mut().item_spacing.x = 5.0;
+        let title = egui::RichText::new(self.pane.title()).strong();
+        let is_dragged = match self.docked {
+            Docked::Beside => {
+                let name = egui::Label::new(title).selectable(false).sense(egui::Sense::drag());
+                let name = ui.add(name).on_hover_text("Drag to place this panel elsewhere, also into tabs.");
+                name.drag_started()
+            }
+            Docked::Alone => {
+                ui.add(egui::Label::new(title).selectable(false));
+                false
+            }
+            Docked::Tab | Docked::Floats => false,
+        };
+        match self.pane {
+            Pane::Paint => paint_header(ui, self.settings),
+            Pane::Picture => picture_header(ui, self.session, self.picture, actions),
+            _ => {}
+        }
+        is_dragged
+    }
 }
 
 /// What can be done with a panel.

@@ -23,6 +23,8 @@ pub enum Command {
     SaveAs(PathBuf),
     /// Renders the picture at full size in the background and writes it.
     ExportPicture(PathBuf),
+    /// Writes the live picture as it is on screen, if it is no longer rough.
+    ExportShown(PathBuf),
     /// Writes the focus map, EXR or 16-bit PNG by the file's extension.
     ExportFocusMap(PathBuf),
     /// Writes the scene as GLB with the atlas as a second UV set.

@@ -3,8 +3,9 @@
 use crate::SessionError;
 use progress::Progress;
 use std::panic::AssertUnwindSafe;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, Instant};
 
 /// Names one piece of background work.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -17,18 +18,45 @@ pub struct JobStatus {
     pub id: JobId,
     /// What it does: "opening house.glb".
     pub label: String,
+    /// Which step of it goes on: "unwrapping"; empty where it has but one.
+    pub step: String,
     /// The share done, in [0, 1].
     pub fraction: f32,
+    /// Seconds until the step is done, as far as can be told from how long the share that is done has taken.
+    pub seconds_left: Option<u32>,
     /// Whether [`crate::Command::Cancel`] can stop it.
     pub can_cancel: bool,
 }
 
 /// Progress and cancellation shared between a job and its watchers.
-#[derive(Default)]
 pub struct JobProgress {
     fraction: AtomicU32,
     cancelled: AtomicBool,
+    step: Mutex<Step>,
 }
+
+/// A part of a job.
+struct Step {
+    label: String,
+    begun: Instant,
+    /// Shares of the whole, before and after it.
+    shares: [f32; 2],
+}
+
+impl Default for Step {
+    fn default() -> Self {
+        Self { label: String::new(), begun: Instant::now(), shares: [0.0, 1.0] }
+    }
+}
+
+impl Default for JobProgress {
+    fn default() -> Self {
+        Self { fraction: AtomicU32::new(0), cancelled: AtomicBool::new(false), step: Mutex::default() }
+    }
+}
+
+/// Before a step has gone on for this long, and is done to this share, nobody can tell how long it takes.
+const KNOWN_AFTER: (Duration, f32) = (Duration::from_secs(1), 0.02);
 
 impl JobProgress {
     /// The share done, in [0, 1].
@@ -43,8 +71,36 @@ impl JobProgress {
 
     /// Starts over: nothing done, not cancelled.
     pub(crate) fn reset(&self) {
-        self.fraction.store(0, Ordering::Relaxed);
         self.cancelled.store(false, Ordering::Relaxed);
+        self.begin_step("", 0.0, 1.0);
+    }
+
+    /// A part begins that takes the bar from one share of the whole to another.
+    pub(crate) fn begin_step(&self, label: &str, from: f32, to: f32) {
+        let mut step = self.step();
+        self.fraction.store(from.to_bits(), Ordering::Relaxed);
+        *step = Step { label: label.into(), begun: Instant::now(), shares: [from, to] };
+    }
+
+    /// What the part that goes on is called, and how many seconds it will take.
+    pub(crate) fn standing(&self) -> (String, Option<u32>) {
+        let step = self.step();
+        (step.label.clone(), step.seconds_left(self.fraction(), step.begun.elapsed()))
+    }
+
+    /// A poisoned lock only means that a panic passed by: what it guards is replaced as a whole.
+    fn step(&self) -> MutexGuard<'_, Step> {
+        self.step.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl Step {
+    /// Seconds that it will take when it has come to this share of the whole in this time.
+    fn seconds_left(&self, fraction: f32, elapsed: Duration) -> Option<u32> {
+        let [from, to] = self.shares;
+        let done = (fraction - from) / (to - from);
+        let is_known = elapsed >= KNOWN_AFTER.0 && done >= KNOWN_AFTER.1;
+        is_known.then(|| (elapsed.as_secs_f32() * (1.0 - done).max(0.0) / done).ceil() as u32)
     }
 }
 
@@ -91,10 +147,13 @@ impl Job {
     }
 
     pub fn status(&self) -> JobStatus {
+        let (step, seconds_left) = self.progress.standing();
         JobStatus {
             id: self.id,
             label: self.label.clone(),
+            step,
             fraction: self.progress.fraction(),
+            seconds_left,
             can_cancel: !self.progress.cancelled(),
         }
     }
@@ -124,7 +183,22 @@ pub fn guarded<T>(doing: &str, work: impl FnOnce() -> Result<T, SessionError>) -
 mod tests {
     use super::*;
     use std::sync::mpsc;
-    use std::time::Duration;
+
+    #[test]
+    fn what_is_left_follows_from_what_is_done() {
+        let step = Step { shares: [0.5, 0.9], ..Step::default() };
+        let after = |seconds, fraction| step.seconds_left(fraction, Duration::from_secs(seconds));
+        assert_eq!(after(10, 0.6), Some(30), "a quarter in ten seconds");
+        assert_eq!(after(10, 0.9), Some(0));
+        assert_eq!(after(10, 0.5), None, "nothing is done");
+        assert_eq!(after(0, 0.6), None, "it has just begun");
+        let progress = JobProgress::default();
+        progress.report(0.7);
+        progress.begin_step("baking", 0.5, 0.9);
+        assert_eq!((progress.standing().0.as_str(), progress.fraction()), ("baking", 0.5));
+        progress.report(0.4);
+        assert_eq!(progress.fraction(), 0.5, "it never runs back");
+    }
 
     #[test]
     fn a_panic_is_an_error_and_a_result_arrives() {

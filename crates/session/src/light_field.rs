@@ -89,7 +89,6 @@ pub(crate) struct BakedField {
 /// A light field and its running sum.
 pub(crate) struct LightField {
     splatter: Splatter,
-    tolerance: Tolerance,
     index: Arc<SampleIndex>,
     modelled: Modelled,
     /// The lens of the sum; none while there is no valid sum.
@@ -124,28 +123,26 @@ impl LightField {
         let margin_px = needed + MARGIN_HEADROOM * camera.height as f64;
         let options = BakeOptions { margin_px, ..BakeOptions::default() };
         let radiance = light(&stage.tracer, camera);
-        let salf = Arc::new(salf::bake(&stage.tracer, &radiance, camera, &options, progress)?);
-        let index = Arc::new(SampleIndex::new(&salf, &stage.atlas));
-        let modelled = Modelled::with_texels(&salf, &stage.tracer, Some(&stage.texels.texels));
-        // Without a card, or one that works, the processor sums.
-        let gpu = Gpu::open(BackendChoice::Auto, None).ok().flatten();
-        Ok(Self::new(salf, index, modelled, gpu, how.tolerance))
+        let salf = salf::bake(&stage.tracer, &radiance, camera, &options, progress)?;
+        Ok(Self::of(stage, Arc::new(salf), how.tolerance))
     }
 
-    /// A light field that is not summed yet.
-    fn new(
-        salf: Arc<Salf>,
-        index: Arc<SampleIndex>,
-        modelled: Modelled,
-        gpu: Option<Gpu>,
-        tolerance: Tolerance,
-    ) -> Self {
+    /// A light field that was baked before.
+    pub fn of(stage: &Stage, salf: Arc<Salf>, tolerance: Tolerance) -> Self {
+        let index = Arc::new(SampleIndex::new(&salf, &stage.atlas));
+        let modelled = Modelled::with_texels(&salf, &stage.tracer, Some(&stage.texels.texels));
         let mut splatter = Splatter::new(salf);
         splatter.set_tolerance(tolerance);
-        splatter.use_gpu(gpu);
+        // The first dab on it is to cost what any dab does.
+        splatter.set_evening(false);
+        // Without a card, or one that works, the processor sums.
+        splatter.use_gpu(Gpu::open(BackendChoice::Auto, None).ok().flatten());
+        Self::unsummed(splatter, index, modelled)
+    }
+
+    fn unsummed(splatter: Splatter, index: Arc<SampleIndex>, modelled: Modelled) -> Self {
         Self {
             splatter,
-            tolerance,
             index,
             modelled,
             summed: None,
@@ -155,11 +152,14 @@ impl LightField {
         }
     }
 
-    /// What makes the same light field anew, to be summed without tolerance; that takes a while.
-    pub fn exact(&self) -> impl FnOnce() -> Self + Send + use<> {
-        let (salf, gpu) = (self.splatter.salf().clone(), self.splatter.gpu().cloned());
-        let (index, modelled) = (self.index.clone(), self.modelled);
-        move || Self::new(salf, index, modelled, gpu, Tolerance::NONE)
+    /// The same light field and hierarchy, to be summed without tolerance.
+    pub fn exact(&self) -> Self {
+        Self::unsummed(self.splatter.twin(), self.index.clone(), self.modelled)
+    }
+
+    /// See [`Splatter::prepare`].
+    pub fn prepare(&self) -> impl FnOnce(&dyn Progress) + Send + use<> {
+        self.splatter.prepare()
     }
 
     /// Whether it is the same light field, whatever is painted on it.
@@ -167,15 +167,15 @@ impl LightField {
         Arc::ptr_eq(self.splatter.salf(), other.splatter.salf())
     }
 
-    /// Bytes that summing it takes: its hierarchy and its sums, not its samples.
+    /// Bytes of its sums; twins share all else.
     pub fn summing_bytes(&self) -> usize {
-        self.splatter.bytes().iter().sum()
+        let [_, sums] = self.splatter.bytes();
+        sums
     }
 
     /// Sets how coarse sums may be: with another tolerance the next one is made whole.
     pub fn set_tolerance(&mut self, tolerance: Tolerance) {
-        if tolerance != self.tolerance {
-            self.tolerance = tolerance;
+        if tolerance != self.splatter.tolerance() {
             self.splatter.set_tolerance(tolerance);
             self.summed = None;
         }

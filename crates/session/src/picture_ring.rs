@@ -96,6 +96,14 @@ impl PictureRing {
         self.snapshots = vec![Snapshot { picture: snapshot.clone(), stale: None }];
         snapshot
     }
+
+    /// Makes the snapshots now that the next pictures will be written to.
+    pub fn make_room(&mut self) {
+        let Some(newest) = self.snapshots.last().map(|snapshot| snapshot.picture.clone()) else { return };
+        while self.snapshots.len() < SNAPSHOTS {
+            self.snapshots.insert(0, Snapshot { picture: Arc::new((*newest).clone()), stale: None });
+        }
+    }
 }
 
 fn same_size(a: &Picture, b: &Picture) -> bool {
@@ -163,6 +171,25 @@ mod tests {
         let (_, changed) = ring.follow(&Picture::black(4, 4), 0..0);
         assert_eq!(changed, Some([0..4, 0..4]), "another size is another picture");
     }
+
+    #[test]
+    fn room_is_made_ahead_and_does_not_show() {
+        let mut ring = PictureRing::default();
+        ring.make_room();
+        let mut picture = Picture::black(30, 20);
+        let held = ring.begin(&picture);
+        ring.make_room();
+        let room: Vec<_> = ring.snapshots.iter().map(|snapshot| Arc::as_ptr(&snapshot.picture)).collect();
+        assert_eq!(room.len(), SNAPSHOTS);
+        for k in 0..2 {
+            picture.coverage[40 + k] = 2.0;
+            let (next, _) = ring.follow(&picture, 0..20);
+            assert_eq!(*next, picture);
+            assert!(room.contains(&Arc::as_ptr(&next)), "no other snapshot is made");
+        }
+        assert_eq!(*held, Picture::black(30, 20));
+    }
+
     #[test]
     fn a_better_picture_stays_where_nothing_changes() {
         let mut ring = PictureRing::default();

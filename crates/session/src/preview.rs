@@ -18,6 +18,7 @@
 
 use crate::job::{JobProgress, Waker, own_threads};
 use crate::light_field::{BakedField, Changes, LightField};
+use crate::light_field_store::LightFieldStore;
 use crate::preview_worker::Worker;
 use crate::refinement::Refined;
 use crate::screen::Patch;
@@ -93,6 +94,10 @@ pub struct DrawingCosts {
 pub enum PreviewActivity {
     /// Nothing to do.
     Idle,
+    /// Making a picture without blur.
+    Tracing,
+    /// Making a light field of few samples.
+    RoughBaking,
     /// Making the light field.
     Baking,
     /// Summing the picture.
@@ -100,8 +105,15 @@ pub enum PreviewActivity {
 }
 
 impl PreviewActivity {
+    /// Whether a light field is being made.
+    pub fn is_baking(self) -> bool {
+        matches!(self, Self::RoughBaking | Self::Baking)
+    }
+
     fn load(from: &AtomicU8) -> Self {
         match from.load(Ordering::Relaxed) {
+            x if x == Self::Tracing as u8 => Self::Tracing,
+            x if x == Self::RoughBaking as u8 => Self::RoughBaking,
             x if x == Self::Baking as u8 => Self::Baking,
             x if x == Self::Splatting as u8 => Self::Splatting,
             _ => Self::Idle,
@@ -109,7 +121,20 @@ impl PreviewActivity {
     }
 }
 
-/// What the helper hands over.
+/// When a finished picture was made.
+#[derive(Clone, Copy, Debug)]
+pub struct PictureTimes {
+    /// How many changes of the map it has seen, as [`crate::Session::map_serial`] counts them.
+    pub map_serial: u64,
+    /// When work on it began: with all that was wished until then.
+    pub begun: Instant,
+    /// When its sum was up to date.
+    pub summed: Instant,
+    /// When its pixels stood ready to be shown.
+    pub finished: Instant,
+}
+
+/// What the maker of light fields hands over.
 pub(crate) struct Delivery {
     /// The light field, summed; or why there is none.
     pub made: Result<LightField, SessionError>,
@@ -138,7 +163,7 @@ pub(crate) struct Wishes {
     pub settle: bool,
     /// The user wants no more work for now.
     pub hold: bool,
-    /// What the helper brought.
+    /// The light field that was made.
     pub delivery: Option<Delivery>,
     /// What became of the exact picture.
     pub refined: Option<Refined>,
@@ -171,6 +196,8 @@ pub(crate) struct Shared {
     activity: AtomicU8,
     helper: AtomicU8,
     published: Mutex<Published>,
+    /// Told of every picture.
+    shown: Condvar,
     waker: Waker,
 }
 
@@ -185,9 +212,8 @@ struct Published {
 pub(crate) struct News {
     /// What is new on screen, oldest first, and of which of the session's documents.
     pub patches: Vec<(u64, Patch)>,
-    /// The pictures that were finished, at their full size: how many changes of the map each has seen, and when its
-    /// pixels stood ready to be shown.
-    pub finished: Vec<(u64, Instant)>,
+    /// When the pictures were made that were finished, at their full size.
+    pub finished: Vec<PictureTimes>,
     /// Another light field of full size, and of which of the session's documents.
     pub field: Option<(u64, BakedField)>,
     pub failures: Vec<String>,
@@ -241,6 +267,7 @@ impl Shared {
     /// Notes what the thread does now, unless it was asked to stop.
     pub fn begin(&self, activity: PreviewActivity) -> Result<(), Cancelled> {
         self.quick.check()?;
+        self.quick.begin_step("", 0.0, 1.0);
         self.activity.store(activity as u8, Ordering::Relaxed);
         Ok(())
     }
@@ -284,11 +311,11 @@ impl Shared {
         self.post(Stops::Nothing, |wishes| wishes.delivery = Some(delivery));
     }
 
-    /// Shows a picture, and what is new on screen by it.
-    pub fn publish(&self, preview: Preview, patch: Option<Patch>) {
+    /// Shows a picture, and what is new on screen by it; its times, if it was made just now.
+    pub fn publish(&self, preview: Preview, patch: Option<Patch>, times: Option<PictureTimes>) {
         let mut published = lock(&self.published);
         if preview.quality > Quality::Coarse {
-            published.news.finished.push((preview.map_serial, Instant::now()));
+            published.news.finished.extend(times);
         }
         if let Some(patch) = patch {
             let is_whole = patch.pixels.len() == patch.size[0] as usize * patch.size[1] as usize;
@@ -298,6 +325,7 @@ impl Shared {
         }
         published.latest = Some(preview);
         drop(published);
+        self.shown.notify_all();
         (self.waker)();
     }
 
@@ -321,7 +349,12 @@ pub(crate) struct PreviewThread {
 
 impl PreviewThread {
     /// Starts the thread. `exact_after`: for how long nothing must change until the exact picture is drawn; none: never.
-    pub fn start(waker: Waker, exact_after: Option<Duration>) -> Result<Self, SessionError> {
+    /// `store`: where light fields are kept.
+    pub fn start(
+        waker: Waker,
+        exact_after: Option<Duration>,
+        store: Option<LightFieldStore>,
+    ) -> Result<Self, SessionError> {
         let shared = Arc::new(Shared {
             wishes: Mutex::default(),
             wake: Condvar::new(),
@@ -332,13 +365,14 @@ impl PreviewThread {
             activity: AtomicU8::new(PreviewActivity::Idle as u8),
             helper: AtomicU8::new(PreviewActivity::Idle as u8),
             published: Mutex::default(),
+            shown: Condvar::new(),
             waker,
         });
         let (theirs, pool) = (shared.clone(), own_threads()?);
         let thread = std::thread::Builder::new()
             .name("preview".into())
             .stack_size(16 << 20)
-            .spawn(move || pool.install(|| Worker::new(theirs, exact_after).run()))
+            .spawn(move || pool.install(|| Worker::new(theirs, exact_after, store).run()))
             .map_err(|e| SessionError::TryAgain(format!("no preview thread: {e} (try again)")))?;
         Ok(Self { shared, thread: Some(thread) })
     }
@@ -390,12 +424,10 @@ impl PreviewThread {
     }
 
     /// What is going on, and how far it is.
-    pub fn activity(&self) -> (PreviewActivity, f32) {
+    pub fn activity(&self) -> (PreviewActivity, &JobProgress) {
         match PreviewActivity::load(&self.shared.helper) {
-            PreviewActivity::Idle => {
-                (PreviewActivity::load(&self.shared.activity), self.shared.quick.fraction())
-            }
-            helper => (helper, self.shared.progress.fraction()),
+            PreviewActivity::Idle => (PreviewActivity::load(&self.shared.activity), &self.shared.quick),
+            helper => (helper, &self.shared.progress),
         }
     }
 
@@ -404,6 +436,15 @@ impl PreviewThread {
         let mut published = lock(&self.shared.published);
         let newer = published.latest.as_ref().filter(|preview| preview.id > id).cloned();
         (newer, std::mem::take(&mut published.news))
+    }
+
+    /// Waits until a picture has seen this many changes of the map, no longer than `at_most`.
+    pub fn wait(&self, map_serial: u64, at_most: Duration) {
+        let is_missing =
+            |published: &mut Published| published.latest.as_ref().is_none_or(|p| p.map_serial < map_serial);
+        let published = lock(&self.shared.published);
+        // Whether it came or not is seen by who takes it.
+        let _ = self.shared.shown.wait_timeout_while(published, at_most, is_missing);
     }
 
     /// Puts pictures on screen in another way.

@@ -1,23 +1,19 @@
 //! What the preview thread does with its wishes.
 
-use crate::job::{among_others, guarded};
-use crate::light_field::{Brought, Changes, FieldOptions, LightField};
-use crate::picture_ring::{PictureRing, Rectangle, whole};
+use crate::job::guarded;
+use crate::light_field::{Brought, FieldOptions, LightField};
+use crate::light_field_maker::{Begin, LightFieldMaker, Order};
+use crate::light_field_store::LightFieldStore;
+use crate::presenter::{Made, Presenter, Relation};
 use crate::preview::{Delivery, Shared, Wishes};
 use crate::refinement::{Refined, Refinement, Task};
 use crate::render::light;
-use crate::screen::Patch;
-use crate::tone::rectangle_to_screen;
-use crate::{
-    DrawingCosts, Modelled, Preview, PreviewActivity, PreviewKind, Quality, SessionError, Stage, Tone,
-};
+use crate::{Modelled, PreviewActivity, PreviewKind, Quality, SessionError, Stage};
 use baselines::FirstHits;
 use focus::{Focus, FocusMap};
-use lens::{Camera, Picture};
-use progress::Stage as Share;
+use lens::Camera;
 use splat::Tolerance;
 use std::sync::Arc;
-use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 /// Sides of the coarse picture are this share of the preview's: a ninth of the work.
@@ -41,14 +37,14 @@ pub(crate) struct Worker {
     stage: Option<Arc<Stage>>,
     camera: Option<Camera>,
     map: Option<Arc<FocusMap>>,
-    /// How many changes the map holds.
-    map_serial: u64,
     coarse: Option<LightField>,
     fine: Option<LightField>,
     /// Whether the fine light field's picture has not been shown yet.
     is_new: bool,
     /// Makes or sums the fine light field.
-    helper: Option<JoinHandle<()>>,
+    maker: LightFieldMaker,
+    /// What it made, until there is time to take it up.
+    delivery: Option<Delivery>,
     /// Draws the exact picture of the fine light field.
     refinement: Refinement,
     /// For how long nothing must change until it does; none: never.
@@ -57,59 +53,47 @@ pub(crate) struct Worker {
     is_painting: bool,
     /// How coarse sums may be.
     tolerance: Tolerance,
-    /// What pictures cost, where that is known.
-    costs: DrawingCosts,
     /// Counts scenes and bakes that were asked for anew: what is of an older epoch is of no use.
     epoch: u64,
-    /// What changed since the helper took its snapshot of the map.
-    since: Changes,
     /// An edit is complete, and whether the fine light field still fits it has not been looked at.
     is_settled: bool,
+    /// The light field is to be baked, whatever is in the store.
+    bakes_anew: bool,
     /// The user wants no more work until the next change that needs it.
     is_held: bool,
-    /// The newest picture.
-    shown: Option<Preview>,
-    /// It and those of before.
-    pictures: PictureRing,
-    /// How pictures are put on screen.
-    tone: Tone,
-    generation: u64,
-    last_id: u64,
+    presenter: Presenter,
 }
 
 impl Worker {
     /// `exact_after`: for how long nothing must change until the exact picture is drawn; none: never.
-    pub fn new(shared: Arc<Shared>, exact_after: Option<Duration>) -> Self {
+    /// `store`: where light fields are kept.
+    pub fn new(shared: Arc<Shared>, exact_after: Option<Duration>, store: Option<LightFieldStore>) -> Self {
         Self {
+            presenter: Presenter::new(shared.clone()),
             shared,
             stage: None,
             camera: None,
             map: None,
-            map_serial: 0,
             coarse: None,
             fine: None,
             is_new: false,
-            helper: None,
+            maker: LightFieldMaker::new(store),
+            delivery: None,
             refinement: Refinement::default(),
             exact_after,
             is_painting: false,
             tolerance: Tolerance::VIEWING,
-            costs: DrawingCosts::default(),
             epoch: 0,
-            since: Changes::default(),
             is_settled: false,
+            bakes_anew: false,
             is_held: false,
-            shown: None,
-            pictures: PictureRing::default(),
-            tone: Tone::default(),
-            generation: 0,
-            last_id: 0,
         }
     }
 
     /// Follows wishes until the session goes.
     pub fn run(mut self) {
         while let Some(wishes) = self.shared.next(self.exact_after.filter(|_| self.may_refine())) {
+            self.presenter.begun = Instant::now();
             match guarded("drawing the preview", || self.follow(wishes)) {
                 Ok(()) | Err(SessionError::Cancelled) => {}
                 Err(error) => {
@@ -121,52 +105,9 @@ impl Worker {
                 }
             }
         }
-        if let Some(helper) = self.helper.take() {
-            // It was cancelled with everything else.
-            let _ = helper.join();
-        }
+        // They were cancelled with everything else.
+        self.maker.join();
         self.refinement.join();
-    }
-
-    /// Whether the picture is up to date and could be better.
-    fn may_refine(&self) -> bool {
-        let is_viewing = self.shown.as_ref().is_some_and(|shown| shown.quality == Quality::Viewing);
-        let field = self.fine.as_ref().zip(self.camera.as_ref());
-        let is_up_to_date = field.is_some_and(|(fine, camera)| fine.is_up_to_date(camera));
-        let is_quiet = !self.is_held && !self.is_painting && self.helper.is_none();
-        is_viewing && is_up_to_date && is_quiet && !self.refinement.is_at_work()
-    }
-
-    /// Begins to draw the exact picture, if nothing was wished meanwhile.
-    fn refine(&mut self, camera: Camera, focus: Focus) {
-        let (Some(fine), Some(viewing)) = (&self.fine, self.pictures.followed()) else { return };
-        let (exposure, map_serial) = (self.tone.exposure, self.map_serial);
-        let task = Task { camera, focus, viewing, exposure, map_serial };
-        self.refinement.start(&self.shared, fine, task);
-    }
-
-    /// Shows the exact picture, unless something changed while it was drawn.
-    fn show_exact(&mut self, refined: Refined) -> Result<(), SessionError> {
-        let (exact, field) = match self.refinement.take_up(refined) {
-            Ok(drawn) => drawn,
-            Err(SessionError::Cancelled) => return Ok(()),
-            Err(error) => return Err(error),
-        };
-        let is_current = exact.map_serial == self.map_serial && self.camera.as_ref() == Some(&exact.camera);
-        let viewed = self.fine.as_ref().filter(|_| is_current);
-        let (Some(field), Some(viewed)) = (field, viewed) else { return Ok(()) };
-        if !field.is_twin_of(viewed) || !viewed.is_up_to_date(&exact.camera) {
-            return Ok(());
-        }
-        self.costs.viewing_psnr = Some(exact.viewing_psnr);
-        self.costs.exact_seconds = Some(field.whole_seconds());
-        let (picture, changed) = self.pictures.overlay(field.picture());
-        let (kind, modelled) = (PreviewKind::Splat, field.modelled());
-        let quality = Quality::Exact;
-        let made = Made { picture, changed, kind, quality, seconds: exact.seconds, modelled };
-        self.publish(made, &exact.camera);
-        self.refinement.tidy(self.fine.as_ref());
-        Ok(())
     }
 
     fn follow(&mut self, mut wishes: Wishes) -> Result<(), SessionError> {
@@ -192,98 +133,47 @@ impl Worker {
         if self.fine.take_if(|fine| !fine.serves(&camera)).is_some() {
             self.refinement.forget();
         }
-        if let Some(fine) = &mut self.fine
-            && (fine.whole_seconds() < QUICK_SECONDS || !fine.needs_whole_sum(&camera))
-        {
-            self.shared.begin(PreviewActivity::Splatting)?;
-            let start = Instant::now();
-            let brought = fine.bring_up(&camera, &focus, &self.shared.quick)?;
-            if brought != Brought::Nothing || self.is_new {
-                // The helper's sum took its time elsewhere.
-                let elsewhere = if self.is_new { fine.whole_seconds() } else { 0.0 };
-                let (picture, changed) = match &brought {
-                    Brought::Update(rows) if !self.is_new => {
-                        self.pictures.follow(fine.picture(), rows.clone())
-                    }
-                    _ => (self.pictures.begin(fine.picture()), Some(whole(fine.picture()))),
-                };
-                let (kind, modelled) = (PreviewKind::from(&brought), fine.modelled());
-                let seconds = start.elapsed().as_secs_f64() + elsewhere;
-                let is_exact = self.tolerance == Tolerance::NONE;
-                let quality = if is_exact { Quality::Exact } else { Quality::Viewing };
-                if brought == Brought::Whole || self.is_new {
-                    self.costs.viewing_psnr = None;
-                    let known = if is_exact {
-                        &mut self.costs.exact_seconds
-                    } else {
-                        &mut self.costs.viewing_seconds
-                    };
-                    *known = Some(fine.whole_seconds());
-                }
-                self.is_new = false;
-                self.publish(Made { picture, changed, kind, quality, seconds, modelled }, &camera);
-            }
-            let may_bake = self.is_settled && self.helper.is_none() && !self.is_held;
-            let fine = self.fine.as_mut().filter(|_| may_bake);
-            self.is_settled &= !may_bake;
-            if let Some(least_margin_px) = fine.and_then(|fine| fine.is_outgrown(&camera, &focus)) {
-                self.coarse = None;
-                self.start_helper(&stage, &camera, focus, Begin::Bake { least_margin_px });
-            }
-            return Ok(());
+        let is_quick =
+            |fine: &LightField| fine.whole_seconds() < QUICK_SECONDS || !fine.needs_whole_sum(&camera);
+        if self.fine.as_ref().is_some_and(is_quick) {
+            return self.show_fine(&stage, &camera, focus);
         }
-        self.show_coarse(&stage, &camera, &focus)?;
-        if self.helper.is_none() && !self.is_held {
-            let unsummed = self.fine.take().map(|fine| Begin::Sum(Box::new(fine)));
-            let begin = unsummed.unwrap_or(Begin::Bake { least_margin_px: 0.0 });
-            self.start_helper(&stage, &camera, focus, begin);
+        self.show_pinhole(&stage, &camera, &focus)?;
+        // What is kept is there sooner than the coarse picture.
+        let is_kept = self.fine.is_none() && !self.bakes_anew && self.maker.has_stored(&stage, &camera);
+        if !is_kept {
+            self.show_coarse(&stage, &camera, &focus)?;
+        }
+        if !self.maker.is_at_work() && !self.is_held {
+            let begin = match self.fine.take() {
+                Some(fine) => Begin::Sum(Box::new(fine)),
+                None if std::mem::take(&mut self.bakes_anew) => Begin::Bake,
+                None => Begin::Find { least_margin_px: 0.0 },
+            };
+            self.make_field(begin, &stage, &camera, focus);
         }
         Ok(())
     }
 
-    /// Takes up what changed, and what the helper brought.
+    /// Takes up what changed, and what was made.
     fn take_in(&mut self, wishes: Wishes) -> Result<(), SessionError> {
-        let mut failed = Ok(());
         if let Some(tolerance) = wishes.tolerance.filter(|tolerance| *tolerance != self.tolerance) {
             self.tolerance = tolerance;
-            (self.costs.viewing_psnr, self.costs.viewing_seconds) = (None, None);
+            (self.presenter.costs.viewing_psnr, self.presenter.costs.viewing_seconds) = (None, None);
             for field in [&mut self.coarse, &mut self.fine].into_iter().flatten() {
                 field.set_tolerance(tolerance);
-            }
-        }
-        if let Some(delivery) = wishes.delivery {
-            if let Some(helper) = self.helper.take() {
-                // Its result is here; its panics were caught.
-                let _ = helper.join();
-            }
-            let since = std::mem::take(&mut self.since);
-            match delivery.made {
-                Ok(mut field) => {
-                    field.note(&since);
-                    field.set_tolerance(self.tolerance);
-                    self.fine = Some(field).filter(|_| delivery.epoch == self.epoch);
-                    self.is_new = true;
-                    if let Some(field) = &self.fine {
-                        self.shared.publish_field(self.generation, field.baked());
-                    }
-                }
-                Err(SessionError::Cancelled) => {}
-                Err(error) => failed = Err(error),
             }
         }
         let is_opened = wishes.stage.is_some();
         if let Some((stage, generation)) = wishes.stage {
             self.stage = Some(stage);
-            self.generation = generation;
-            (self.coarse, self.fine, self.shown) = (None, None, None);
-            self.costs = DrawingCosts::default();
-            self.refinement.forget();
-            self.epoch += 1;
+            self.presenter.open(generation);
         }
-        if wishes.bake {
+        if is_opened || wishes.bake {
             (self.coarse, self.fine) = (None, None);
             self.refinement.forget();
             self.epoch += 1;
+            self.bakes_anew = wishes.bake;
         }
         let wants_work = self.stage.is_some() && (wishes.camera.is_some() || wishes.bake || wishes.settle);
         self.is_held = wishes.hold || (self.is_held && !wants_work);
@@ -292,47 +182,113 @@ impl Worker {
         // A stroke that goes on is no time for more.
         self.is_settled = wishes.settle || (self.is_settled && wishes.map.is_none());
         self.camera = wishes.camera.or(self.camera.take());
-        if let Some(tone) = wishes.tone.filter(|tone| *tone != self.tone) {
-            self.tone = tone;
-            self.show_again();
+        if let Some(tone) = wishes.tone {
+            self.presenter.set_tone(tone);
         }
         if let Some((map, serial)) = wishes.map {
-            (self.map, self.map_serial) = (Some(Arc::new(map)), serial);
+            self.map = Some(Arc::new(map));
+            self.presenter.map_serial = serial;
         }
         for field in [&mut self.coarse, &mut self.fine].into_iter().flatten() {
             field.note(&wishes.changed);
         }
-        self.since.join(&wishes.changed);
+        self.maker.note(&wishes.changed);
         self.refinement.note(&wishes.changed);
+        self.delivery = wishes.delivery.or(self.delivery.take());
+        let taken_up = self.take_up();
         self.refinement.tidy(self.fine.as_ref());
-        failed
+        taken_up
     }
 
-    /// The pinhole picture if the view is new, then the picture of few pixels.
-    fn show_coarse(&mut self, stage: &Stage, camera: &Camera, focus: &Focus) -> Result<(), SessionError> {
-        let small = coarse_of(camera);
-        let start = Instant::now();
-        if !self.shown.as_ref().is_some_and(|shown| same_view(&shown.camera, camera)) {
-            self.shared.begin(PreviewActivity::Baking)?;
-            let radiance = light(&stage.tracer, camera);
-            let hits = FirstHits::trace(&stage.tracer, &radiance, focus, camera, &self.shared.quick)?;
-            let picture = self.pictures.begin(&hits.picture());
-            let made = Made {
-                changed: Some(whole(&picture)),
-                picture,
-                kind: PreviewKind::Pinhole,
-                quality: Quality::Coarse,
-                seconds: start.elapsed().as_secs_f64(),
-                modelled: Modelled::default(),
-            };
-            self.publish(made, camera);
+    /// Takes up the light field that was made; not while a stroke goes on that the old one shows.
+    fn take_up(&mut self) -> Result<(), SessionError> {
+        let has_time = !self.is_painting || self.fine.is_none();
+        let Some(delivery) = self.delivery.take_if(|_| has_time) else { return Ok(()) };
+        match self.maker.take_up(delivery) {
+            Ok((mut field, epoch)) if epoch == self.epoch => {
+                field.set_tolerance(self.tolerance);
+                self.shared.publish_field(self.presenter.generation, field.baked());
+                self.fine = Some(field);
+                self.is_new = true;
+                // One from the store may be of another focus.
+                self.is_settled = true;
+                Ok(())
+            }
+            Ok(_) | Err(SessionError::Cancelled) => Ok(()),
+            Err(error) => Err(error),
         }
-        let Some(small) = small else { return Ok(()) };
+    }
+
+    /// Brings the fine picture up to date; then, after an edit, sees whether another light field would serve better.
+    fn show_fine(&mut self, stage: &Arc<Stage>, camera: &Camera, focus: Focus) -> Result<(), SessionError> {
+        let Some(fine) = &mut self.fine else { return Ok(()) };
+        self.shared.begin(PreviewActivity::Splatting)?;
+        let start = Instant::now();
+        let brought = fine.bring_up(camera, &focus, &self.shared.quick)?;
+        let is_new = std::mem::take(&mut self.is_new);
+        if brought != Brought::Nothing || is_new {
+            let is_exact = self.tolerance == Tolerance::NONE;
+            let costs = &mut self.presenter.costs;
+            if brought == Brought::Whole || is_new {
+                costs.viewing_psnr = None;
+                let known = if is_exact { &mut costs.exact_seconds } else { &mut costs.viewing_seconds };
+                *known = Some(fine.whole_seconds());
+            }
+            // The sum of a new one was made elsewhere.
+            let elsewhere = if is_new { fine.whole_seconds() } else { 0.0 };
+            self.presenter.show(Made {
+                picture: fine.picture(),
+                camera,
+                kind: PreviewKind::from(&brought),
+                quality: if is_exact { Quality::Exact } else { Quality::Viewing },
+                seconds: start.elapsed().as_secs_f64() + elsewhere,
+                modelled: fine.modelled(),
+                relation: match brought {
+                    Brought::Update(rows) if !is_new => Relation::Changed(rows),
+                    _ => Relation::New,
+                },
+            });
+        }
+        if !self.is_settled || self.maker.is_at_work() || self.is_held {
+            return Ok(());
+        }
+        self.is_settled = false;
+        if let Some(least_margin_px) = fine.is_outgrown(camera, &focus) {
+            self.coarse = None;
+            self.make_field(Begin::Find { least_margin_px }, stage, camera, focus);
+        }
+        Ok(())
+    }
+
+    /// The picture without blur, if the view is new.
+    fn show_pinhole(&mut self, stage: &Stage, camera: &Camera, focus: &Focus) -> Result<(), SessionError> {
+        if self.presenter.shown().is_some_and(|shown| same_view(&shown.camera, camera)) {
+            return Ok(());
+        }
+        self.shared.begin(PreviewActivity::Tracing)?;
+        let start = Instant::now();
+        let radiance = light(&stage.tracer, camera);
+        let hits = FirstHits::trace(&stage.tracer, &radiance, focus, camera, &self.shared.quick)?;
+        self.presenter.show(Made {
+            picture: &hits.picture(),
+            camera,
+            relation: Relation::New,
+            kind: PreviewKind::Pinhole,
+            quality: Quality::Coarse,
+            seconds: start.elapsed().as_secs_f64(),
+            modelled: Modelled::default(),
+        });
+        Ok(())
+    }
+
+    /// The picture of few pixels.
+    fn show_coarse(&mut self, stage: &Stage, camera: &Camera, focus: &Focus) -> Result<(), SessionError> {
+        let Some(small) = coarse_of(camera) else { return Ok(()) };
         self.coarse.take_if(|coarse| !coarse.serves(&small));
         let coarse = match &mut self.coarse {
             Some(coarse) => coarse,
             None => {
-                self.shared.begin(PreviewActivity::Baking)?;
+                self.shared.begin(PreviewActivity::RoughBaking)?;
                 let how = FieldOptions { least_margin_px: 0.0, tolerance: self.tolerance };
                 self.coarse.insert(LightField::bake(stage, &small, focus, how, &self.shared.quick)?)
             }
@@ -340,112 +296,77 @@ impl Worker {
         self.shared.begin(PreviewActivity::Splatting)?;
         let start = Instant::now();
         let brought = coarse.bring_up(&small, focus, &self.shared.quick)?;
-        if brought != Brought::Nothing || self.shown.as_ref().is_none_or(|shown| shown.camera != small) {
-            let (picture, changed) = match &brought {
-                Brought::Update(rows) => self.pictures.follow(coarse.picture(), rows.clone()),
-                _ => (self.pictures.begin(coarse.picture()), Some(whole(coarse.picture()))),
-            };
-            let (kind, modelled) = (PreviewKind::from(&brought), coarse.modelled());
-            let seconds = start.elapsed().as_secs_f64();
-            let quality = Quality::Coarse;
-            self.publish(Made { picture, changed, kind, quality, seconds, modelled }, &small);
+        let is_another = self.presenter.shown().is_none_or(|shown| shown.camera != small);
+        if brought != Brought::Nothing || is_another {
+            self.presenter.show(Made {
+                picture: coarse.picture(),
+                camera: &small,
+                kind: PreviewKind::from(&brought),
+                quality: Quality::Coarse,
+                seconds: start.elapsed().as_secs_f64(),
+                modelled: coarse.modelled(),
+                relation: match brought {
+                    Brought::Update(rows) => Relation::Changed(rows),
+                    _ => Relation::New,
+                },
+            });
         }
         Ok(())
     }
 
     /// Makes the fine light field and sums it, on a thread of its own.
-    fn start_helper(&mut self, stage: &Arc<Stage>, camera: &Camera, focus: Focus, begin: Begin) {
-        if !self.shared.begin_helper() {
-            return;
-        }
-        let tolerance = self.tolerance;
-        self.since = Changes::default();
-        let (shared, stage, camera, epoch) = (self.shared.clone(), stage.clone(), camera.clone(), self.epoch);
-        let work = move || {
-            let make = || {
-                let mut field = match begin {
-                    Begin::Sum(field) => *field,
-                    Begin::Bake { least_margin_px } => {
-                        let how = FieldOptions { least_margin_px, tolerance };
-                        let baking = Share::new(&shared.progress, 0.0, 0.7);
-                        LightField::bake(&stage, &camera, &focus, how, &baking)?
-                    }
-                };
-                shared.helper_sums();
-                field.bring_up(&camera, &focus, &Share::new(&shared.progress, 0.7, 1.0))?;
-                field.survey(&camera, &focus);
-                Ok(field)
-            };
-            let made = guarded("drawing the preview", || among_others(make));
-            shared.deliver(Delivery { made, epoch });
+    fn make_field(&mut self, begin: Begin, stage: &Arc<Stage>, camera: &Camera, focus: Focus) {
+        let (stage, camera) = (stage.clone(), camera.clone());
+        let order = Order { begin, stage, camera, focus, tolerance: self.tolerance, epoch: self.epoch };
+        self.maker.start(&self.shared, order);
+    }
+
+    /// Whether the picture is up to date and could be better.
+    fn may_refine(&self) -> bool {
+        let is_viewing = self.presenter.shown().is_some_and(|shown| shown.quality == Quality::Viewing);
+        let field = self.fine.as_ref().zip(self.camera.as_ref());
+        let is_up_to_date = field.is_some_and(|(fine, camera)| fine.is_up_to_date(camera));
+        let is_quiet = !self.is_held && !self.is_painting && !self.maker.is_at_work();
+        is_viewing && is_up_to_date && is_quiet && !self.refinement.is_at_work()
+    }
+
+    /// Begins to draw the exact picture, if nothing was wished meanwhile.
+    fn refine(&mut self, camera: Camera, focus: Focus) {
+        let (Some(fine), Some(viewing)) = (&self.fine, self.presenter.followed()) else { return };
+        let (exposure, map_serial) = (self.presenter.exposure(), self.presenter.map_serial);
+        let task = Task { camera, focus, viewing, exposure, map_serial };
+        self.refinement.start(&self.shared, fine, task);
+    }
+
+    /// Shows the exact picture, unless something changed while it was drawn.
+    fn show_exact(&mut self, refined: Refined) -> Result<(), SessionError> {
+        let (exact, field) = match self.refinement.take_up(refined) {
+            Ok(drawn) => drawn,
+            Err(SessionError::Cancelled) => return Ok(()),
+            Err(error) => return Err(error),
         };
-        let thread = std::thread::Builder::new().name("light field".into()).stack_size(16 << 20).spawn(work);
-        match thread {
-            Ok(thread) => self.helper = Some(thread),
-            Err(error) => {
-                let made = Err(SessionError::TryAgain(format!("no thread: {error} (try again)")));
-                self.shared.deliver(Delivery { made, epoch });
-            }
+        let is_of_this_map = exact.map_serial == self.presenter.map_serial;
+        let is_current = is_of_this_map && self.camera.as_ref() == Some(&exact.camera);
+        let viewed = self.fine.as_ref().filter(|_| is_current);
+        let (Some(field), Some(viewed)) = (field, viewed) else { return Ok(()) };
+        if !field.is_twin_of(viewed) || !viewed.is_up_to_date(&exact.camera) {
+            return Ok(());
         }
-    }
-
-    /// Shows a picture.
-    fn publish(&mut self, made: Made, camera: &Camera) {
-        let Made { picture, changed, kind, quality, seconds, modelled } = made;
-        self.last_id += 1;
-        let preview = Preview {
-            id: self.last_id,
-            picture,
-            kind,
-            quality,
-            costs: self.costs,
-            camera: camera.clone(),
-            seconds,
-            modelled,
-            map_serial: self.map_serial,
-            generation: self.generation,
-        };
-        self.shown = Some(preview.clone());
-        self.put_on_screen(preview, changed);
-    }
-
-    /// Shows the newest picture by another tone.
-    fn show_again(&mut self) {
-        if let Some(mut preview) = self.shown.clone() {
-            self.last_id += 1;
-            preview.id = self.last_id;
-            let all = whole(&preview.picture);
-            self.put_on_screen(preview, Some(all));
-        }
-    }
-
-    fn put_on_screen(&self, preview: Preview, changed: Option<Rectangle>) {
-        let patch = changed.map(|rectangle| Patch {
-            size: [preview.picture.width, preview.picture.height],
-            pixels: rectangle_to_screen(&preview.picture, self.tone, rectangle.clone()),
-            rectangle,
+        let costs = &mut self.presenter.costs;
+        costs.viewing_psnr = Some(exact.viewing_psnr);
+        costs.exact_seconds = Some(field.whole_seconds());
+        self.presenter.show(Made {
+            picture: field.picture(),
+            camera: &exact.camera,
+            relation: Relation::Better,
+            kind: PreviewKind::Splat,
+            quality: Quality::Exact,
+            seconds: exact.seconds,
+            modelled: field.modelled(),
         });
-        self.shared.publish(preview, patch);
+        self.refinement.tidy(self.fine.as_ref());
+        Ok(())
     }
-}
-
-/// What the helper begins with.
-enum Begin {
-    /// A light field that is there.
-    Sum(Box<LightField>),
-    /// None: it is baked, with a margin of at least this many pixels.
-    Bake { least_margin_px: f64 },
-}
-
-/// A picture that was made.
-struct Made {
-    picture: Arc<Picture>,
-    /// Where it differs from the one before.
-    changed: Option<Rectangle>,
-    kind: PreviewKind,
-    quality: Quality,
-    seconds: f64,
-    modelled: Modelled,
 }
 
 /// The camera of the coarse picture; none where the picture is small anyway.

@@ -16,8 +16,8 @@ use std::sync::Arc;
 use std::thread::JoinHandle;
 use std::time::Instant;
 
-/// The second sum is kept while it takes no more bytes than these: a picture of 1920 × 1080 of the demo takes half of it.
-const KEPT_BYTES: usize = 1 << 30;
+/// The second sum is kept while it takes no more bytes than these: a picture of 1920 × 1080 takes two fifths of it.
+const KEPT_BYTES: usize = 1 << 29;
 
 /// The exact sum, at rest or at work.
 #[derive(Default)]
@@ -78,13 +78,12 @@ impl Refinement {
             return;
         }
         let kept = self.field.take().filter(|field| field.is_twin_of(viewed));
-        let make = viewed.exact();
+        let mut field = kept.unwrap_or_else(|| viewed.exact());
         self.since = Changes::default();
         let theirs = shared.clone();
         let work = move || {
             let drawn = guarded("drawing the exact picture", || {
                 among_others(|| {
-                    let mut field = kept.unwrap_or_else(make);
                     let outcome = draw(&mut field, task, &theirs);
                     Ok((field, outcome))
                 })
@@ -138,6 +137,7 @@ impl Refinement {
 
 fn draw(field: &mut LightField, task: Task, shared: &Shared) -> Result<Exact, SessionError> {
     let Task { camera, focus, viewing, exposure, map_serial } = task;
+    field.prepare()(&shared.refining);
     let start = Instant::now();
     field.bring_up(&camera, &focus, &Share::new(&shared.refining, 0.0, 1.0))?;
     let seconds = start.elapsed().as_secs_f64();

@@ -272,7 +272,7 @@ fn unlike(baked: &Camera, camera: &Camera) -> Option<String> {
 }
 
 /// Renders a light field.
-fn sum_light_field(
+pub(crate) fn sum_light_field(
     salf: Arc<Salf>,
     tracer: &Arc<Tracer>,
     camera: &Camera,

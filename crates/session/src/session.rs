@@ -1,6 +1,7 @@
 //! The session: commands in, events out, one document open at a time.
 
 mod comparing;
+mod exporting;
 mod files;
 mod history;
 mod painting;
@@ -15,8 +16,8 @@ use crate::picking::{chief_ray, pick};
 use crate::preview::PreviewThread;
 use crate::undo::Undo;
 use crate::{
-    CameraEdit, Command, Display, Event, JobId, JobStatus, Preview, PreviewActivity, Reference,
-    ReferenceKind, Screen, SessionError, SurfaceHit, Verification,
+    CameraEdit, Command, Display, Event, JobId, JobStatus, LightFieldStore, PictureTimes, Preview,
+    PreviewActivity, Reference, ReferenceKind, Screen, SessionError, SurfaceHit, Verification,
 };
 use atlas::UnwrapOptions;
 use focus::FillTarget;
@@ -45,6 +46,8 @@ pub struct SessionOptions {
     pub keep_after: Duration,
     /// For how long nothing must change until the exact picture is drawn; none: the one within the tolerance is enough.
     pub exact_after: Option<Duration>,
+    /// Where light fields are kept from one run to the next; none: they are baked every time.
+    pub light_fields: Option<LightFieldStore>,
     /// Called from any thread when there is something to poll.
     pub waker: Waker,
 }
@@ -57,6 +60,7 @@ impl Default for SessionOptions {
             undo_budget_bytes: Document::UNDO_BUDGET_BYTES,
             keep_after: Duration::from_secs(15),
             exact_after: None,
+            light_fields: None,
             waker: Arc::new(|| {}),
         }
     }
@@ -114,7 +118,7 @@ pub struct Session {
     /// Counts them.
     pub(crate) fields: u64,
     /// The pictures that were finished between the last two polls.
-    finished: Vec<(u64, Instant)>,
+    finished: Vec<PictureTimes>,
     /// The camera that the preview was asked to show last.
     preview_camera: Option<Camera>,
     /// The newest preview that was seen, of whatever document.
@@ -146,7 +150,11 @@ impl Session {
     pub fn new(options: SessionOptions) -> Result<Self, SessionError> {
         let (sender, outcomes) = mpsc::channel();
         Ok(Self {
-            preview_thread: PreviewThread::start(options.waker.clone(), options.exact_after)?,
+            preview_thread: PreviewThread::start(
+                options.waker.clone(),
+                options.exact_after,
+                options.light_fields.clone(),
+            )?,
             options,
             document: None,
             generation: 0,
@@ -202,9 +210,8 @@ impl Session {
         &self.screen
     }
 
-    /// The pictures of full size that were finished between the last two calls of [`Self::poll`]: how many changes of the
-    /// map each has seen, and when its pixels stood ready to be shown.
-    pub fn finished_pictures(&self) -> &[(u64, Instant)] {
+    /// When the pictures of full size were made that were finished between the last two calls of [`Self::poll`].
+    pub fn finished_pictures(&self) -> &[PictureTimes] {
         &self.finished
     }
 
@@ -235,12 +242,16 @@ impl Session {
 
     /// All background work that is going on.
     pub fn jobs(&self) -> Vec<JobStatus> {
-        let (activity, fraction) = self.preview_thread.activity();
-        let baking = (activity == PreviewActivity::Baking).then(|| JobStatus {
-            id: PREVIEW_JOB,
-            label: "baking".into(),
-            fraction,
-            can_cancel: true,
+        let (activity, progress) = self.preview_thread.activity();
+        let label = match activity {
+            PreviewActivity::RoughBaking => Some("baking roughly"),
+            PreviewActivity::Baking => Some("baking"),
+            _ => None,
+        };
+        let baking = label.map(|label| {
+            let (step, seconds_left) = progress.standing();
+            let (label, fraction) = (label.into(), progress.fraction());
+            JobStatus { id: PREVIEW_JOB, label, step, fraction, seconds_left, can_cancel: true }
         });
         baking.into_iter().chain(self.jobs.iter().map(Job::status)).collect()
     }
@@ -443,6 +454,7 @@ impl Session {
             Command::Save => self.save(None),
             Command::SaveAs(path) => self.save(Some(path)),
             Command::ExportPicture(path) => self.export_picture(path),
+            Command::ExportShown(path) => self.export_shown(path),
             Command::ExportFocusMap(path) => self.export_focus_map(path),
             Command::ExportScene(path) => self.export_scene(path),
             Command::ExportStrokes(path) => self.export_strokes(&path),

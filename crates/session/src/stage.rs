@@ -1,5 +1,6 @@
 //! What stays while a document is open: the scene, its atlas and what answers rays and dabs on it.
 
+use crate::light_field_store::light_hash;
 use crate::{SessionError, SurfaceHit};
 use atlas::{Atlas, AtlasError, TexelMap};
 use focus::Canvas;
@@ -7,7 +8,7 @@ use glam::{DVec2, DVec3};
 use progress::Progress;
 use scene::{LoadOptions, Scene, SceneError};
 use std::path::Path;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 use trace::Tracer;
 
 /// A scene that can be painted on.
@@ -24,6 +25,7 @@ pub struct Stage {
     pub texels: Arc<TexelMap>,
     /// What dabs are painted on.
     pub canvas: Arc<Canvas>,
+    light_hash: OnceLock<[u8; 32]>,
 }
 
 impl From<SceneError> for SessionError {
@@ -61,6 +63,11 @@ impl Stage {
         Some(SurfaceHit { point: texel.centroid, position, normal, distance: 0.0 })
     }
 
+    /// A checksum of everything in the scene that gives, blocks or reflects light; the first call takes a while.
+    pub(crate) fn light_hash(&self) -> &[u8; 32] {
+        self.light_hash.get_or_init(|| light_hash(&self.scene))
+    }
+
     /// Prepares a scene whose atlas is known.
     pub fn of(scene: Arc<Scene>, atlas: Arc<Atlas>, progress: &dyn Progress) -> Result<Self, SessionError> {
         progress.check()?;
@@ -74,6 +81,6 @@ impl Stage {
         let gutters: Vec<_> = texels.dilations.iter().map(|d| [place(d.texel), place(d.source)]).collect();
         let canvas = Arc::new(Canvas::new(&scene, &atlas, &texels.texels, &gutters));
         progress.report(1.0);
-        Ok(Self { bounds: scene.bounds(), scene, atlas, tracer, texels, canvas })
+        Ok(Self { bounds: scene.bounds(), scene, atlas, tracer, texels, canvas, light_hash: OnceLock::new() })
     }
 }

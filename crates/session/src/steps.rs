@@ -23,9 +23,10 @@ pub(crate) struct JobSteps<'a> {
 }
 
 impl Steps for JobSteps<'_> {
-    fn begin(&self, _label: &str) -> Box<dyn Progress + '_> {
+    fn begin(&self, label: &str) -> Box<dyn Progress + '_> {
         let start = self.progress.fraction();
         let end = start + (1.0 - start) * 0.6;
+        self.progress.begin_step(label, start, end);
         Box::new(progress::Stage::new(self.progress, start, end))
     }
 }

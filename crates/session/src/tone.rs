@@ -41,6 +41,25 @@ pub struct Display {
     pub curve: ToneCurve,
 }
 
+impl Tone {
+    /// The picture as the screen shows it, before it is clamped and encoded: linear, row by row.
+    pub fn displayed(self, picture: &Picture) -> Vec<[f32; 3]> {
+        let shown = picture.radiance.par_iter().zip(&picture.coverage);
+        shown.map(|(radiance, coverage)| self.displayed_pixel(*radiance, *coverage)).collect()
+    }
+
+    #[inline(always)]
+    fn displayed_pixel(self, radiance: [f32; 3], coverage: f32) -> [f32; 3] {
+        let gain = self.display.stops.exp2();
+        let scale = match self.exposure {
+            Exposure::Conserve => gain,
+            Exposure::Normalise if coverage > 0.0 => gain / coverage,
+            Exposure::Normalise => 0.0,
+        };
+        self.display.curve.map(radiance.map(|c| c * scale))
+    }
+}
+
 /// One channel on screen; what is no number is black.
 fn encoded(linear: f32) -> u8 {
     ENCODED[((linear.max(0.0) * ENTRIES as f32) as usize).min(ENTRIES - 1)]
@@ -57,15 +76,9 @@ pub(crate) fn rectangle_to_screen(
     tone: Tone,
     [columns, rows]: [Range<u32>; 2],
 ) -> Vec<ScreenPixel> {
-    let gain = tone.display.stops.exp2();
     let pixel = |index: usize| {
-        let coverage = picture.coverage[index];
-        let scale = match tone.exposure {
-            Exposure::Conserve => gain,
-            Exposure::Normalise if coverage > 0.0 => gain / coverage,
-            Exposure::Normalise => 0.0,
-        };
-        let [r, g, b] = tone.display.curve.map(picture.radiance[index].map(|c| c * scale)).map(encoded);
+        let displayed = tone.displayed_pixel(picture.radiance[index], picture.coverage[index]);
+        let [r, g, b] = displayed.map(encoded);
         [r, g, b, u8::MAX]
     };
     let width = columns.len();

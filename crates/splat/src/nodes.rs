@@ -108,6 +108,7 @@ impl SplatNode {
 }
 
 /// The hierarchy in integers.
+#[derive(Clone)]
 pub struct Nodes {
     /// Nodes of each block.
     pub blocks: Vec<Range<u32>>,

@@ -91,17 +91,17 @@ pub fn find_shares(parts: &[Option<Lines>; 2], strip: Strip, shares: &mut [Share
     strip.each(parts, |at, free, sharing| shares[at] = Share::of(free[3], sharing[3]));
 }
 
-/// Joins lines, free and sharing, to pixels and their coverage; evened out if nothing is painted.
+/// Joins lines, free and sharing, to pixels and their coverage; evened out if asked for: only where nothing is painted.
 pub fn join(
     parts: &[Option<Lines>; 2],
     strip: Strip,
     shares: &[Share],
-    is_painted: bool,
+    is_evened: bool,
     (radiance, coverage): (&mut [[f32; 3]], &mut [f32]),
 ) {
     strip.each(parts, |at, free, sharing| {
         let share = &shares[at];
-        let even = if is_painted { 1.0 } else { share.even };
+        let even = if is_evened { share.even } else { 1.0 };
         let [r, g, b, covered] = std::array::from_fn(|c| even * (free[c] + share.partial * sharing[c]));
         radiance[at] = [r, g, b];
         coverage[at] = covered;

@@ -48,10 +48,12 @@ impl From<Overflow> for SplatError {
 /// A SALF being looked at: sums that follow the focus as it is painted.
 pub struct Splatter {
     salf: Arc<Salf>,
-    /// The hierarchy; none if a sample is too bright.
-    nodes: Option<Nodes>,
+    /// The hierarchy, which twins share; none if a sample is too bright.
+    nodes: Option<Arc<Nodes>>,
     tolerance: Tolerance,
-    aperture: ApertureInUse,
+    /// Whether a picture without paint is evened out.
+    evens: bool,
+    aperture: Arc<ApertureInUse>,
     lens: LensInUse,
     paint: Paint,
     sums: Sums,
@@ -103,16 +105,30 @@ impl ApertureInUse {
 impl Splatter {
     /// Prepares to render `salf`. The picture is black until [`Self::render`].
     pub fn new(salf: Arc<Salf>) -> Self {
+        let nodes = Nodes::new(&salf, Scale::FINEST).map(Arc::new);
+        let aperture = ApertureInUse::new(&salf.camera.aperture, 1.0, nodes.as_deref());
+        Self::of(salf, nodes, Arc::new(aperture))
+    }
+
+    /// Another one of the same light field, with sums of its own: quick to make, since the hierarchy is shared. It renders as
+    /// one that is new, on the same card.
+    pub fn twin(&self) -> Self {
+        let mut twin = Self::of(self.salf.clone(), self.nodes.clone(), self.aperture.clone());
+        twin.use_gpu(self.gpu().cloned());
+        twin.set_evening(self.evens);
+        twin
+    }
+
+    fn of(salf: Arc<Salf>, nodes: Option<Arc<Nodes>>, aperture: Arc<ApertureInUse>) -> Self {
         let camera = &salf.camera;
         let (width, height) = (camera.width as usize, camera.height as usize);
-        let nodes = Nodes::new(&salf, Scale::FINEST);
         let tolerance = Tolerance::default();
-        let aperture = ApertureInUse::new(&camera.aperture, 1.0, nodes.as_ref());
         let shape = &aperture.stencils.shape;
         Self {
             lens: LensInUse::new(camera.optics(), shape, tolerance),
             aperture,
             tolerance,
+            evens: true,
             paint: Paint::default(),
             sums: Sums::new([width, height], nodes.as_ref().is_some_and(|nodes| nodes.has_bright)),
             lists: Vec::new(),
@@ -125,9 +141,35 @@ impl Splatter {
         }
     }
 
+    /// How coarse the sum may be.
+    pub fn tolerance(&self) -> Tolerance {
+        self.tolerance
+    }
+
     /// Sets how coarse the sum may be, from the next [`Self::render`] on.
     pub fn set_tolerance(&mut self, tolerance: Tolerance) {
         self.tolerance = tolerance;
+    }
+
+    /// Sets whether a picture without any paint is evened out (the default): its coverage is then 1 but for holes.
+    ///
+    /// Where it is not, the first paint on it changes what it moves and nothing else, as all further paint does. The two
+    /// differ by the ripple of finite samples, and not at all once divided by their coverage. From the next
+    /// [`Self::render`] on.
+    pub fn set_evening(&mut self, evens: bool) {
+        self.evens = evens;
+    }
+
+    /// Whether the picture is evened out.
+    fn is_evened(&self) -> bool {
+        self.evens && self.paint.is_standard()
+    }
+
+    /// What cuts the aperture's image in all sizes that paint may give it, on any thread, while this goes on. Otherwise a size
+    /// is cut when it is first seen, a third of a millisecond each: the first dabs would wait for that.
+    pub fn prepare(&self) -> impl FnOnce(&dyn Progress) + Send + use<> {
+        let aperture = self.aperture.clone();
+        move |progress| aperture.stencils.cut_all(progress)
     }
 
     /// The light field.
@@ -145,7 +187,7 @@ impl Splatter {
     pub fn bytes(&self) -> [usize; 2] {
         let [nodes, sums] = self.card.bytes();
         let lists: usize = self.lists.iter().map(|list| list.drawn.capacity() * size_of::<Drawn>()).sum();
-        [nodes + self.nodes.as_ref().map_or(0, Nodes::bytes), sums + self.sums.bytes() + lists]
+        [nodes + self.nodes.as_ref().map_or(0, |nodes| nodes.bytes()), sums + self.sums.bytes() + lists]
     }
 
     /// Sums the whole picture for a lens (`camera` may differ from the baked one in focus distance, aperture shape and a
@@ -177,7 +219,7 @@ impl Splatter {
         let (optics, baked_radius) = (camera.optics(), self.salf.camera.aperture_radius);
         let stop = LensInUse::stop(&optics, baked_radius);
         if (&self.aperture.aperture, self.aperture.stop) != (&camera.aperture, stop) {
-            self.aperture = ApertureInUse::new(&camera.aperture, stop, self.nodes.as_ref());
+            self.aperture = Arc::new(ApertureInUse::new(&camera.aperture, stop, self.nodes.as_deref()));
             self.shares_of = None;
             self.card.forget_aperture();
         }
@@ -227,7 +269,9 @@ impl Splatter {
     ) -> Result<(), SplatError> {
         let mut scale = Some(Scale::FINEST);
         while let (Some(finest), Some(nodes)) = (scale, &mut self.nodes) {
-            nodes.rescale(finest);
+            if nodes.scale != finest {
+                Arc::make_mut(nodes).rescale(finest);
+            }
             match work(self) {
                 Err(SplatError::Overflow) => scale = finest.coarser(),
                 other => return other,
@@ -258,7 +302,7 @@ impl Splatter {
         let mut leaves: Vec<u32> =
             samples.iter().map(|&sample| nodes.node_of_sample[sample as usize]).collect();
         leaves.sort_unstable();
-        let was_standard = self.paint.is_standard();
+        let was_evened = self.is_evened();
         let mut before = Vec::new();
         let block_of = |leaf: &u32| nodes.block_of_node[*leaf as usize];
         for leaves in leaves.chunk_by(|a, b| block_of(a) == block_of(b)) {
@@ -272,7 +316,7 @@ impl Splatter {
         if nodes.scale != Scale::FINEST {
             return self.sum_again();
         }
-        if was_standard != self.paint.is_standard() {
+        if was_evened != self.is_evened() {
             window = self.frame();
         }
         let rows = window[0].clone();
@@ -331,7 +375,7 @@ impl Splatter {
         let width = self.salf.camera.width as usize;
         // The same chunks whatever rows are asked for.
         let chunks = rows.start as usize / RESOLVE_ROWS..(rows.end as usize).div_ceil(RESOLVE_ROWS);
-        let (sums, is_painted) = (&self.sums, !self.paint.is_standard());
+        let (sums, is_evened) = (&self.sums, self.is_evened());
         let radiance = self.picture.radiance.par_chunks_mut(RESOLVE_ROWS * width);
         let coverage = self.picture.coverage.par_chunks_mut(RESOLVE_ROWS * width);
         let shares = self.shares.par_chunks_mut(RESOLVE_ROWS * width);
@@ -351,7 +395,7 @@ impl Splatter {
                 find_shares(&parts, strip.clone(), shares);
             }
             if wanted.has_picture() {
-                join(&parts, strip, shares, is_painted, (radiance, coverage));
+                join(&parts, strip, shares, is_evened, (radiance, coverage));
             }
             parts.into_iter().flatten().for_each(|lines| room.give_back(lines));
             Ok(())

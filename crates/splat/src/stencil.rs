@@ -7,6 +7,8 @@
 use crate::canvas::{PIXEL, POSITION_BITS};
 use crate::shape::{Part, Shape};
 use lens::Run;
+use progress::Progress;
+use rayon::prelude::*;
 use std::sync::OnceLock;
 
 /// Bits behind the point of the height of a splat of one pixel.
@@ -60,6 +62,13 @@ pub struct Place {
 }
 
 impl Place {
+    /// That of a radius, whose half of the table begins at `half`.
+    #[inline(always)]
+    fn of(index: usize, half: usize) -> Self {
+        let [coarser, coarsest] = [COARSER[0], COARSER[1]].map(|first| u32::from(index >= first));
+        Self { index: half + index, phase_bits: PHASE_BITS - coarser - coarsest }
+    }
+
     /// The height of a stencil of the place, and the pixel row, of a centre at `y` (1/4096 px).
     #[inline(always)]
     fn phase(self, y: i32) -> (usize, i32) {
@@ -134,6 +143,14 @@ impl Stencils {
         Self { shape, parts, table: (0..Self::PLACES).map(|_| OnceLock::new()).collect() }
     }
 
+    /// Cuts the stencils of all places now, unless they are no longer wanted.
+    pub fn cut_all(&self, progress: &dyn Progress) {
+        (0..Self::PLACES).into_par_iter().filter(|_| !progress.cancelled()).for_each(|index| {
+            let first = if index < Self::PLACES / 2 { 0 } else { Self::PLACES / 2 };
+            self.at_place(Place::of(index - first, first));
+        });
+    }
+
     /// The stencil of a size for a centre at the height `y` (1/4096 px), and the pixel row of that centre.
     #[inline(always)]
     pub fn at(&self, size: StencilSize, y: i32) -> (&Stencil, i32) {
@@ -145,9 +162,7 @@ impl Stencils {
     #[inline(always)]
     pub fn place(&self, size: StencilSize, y: i32) -> (Place, usize, i32) {
         let turned = if size.is_turned { Self::PLACES / 2 } else { 0 };
-        let index = index_of(size.square);
-        let [coarser, coarsest] = [COARSER[0], COARSER[1]].map(|first| u32::from(index >= first));
-        let place = Place { index: turned + index, phase_bits: PHASE_BITS - coarser - coarsest };
+        let place = Place::of(index_of(size.square), turned);
         let (phase, row) = place.phase(y);
         (place, phase, row)
     }

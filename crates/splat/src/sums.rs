@@ -136,8 +136,11 @@ impl Sums {
             band.free.clear();
             band.sharing.clear();
             let here = band.rows.clone();
-            let lists = lists.iter().filter(|list| meet(&list.rows, &here));
-            band.draw(&scene.pen, lists.map(|list| &list.drawn), 1);
+            for list in lists.iter().filter(|list| meet(&list.rows, &here)) {
+                // A band of many samples may take a second.
+                progress.check()?;
+                band.draw(&scene.pen, [&list.drawn], 1);
+            }
             progress.report((done.fetch_add(1, Ordering::Relaxed) + 1) as f32 / count as f32);
             Ok(())
         })

@@ -54,22 +54,16 @@ impl ApertureView {
             return;
         };
         ui.horizontal_top(|ui| {
-            let side = ui.available_height().clamp(60.0, 320.0);
-            let (rect, response) = ui.allocate_exact_size(vec2(side, side), egui::Sense::hover());
-            paint(ui, rect, image, 1.0);
             let tip = "The aperture from behind the camera, as this point sees it: hatched where something stands \
                        between, dark where the aperture's shape is closed. Its brightest light is shown as white.";
-            response.on_hover_text(tip);
-            let (rect, response) = ui.allocate_exact_size(vec2(side, side), egui::Sense::hover());
-            // Where it lands: turned by half a turn for near blur.
-            paint(ui, rect, image, if image.circle_px < 0.0 { -1.0 } else { 1.0 });
-            response.on_hover_text("The same as it lands in the picture: turned by half a turn for near blur.");
+            captioned(ui, "from behind the camera", tip, |ui, rect| paint(ui, rect, image, 1.0));
+            let tip = "The same as it lands in the picture: turned by half a turn for near blur.";
+            let sign = if image.circle_px < 0.0 { -1.0 } else { 1.0 };
+            captioned(ui, "as it lands", tip, |ui, rect| paint(ui, rect, image, sign));
             if let Some(kept) = &image.kept {
-                let (rect, response) = ui.allocate_exact_size(vec2(side, side), egui::Sense::hover());
-                paint_kept(ui, rect, kept);
-                response.on_hover_text(
-                    "What the light field keeps of it, as one colour: the cells that the nearest sample sees. The picture is made of these.",
-                );
+                let tip = "What the light field keeps of it, as one colour: the cells that the nearest sample sees. The \
+                           picture is made of these.";
+                captioned(ui, "as it is kept", tip, |ui, rect| paint_kept(ui, rect, kept));
             }
             rows(ui, "aperture", |ui| {
                 let mut line = |label: &str, tip: &str, value: String| {
@@ -93,6 +87,19 @@ impl ApertureView {
             }
         });
     }
+}
+
+/// A square picture as high as there is room for, and beneath it what it is.
+fn captioned(ui: &mut Ui, caption: &str, tip: &str, paint: impl FnOnce(&Ui, Rect)) {
+    ui.vertical(|ui| {
+        let line = ui.text_style_height(&egui::TextStyle::Small) + ui.spacing().item_spacing.y;
+        let side = (ui.available_height() - line).clamp(60.0, 320.0);
+        ui.set_width(side);
+        let (rect, response) = ui.allocate_exact_size(vec2(side, side), egui::Sense::hover());
+        paint(ui, rect);
+        response.on_hover_text(tip);
+        ui.vertical_centered(|ui| ui.add(egui::Label::new(egui::RichText::new(caption).small()).truncate()));
+    });
 }
 
 /// Draws the cells, turned by half a turn where `sign` is −1.

@@ -303,8 +303,10 @@ impl PictureView {
         let pinhole = session.preview().is_some_and(|preview| preview.kind == PreviewKind::Pinhole);
         let text = match session.preview_activity() {
             _ if self.verify.is_selecting() => "drag a rectangle to check it by rays (Esc: no)",
-            PreviewActivity::Baking if pinhole => "rebuilding the light field, shown without blur meanwhile",
-            PreviewActivity::Baking => "rebuilding the light field",
+            activity if activity.is_baking() && pinhole => {
+                "rebuilding the light field, shown without blur meanwhile"
+            }
+            activity if activity.is_baking() => "rebuilding the light field",
             PreviewActivity::Splatting if pinhole => "drawing the picture, shown without blur meanwhile",
             PreviewActivity::Idle if pinhole => {
                 "shown without blur: the light field was not built (F5 builds it)"

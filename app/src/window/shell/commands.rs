@@ -36,6 +36,7 @@ impl Shell {
             CommandId::Save => self.save(context),
             CommandId::SaveAs => self.ask_for(Purpose::SaveAs, context),
             CommandId::ExportPicture => self.ask_for(Purpose::ExportPicture, context),
+            CommandId::ExportShown => self.ask_for(Purpose::ExportShown, context),
             CommandId::ExportFocusMap => self.ask_for(Purpose::ExportFocusMap, context),
             CommandId::ExportScene => self.ask_for(Purpose::ExportScene, context),
             CommandId::ExportStrokes => self.ask_for(Purpose::ExportStrokes, context),

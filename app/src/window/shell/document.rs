@@ -79,13 +79,32 @@ impl Shell {
         };
         let name = match purpose {
             Purpose::SaveAs => format!("{stem}.fbrush"),
-            Purpose::ExportPicture => format!("{stem}.png"),
+            Purpose::ExportPicture | Purpose::ExportShown => format!("{stem}.png"),
             Purpose::ExportFocusMap => format!("{stem}-focus.exr"),
             Purpose::ExportScene => format!("{stem}-unwrapped.glb"),
             Purpose::ExportStrokes => format!("{stem}-strokes.json"),
             Purpose::Open | Purpose::ImportFocusMap | Purpose::ApertureMask => String::new(),
         };
         self.dialog.ask(purpose, base.with_file_name("").join(name), context);
+        self.dialog.note(self.export_note(purpose));
+    }
+
+    /// What is to be known before a picture is exported: how large it is, and what will be waited for.
+    fn export_note(&self, purpose: Purpose) -> Option<String> {
+        let size = |camera: &lens::Camera| format!("{} × {} px", camera.width, camera.height);
+        let shown = self.session.preview().map(|preview| size(&preview.camera))?;
+        let full = self.session.document().map(|document| size(&document.camera))?;
+        match purpose {
+            Purpose::ExportShown => Some(format!("{shown}, as it is on screen.")),
+            Purpose::ExportPicture if self.session.has_light_field_of_full_size() => Some(format!(
+                "{full}, exact: rendered in the background, from the light field that is there."
+            )),
+            Purpose::ExportPicture => Some(format!(
+                "{full}, exact. Its light field is baked first, in the background: the status line says for how long. \
+                 At once, but {shown}: File, Export as shown."
+            )),
+            _ => None,
+        }
     }
 
     pub(super) fn answered(&mut self, purpose: Purpose, path: PathBuf) {
@@ -96,6 +115,7 @@ impl Shell {
                 self.apply(Command::SaveAs(path));
             }
             Purpose::ExportPicture => self.apply(Command::ExportPicture(path)),
+            Purpose::ExportShown => self.apply(Command::ExportShown(path)),
             Purpose::ExportFocusMap => self.apply(Command::ExportFocusMap(path)),
             Purpose::ExportScene => self.apply(Command::ExportScene(path)),
             Purpose::ExportStrokes => self.apply(Command::ExportStrokes(path)),

@@ -10,7 +10,7 @@ use crate::window::picture_view::PictureView;
 use crate::window::pointer::Hand;
 use crate::window::status_line::Hover;
 use crate::window::tool_bar::signed_circle_px;
-use crate::window::view_header::{HeaderState, panel_menu, view_header};
+use crate::window::view_header::{ViewHeader, panel_menu};
 use crate::window::{Action, Tool, ViewSettings};
 use egui::{Context, Ui};
 use session::{PreviewActivity, Session, SurfaceHit};
@@ -161,12 +161,11 @@ impl Panes for Contents<'_> {
             ui.painter().rect_filled(ui.max_rect(), 0.0, ui.visuals().panel_fill);
         }
         let spacing = std::mem::take(&mut ui.spacing_mut().item_spacing.y);
-        let state = HeaderState { settings: self.settings, picture: self.picture };
-        let dragged = view_header(ui, (pane, docked), self.session, state, self.actions);
-        let Self { session, hand, actions, settings, .. } = self;
+        let Self { session, hand, actions, settings, picture, .. } = self;
+        let dragged = ViewHeader { pane, docked, session, settings, picture }.show(ui, actions);
         match pane {
             Pane::Paint => self.paint.ui(ui, session, hand, settings.look(), actions),
-            Pane::Picture => self.picture.ui(ui, session, hand, settings.display(), actions),
+            Pane::Picture => picture.ui(ui, session, hand, settings.display(), actions),
             Pane::Inspector | Pane::Atlas | Pane::Aperture | Pane::Histogram => {
                 ui.spacing_mut().item_spacing.y = spacing;
                 let frame = egui::Frame::new().inner_margin(egui::Margin::symmetric(8, 2));

@@ -60,22 +60,25 @@ impl Session {
             ReferenceKind::Standard => "drawing the ordinary lens",
             ReferenceKind::Truth => "tracing the ground truth",
         };
+        let at_hand = self.at_hand(stage.clone());
         let id = self.start(label.into(), move |progress| {
             let start = Instant::now();
             let steps = JobSteps { progress };
-            let made = |renderer| {
-                let truth = TruthOptions { samples_per_pixel, ..TruthOptions::default() };
-                let options = RenderOptions { renderer, truth, ..RenderOptions::default() };
-                Ok::<_, SessionError>(render(&stage.tracer, &camera, &focus, &options, &steps)?.picture)
-            };
             let picture = match kind {
                 ReferenceKind::Pinhole => {
                     let radiance = light(&stage.tracer, &camera);
                     let progress = steps.begin("first hits");
                     FirstHits::trace(&stage.tracer, &radiance, &focus, &camera, &*progress)?.picture()
                 }
-                ReferenceKind::Standard => made(Renderer::Splat)?,
-                ReferenceKind::Truth => made(Renderer::Truth)?,
+                ReferenceKind::Standard => {
+                    at_hand.render(&camera, &focus, &RenderOptions::default(), &steps)?.picture
+                }
+                ReferenceKind::Truth => {
+                    let truth = TruthOptions { samples_per_pixel, ..TruthOptions::default() };
+                    let options =
+                        RenderOptions { renderer: Renderer::Truth, truth, ..RenderOptions::default() };
+                    render(&stage.tracer, &camera, &focus, &options, &steps)?.picture
+                }
             };
             let samples_per_pixel = if kind == ReferenceKind::Truth { samples_per_pixel } else { 0 };
             let (picture, seconds) = (Arc::new(picture), start.elapsed().as_secs_f64());

@@ -3,13 +3,10 @@
 use super::{Outcome, Session};
 use crate::document::Document;
 use crate::error::file_name;
-use crate::render::{RenderOptions, render};
 use crate::steps::JobSteps;
-use crate::{Aov, SessionError, write_unwrapped};
-use focus::Focus;
-use project::{FocusMapFile, PictureOptions, write_focus_map, write_picture};
+use crate::{SessionError, write_unwrapped};
+use project::{FocusMapFile, write_focus_map};
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 /// What the job that keeps unsaved work is called; it is not news.
@@ -103,23 +100,6 @@ impl Session {
         {
             self.events.push(crate::Event::Notice(error.to_string()));
         }
-    }
-
-    pub(super) fn export_picture(&mut self, path: PathBuf) -> Result<(), SessionError> {
-        let document = self.opened()?;
-        let (stage, camera, exposure) = (document.stage.clone(), document.camera.clone(), document.exposure);
-        let focus = Focus::painted(stage.scene.clone(), stage.atlas.clone(), Arc::new(document.map.clone()));
-        self.start(format!("rendering {}", file_name(&path)), move |progress| {
-            let options = RenderOptions { aovs: vec![Aov::Coverage], ..RenderOptions::default() };
-            let rendered = render(&stage.tracer, &camera, &focus, &options, &JobSteps { progress })?;
-            let written = PictureOptions { exposure, half: false };
-            // A PNG would get its coverage as a second file that nobody asked for.
-            let is_exr = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("exr"));
-            let layers = if is_exr { rendered.layers } else { Vec::new() };
-            write_picture(&path, &rendered.picture, &layers, written)?;
-            Ok(Outcome::Written(path, Vec::new()))
-        })?;
-        Ok(())
     }
 
     pub(super) fn export_focus_map(&mut self, path: PathBuf) -> Result<(), SessionError> {

@@ -2,7 +2,7 @@
 
 use super::Session;
 use crate::light_field::{Changes, serves};
-use crate::{CameraEdit, Event, SessionError, Tone};
+use crate::{CameraEdit, Event, SessionError};
 use focus::{Changed, union};
 use lens::Camera;
 use std::collections::BTreeMap;
@@ -72,8 +72,7 @@ impl Session {
 
     /// Shows the preview by the document's exposure.
     pub(super) fn show_tone(&self) {
-        let exposure = self.document.as_ref().map(|document| document.exposure).unwrap_or_default();
-        self.preview_thread.set_tone(Tone { exposure, display: self.display });
+        self.preview_thread.set_tone(self.tone());
     }
 
     /// Shows the camera in the preview.

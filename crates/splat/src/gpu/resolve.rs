@@ -62,7 +62,7 @@ impl Resolve {
     }
 
     /// Tells what is asked for.
-    pub fn begin(&self, gpu: &Gpu, nodes: &Nodes, rows: Range<u32>, is_sharing: bool, is_painted: bool) {
+    pub fn begin(&self, gpu: &Gpu, nodes: &Nodes, rows: Range<u32>, is_sharing: bool, is_evened: bool) {
         let (dim, wide) = Quanta::of(nodes);
         let largest = dim.largest_coverage.min(i32::MAX as i64) as u32;
         let wide_largest = wide.largest_coverage as u64;
@@ -72,7 +72,7 @@ impl Resolve {
                 rows.start,
                 rows.end,
                 self.size[0] as u32,
-                is_painted as u32,
+                is_evened as u32,
                 0,
                 (dim.quantum as f32).to_bits(),
                 (wide.quantum as f32).to_bits(),

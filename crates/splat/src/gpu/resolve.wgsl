@@ -23,7 +23,7 @@ struct Frame {
     first: i32,
     end: i32,
     width: i32,
-    is_painted: u32,
+    is_evened: u32,
     // Always 0, which no compiler knows.
     zero: u32,
     quantum: f32,
@@ -314,6 +314,6 @@ fn finish(@builtin(global_invocation_id) id: vec3<u32>) {
     let share = shares[at];
     let shared_light = share.x * sharing;
     let light = free + vec4<f32>(exact(shared_light.x), exact(shared_light.y), exact(shared_light.z), exact(shared_light.w));
-    let even = select(share.y, 1.0, frame.is_painted != 0u);
+    let even = select(1.0, share.y, frame.is_evened != 0u);
     picture[at] = even * light;
 }

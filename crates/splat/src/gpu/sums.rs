@@ -270,10 +270,10 @@ impl GpuSums {
         &mut self,
         nodes: &Nodes,
         rows: Range<u32>,
-        is_painted: bool,
+        is_evened: bool,
         picture: &mut Picture,
     ) -> Result<(), GpuError> {
-        self.integrate(nodes, rows.clone(), false, is_painted)?;
+        self.integrate(nodes, rows.clone(), false, is_evened)?;
         self.resolve.check(&self.gpu)?;
         let width = self.resolve.size[0];
         let pixels = self.resolve.read(&self.gpu, rows.clone())?;
@@ -291,10 +291,10 @@ impl GpuSums {
         nodes: &Nodes,
         rows: Range<u32>,
         is_sharing: bool,
-        is_painted: bool,
+        is_evened: bool,
     ) -> Result<(), GpuError> {
         self.gpu.check()?;
-        self.resolve.begin(&self.gpu, nodes, rows.clone(), is_sharing, is_painted);
+        self.resolve.begin(&self.gpu, nodes, rows.clone(), is_sharing, is_evened);
         for kind in 0..2 {
             self.resolve.integrate(&self.gpu, kind, &self.accumulators[0].sums[kind], &rows);
             if let Some(wide) = self.accumulators.get(1) {

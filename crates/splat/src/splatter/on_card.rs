@@ -94,10 +94,11 @@ impl Splatter {
         rows: Range<u32>,
         wanted: Wanted,
     ) -> Option<Result<(), SplatError>> {
+        let is_evened = self.is_evened();
         let (nodes, sums) = (self.nodes.as_ref()?, self.card.sums.as_mut()?);
         let mut resolved = if wanted.has_shares() { sums.find_shares(nodes) } else { Ok(()) };
         if resolved.is_ok() && wanted.has_picture() {
-            resolved = sums.picture(nodes, rows, !self.paint.is_standard(), &mut self.picture);
+            resolved = sums.picture(nodes, rows, is_evened, &mut self.picture);
         }
         Some(self.card.came_of(resolved))
     }

@@ -81,6 +81,87 @@ fn an_update_equals_a_render_bit_for_bit() {
 }
 
 #[test]
+fn without_evening_the_first_dab_changes_what_it_moves_and_nothing_else() {
+    let uneven = || {
+        let mut splatter = Splatter::new(light_field());
+        splatter.set_evening(false);
+        splatter
+    };
+    let mut focus = standard();
+    let mut splatter = uneven();
+    splatter.render(&camera(), &focus, &Unwatched).unwrap();
+    let (blank, even) = (splatter.picture().clone(), rendered(&focus));
+    assert_ne!(blank, *even.picture());
+    let exposed = |picture: &Picture| picture.exposed(lens::Exposure::Normalise);
+    for (uneven, even) in exposed(&blank).iter().zip(&exposed(even.picture())) {
+        assert!((0..3).all(|c| (uneven[c] - even[c]).abs() <= 1e-6 * even[c].abs()), "{uneven:?} {even:?}");
+    }
+
+    let dab: Vec<u32> =
+        (0..5).flat_map(|row| (0..5).map(move |column| (40 + row) * 96 + 40 + column)).collect();
+    dab.iter().for_each(|&index| focus.0[index as usize] = FocusOffset::new(1.01, 0.5));
+    let rows = splatter.update(&focus, &dab).unwrap();
+    assert!(rows.len() < 40, "{rows:?}");
+    for (at, (now, before)) in splatter.picture().radiance.iter().zip(&blank.radiance).enumerate() {
+        assert!(now == before || rows.contains(&(at as u32 / 96)), "row {}", at / 96);
+    }
+    let mut fresh = uneven();
+    fresh.render(&camera(), &focus, &Unwatched).unwrap();
+    assert_eq!(splatter.picture(), fresh.picture());
+    splatter.update(&standard(), &dab).unwrap();
+    assert_eq!(*splatter.picture(), blank, "undone");
+}
+
+#[test]
+fn a_twin_shares_the_hierarchy_and_nothing_else() {
+    let mut focus = standard();
+    focus.0.iter_mut().step_by(5).for_each(|offset| *offset = FocusOffset::new(1.2, 0.7));
+    let mut first = Splatter::new(light_field());
+    first.set_tolerance(Tolerance::VIEWING);
+    first.render(&camera(), &focus, &Unwatched).unwrap();
+    let viewed = first.picture().clone();
+    let mut twin = first.twin();
+    twin.render(&camera(), &focus, &Unwatched).unwrap();
+    assert!(Arc::ptr_eq(first.nodes.as_ref().unwrap(), twin.nodes.as_ref().unwrap()));
+    assert_eq!(twin.picture(), rendered(&focus).picture(), "exact, as a new one");
+    assert_eq!(*first.picture(), viewed);
+}
+
+#[test]
+fn what_is_prepared_changes_no_picture() {
+    let mut focus = standard();
+    focus
+        .0
+        .iter_mut()
+        .enumerate()
+        .for_each(|(k, offset)| *offset = FocusOffset::new(1.0 + k as f64 * 1e-5, 0.3));
+    let splatter = Splatter::new(light_field());
+    splatter.prepare()(&Unwatched);
+    let mut prepared = splatter.twin();
+    prepared.render(&camera(), &focus, &Unwatched).unwrap();
+    assert_eq!(prepared.picture(), rendered(&focus).picture());
+}
+
+/// Says how often it was asked, and stops when it has been often enough.
+struct Patience(std::sync::atomic::AtomicU32);
+
+impl Progress for Patience {
+    fn report(&self, _: f32) {}
+    fn cancelled(&self) -> bool {
+        self.0.fetch_add(1, std::sync::atomic::Ordering::Relaxed) >= 3
+    }
+}
+
+#[test]
+fn a_sum_is_given_up_within_a_band_and_can_be_made_again() {
+    let mut splatter = Splatter::new(light_field());
+    let patience = Patience(0.into());
+    assert_eq!(splatter.render(&camera(), &standard(), &patience), Err(SplatError::Cancelled));
+    splatter.render(&camera(), &standard(), &Unwatched).unwrap();
+    assert_eq!(splatter.picture(), rendered(&standard()).picture());
+}
+
+#[test]
 fn ten_thousand_dabs_and_undos_leave_no_trace() {
     let (mut focus, mut random) = (standard(), 1u32);
     let mut next = |below: u32| {

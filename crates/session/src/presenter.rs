@@ -1,0 +1,147 @@
+//! How pictures come to be shown: where one differs from the one before, in what tone, with which number.
+
+use crate::picture_ring::{PictureRing, Rectangle, whole};
+use crate::preview::Shared;
+use crate::screen::Patch;
+use crate::tone::rectangle_to_screen;
+use crate::{DrawingCosts, Modelled, PictureTimes, Preview, PreviewKind, Quality, Tone};
+use lens::{Camera, Exposure, Picture};
+use std::ops::Range;
+use std::sync::Arc;
+use std::time::Instant;
+
+/// A picture that was made.
+pub(crate) struct Made<'a> {
+    pub picture: &'a Picture,
+    pub camera: &'a Camera,
+    /// What it has to do with the one before.
+    pub relation: Relation,
+    pub kind: PreviewKind,
+    pub quality: Quality,
+    /// Seconds that it took.
+    pub seconds: f64,
+    pub modelled: Modelled,
+}
+
+/// What a picture has to do with the one that was followed before.
+pub(crate) enum Relation {
+    /// Nothing.
+    New,
+    /// It differs from it in these rows at most.
+    Changed(Range<u32>),
+    /// It is a better picture of the same, to be laid over it.
+    Better,
+}
+
+/// Shows pictures, each with a number.
+pub(crate) struct Presenter {
+    shared: Arc<Shared>,
+    /// The newest picture.
+    shown: Option<Preview>,
+    /// It and those of before.
+    pictures: PictureRing,
+    tone: Tone,
+    last_id: u64,
+    /// Which of the session's documents is shown.
+    pub generation: u64,
+    /// How many changes of the map the next picture has seen.
+    pub map_serial: u64,
+    /// When work on the next picture began.
+    pub begun: Instant,
+    /// What pictures cost, where that is known.
+    pub costs: DrawingCosts,
+}
+
+impl Presenter {
+    pub fn new(shared: Arc<Shared>) -> Self {
+        Self {
+            shared,
+            shown: None,
+            pictures: PictureRing::default(),
+            tone: Tone::default(),
+            last_id: 0,
+            generation: 0,
+            map_serial: 0,
+            begun: Instant::now(),
+            costs: DrawingCosts::default(),
+        }
+    }
+
+    /// Another document: what was shown is not of it.
+    pub fn open(&mut self, generation: u64) {
+        self.generation = generation;
+        self.shown = None;
+        self.costs = DrawingCosts::default();
+    }
+
+    /// The newest picture.
+    pub fn shown(&self) -> Option<&Preview> {
+        self.shown.as_ref()
+    }
+
+    /// The picture that is worked with, beneath a better one that may lie over it.
+    pub fn followed(&self) -> Option<Arc<Picture>> {
+        self.pictures.followed()
+    }
+
+    /// By which exposure pictures are shown.
+    pub fn exposure(&self) -> Exposure {
+        self.tone.exposure
+    }
+
+    /// Shows a picture.
+    pub fn show(&mut self, made: Made) {
+        let summed = Instant::now();
+        let is_new = matches!(made.relation, Relation::New);
+        let (picture, changed) = match made.relation {
+            Relation::New => (self.pictures.begin(made.picture), Some(whole(made.picture))),
+            Relation::Changed(rows) => self.pictures.follow(made.picture, rows),
+            Relation::Better => self.pictures.overlay(made.picture),
+        };
+        self.last_id += 1;
+        let preview = Preview {
+            id: self.last_id,
+            picture,
+            kind: made.kind,
+            quality: made.quality,
+            costs: self.costs,
+            camera: made.camera.clone(),
+            seconds: made.seconds,
+            modelled: made.modelled,
+            map_serial: self.map_serial,
+            generation: self.generation,
+        };
+        self.shown = Some(preview.clone());
+        let patch = changed.map(|rectangle| self.patch(&preview.picture, rectangle));
+        let times =
+            PictureTimes { map_serial: self.map_serial, begun: self.begun, summed, finished: Instant::now() };
+        self.shared.publish(preview, patch, Some(times));
+        if is_new {
+            // The first dabs on it find room.
+            self.pictures.make_room();
+        }
+    }
+
+    /// Shows pictures in another tone from now on, the newest one at once.
+    pub fn set_tone(&mut self, tone: Tone) {
+        if tone == self.tone {
+            return;
+        }
+        self.tone = tone;
+        if let Some(mut preview) = self.shown.clone() {
+            self.last_id += 1;
+            preview.id = self.last_id;
+            let patch = self.patch(&preview.picture, whole(&preview.picture));
+            self.shared.publish(preview, Some(patch), None);
+        }
+    }
+
+    /// A rectangle of a picture, as the screen shows it.
+    fn patch(&self, picture: &Picture, rectangle: Rectangle) -> Patch {
+        Patch {
+            size: [picture.width, picture.height],
+            pixels: rectangle_to_screen(picture, self.tone, rectangle.clone()),
+            rectangle,
+        }
+    }
+}

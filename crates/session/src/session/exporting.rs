@@ -1,0 +1,170 @@
+//! Pictures as files: rendered at full size, from the light field that stands if it serves, or as they are on screen.
+
+use super::{Outcome, Session};
+use crate::error::file_name;
+use crate::light_field::serves;
+use crate::reach::Reach;
+use crate::render::{RenderOptions, Rendered, bake, sum_light_field};
+use crate::steps::JobSteps;
+use crate::{Aov, LightFieldStore, Quality, SessionError, Stage, Steps, Tone};
+use focus::Focus;
+use lens::{Camera, Picture};
+use project::{Layer, PictureOptions, write_picture, write_rgb};
+use salf::{BakeOptions, Salf};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::Instant;
+
+/// The light fields that need not be baked.
+#[derive(Clone)]
+pub(super) struct AtHand {
+    stage: Arc<Stage>,
+    /// That of the live picture.
+    live: Option<Arc<Salf>>,
+    store: Option<LightFieldStore>,
+}
+
+impl AtHand {
+    /// One that shows what `camera` sees of `focus`, the margin included.
+    fn find(&self, camera: &Camera, focus: &Focus) -> Option<Arc<Salf>> {
+        let live = self.live.clone().filter(|salf| serves(&salf.camera, camera));
+        let found = live.or_else(|| {
+            let store = self.store.as_ref()?;
+            store.find(&self.stage, camera, 0.0).map(Arc::new)
+        });
+        found.filter(|salf| !Reach::of_all(salf, camera, focus).is_exceeded())
+    }
+
+    /// Renders a picture, exactly unless `options` say otherwise. What is baked for it is kept.
+    pub(super) fn render(
+        &self,
+        camera: &Camera,
+        focus: &Focus,
+        options: &RenderOptions,
+        steps: &dyn Steps,
+    ) -> Result<Rendered, SessionError> {
+        let tracer = &self.stage.tracer;
+        let salf = match self.find(camera, focus) {
+            Some(salf) => salf,
+            None => {
+                let start = Instant::now();
+                let salf = Arc::new(bake(tracer, camera, focus, BakeOptions::TOLERANCE_PX, steps)?);
+                if let Some(store) = &self.store {
+                    store.keep(&self.stage, &salf, start.elapsed());
+                }
+                salf
+            }
+        };
+        sum_light_field(salf, tracer, camera, focus, options, steps)
+    }
+}
+
+impl Session {
+    /// The light fields of the document that need not be baked.
+    pub(super) fn at_hand(&self, stage: Arc<Stage>) -> AtHand {
+        let live = self.field.as_ref().map(|field| field.salf.clone());
+        AtHand { stage, live, store: self.options.light_fields.clone() }
+    }
+
+    /// Whether a picture at full size can be exported without baking a light field first, as far as is known without looking
+    /// at the paint.
+    pub fn has_light_field_of_full_size(&self) -> bool {
+        let Some(document) = &self.document else { return false };
+        let live = self.field.as_ref().is_some_and(|field| serves(&field.salf.camera, &document.camera));
+        let store = self.options.light_fields.as_ref();
+        live || store.is_some_and(|store| store.has(&document.stage, &document.camera))
+    }
+
+    /// The live picture without tolerance; rendered now, which takes its time.
+    pub fn exact_picture(&self) -> Result<Picture, SessionError> {
+        let (Some(document), Some(preview)) = (self.document(), self.preview()) else {
+            return Err(SessionError::NothingOpen);
+        };
+        let stage = document.stage.clone();
+        let map = Arc::new(document.map.clone());
+        let focus = Focus::painted(stage.scene.clone(), stage.atlas.clone(), map);
+        let at_hand = self.at_hand(stage);
+        let options = RenderOptions::default();
+        Ok(at_hand.render(&preview.camera, &focus, &options, &progress::Unwatched)?.picture)
+    }
+
+    pub(super) fn export_picture(&mut self, path: PathBuf) -> Result<(), SessionError> {
+        let tone = self.tone();
+        let document = self.opened()?;
+        let (stage, camera) = (document.stage.clone(), document.camera.clone());
+        let focus = Focus::painted(stage.scene.clone(), stage.atlas.clone(), Arc::new(document.map.clone()));
+        let at_hand = self.at_hand(stage);
+        self.start(format!("rendering {}", file_name(&path)), move |progress| {
+            let options = RenderOptions { aovs: vec![Aov::Coverage], ..RenderOptions::default() };
+            let rendered = at_hand.render(&camera, &focus, &options, &JobSteps { progress })?;
+            write_shown(&path, &rendered.picture, &rendered.layers, tone)?;
+            Ok(Outcome::Written(path, Vec::new()))
+        })?;
+        Ok(())
+    }
+
+    /// Writes the live picture as it is.
+    pub(super) fn export_shown(&mut self, path: PathBuf) -> Result<(), SessionError> {
+        let tone = self.tone();
+        let preview = self.preview.as_ref().ok_or(SessionError::NothingOpen)?;
+        if preview.quality == Quality::Coarse {
+            let what = "the picture on screen is still rough (wait until the status line says live or exact)";
+            return Err(SessionError::bad(&path, what));
+        }
+        let picture = preview.picture.clone();
+        self.start(format!("writing {}", file_name(&path)), move |_| {
+            write_shown(&path, &picture, &[Layer::coverage(&picture)], tone)?;
+            Ok(Outcome::Written(path, Vec::new()))
+        })?;
+        Ok(())
+    }
+
+    /// How the screen shows the document.
+    pub(super) fn tone(&self) -> Tone {
+        let exposure = self.document.as_ref().map(|document| document.exposure).unwrap_or_default();
+        Tone { exposure, display: self.display }
+    }
+}
+
+/// Writes a picture: EXR with its layers and unchanged light, anything else as the screen shows it.
+fn write_shown(path: &Path, picture: &Picture, layers: &[Layer], tone: Tone) -> Result<(), SessionError> {
+    let is_exr = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("exr"));
+    if is_exr {
+        write_picture(path, picture, layers, PictureOptions { exposure: tone.exposure, half: false })?;
+    } else {
+        write_rgb(path, picture.width, picture.height, &tone.displayed(picture))?;
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Display, ToneCurve, to_screen};
+    use lens::Exposure;
+
+    #[test]
+    fn a_png_holds_what_the_screen_shows() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("shown.png");
+        let mut picture = Picture::black(16, 4);
+        for (k, (radiance, coverage)) in picture.radiance.iter_mut().zip(&mut picture.coverage).enumerate() {
+            (*radiance, *coverage) = ([k as f32 * 0.02, 0.3, 0.01], 0.5 + (k % 7) as f32 * 0.1);
+        }
+        for (exposure, stops, curve) in [
+            (Exposure::Normalise, 0.7, ToneCurve::Agx),
+            (Exposure::Conserve, 0.0, ToneCurve::Clip),
+            (Exposure::Normalise, -1.0, ToneCurve::Neutral),
+        ] {
+            let tone = Tone { exposure, display: Display { stops, curve } };
+            write_shown(&path, &picture, &[], tone).unwrap();
+            let written = project::read_picture(&path).unwrap();
+            let mut back = Picture::black(16, 4);
+            (back.radiance, back.coverage) = (written.rgb, vec![1.0; 64]);
+            let plain = Tone { exposure: Exposure::Conserve, display: Display::default() };
+            for (written, shown) in to_screen(&back, plain).iter().zip(to_screen(&picture, tone)) {
+                assert!((0..3).all(|c| written[c].abs_diff(shown[c]) <= 1), "{written:?} {shown:?}");
+            }
+        }
+    }
+}
