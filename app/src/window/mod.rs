@@ -25,6 +25,7 @@ mod drawer;
 mod false_colour;
 mod file_dialog;
 mod focus_slider;
+mod hand;
 mod help;
 mod inspector;
 mod keys;

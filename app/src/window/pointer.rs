@@ -2,35 +2,18 @@
 //!
 //! A stroke is told in the view's own terms: where in it the pen is. So it can be recorded and painted again.
 
-use super::brush_ring::BrushRing;
 use super::curve_stroke::CurveStroke;
 use super::drag_tool::{Drag, DragView, combine};
-use super::tool_settings::ToolSettings;
+use super::hand::{Hand, click};
 use super::{Action, Tool, navigation};
 use egui::{Event, Modifiers, PointerButton, Pos2, Response, Ui};
-use focus::{Combine, FillTarget, ViewFrame};
+use focus::ViewFrame;
 use glam::{DVec2, DVec3};
-use lens::FocusOffset;
 use project::SelectionShape;
-use session::{Command, FillRegion, Session, StrokePoint, StrokeTarget, SurfaceHit, view_ray};
+use session::{Command, Session, StrokePoint, StrokeTarget, view_ray};
 
 /// How far apart the points of a straight line are told, screen points.
 const LINE_STEP: f32 = 4.0;
-
-/// What the user holds.
-#[derive(Clone, Debug)]
-pub struct Hand {
-    /// The tool.
-    pub tool: Tool,
-    /// What it is set to.
-    pub settings: ToolSettings,
-    /// Whether pointer and keys set up the brush now, and do nothing else.
-    pub is_busy: bool,
-    /// The ring that shows where it paints.
-    pub ring: Option<BrushRing>,
-    /// Length of the string by which the pointer pulls the brush, points.
-    pub string: f32,
-}
 
 /// The stroke of one view.
 #[derive(Default)]
@@ -61,8 +44,7 @@ impl StrokeInput {
         position: impl Fn(Pos2) -> DVec2,
     ) -> Vec<Action> {
         let mut actions = Vec::new();
-        let Some(document) = session.document() else { return actions };
-        if hand.is_busy {
+        if session.document().is_none() || hand.is_busy {
             return actions;
         }
         // Place and modifiers of the press itself: a frame may hold more than one event, a whole click even.
@@ -109,45 +91,7 @@ impl StrokeInput {
         let start = pressed.filter(|(modifiers, _)| own(modifiers) && is_here);
         if let Some((modifiers, at)) = start {
             response.request_focus();
-            let tool = hand.tool;
-            let hit = || session.pick(&view_ray(&frame, position(at)));
-            if tool == Tool::Curve {
-                self.curve.add(at);
-            } else if tool == Tool::Clone && modifiers.command {
-                self.clone_from = hit().map(|hit| hit.position).or(self.clone_from);
-            } else if tool.paints() {
-                let mut brush = document.brush.clone();
-                brush.mode = tool.mode(brush.mode);
-                if let Some((from, to)) = self.clone_from.take_if(|_| tool == Tool::Clone).zip(hit()) {
-                    brush.clone_offset = (from - to.position).to_array();
-                }
-                if tool == Tool::Clone && brush.clone_offset == [0.0; 3] {
-                    let what = "Clone: nothing to paint yet (Ctrl+click takes the focus from a place first)";
-                    actions.push(Action::Complain(what.into()));
-                    return actions;
-                }
-                if brush != document.brush {
-                    actions.push(Command::SetBrush(brush).into());
-                }
-                let line = modifiers.shift;
-                let from =
-                    self.last_end.filter(|(view, _)| line && *view == frame).map_or(at, |(_, end)| end);
-                actions.push(Command::BeginStroke(point(from)).into());
-                let steps = (from.distance(at) / LINE_STEP).ceil();
-                for k in 1..=steps as u32 {
-                    let along = from.lerp(at, k as f32 / steps);
-                    actions.push(Command::ExtendStroke(point(along)).into());
-                }
-                self.painting = true;
-                self.brush = Some(at);
-            } else if tool.drags() {
-                self.drag = Some(Drag::begin(tool, modifiers, at, session, &view));
-            } else if let Some(hit) = hit() {
-                let target = document.brush.target;
-                let front = document.scene().area_normal(hit.point.triangle).normalize_or_zero();
-                let facing = SelectionShape::Normal { normal: front, degrees: hand.settings.facing_degrees };
-                actions.extend(click(tool, hit, target, facing, combine(modifiers)));
-            }
+            self.press(session, hand, (modifiers, at), &view, point, &mut actions);
             return actions;
         }
         if !self.painting {
@@ -178,6 +122,58 @@ impl StrokeInput {
 }
 
 impl StrokeInput {
+    /// The button goes down: a stroke, a drag or a point of a curve begins, or the tool does what it does to what is there.
+    fn press(
+        &mut self,
+        session: &Session,
+        hand: &Hand,
+        (modifiers, at): (Modifiers, Pos2),
+        view: &DragView,
+        point: impl Fn(Pos2) -> StrokePoint,
+        actions: &mut Vec<Action>,
+    ) {
+        let Some(document) = session.document() else { return };
+        let tool = hand.tool;
+        let hit = || session.pick(&view_ray(&view.frame, (view.position)(at)));
+        if tool == Tool::Curve {
+            self.curve.add(at);
+        } else if tool == Tool::Clone && modifiers.command {
+            self.clone_from = hit().map(|hit| hit.position).or(self.clone_from);
+        } else if tool.paints() {
+            let mut brush = document.brush.clone();
+            brush.mode = tool.mode(brush.mode);
+            if let Some((from, to)) = self.clone_from.take_if(|_| tool == Tool::Clone).zip(hit()) {
+                brush.clone_offset = (from - to.position).to_array();
+            }
+            if tool == Tool::Clone && brush.clone_offset == [0.0; 3] {
+                let what = "Clone: nothing to paint yet (Ctrl+click takes the focus from a place first)";
+                actions.push(Action::Complain(what.into()));
+                return;
+            }
+            if brush != document.brush {
+                actions.push(Command::SetBrush(brush).into());
+            }
+            let line = modifiers.shift;
+            let from =
+                self.last_end.filter(|(seen, _)| line && *seen == view.frame).map_or(at, |(_, end)| end);
+            actions.push(Command::BeginStroke(point(from)).into());
+            let steps = (from.distance(at) / LINE_STEP).ceil();
+            for k in 1..=steps as u32 {
+                let along = from.lerp(at, k as f32 / steps);
+                actions.push(Command::ExtendStroke(point(along)).into());
+            }
+            self.painting = true;
+            self.brush = Some(at);
+        } else if tool.drags() {
+            self.drag = Some(Drag::begin(tool, modifiers, at, session, view));
+        } else if let Some(hit) = hit() {
+            let target = document.brush.target;
+            let front = document.scene().area_normal(hit.point.triangle).normalize_or_zero();
+            let facing = SelectionShape::Normal { normal: front, degrees: hand.settings.facing_degrees };
+            actions.extend(click(tool, hit, target, facing, combine(modifiers)));
+        }
+    }
+
     /// Ends a curve by Enter or a double click: a stroke along it; Esc gives it up.
     fn end_curve(
         &mut self,
@@ -222,48 +218,6 @@ fn pen_pressure(events: &[Event]) -> f32 {
         _ => None,
     };
     events.iter().rev().find_map(force).map_or(1.0, |force| force.clamp(0.0, 1.0))
-}
-
-/// What a click of the tool takes whole.
-fn region(tool: Tool, hit: SurfaceHit) -> Option<FillRegion> {
-    match tool {
-        Tool::FillObject | Tool::SharpHere | Tool::SelectObject => Some(FillRegion::Node(hit)),
-        Tool::FillMaterial | Tool::SelectMaterial => Some(FillRegion::Material(hit)),
-        Tool::FillChart | Tool::SelectChart => Some(FillRegion::Chart(hit)),
-        _ => None,
-    }
-}
-
-impl Hand {
-    /// What a click at `hover` would take whole.
-    pub fn targets(&self, session: &Session, hover: Option<SurfaceHit>) -> Vec<FillTarget> {
-        let region = hover.and_then(|hit| region(self.tool, hit)).filter(|_| !self.is_busy);
-        let targets = |region| session.document().map(|document| document.targets_of(region));
-        region.and_then(targets).unwrap_or_default()
-    }
-}
-
-/// What a tool that is clicked does where it is.
-fn click(
-    tool: Tool,
-    hit: SurfaceHit,
-    target: FocusOffset,
-    facing: SelectionShape,
-    combine: Combine,
-) -> Option<Action> {
-    let command = match tool {
-        Tool::Inspect => return Some(Action::Inspect(hit)),
-        Tool::SharpHere => Command::Fill(region(tool, hit)?, FocusOffset::SHARP),
-        Tool::FillObject | Tool::FillMaterial | Tool::FillChart => Command::Fill(region(tool, hit)?, target),
-        Tool::SelectObject | Tool::SelectMaterial | Tool::SelectChart => {
-            Command::SelectRegion(region(tool, hit)?, combine)
-        }
-        Tool::SelectFacing => Command::Select(facing, combine),
-        Tool::FocusHere => Command::FocusHere(hit),
-        Tool::Pick => Command::Pick(hit),
-        _ => return None,
-    };
-    Some(command.into())
 }
 
 #[cfg(test)]

@@ -36,6 +36,11 @@ impl LightFieldStore {
         Self { folder, budget_bytes: BUDGET_BYTES, shortest_bake: SHORTEST_BAKE }
     }
 
+    /// The same store, which keeps what took at least `shortest_bake` to bake.
+    pub fn with_shortest_bake(self, shortest_bake: Duration) -> Self {
+        Self { shortest_bake, ..self }
+    }
+
     /// The file of a light field; none where builds of the program cannot be told apart.
     fn file(&self, stage: &Stage, camera: &Camera) -> Option<PathBuf> {
         let mut hash = Sha256::new();
@@ -144,4 +149,45 @@ pub(crate) fn light_hash(scene: &Scene) -> [u8; 32] {
     // Written out, numbers are as exact as they are.
     arrays(format!("{:?} {:?} {:?}", scene.parts, scene.materials, scene.lights).as_bytes());
     hash.finalize().into()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_was_not_looked_for_the_longest_goes_first() {
+        let folder = tempfile::tempdir().unwrap();
+        let store = LightFieldStore { budget_bytes: 250, ..LightFieldStore::new(folder.path().into()) };
+        let write = |name: &str, age: u64| {
+            let path = folder.path().join(name);
+            std::fs::write(&path, [0; 100]).unwrap();
+            let file = File::options().write(true).open(&path).unwrap();
+            file.set_modified(SystemTime::now() - Duration::from_secs(age)).unwrap();
+            path
+        };
+        let (old, young) = (write("old.salf", 90), write("young.salf", 20));
+        let other = write("notes.txt", 500);
+        let newest = write("newest.salf", 100);
+        store.tidy(&newest);
+        assert!(!old.exists() && young.exists() && newest.exists() && other.exists());
+        store.tidy(&newest);
+        assert!(young.exists(), "what is left is within the budget");
+    }
+
+    #[test]
+    fn a_scene_in_another_light_is_another() {
+        let mut scene = Scene::default();
+        let dark = light_hash(&scene);
+        assert_eq!(light_hash(&scene.clone()), dark);
+        scene.path = "elsewhere.glb".into();
+        assert_eq!(light_hash(&scene), dark, "wherever it lies");
+        scene.positions.push(glam::DVec3::X);
+        let moved = light_hash(&scene);
+        assert_ne!(moved, dark);
+        // Arrays do not run into each other.
+        let uv = Scene { uv: [vec![glam::Vec2::ONE], Vec::new()], ..Scene::default() };
+        let other = Scene { uv: [Vec::new(), vec![glam::Vec2::ONE]], ..Scene::default() };
+        assert_ne!(light_hash(&uv), light_hash(&other));
+    }
 }

@@ -1,6 +1,6 @@
 //! The atlas flat: every chart in the false colours of its blur, painted on in 2D.
 
-use crate::window::pointer::Hand;
+use crate::window::hand::Hand;
 use crate::window::{Action, controls, false_colour};
 use egui::{Color32, ColorImage, Pos2, Rect, Sense, TextureHandle, TextureOptions, Ui, pos2, vec2};
 use focus::FocusMap;

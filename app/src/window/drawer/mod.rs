@@ -6,8 +6,8 @@ mod atlas_view;
 mod histogram_view;
 
 use super::Action;
+use super::hand::Hand;
 use super::layout::Pane;
-use super::pointer::Hand;
 use aperture_view::ApertureView;
 use atlas_view::AtlasView;
 use egui::Ui;

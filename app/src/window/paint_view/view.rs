@@ -6,8 +6,9 @@ use super::{
 };
 use crate::window::blit::{Blitter, Drawable, Filter};
 use crate::window::brush_ring;
+use crate::window::hand::Hand;
 use crate::window::navigation::{self, Motion};
-use crate::window::pointer::{Hand, StrokeInput};
+use crate::window::pointer::StrokeInput;
 use crate::window::region_highlight::RegionHighlight;
 use crate::window::{Action, false_colour, theme};
 use egui::{Color32, Pos2, Rect, Response, Sense, Stroke, Ui, pos2, vec2};

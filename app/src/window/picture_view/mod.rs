@@ -8,9 +8,10 @@ pub use shown::Shown;
 
 use super::blit::{Blitter, Filter};
 use super::brush_ring;
+use super::hand::Hand;
 use super::navigation::{self, Motion};
 use super::paint_view::hint;
-use super::pointer::{Hand, StrokeInput};
+use super::pointer::StrokeInput;
 use super::region_highlight::RegionHighlight;
 use super::{Action, controls, theme};
 use egui::{PointerButton, Pos2, Rect, Response, Sense, Ui, Vec2, vec2};

@@ -3,11 +3,11 @@
 use super::Shell;
 use crate::window::brush_ring::BrushRing;
 use crate::window::drawer::Drawer;
+use crate::window::hand::Hand;
 use crate::window::inspector::Inspector;
 use crate::window::layout::{Docked, Pane, Panes};
 use crate::window::paint_view::PaintView;
 use crate::window::picture_view::PictureView;
-use crate::window::pointer::Hand;
 use crate::window::status_line::Hover;
 use crate::window::tool_bar::signed_circle_px;
 use crate::window::view_header::{ViewHeader, panel_menu};
