@@ -27,7 +27,8 @@ impl Session {
     /// while no stroke goes on, or the picture is still rough.
     ///
     /// Drawing a window meanwhile would make both late: it would show the picture of before, and be drawn again.
-    pub fn wait_for_stroke(&self, at_most: Duration) {
+    pub fn wait_for_stroke(&mut self, at_most: Duration) {
+        self.tell_preview();
         let is_live = self.preview.as_ref().is_some_and(|preview| preview.quality > Quality::Coarse);
         if self.is_painting() && is_live {
             self.preview_thread.wait(self.map_serial, at_most);
@@ -60,6 +61,7 @@ impl Session {
         };
         if changed {
             document.picture_step();
+            self.tell_preview();
             self.preview_thread.settle();
         }
         Ok(())
