@@ -29,8 +29,8 @@ fail() {
 }
 
 # A display of its own, and nothing of the user's: no settings, no session bus (the paths are then typed).
-export XDG_CACHE_HOME=${CACHE:-$work/cache}
 export HOME=$work/home
+export XDG_CACHE_HOME=${CACHE:-$work/home/.cache}
 mkdir -p "$HOME"
 unset DBUS_SESSION_BUS_ADDRESS XDG_DATA_HOME WAYLAND_DISPLAY
 exec 3> >(cat > "$work/display")

@@ -31,9 +31,8 @@ impl ViewHeader<'_> {
     /// Draws it. Returns whether the panel is being dragged elsewhere by its name.
     pub fn show(self, ui: &mut Ui, actions: &mut Vec<Action>) -> bool {
         let (pane, docked) = (self.pane, self.docked);
-        let is_view = matches!(pane, Pane::Paint | Pane::Picture);
-        // All that the line of another panel would say stands on its tab.
-        if !is_view && docked == Docked::Tab {
+        // All that the line of another panel than the views would say stands on its tab.
+        if pane.is_foldable() && docked == Docked::Tab {
             return false;
         }
         let margin = egui::Margin::symmetric(8, 3);

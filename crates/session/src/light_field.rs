@@ -59,6 +59,14 @@ impl Changes {
     }
 }
 
+/// What it takes to bring a sum up to date.
+pub(crate) enum Plan {
+    /// Moving these samples.
+    Move(Vec<u32>),
+    /// The whole sum.
+    Whole,
+}
+
 /// What it took to bring a sum up to date.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum Brought {
@@ -211,20 +219,15 @@ impl LightField {
         self.unseen.join(changes);
     }
 
-    /// Whether [`Self::bring_up`] would make the whole sum.
-    pub fn needs_whole_sum(&self, camera: &Camera) -> bool {
-        self.moved_samples(camera).is_none()
-    }
-
-    /// The samples that moved since the sum; none where a whole sum is needed or quicker.
-    fn moved_samples(&self, camera: &Camera) -> Option<Vec<u32>> {
+    /// What it takes to bring the sum to a lens and all changes.
+    pub fn plan(&self, camera: &Camera) -> Plan {
         let texels = match &self.unseen {
             Changes::Texels(texels) if self.summed.as_ref() == Some(camera) => texels,
-            _ => return None,
+            _ => return Plan::Whole,
         };
         let samples = self.index.samples_reading(texels);
         let few = samples.len() as f64 <= LARGEST_UPDATE * self.splatter.salf().samples.len() as f64;
-        few.then_some(samples)
+        if few { Plan::Move(samples) } else { Plan::Whole }
     }
 
     /// Whether the sum shows this lens and all changes.
@@ -244,19 +247,30 @@ impl LightField {
         focus: &Focus,
         progress: &dyn Progress,
     ) -> Result<Brought, SessionError> {
-        let moved = self.moved_samples(camera);
+        let plan = self.plan(camera);
+        self.carry_out(plan, camera, focus, progress)
+    }
+
+    /// The same, as it was just planned for this lens.
+    pub fn carry_out(
+        &mut self,
+        plan: Plan,
+        camera: &Camera,
+        focus: &Focus,
+        progress: &dyn Progress,
+    ) -> Result<Brought, SessionError> {
         // Until all is through, the sum is of no lens.
         let was_summed = self.summed.take().is_some();
-        let brought = match moved {
-            Some(samples) if samples.is_empty() => Brought::Nothing,
-            Some(samples) => {
+        let brought = match plan {
+            Plan::Move(samples) if samples.is_empty() => Brought::Nothing,
+            Plan::Move(samples) => {
                 let rows = self.splatter.update(focus, &samples)?;
                 if let Some(reach) = &mut self.reach {
                     reach.look_again(self.splatter.salf(), camera, focus, &samples);
                 }
                 Brought::Update(rows)
             }
-            None => {
+            Plan::Whole => {
                 self.reach = None;
                 let start = Instant::now();
                 if was_summed && self.unseen.is_none() {
@@ -399,7 +413,7 @@ mod tests {
         let (blank, _) = painted(&document, FocusOffset::STANDARD, |_| false);
         let how = FieldOptions { least_margin_px: 0.0, tolerance: Tolerance::VIEWING };
         let field = LightField::bake(&document.stage, &camera, &blank, how, &Unwatched).unwrap();
-        let mut exact = field.exact()();
+        let mut exact = field.exact();
         assert!(exact.is_twin_of(&field) && exact.summing_bytes() > 0);
         assert!(!exact.is_up_to_date(&camera));
         exact.bring_up(&camera, &blank, &Unwatched).unwrap();
@@ -409,7 +423,7 @@ mod tests {
         let (focus, texels) = painted(&document, FocusOffset::new(1.2, 1.0), dab);
         exact.note(&Changes::Texels(texels));
         assert!(matches!(exact.bring_up(&camera, &focus, &Unwatched), Ok(Brought::Update(_))));
-        let mut anew = field.exact()();
+        let mut anew = field.exact();
         anew.bring_up(&camera, &focus, &Unwatched).unwrap();
         assert!(exact.picture() == anew.picture() && *exact.picture() != was);
     }

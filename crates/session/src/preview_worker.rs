@@ -1,7 +1,7 @@
 //! What the preview thread does with its wishes.
 
 use crate::job::guarded;
-use crate::light_field::{Brought, FieldOptions, LightField};
+use crate::light_field::{Brought, FieldOptions, LightField, Plan};
 use crate::light_field_maker::{Begin, LightFieldMaker, Order};
 use crate::light_field_store::LightFieldStore;
 use crate::presenter::{Made, Presenter, Relation};
@@ -133,10 +133,11 @@ impl Worker {
         if self.fine.take_if(|fine| !fine.serves(&camera)).is_some() {
             self.refinement.forget();
         }
-        let is_quick =
-            |fine: &LightField| fine.whole_seconds() < QUICK_SECONDS || !fine.needs_whole_sum(&camera);
-        if self.fine.as_ref().is_some_and(is_quick) {
-            return self.show_fine(&stage, &camera, focus);
+        let plan = self.fine.as_ref().map(|fine| (fine.plan(&camera), fine.whole_seconds() < QUICK_SECONDS));
+        if let Some((plan, is_quick)) = plan
+            && (is_quick || matches!(plan, Plan::Move(_)))
+        {
+            return self.show_fine(plan, &stage, &camera, focus);
         }
         self.show_pinhole(&stage, &camera, &focus)?;
         // What is kept is there sooner than the coarse picture.
@@ -220,11 +221,17 @@ impl Worker {
     }
 
     /// Brings the fine picture up to date; then, after an edit, sees whether another light field would serve better.
-    fn show_fine(&mut self, stage: &Arc<Stage>, camera: &Camera, focus: Focus) -> Result<(), SessionError> {
+    fn show_fine(
+        &mut self,
+        plan: Plan,
+        stage: &Arc<Stage>,
+        camera: &Camera,
+        focus: Focus,
+    ) -> Result<(), SessionError> {
         let Some(fine) = &mut self.fine else { return Ok(()) };
         self.shared.begin(PreviewActivity::Splatting)?;
         let start = Instant::now();
-        let brought = fine.bring_up(camera, &focus, &self.shared.quick)?;
+        let brought = fine.carry_out(plan, camera, &focus, &self.shared.quick)?;
         let is_new = std::mem::take(&mut self.is_new);
         if brought != Brought::Nothing || is_new {
             let is_exact = self.tolerance == Tolerance::NONE;

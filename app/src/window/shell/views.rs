@@ -156,8 +156,7 @@ impl Panes for Contents<'_> {
         if ui.rect_contains_pointer(ui.max_rect()) {
             *self.pointed = pane;
         }
-        let is_view = matches!(pane, Pane::Paint | Pane::Picture);
-        if !is_view {
+        if pane.is_foldable() {
             ui.painter().rect_filled(ui.max_rect(), 0.0, ui.visuals().panel_fill);
         }
         let spacing = std::mem::take(&mut ui.spacing_mut().item_spacing.y);
