@@ -36,12 +36,12 @@ struct Painted {
     serial: u64,
     due: Instant,
     told: Instant,
-    /// When the map held it, and all else that was told in the frame.
+    /// When the map held it and the preview was told.
     painted: Instant,
 }
 
-/// What comes between the window being told of a point and its picture: the brush's work on the map, with that of all
-/// points told in the same frame; waiting for the preview to be done with what came before; bringing the sum up to date; a
+/// What comes between the window being told of a point and its picture: the brush's work on the map, with that of the
+/// points told before it in the same frame; waiting for the preview to be done with what came before; bringing the sum up to date; a
 /// snapshot of the picture and the pixels of the screen.
 const STEPS: [&str; 4] = ["painting", "waiting", "summing", "showing"];
 
@@ -135,11 +135,10 @@ impl Player {
     fn paint_due(&mut self, session: &mut Session, now: Instant) -> Result<(), SessionError> {
         let Some(played) = &mut self.stroke else { return Ok(()) };
         let RecordedStep::Stroke(stroke) = &self.steps[played.step] else { return Ok(()) };
-        let first = self.unseen.len();
         while let Some(point) = stroke.points.get(played.next_point) {
             let due = played.began + POINT_EVERY * played.next_point as u32;
             if due > now {
-                break;
+                return Ok(());
             }
             let point = StrokePoint::recorded(&stroke.view, point);
             let before = session.map_serial();
@@ -150,17 +149,12 @@ impl Player {
             played.next_point += 1;
             // A point between two dabs changes nothing.
             if session.map_serial() != before {
-                self.unseen.push(Painted { serial: session.map_serial(), due, told: now, painted: now });
+                let painted = Instant::now();
+                self.unseen.push(Painted { serial: session.map_serial(), due, told: now, painted });
             }
         }
-        let is_done = played.next_point == stroke.points.len();
-        let painted = Instant::now();
-        self.unseen[first..].iter_mut().for_each(|point| point.painted = painted);
-        if is_done {
-            self.stroke = None;
-            session.apply(Command::CommitStroke)?;
-        }
-        Ok(())
+        self.stroke = None;
+        session.apply(Command::CommitStroke)
     }
 
     /// Notes which points have come to be seen.

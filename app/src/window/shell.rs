@@ -34,13 +34,9 @@ use egui::{CentralPanel, Context, Panel, Ui, ViewportCommand};
 use session::{CameraEdit, Command, CommandId, Event, ReferenceKind, Session, SessionError, SessionOptions};
 use std::path::PathBuf;
 use std::sync::Arc;
-use std::time::Duration;
 
 /// Where eframe keeps the settings between runs.
 const SETTINGS_KEY: &str = "settings";
-/// For how long a frame waits at most for the picture of the stroke that goes on: two frames of a screen.
-const LONGEST_WAIT: Duration = Duration::from_millis(33);
-
 /// Where eframe keeps the layout between runs.
 const LAYOUT_KEY: &str = "layout";
 
@@ -286,7 +282,6 @@ impl Shell {
                 Action::Complain(text) => self.toasts.error(text),
             }
         }
-        self.session.wait_for_stroke(LONGEST_WAIT);
     }
 
     /// Tells the session how the screen shows pictures.
@@ -305,9 +300,7 @@ impl Shell {
     fn play(&mut self, context: &Context) {
         let Some(mut player) = self.player.take() else { return };
         context.request_repaint();
-        let played = player.play(&mut self.session);
-        self.session.wait_for_stroke(LONGEST_WAIT);
-        match played {
+        match player.play(&mut self.session) {
             Ok(true) => self.player = Some(player),
             Ok(false) => self.played(&player, context),
             Err(error) => self.toasts.error(error.to_string()),
@@ -333,8 +326,8 @@ impl Shell {
 impl eframe::App for Shell {
     fn logic(&mut self, context: &Context, _frame: &mut Frame) {
         self.show_display();
-        self.play(context);
         self.take_events(context);
+        self.play(context);
         self.guard_close(context);
         self.update_title(context);
     }

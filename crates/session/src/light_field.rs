@@ -44,7 +44,7 @@ impl Default for Changes {
 
 impl Changes {
     /// Whether nothing has changed.
-    pub fn is_none(&self) -> bool {
+    fn is_none(&self) -> bool {
         matches!(self, Self::Texels(texels) if texels.is_empty())
     }
 

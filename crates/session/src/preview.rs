@@ -196,8 +196,6 @@ pub(crate) struct Shared {
     activity: AtomicU8,
     helper: AtomicU8,
     published: Mutex<Published>,
-    /// Told of every picture.
-    shown: Condvar,
     waker: Waker,
 }
 
@@ -325,7 +323,6 @@ impl Shared {
         }
         published.latest = Some(preview);
         drop(published);
-        self.shown.notify_all();
         (self.waker)();
     }
 
@@ -365,7 +362,6 @@ impl PreviewThread {
             activity: AtomicU8::new(PreviewActivity::Idle as u8),
             helper: AtomicU8::new(PreviewActivity::Idle as u8),
             published: Mutex::default(),
-            shown: Condvar::new(),
             waker,
         });
         let (theirs, pool) = (shared.clone(), own_threads()?);
@@ -436,15 +432,6 @@ impl PreviewThread {
         let mut published = lock(&self.shared.published);
         let newer = published.latest.as_ref().filter(|preview| preview.id > id).cloned();
         (newer, std::mem::take(&mut published.news))
-    }
-
-    /// Waits until a picture has seen this many changes of the map, no longer than `at_most`.
-    pub fn wait(&self, map_serial: u64, at_most: Duration) {
-        let is_missing =
-            |published: &mut Published| published.latest.as_ref().is_none_or(|p| p.map_serial < map_serial);
-        let published = lock(&self.shared.published);
-        // Whether it came or not is seen by who takes it.
-        let _ = self.shared.shown.wait_timeout_while(published, at_most, is_missing);
     }
 
     /// Puts pictures on screen in another way.

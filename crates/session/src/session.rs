@@ -10,7 +10,7 @@ mod verifying;
 
 use crate::document::Document;
 use crate::job::{Job, JobProgress, Waker};
-use crate::light_field::{BakedField, Changes};
+use crate::light_field::BakedField;
 use crate::painter::Underway;
 use crate::picking::{chief_ray, pick};
 use crate::preview::PreviewThread;
@@ -125,8 +125,6 @@ pub struct Session {
     seen_preview: u64,
     /// Counts changes of the map that were shown to the preview.
     map_serial: u64,
-    /// What a stroke changed that the preview was not told yet: all that is painted within a frame is one change for it.
-    untold: Changes,
     recovery: Recovery,
     /// The pictures to compare with, one of a kind.
     references: Vec<Reference>,
@@ -171,7 +169,6 @@ impl Session {
             preview_camera: None,
             seen_preview: 0,
             map_serial: 0,
-            untold: Changes::default(),
             recovery: Recovery::default(),
             references: Vec::new(),
             reference_jobs: Vec::new(),
@@ -240,7 +237,7 @@ impl Session {
 
     /// Whether all background work is done and the preview shows the document as it is, within the tolerance.
     pub fn is_settled(&self) -> bool {
-        self.jobs.is_empty() && self.untold.is_none() && self.preview_thread.is_settled(self.seen_preview)
+        self.jobs.is_empty() && self.preview_thread.is_settled(self.seen_preview)
     }
 
     /// All background work that is going on.
@@ -277,7 +274,6 @@ impl Session {
 
     /// What happened since the last call. To be called once a frame.
     pub fn poll(&mut self) -> Vec<Event> {
-        self.tell_preview();
         while let Ok((id, outcome)) = self.outcomes.try_recv() {
             self.jobs.retain(|job| Some(job.id) != id);
             self.reference_jobs.retain(|(job, _)| Some(*job) != id);
@@ -323,7 +319,6 @@ impl Session {
                 self.forget_recovery();
                 self.generation += 1;
                 (self.underway, self.preview, self.field) = (None, None, None);
-                self.untold = Changes::default();
                 self.references.clear();
                 self.map_changes.clear();
                 self.end_verification();

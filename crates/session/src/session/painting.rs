@@ -2,11 +2,10 @@
 
 use super::Session;
 use crate::painter::{GradientInHand, Painter, Underway, redo};
-use crate::{Event, FillRegion, Quality, SessionError, StrokePoint};
+use crate::{Event, FillRegion, SessionError, StrokePoint};
 use focus::{Combine, FillTarget, FocusMap, Gradient, LayerEdit};
 use lens::FocusOffset;
 use project::{RecordedStep, SelectionShape};
-use std::time::Duration;
 
 impl Session {
     pub(super) fn begin_stroke(&mut self, point: StrokePoint) -> Result<(), SessionError> {
@@ -21,18 +20,6 @@ impl Session {
         let Some(Underway::Stroke(stroke)) = &mut self.underway else { return Ok(()) };
         let changed = stroke.extend(document, &point);
         self.show_layers(Some(changed))
-    }
-
-    /// Lets the preview have the processors until its picture shows the stroke as it is now, no longer than `at_most`; at once
-    /// while no stroke goes on, or the picture is still rough.
-    ///
-    /// Drawing a window meanwhile would make both late: it would show the picture of before, and be drawn again.
-    pub fn wait_for_stroke(&mut self, at_most: Duration) {
-        self.tell_preview();
-        let is_live = self.preview.as_ref().is_some_and(|preview| preview.quality > Quality::Coarse);
-        if self.is_painting() && is_live {
-            self.preview_thread.wait(self.map_serial, at_most);
-        }
     }
 
     /// Draws a gradient, or another one in the place of the one being drawn.
@@ -61,7 +48,6 @@ impl Session {
         };
         if changed {
             document.picture_step();
-            self.tell_preview();
             self.preview_thread.settle();
         }
         Ok(())

@@ -45,7 +45,6 @@ impl Session {
     pub(super) fn show_everything(&mut self) -> Result<(), SessionError> {
         let map = self.opened()?.map.clone();
         self.map_serial += 1;
-        self.untold = Changes::default();
         self.map_changes = BTreeMap::from([([0; 2], [0..map.width(), 0..map.height()])]);
         self.preview_thread.set_map((map, self.map_serial), &Changes::Everything);
         self.preview_thread.settle();
@@ -63,19 +62,12 @@ impl Session {
         }
         let changes = if background { Changes::Everything } else { Changes::Texels(changed.texels) };
         self.map_serial += 1;
-        self.untold.join(&changes);
+        let map = self.opened()?.map.clone();
+        self.preview_thread.set_map((map, self.map_serial), &changes);
         if self.underway.is_none() {
-            self.tell_preview();
             self.preview_thread.settle();
         }
         Ok(())
-    }
-
-    /// Shows the preview what was painted since it was told last.
-    pub(super) fn tell_preview(&mut self) {
-        let Some(document) = self.document.as_ref().filter(|_| !self.untold.is_none()) else { return };
-        let changes = std::mem::take(&mut self.untold);
-        self.preview_thread.set_map((document.map.clone(), self.map_serial), &changes);
     }
 
     /// Shows the preview by the document's exposure.
