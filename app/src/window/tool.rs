@@ -106,10 +106,19 @@ impl Tool {
         Self::BAR.into_iter().flatten().copied().find(|tool| tool.command() == id)
     }
 
-    /// Its word in the tool bar: that of its command, with what the menu says above it.
-    pub fn label(self) -> String {
-        let info = self.command().info();
-        if self.selects() { format!("Select {}", info.name.to_lowercase()) } else { info.name.into() }
+    /// Its word in the tool bar: the name of its command, but where that is long, or the menu above it says the rest.
+    pub fn label(self) -> &'static str {
+        match self {
+            Tool::Reset => "Reset",
+            Tool::FillObject => "Fill",
+            Tool::Inspect => "Inspect",
+            Tool::SelectObject => "Select object",
+            Tool::SelectMaterial => "Select material",
+            Tool::SelectChart => "Select chart",
+            Tool::SelectFacing => "Select facing",
+            Tool::SelectDepth => "Select depth",
+            _ => self.command().info().name,
+        }
     }
 
     /// One line for the status line.

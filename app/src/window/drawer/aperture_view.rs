@@ -92,13 +92,13 @@ impl ApertureView {
 /// A square picture as high as there is room for, and beneath it what it is.
 fn captioned(ui: &mut Ui, caption: &str, tip: &str, paint: impl FnOnce(&Ui, Rect)) {
     ui.vertical(|ui| {
-        let line = ui.text_style_height(&egui::TextStyle::Small) + ui.spacing().item_spacing.y;
+        let line = ui.text_style_height(&egui::TextStyle::Body) + ui.spacing().item_spacing.y;
         let side = (ui.available_height() - line).clamp(60.0, 320.0);
         ui.set_width(side);
         let (rect, response) = ui.allocate_exact_size(vec2(side, side), egui::Sense::hover());
         paint(ui, rect);
         response.on_hover_text(tip);
-        ui.vertical_centered(|ui| ui.add(egui::Label::new(egui::RichText::new(caption).small()).truncate()));
+        ui.vertical_centered(|ui| ui.add(egui::Label::new(egui::RichText::new(caption).weak()).truncate()));
     });
 }
 

@@ -45,7 +45,7 @@ impl Inspector {
                 return;
             };
             if tool_panel::has_settings(tool) {
-                section(ui, &tool.label(), true, |ui| {
+                section(ui, tool.label(), true, |ui| {
                     tool_panel::tool_panel(ui, document, tool, &mut settings.tools, actions);
                 });
             }
