@@ -1,11 +1,12 @@
 //! The scene's triangles in a bounding volume hierarchy.
 
-use crate::beam::Beam;
+mod beams;
+
 use crate::hierarchy::Hierarchy;
 use crate::local_space::LocalSpace;
 use crate::presence::is_there;
 use crate::sight::{Eye, Looking, Outline, Places, RecentOccluders, Sight, Square, Viewpoint};
-use crate::watertight::{ShearedRay, ShearedRays, has_area, in_plane};
+use crate::watertight::{ShearedRay, has_area, in_plane};
 use crate::{Hit, Ray};
 use glam::{DVec2, DVec3};
 use scene::{Scene, SurfacePoint};
@@ -31,46 +32,6 @@ pub struct Tracer {
     triangles: Vec<LeafTriangle>,
     /// Of the same.
     outlines: Vec<Outline>,
-}
-
-/// Rays of a beam, prepared for the test of many triangles.
-struct Bundle<'a> {
-    rays: &'a [Ray],
-    sheared: [ShearedRay; Beam::MOST_RAYS],
-    together: ShearedRays,
-}
-
-impl<'a> Bundle<'a> {
-    /// `None` of rays that are to be traced one by one.
-    fn new(rays: &'a [Ray]) -> Option<Self> {
-        assert!(rays.len() <= Beam::MOST_RAYS, "more rays than a beam has");
-        let is_usable = |ray: &Ray| ray.direction.is_finite() && ray.direction != DVec3::ZERO;
-        if rays.is_empty() || !rays.iter().all(is_usable) {
-            return None;
-        }
-        let sheared = std::array::from_fn(|at| {
-            let ray = &rays[at.min(rays.len() - 1)];
-            ShearedRay::new(ray.origin, ray.direction)
-        });
-        let together = ShearedRays::new(&sheared)?;
-        Some(Self { rays, sheared, together })
-    }
-
-    /// A ray; the last one beyond the end.
-    fn ray(&self, at: usize) -> &Ray {
-        &self.rays[at.min(self.rays.len() - 1)]
-    }
-
-    /// Calls `visit` with each ray that does not pass beside a triangle.
-    #[inline(always)]
-    fn each_near(&self, triangle: &LeafTriangle, mut visit: impl FnMut(usize, &Ray, &ShearedRay)) {
-        let mut near = self.together.near(&triangle.corners) & (u32::MAX >> (32 - self.rays.len()));
-        while near != 0 {
-            let at = near.trailing_zeros() as usize;
-            near &= near - 1;
-            visit(at, &self.rays[at], &self.sheared[at]);
-        }
-    }
 }
 
 /// A triangle as the inner loop wants it.
@@ -139,78 +100,6 @@ impl Tracer {
             Some(local.local_t(nearest.t_max))
         });
         nearest.hit
-    }
-
-    /// What each ray of a beam meets first: the same as [`Self::first_hit`] says, for the cost of a few. At most
-    /// [`Beam::MOST_RAYS`] rays; all start at the beam's origin and lie between its edges.
-    pub fn first_hits(&self, beam: &Beam, rays: &[Ray]) -> [Option<Hit>; Beam::MOST_RAYS] {
-        let Some(bundle) = Bundle::new(rays) else {
-            return std::array::from_fn(|at| rays.get(at).and_then(|ray| self.first_hit(ray)));
-        };
-        let mut nearest: [_; Beam::MOST_RAYS] =
-            std::array::from_fn(|at| Nearest { hit: None, t_max: bundle.ray(at).t_max });
-        let far = |nearest: &[Nearest]| {
-            let farthest =
-                nearest[..rays.len()].iter().fold(f64::NEG_INFINITY, |far, ray| far.max(ray.t_max));
-            if farthest.is_finite() { beam.height(&self.space, farthest) } else { f32::INFINITY }
-        };
-        let mut farthest = far(&nearest);
-        self.hierarchy.walk_within(&beam.shaft(&self.space), farthest, |leaf| {
-            let mut is_changed = false;
-            for triangle in &self.triangles[leaf] {
-                bundle.each_near(triangle, |at, ray, sheared| {
-                    is_changed |= self.take(&mut nearest[at], triangle, ray, sheared);
-                });
-            }
-            if is_changed {
-                farthest = far(&nearest);
-            }
-            farthest
-        });
-        nearest.map(|nearest| nearest.hit)
-    }
-
-    /// All that the rays of a beam meet, one behind the other, at most `most` on each: what [`Self::first_hit`] says of
-    /// the ray, of the ray behind that hit, and so on. Pairs of a ray's index and a hit, ray by ray; rays as those of
-    /// [`Self::first_hits`].
-    pub fn all_hits(&self, beam: &Beam, rays: &[Ray], most: usize) -> Vec<(usize, Hit)> {
-        let Some(bundle) = Bundle::new(rays) else { return self.all_hits_one_by_one(rays, most) };
-        let mut found: Vec<(usize, Hit)> = Vec::new();
-        self.hierarchy.walk_within(&beam.shaft(&self.space), f32::INFINITY, |leaf| {
-            for triangle in &self.triangles[leaf] {
-                bundle.each_near(triangle, |at, ray, sheared| {
-                    let mut only = Nearest { hit: None, t_max: ray.t_max };
-                    self.take(&mut only, triangle, ray, sheared);
-                    found.extend(only.hit.map(|hit| (at, hit)));
-                });
-            }
-            f32::INFINITY
-        });
-        // Of several at one t only the first triangle is met.
-        let key = |(at, hit): &(usize, Hit)| (*at, hit.t, hit.point.triangle);
-        found.sort_unstable_by(|a, b| key(a).partial_cmp(&key(b)).expect("t is a number"));
-        found.dedup_by_key(|(at, hit)| (*at, hit.t));
-        let (mut last, mut count) = (usize::MAX, 0);
-        found.retain(|(at, _)| {
-            count = if *at == last { count + 1 } else { 1 };
-            last = *at;
-            count <= most
-        });
-        found
-    }
-
-    #[cold]
-    fn all_hits_one_by_one(&self, rays: &[Ray], most: usize) -> Vec<(usize, Hit)> {
-        let along = |(at, ray): (usize, &Ray)| {
-            let mut ray = *ray;
-            let next = move || {
-                let hit = self.first_hit(&ray)?;
-                ray = Ray { t_min: hit.t, skip: Some(hit.point.triangle), ..ray };
-                Some((at, hit))
-            };
-            std::iter::from_fn(next).take(most)
-        };
-        rays.iter().enumerate().flat_map(along).collect()
     }
 
     /// Takes a triangle for the nearest, if it is.

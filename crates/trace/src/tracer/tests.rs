@@ -1,4 +1,5 @@
 use super::*;
+use crate::Beam;
 use crate::test_scene::*;
 use glam::DVec2;
 use scene::{AlphaMode, Material};
