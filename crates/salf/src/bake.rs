@@ -8,7 +8,7 @@
 use crate::domain::{Cell, Domain};
 use crate::layers::{Group, Layers, trace_cell};
 use crate::margin::{painted_margin_px, standard_margin_px};
-use crate::occluders::{Footprint, Occluders};
+use crate::occluders::{Depths, Footprint, Occluders};
 use crate::placement::Placement;
 use crate::sample::{Salf, Sample, Visibility};
 use crate::surface_patches;
@@ -60,7 +60,7 @@ struct Candidate {
 /// What the first look at a cell found.
 struct FirstLook {
     cell: Cell,
-    depth_range: [f32; 2],
+    depths: Depths,
     has_gap: bool,
     candidates: Vec<Candidate>,
 }
@@ -84,7 +84,7 @@ pub fn bake(
     let first_looks = each_row(&domain.block_rows(), &Stage::new(progress, 0.0, 0.4), |cells| {
         cells.iter().map(|&cell| baker.first_look(cell)).collect::<Vec<_>>()
     })?;
-    let depths = first_looks.iter().flatten().map(|look| (look.cell, look.depth_range));
+    let depths = first_looks.iter().flatten().map(|look| (look.cell, look.depths));
     let occluders = Occluders::new(domain, view.radius_per_kappa_px, depths);
 
     let second = Stage::new(progress, 0.4, 0.95);
@@ -148,7 +148,7 @@ impl Baker<'_> {
             has_nearer: layers.has_nearer(group, self.view.radius_per_kappa_px),
         };
         let candidates = layers.groups.iter().map(candidate).collect();
-        FirstLook { cell, depth_range: layers.depth_range, has_gap: layers.has_gap, candidates }
+        FirstLook { cell, depths: layers.depths(cell), has_gap: layers.has_gap, candidates }
     }
 
     fn second_look(&self, occluders: &Occluders, look: &FirstLook, samples: &mut Vec<Sample>) {
@@ -157,7 +157,7 @@ impl Baker<'_> {
             occluders.may_occlude(&Footprint { center, cell, inverse_depth, slope })
         };
         let is_pinhole = self.view.optics.aperture_radius == 0.0;
-        let hidden = look.has_gap || occluders.may_reveal(cell, look.depth_range[0]);
+        let hidden = look.has_gap || occluders.may_reveal(cell, look.depths.nearest);
         if is_pinhole || !hidden {
             let is_open = |candidate: &Candidate| {
                 let sample = &candidate.sample;

@@ -17,6 +17,15 @@ impl Cell {
     /// Rays a cell.
     pub const RAYS: usize = (Self::SUBDIVISION * Self::SUBDIVISION) as usize;
 
+    /// The sub-cells, quadrant by quadrant: every fourth of them lies in another one.
+    pub fn sub_cells() -> impl Iterator<Item = usize> {
+        let bit = |k: usize, index: usize| k >> index & 1;
+        (0..Self::RAYS).map(move |k| {
+            let (row, column) = (2 * bit(k, 3) + bit(k, 1), 2 * bit(k, 2) + bit(k, 0));
+            row * Self::SUBDIVISION as usize + column
+        })
+    }
+
     /// The corner of sub-cell `k`, px.
     pub fn sub_corner(&self, k: usize) -> DVec2 {
         let (row, column) = (k as i32 / Self::SUBDIVISION, k as i32 % Self::SUBDIVISION);
@@ -114,6 +123,17 @@ impl Domain {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn sub_cells_come_by_quadrants() {
+        let cell = Cell { corner: IVec2::ZERO, side: 4 };
+        let corners: Vec<_> = Cell::sub_cells().map(|k| cell.sub_corner(k)).collect();
+        for (four, quadrant) in corners.chunks(4).zip([(0.0, 0.0), (2.0, 0.0), (0.0, 2.0), (2.0, 2.0)]) {
+            let low = DVec2::from(quadrant);
+            let wanted = [DVec2::ZERO, DVec2::X, DVec2::Y, DVec2::ONE].map(|step| low + step);
+            assert_eq!(four, wanted);
+        }
+    }
 
     #[test]
     fn cells_tile_the_domain() {

@@ -2,7 +2,7 @@
 
 use crate::domain::Cell;
 use crate::jitter::jitter;
-use crate::occluders::Occluders;
+use crate::occluders::{Depths, Occluders};
 use crate::placement::Placement;
 use crate::sample::{Sample, Visibility};
 use crate::view::View;
@@ -12,6 +12,10 @@ use trace::{Hit, Radiance, Tracer};
 
 /// Surfaces along one chief ray beyond which nothing is looked for.
 const DEEPEST_LAYER: usize = 12;
+
+/// Parallax, px, up to which what a nearer surface hides of a cell and what it does not are samples of their own: the outline
+/// is nearly sharp on them, and few rays from either would not tell how much of both together it hides.
+const JUST_BEHIND_PX: f64 = 1.0;
 
 /// Where a chief ray of a cell meets a surface, or goes to infinity.
 #[derive(Clone, Copy, Debug)]
@@ -29,10 +33,12 @@ pub struct Member {
 /// Members of one cell that lie on one smooth surface.
 #[derive(Clone, Debug)]
 pub struct Group {
-    /// At most one a sub-cell.
+    /// At most one a sub-cell, in the order of [`Cell::sub_cells`].
     pub members: Vec<Member>,
     /// Whether the surface is the nearest along every member's ray.
     pub is_nearest: bool,
+    /// Whether a surface less than [`JUST_BEHIND_PX`] of parallax nearer hides every member from the aperture's centre.
+    is_just_behind: bool,
     part: Option<u32>,
     /// The weight's relative change over the unit aperture.
     tilt: DVec2,
@@ -67,16 +73,17 @@ pub fn trace_cell(tracer: &Tracer, view: &View, placement: &Placement, cell: Cel
         let first = tracer.first_hits(&beam, &rays).into_iter().enumerate();
         first.filter_map(|(sub_cell, hit)| Some((sub_cell, hit?))).collect()
     };
-    let mut met = met.as_slice();
-    for (sub_cell, pixel) in pixels.into_iter().enumerate() {
-        let (mine, others) = met.split_at(met.iter().take_while(|(of, _)| *of == sub_cell).count());
-        met = others;
+    for sub_cell in Cell::sub_cells() {
+        let (pixel, mut nearest) = (pixels[sub_cell], 0.0);
+        let [start, end] = [sub_cell, sub_cell + 1].map(|next| met.partition_point(|(of, _)| *of < next));
+        let mine = &met[start..end];
         // Behind the last surface lies the background.
         let hits = mine.iter().map(|(_, hit)| Some(*hit)).chain([None]).take(most);
         for (layer, hit) in hits.enumerate() {
             let inverse_depth = hit.map_or(0.0, |hit| 1.0 / hit.t);
             let point = hit.map(|hit| hit.point);
             if layer == 0 {
+                nearest = inverse_depth;
                 let [near, far] = &mut layers.depth_range;
                 *near = near.max(inverse_depth as f32);
                 *far = far.min(inverse_depth as f32);
@@ -84,7 +91,7 @@ pub fn trace_cell(tracer: &Tracer, view: &View, placement: &Placement, cell: Cel
             let member = Member { sub_cell, pixel, point, inverse_depth };
             let is_sampled_here = point.is_none_or(|point| !placement.is_on_surface(point.triangle));
             if is_sampled_here {
-                layers.add(tracer, view, member, layer == 0);
+                layers.add(tracer, view, member, layer == 0, nearest);
             } else if layer == 0 {
                 layers.has_gap = true;
             }
@@ -94,13 +101,16 @@ pub fn trace_cell(tracer: &Tracer, view: &View, placement: &Placement, cell: Cel
 }
 
 impl Layers {
-    fn add(&mut self, tracer: &Tracer, view: &View, member: Member, is_nearest: bool) {
+    /// Adds a member; `nearest` is 1/z of the nearest surface along its ray.
+    fn add(&mut self, tracer: &Tracer, view: &View, member: Member, is_nearest: bool, nearest: f64) {
         let parallax_px = view.radius_per_kappa_px;
+        let is_just_behind = !is_nearest && (nearest - member.inverse_depth) * parallax_px < JUST_BEHIND_PX;
         let part = member.point.map(|p| tracer.scene().triangles[p.triangle as usize].part);
         let belongs = |group: &&mut Group| {
             let first = group.members[0];
             let expected = first.inverse_depth + group.slope.dot(member.pixel - first.pixel);
             group.part == part
+                && group.is_just_behind == is_just_behind
                 && (member.inverse_depth - expected).abs() * parallax_px <= Occluders::SAME_SURFACE_PX
                 && group.members.last().is_none_or(|last| last.sub_cell != member.sub_cell)
         };
@@ -117,7 +127,15 @@ impl Layers {
                 slope = DVec2::new(-tilt.x, tilt.y) / parallax_px;
             }
         }
-        self.groups.push(Group { members: vec![member], is_nearest, part, tilt, slope });
+        self.groups.push(Group { members: vec![member], is_nearest, is_just_behind, part, tilt, slope });
+    }
+
+    /// What they tell of the depths around their cell.
+    pub fn depths(&self, cell: Cell) -> Depths {
+        let [nearest, farthest] = self.depth_range;
+        let slants = self.groups.iter().map(|group| group.slope.abs().element_sum());
+        let steepest = if self.has_gap { f64::INFINITY } else { slants.fold(0.0, f64::max) };
+        Depths { nearest, farthest, relief: (steepest * cell.side as f64) as f32 }
     }
 
     /// Whether another surface of this cell lies noticeably in front of `group`.

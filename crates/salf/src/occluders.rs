@@ -17,6 +17,19 @@ pub struct Occluders {
     levels: Vec<(i32, Vec<f32>)>,
     /// Distance to the nearest depth discontinuity, px.
     edge_distance: Vec<f32>,
+    /// Distance to the nearest step of depth, px: of less parallax than a discontinuity, of more than the surface's slant makes.
+    step_distance: Vec<f32>,
+}
+
+/// What the chief rays of a cell tell of the depths around it.
+#[derive(Clone, Copy, Debug)]
+pub struct Depths {
+    /// 1/z of the nearest and of the farthest of its nearest surfaces.
+    pub nearest: f32,
+    /// See `nearest`.
+    pub farthest: f32,
+    /// By how much 1/z changes over the cell by the slant of its surfaces; infinite where that is not known.
+    pub relief: f32,
 }
 
 /// A patch of surface in the pinhole picture.
@@ -35,35 +48,41 @@ impl Occluders {
     /// Parallax that is too small to tell two surfaces apart, px.
     pub const SAME_SURFACE_PX: f64 = 0.25;
 
-    /// From the nearest and the farthest inverse depth of every cell's rays.
-    pub fn new(domain: Domain, parallax_px: f64, cells: impl Iterator<Item = (Cell, [f32; 2])>) -> Self {
+    /// From the depths of every cell.
+    pub fn new(domain: Domain, parallax_px: f64, cells: impl Iterator<Item = (Cell, Depths)>) -> Self {
         let extent = domain.extent();
-        let pixels = (extent.x * extent.y) as usize;
-        let (mut nearest, mut farthest) = (vec![0.0f32; pixels], vec![0.0f32; pixels]);
-        for (cell, [near, far]) in cells {
+        let mut depths =
+            vec![Depths { nearest: 0.0, farthest: 0.0, relief: 0.0 }; (extent.x * extent.y) as usize];
+        for (cell, of_cell) in cells {
             let low = cell.corner + domain.margin;
             let high = (low + cell.side).min(extent);
             for y in low.y..high.y {
                 let row = (y * extent.x) as usize;
-                nearest[row + low.x as usize..row + high.x as usize].fill(near);
-                farthest[row + low.x as usize..row + high.x as usize].fill(far);
+                depths[row + low.x as usize..row + high.x as usize].fill(of_cell);
             }
         }
-        let edge_distance = edge_distance(extent, parallax_px, &nearest, &farthest);
+        let [edge_distance, step_distance] = edges(extent, parallax_px, &depths).map(|mut distance| {
+            spread(extent, &mut distance);
+            distance
+        });
+        let nearest: Vec<f32> = depths.into_iter().map(|depths| depths.nearest).collect();
         let mut levels = vec![(extent.x, nearest)];
         while levels.last().is_some_and(|(_, level)| level.len() > 1) {
             let (width, fine) = levels.last().expect("just seen");
             levels.push(coarser(*width, fine));
         }
-        Self { domain, parallax_px, levels, edge_distance }
+        Self { domain, parallax_px, levels, edge_distance, step_distance }
     }
 
     /// Whether a cell whose nearest surface has `inverse_depth` may let some aperture point see what lies behind
-    /// that surface: a discontinuity is closer than the surface's parallax against infinity.
+    /// that surface: a discontinuity is closer than the surface's parallax against infinity, or a step closer than the
+    /// parallax of any step.
     pub fn may_reveal(&self, cell: Cell, inverse_depth: f32) -> bool {
         let at = cell.corner + self.domain.margin;
-        let distance = self.edge_distance[(at.y * self.domain.extent().x + at.x) as usize] as f64;
-        distance - cell.side as f64 * 1.5 <= inverse_depth as f64 * self.parallax_px
+        let at = (at.y * self.domain.extent().x + at.x) as usize;
+        let [edge, step] = [&self.edge_distance, &self.step_distance].map(|distance| distance[at] as f64);
+        let room = cell.side as f64 * 1.5;
+        edge - room <= inverse_depth as f64 * self.parallax_px || step - room <= JUMP_ACROSS_PX
     }
 
     /// Whether any surface outside the footprint's own cell may occlude it from some aperture point.
@@ -119,30 +138,49 @@ fn coarser(width: i32, fine: &[f32]) -> (i32, Vec<f32>) {
     (coarse_width, coarse)
 }
 
-/// Distance of each pixel to the nearest depth discontinuity (3-4 chamfer), px: where depth jumps within a pixel or
-/// against its right or lower neighbour by more parallax than a facing slope makes.
-fn edge_distance(extent: IVec2, parallax_px: f64, nearest: &[f32], farthest: &[f32]) -> Vec<f32> {
-    const JUMP_WITHIN_PX: f64 = 0.8;
-    const JUMP_ACROSS_PX: f64 = 1.6;
+/// Within a cell more parallax than this, px, is a discontinuity: a facing slope makes less.
+const JUMP_WITHIN_PX: f64 = 0.8;
+
+/// Between neighbours more parallax than this, px, is a discontinuity.
+const JUMP_ACROSS_PX: f64 = 1.6;
+
+/// More parallax than this, px, beyond what slant makes, is a step. An edge whose step is missed keeps, for every pixel of its
+/// length, a fifth of the step from being seen: what a disc's aperture points see of it on average.
+const STEP_PX: f64 = 0.1;
+
+/// 0 at the discontinuities and at the steps of depth, infinite elsewhere: where depth jumps within a pixel or against its right
+/// or lower neighbour.
+fn edges(extent: IVec2, parallax_px: f64, depths: &[Depths]) -> [Vec<f32>; 2] {
     let (width, height) = (extent.x as usize, extent.y as usize);
-    let parallax = |near: f32, far: f32| (near - far) as f64 * parallax_px;
-    let mut distance = vec![f32::INFINITY; nearest.len()];
+    let [mut edge, mut step] = [0; 2].map(|_| vec![f32::INFINITY; depths.len()]);
+    let mut look = |pixels: [usize; 2], near: f32, far: f32, relief: f32, jump_px: f64| {
+        let parallax = (near - far) as f64 * parallax_px;
+        if parallax > jump_px {
+            pixels.into_iter().for_each(|i| edge[i] = 0.0);
+        }
+        if parallax - relief as f64 * parallax_px > STEP_PX {
+            pixels.into_iter().for_each(|i| step[i] = 0.0);
+        }
+    };
     for y in 0..height {
         for x in 0..width {
             let i = y * width + x;
-            if parallax(nearest[i], farthest[i]) > JUMP_WITHIN_PX {
-                distance[i] = 0.0;
-            }
+            let here = &depths[i];
+            look([i, i], here.nearest, here.farthest, here.relief, JUMP_WITHIN_PX);
             let neighbours = [(x + 1 < width).then_some(i + 1), (y + 1 < height).then_some(i + width)];
             for j in neighbours.into_iter().flatten() {
-                let jump = parallax(nearest[i].max(nearest[j]), farthest[i].min(farthest[j]));
-                if jump > JUMP_ACROSS_PX {
-                    distance[i] = 0.0;
-                    distance[j] = 0.0;
-                }
+                let next = &depths[j];
+                let (near, far) = (here.nearest.max(next.nearest), here.farthest.min(next.farthest));
+                look([i, j], near, far, here.relief + next.relief, JUMP_ACROSS_PX);
             }
         }
     }
+    [edge, step]
+}
+
+/// Spreads distances of 0: the distance of each pixel to the nearest of them (3-4 chamfer), px.
+fn spread(extent: IVec2, distance: &mut [f32]) {
+    let (width, height) = (extent.x as usize, extent.y as usize);
     const STRAIGHT: f32 = 1.0;
     const DIAGONAL: f32 = 4.0 / 3.0;
     let relax = |distance: &mut [f32], i: usize, j: usize, step: f32| {
@@ -152,15 +190,15 @@ fn edge_distance(extent: IVec2, parallax_px: f64, nearest: &[f32], farthest: &[f
         for x in 0..width {
             let i = y * width + x;
             if x > 0 {
-                relax(&mut distance, i, i - 1, STRAIGHT);
+                relax(distance, i, i - 1, STRAIGHT);
             }
             if y > 0 {
-                relax(&mut distance, i, i - width, STRAIGHT);
+                relax(distance, i, i - width, STRAIGHT);
                 if x > 0 {
-                    relax(&mut distance, i, i - width - 1, DIAGONAL);
+                    relax(distance, i, i - width - 1, DIAGONAL);
                 }
                 if x + 1 < width {
-                    relax(&mut distance, i, i - width + 1, DIAGONAL);
+                    relax(distance, i, i - width + 1, DIAGONAL);
                 }
             }
         }
@@ -169,20 +207,19 @@ fn edge_distance(extent: IVec2, parallax_px: f64, nearest: &[f32], farthest: &[f
         for x in (0..width).rev() {
             let i = y * width + x;
             if x + 1 < width {
-                relax(&mut distance, i, i + 1, STRAIGHT);
+                relax(distance, i, i + 1, STRAIGHT);
             }
             if y + 1 < height {
-                relax(&mut distance, i, i + width, STRAIGHT);
+                relax(distance, i, i + width, STRAIGHT);
                 if x + 1 < width {
-                    relax(&mut distance, i, i + width + 1, DIAGONAL);
+                    relax(distance, i, i + width + 1, DIAGONAL);
                 }
                 if x > 0 {
-                    relax(&mut distance, i, i + width - 1, DIAGONAL);
+                    relax(distance, i, i + width - 1, DIAGONAL);
                 }
             }
         }
     }
-    distance
 }
 
 #[cfg(test)]
@@ -196,7 +233,7 @@ mod tests {
         let cells: Vec<_> = cells
             .map(|cell| {
                 let depth = if (20..24).contains(&cell.corner.x) { 1.0 } else { 0.2 };
-                (cell, [depth, depth])
+                (cell, Depths { nearest: depth, farthest: depth, relief: 0.0 })
             })
             .collect();
         (domain, Occluders::new(domain, 10.0, cells.into_iter()))
@@ -222,14 +259,16 @@ mod tests {
     fn a_slope_does_not_occlude_itself() {
         let domain = Domain::new(64, 32, 0.0);
         let depth = |x: i32| 0.2 + 0.05 * x as f32;
+        let depths = |x: i32| Depths { nearest: depth(x), farthest: depth(x), relief: 0.05 };
         let cells: Vec<_> =
-            domain.block_rows().into_iter().flatten().map(|c| (c, [depth(c.corner.x); 2])).collect();
+            domain.block_rows().into_iter().flatten().map(|c| (c, depths(c.corner.x))).collect();
         let occluders = Occluders::new(domain, 10.0, cells.into_iter());
         let cell = Cell { corner: IVec2::new(10, 9), side: 1 };
         let slope = DVec2::new(0.05, 0.0);
         let footprint =
             Footprint { center: cell.sub_corner(10), cell, inverse_depth: depth(10) as f64, slope };
         assert!(!occluders.may_occlude(&footprint));
+        assert!(!occluders.may_reveal(cell, depth(10)), "nor does it hide anything");
     }
 
     #[test]
@@ -238,5 +277,21 @@ mod tests {
         let cell = |x| Cell { corner: IVec2::new(x, 9), side: 1 };
         assert!(occluders.may_reveal(cell(22), 1.0), "behind the post");
         assert!(!occluders.may_reveal(cell(50), 0.2), "behind the wall, far from the post");
+    }
+
+    #[test]
+    fn small_steps_reveal_what_is_right_behind_them() {
+        let domain = Domain::new(64, 32, 0.0);
+        let revealed = |step_px: f32| {
+            let depth = |x: i32| if x < 32 { 1.0 } else { 1.0 - step_px / 10.0 };
+            let depths = |x: i32| Depths { nearest: depth(x), farthest: depth(x), relief: 0.0 };
+            let cells: Vec<_> =
+                domain.block_rows().into_iter().flatten().map(|c| (c, depths(c.corner.x))).collect();
+            let occluders = Occluders::new(domain, 10.0, cells.into_iter());
+            [31, 24].map(|x| occluders.may_reveal(Cell { corner: IVec2::new(x, 9), side: 1 }, 1.0))
+        };
+        assert_eq!(revealed(0.05), [false, false]);
+        assert_eq!(revealed(0.4), [true, false]);
+        assert_eq!(revealed(2.0), [true, true]);
     }
 }
