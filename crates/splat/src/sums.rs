@@ -139,8 +139,9 @@ impl Sums {
             for list in lists.iter().filter(|list| meet(&list.rows, &here)) {
                 // A band of many samples may take a second.
                 progress.check()?;
-                band.draw(&scene.pen, [&list.drawn], 1);
+                band.draw(&scene.pen, &list.drawn, 1);
             }
+            band.finish(1);
             progress.report((done.fetch_add(1, Ordering::Relaxed) + 1) as f32 / count as f32);
             Ok(())
         })
@@ -152,8 +153,10 @@ impl Sums {
         let mut bands = self.bands();
         bands.retain(|band| meet(&rows, &band.rows));
         bands.into_par_iter().with_max_len(1).for_each(|mut band| {
-            band.draw(pen, [removed], -1);
-            band.draw(pen, [added], 1);
+            for (list, sign) in [(removed, -1), (added, 1)] {
+                band.draw(pen, list, sign);
+                band.finish(sign);
+            }
         });
     }
 
@@ -188,35 +191,25 @@ struct Band<'a> {
 }
 
 impl Band<'_> {
-    /// Adds (`sign` 1) the nodes of lists, or takes them away (−1).
-    fn draw<'d>(
-        &mut self,
-        pen: &Pen,
-        lists: impl IntoIterator<Item = impl IntoIterator<Item = &'d Drawn>>,
-        sign: i32,
-    ) {
+    /// Adds (`sign` 1) the nodes of a list, or takes them away (−1): at the latest when it is finished with that sign.
+    fn draw(&mut self, pen: &Pen, list: &[Drawn], sign: i32) {
         // Compiled for either sign.
         if sign > 0 {
             with_widest_instructions(
                 #[inline(always)]
-                || self.draw_signed(pen, lists, 1),
+                || self.draw_signed(pen, list, 1),
             );
         } else {
             with_widest_instructions(
                 #[inline(always)]
-                || self.draw_signed(pen, lists, -1),
+                || self.draw_signed(pen, list, -1),
             );
         }
     }
 
     #[inline(always)]
-    fn draw_signed<'d>(
-        &mut self,
-        pen: &Pen,
-        lists: impl IntoIterator<Item = impl IntoIterator<Item = &'d Drawn>>,
-        sign: i32,
-    ) {
-        for drawn in lists.into_iter().flatten() {
+    fn draw_signed(&mut self, pen: &Pen, list: &[Drawn], sign: i32) {
+        for drawn in list {
             if !meet(&drawn.rows(), &self.rows) {
                 continue;
             }
@@ -225,6 +218,10 @@ impl Band<'_> {
             let canvas = if is_sharing { &mut self.sharing } else { &mut self.free };
             canvas.draw(pen, node, drawn.placed, sign);
         }
+    }
+
+    /// Draws what waits.
+    fn finish(&mut self, sign: i32) {
         self.free.finish(sign);
         self.sharing.finish(sign);
     }

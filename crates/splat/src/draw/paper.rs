@@ -31,6 +31,9 @@ impl<'a, W: Word> Paper<'a, W> {
 
     /// Draws what waits.
     pub fn finish(&mut self, sign: i32) {
+        if self.small.is_empty() {
+            return;
+        }
         // Compiled for either sign.
         if sign > 0 {
             with_widest_instructions(

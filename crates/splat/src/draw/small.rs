@@ -45,6 +45,11 @@ impl SmallBoxes {
         self.len == COUNT
     }
 
+    #[inline(always)]
+    pub fn is_empty(&self) -> bool {
+        self.len == 0
+    }
+
     /// Draws them; none are left.
     #[inline(always)]
     pub fn draw<W: Word>(&mut self, rows: &mut Rows<W>, sign: i32) {
