@@ -172,3 +172,78 @@ fn views_ghost_beyond_the_bound_and_the_light_field_does_not() {
         assert_eq!(maxima(&splatted(&scene, &camera, &focus)), 1, "{apart_px} px apart, splatted");
     }
 }
+
+/// Where the copies of a line lie across the picture, px: the centroids of what black columns part.
+fn copies(picture: &Picture) -> Vec<f64> {
+    let width = picture.width as usize;
+    let of_column =
+        |x: usize| picture.radiance.iter().skip(x).step_by(width).map(|rgb| f64::from(rgb[1])).sum::<f64>();
+    let columns: Vec<f64> = (0..width).map(of_column).collect();
+    let mut places = Vec::new();
+    let mut x = 0;
+    for copy in columns.chunk_by(|a, b| (*a > 0.0) == (*b > 0.0)) {
+        let light: f64 = copy.iter().sum();
+        if light > 0.0 {
+            let moment: f64 = copy.iter().zip(x..).map(|(light, x)| light * (x as f64 + 0.5)).sum();
+            places.push(moment / light);
+        }
+        x += copy.len();
+    }
+    places
+}
+
+/// A picture from views of a line as wide as a pixel at depth z, focused at `focus_distance` by a long lens.
+fn views_of_line(z: f64, focus_distance: f64) -> (Camera, Picture) {
+    let aperture = lens::ApertureShape::Square.into();
+    let camera = Camera {
+        width: 320,
+        height: 32,
+        yfov: 0.007,
+        sensor_height: 0.01,
+        focus_distance,
+        aperture,
+        ..camera(320)
+    };
+    let pixel = pixel_at(&camera, z);
+    let scene = scene_of(&[(
+        card([0.137 * pixel, -40.0 * pixel], [1.137 * pixel, 40.0 * pixel], z),
+        paint([1.0; 3]),
+    )]);
+    let options = ViewsOptions { views_a_side: VIEWS, rays_a_pixel: 64 };
+    let tracer = Tracer::new(scene.clone());
+    let focus = unpainted(&scene);
+    let picture = shift_and_add(&tracer, &BaseColor(scene), &focus, &camera, &options, &Unwatched).unwrap();
+    (camera, picture)
+}
+
+#[test]
+fn copies_in_pictures_part_at_the_bounds() {
+    for z in [1.2, 2.5, 6.0] {
+        let (camera, picture) = views_of_line(z, z);
+        assert_eq!(copies(&picture).len(), 1, "in focus all views show one line");
+        let [m, p, d] = view_geometry(&camera);
+        let expected = ghosting_bounds(z, p, m, d);
+        for (bound, side) in expected.into_iter().zip([1.0, -1.0]) {
+            // Copies 40 px apart, in front of the line and behind it.
+            let kappa = side * 40.0 * p / (m * d);
+            let focus_distance = 1.0 / (1.0 / z + kappa);
+            assert!(focus_distance > 0.0, "{z}: the lens is long enough");
+            let places = copies(&views_of_line(z, focus_distance).1);
+            assert_eq!(places.len(), VIEWS as usize, "{z}: {places:?}");
+            let apart_px = (places[3] - places[0]) / 3.0;
+            // Where they would be a pixel apart: their distance grows with 1/s − 1/z from 0.
+            let found = 1.0 / (1.0 / z + kappa / apart_px) - z;
+            assert!(
+                (found / bound - 1.0).abs() < 1e-3,
+                "{z}: {found}, expected {bound}, {apart_px} px apart"
+            );
+            println!(
+                "{z}: {found:.6}, expected {bound:.6}, {:+.4} %, {apart_px:.4} px apart",
+                100.0 * (found / bound - 1.0)
+            );
+        }
+        // Negative control: the bounds of a point a hundredth farther away.
+        let other = ghosting_bounds(1.01 * z, p, m, d);
+        assert!((0..2).all(|k| (other[k] / expected[k] - 1.0).abs() > 1e-3), "{other:?}");
+    }
+}
