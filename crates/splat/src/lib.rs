@@ -12,8 +12,9 @@
 //! nearly in focus, one node for many where they are far out of it. A node is drawn as the aperture's image ([`draw`]) of
 //! rows that were cut once for all splats of its size ([`stencil`], [`shape`]), on the level of a pyramid of accumulators
 //! whose pixel is about its own size ([`canvas`]). Running sums and upsampling make the picture ([`resolve`]); partly
-//! occluded samples share what open ones leave of it ([`partition`]).
+//! occluded samples share what open ones leave of it ([`partition`]), which leaves the sum of light as it is ([`balance`]).
 
+mod balance;
 mod canvas;
 mod draw;
 mod drawn;

@@ -14,8 +14,11 @@
 //! paint: paint that moves other rays to or from q leaves it as it is. Painted samples are summed with the visibility of
 //! their cells as it stands. What then still keeps the standard picture's coverage from 1, the ripple of finite samples,
 //! is taken out by `even`, which is 1 to within a
-//! tenth: a pixel that lacks more has a hole. Where anything is painted it is 1: coverage then has a shape of its own, and no light is made or lost.
+//! tenth: a pixel that lacks more has a hole. Where anything is painted it is 1: coverage then has a shape of its own.
+//!
+//! Light that either takes from a surface is given back nearby ([`crate::balance`]): none is made or lost.
 
+use crate::balance::{Gains, KnotSums, Knots, Scaled};
 use crate::fixed::ratio;
 use crate::resolve::Lines;
 use std::ops::Range;
@@ -66,45 +69,66 @@ const BLACK: [f32; 4] = [0.0; 4];
 pub struct Strip {
     /// Pixels a row of the picture.
     pub width: usize,
+    /// The picture's row that is the first of the whole ones.
+    pub first: usize,
     pub rows: Range<usize>,
     pub columns: Range<usize>,
 }
 
 impl Strip {
-    /// Calls `visit` with each pixel's place, and with that pixel of either part, free and sharing.
-    fn each(self, parts: &[Option<Lines>; 2], mut visit: impl FnMut(usize, &[f32; 4], &[f32; 4])) {
+    /// Calls `visit` with each row and its pixels of either part, free and sharing.
+    fn each_row(&self, parts: &[Option<Lines>; 2], mut visit: impl FnMut(usize, &[[f32; 4]], &[[f32; 4]])) {
         let black = vec![BLACK; if parts.iter().all(Option::is_some) { 0 } else { self.columns.len() }];
         let [mut free, mut sharing] = parts.each_ref().map(|lines| lines.as_ref().map(Lines::rows));
-        for row in self.rows {
+        for row in self.rows.clone() {
             let free = free.as_mut().and_then(Iterator::next).unwrap_or(&black);
             let sharing = sharing.as_mut().and_then(Iterator::next).unwrap_or(&black);
-            let first = row * self.width + self.columns.start;
-            for (at, (free, sharing)) in (first..).zip(free.iter().zip(sharing)) {
-                visit(at, free, sharing);
-            }
+            visit(row, free, sharing);
         }
     }
 }
 
-/// Finds the factors of pixels from the lines of a standard picture, free and sharing.
-pub fn find_shares(parts: &[Option<Lines>; 2], strip: Strip, shares: &mut [Share]) {
-    strip.each(parts, |at, free, sharing| shares[at] = Share::of(free[3], sharing[3]));
+/// Finds the factors of the pixels of whole rows from the lines of a standard picture, free and sharing; and what these
+/// rows bring to each column of `knots`.
+pub fn find_shares(
+    parts: &[Option<Lines>; 2],
+    strip: &Strip,
+    knots: &Knots,
+    shares: &mut [Share],
+    sums: &mut [KnotSums],
+) {
+    let columns = knots.columns();
+    strip.each_row(parts, |row, free, sharing| {
+        let shares = &mut shares[row * strip.width..][..strip.width];
+        for (share, (free, sharing)) in shares.iter_mut().zip(free.iter().zip(sharing)) {
+            *share = Share::of(free[3], sharing[3]);
+        }
+        knots.sum_row([free, sharing], shares, &mut sums[row * columns..][..columns]);
+    });
 }
 
 /// Joins lines, free and sharing, to pixels and their coverage; evened out if asked for: only where nothing is painted.
 pub fn join(
     parts: &[Option<Lines>; 2],
-    strip: Strip,
+    strip: &Strip,
     shares: &[Share],
+    gains: &Gains,
     is_evened: bool,
     (radiance, coverage): (&mut [[f32; 3]], &mut [f32]),
 ) {
-    strip.each(parts, |at, free, sharing| {
-        let share = &shares[at];
-        let even = if is_evened { share.even } else { 1.0 };
-        let [r, g, b, covered] = std::array::from_fn(|c| even * (free[c] + share.partial * sharing[c]));
-        radiance[at] = [r, g, b];
-        coverage[at] = covered;
+    strip.each_row(parts, |row, free, sharing| {
+        let of_row = gains.of_row(strip.first + row, if is_evened { Scaled::All } else { Scaled::Sharing });
+        for (x, (free, sharing)) in strip.columns.clone().zip(free.iter().zip(sharing)) {
+            let (at, gain) = (row * strip.width + x, of_row.at(x));
+            let share = &shares[at];
+            let shared = sharing.map(|light| share.partial * light);
+            (radiance[at], coverage[at]) = if is_evened {
+                let light: [f32; 4] = std::array::from_fn(|c| share.even * (free[c] + shared[c]));
+                (std::array::from_fn(|c| light[c] * gain[c]), light[3])
+            } else {
+                (std::array::from_fn(|c| free[c] + shared[c] * gain[c]), free[3] + shared[3])
+            };
+        }
     });
 }
 

@@ -2,6 +2,7 @@
 
 mod on_card;
 
+use crate::balance::Balance;
 use crate::draw::Pen;
 use crate::drawn::{BlockList, Changes, Drawn, Scene};
 use crate::lens_in_use::{LensInUse, Tolerance};
@@ -61,6 +62,8 @@ pub struct Splatter {
     lists: Vec<BlockList>,
     /// What each pixel's sums are multiplied by.
     shares: Vec<Share>,
+    /// What gives back the light that shares take.
+    balance: Balance,
     /// The lens whose standard picture they are those of.
     shares_of: Option<LensInUse>,
     picture: Picture,
@@ -133,6 +136,7 @@ impl Splatter {
             sums: Sums::new([width, height], nodes.as_ref().is_some_and(|nodes| nodes.has_bright)),
             lists: Vec::new(),
             shares: vec![Share::NONE; width * height],
+            balance: Balance::none([width, height]),
             shares_of: None,
             picture: Picture::black(camera.width, camera.height),
             card: Card::default(),
@@ -154,8 +158,8 @@ impl Splatter {
     /// Sets whether a picture without any paint is evened out (the default): its coverage is then 1 but for holes.
     ///
     /// Where it is not, the first paint on it changes what it moves and nothing else, as all further paint does. The two
-    /// differ by the ripple of finite samples, and not at all once divided by their coverage. From the next
-    /// [`Self::render`] on.
+    /// differ by the ripple of finite samples; once divided by their coverage, by nothing but how they give light back
+    /// ([`crate::balance`]). From the next [`Self::render`] on.
     pub fn set_evening(&mut self, evens: bool) {
         self.evens = evens;
     }
@@ -187,7 +191,10 @@ impl Splatter {
     pub fn bytes(&self) -> [usize; 2] {
         let [nodes, sums] = self.card.bytes();
         let lists: usize = self.lists.iter().map(|list| list.drawn.capacity() * size_of::<Drawn>()).sum();
-        [nodes + self.nodes.as_ref().map_or(0, |nodes| nodes.bytes()), sums + self.sums.bytes() + lists]
+        [
+            nodes + self.nodes.as_ref().map_or(0, |nodes| nodes.bytes()),
+            sums + self.sums.bytes() + self.balance.bytes() + lists,
+        ]
     }
 
     /// Sums the whole picture for a lens (`camera` may differ from the baked one in focus distance, aperture shape and a
@@ -371,35 +378,62 @@ impl Splatter {
         if let Some(resolved) = self.resolve_on_card(rows.clone(), wanted) {
             return resolved;
         }
+        if !wanted.has_shares() {
+            return self.resolve_here([rows, columns], wanted);
+        }
+        // What is evened out is only multiplied by the gains, once they are known.
+        self.balance.forget();
+        let may_scale = wanted.has_picture() && self.is_evened();
+        self.resolve_here([rows.clone(), columns.clone()], if may_scale { wanted } else { Wanted::Shares })?;
+        self.balance.settle();
+        match wanted {
+            Wanted::SharesAndPicture if !may_scale => self.resolve_here([rows, columns], Wanted::Picture),
+            Wanted::SharesAndPicture => {
+                self.balance.gains.scale(&mut self.picture.radiance);
+                Ok(())
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// The same on the processor, with the gains as they are.
+    fn resolve_here(&mut self, [rows, columns]: [Range<u32>; 2], wanted: Wanted) -> Result<(), SplatError> {
         let nodes = self.nodes.as_ref().ok_or(SplatError::Overflow)?;
         let width = self.salf.camera.width as usize;
         // The same chunks whatever rows are asked for.
         let chunks = rows.start as usize / RESOLVE_ROWS..(rows.end as usize).div_ceil(RESOLVE_ROWS);
-        let (sums, is_evened) = (&self.sums, self.is_evened());
+        let (sums, knots, gains) = (&self.sums, &self.balance.knots, &self.balance.gains);
+        let is_evened = self.is_evened();
         let radiance = self.picture.radiance.par_chunks_mut(RESOLVE_ROWS * width);
         let coverage = self.picture.coverage.par_chunks_mut(RESOLVE_ROWS * width);
         let shares = self.shares.par_chunks_mut(RESOLVE_ROWS * width);
-        let all = radiance.zip(coverage).zip(shares).enumerate().skip(chunks.start).take(chunks.len());
-        all.try_for_each_init(Room::default, |room, (chunk, ((radiance, coverage), shares))| {
-            let first = (chunk * RESOLVE_ROWS) as u32;
-            let here = rows.start.max(first)..rows.end.min(first + (coverage.len() / width) as u32);
-            let signed = |range: &Range<u32>| range.start as i32..range.end as i32;
-            let parts =
-                sums.lines(nodes, &Window { rows: signed(&here), columns: signed(&columns) }, room)?;
-            let strip = Strip {
-                width,
-                rows: (here.start - first) as usize..(here.end - first) as usize,
-                columns: columns.start as usize..columns.end as usize,
-            };
-            if wanted.has_shares() {
-                find_shares(&parts, strip.clone(), shares);
-            }
-            if wanted.has_picture() {
-                join(&parts, strip, shares, is_evened, (radiance, coverage));
-            }
-            parts.into_iter().flatten().for_each(|lines| room.give_back(lines));
-            Ok(())
-        })
+        let of_knots = self.balance.rows.par_chunks_mut(RESOLVE_ROWS * knots.columns());
+        let all = radiance.zip(coverage).zip(shares.zip(of_knots)).enumerate();
+        let chunks = all.skip(chunks.start).take(chunks.len());
+        chunks.try_for_each_init(
+            Room::default,
+            |room, (chunk, ((radiance, coverage), (shares, of_knots)))| {
+                let first = (chunk * RESOLVE_ROWS) as u32;
+                let here = rows.start.max(first)..rows.end.min(first + (coverage.len() / width) as u32);
+                let signed = |range: &Range<u32>| range.start as i32..range.end as i32;
+                let parts =
+                    sums.lines(nodes, &Window { rows: signed(&here), columns: signed(&columns) }, room)?;
+                let strip = Strip {
+                    width,
+                    first: first as usize,
+                    rows: (here.start - first) as usize..(here.end - first) as usize,
+                    columns: columns.start as usize..columns.end as usize,
+                };
+                if wanted.has_shares() {
+                    find_shares(&parts, &strip, knots, shares, of_knots);
+                }
+                if wanted.has_picture() {
+                    join(&parts, &strip, shares, gains, is_evened, (radiance, coverage));
+                }
+                parts.into_iter().flatten().for_each(|lines| room.give_back(lines));
+                Ok(())
+            },
+        )
     }
 
     /// All rows and columns.

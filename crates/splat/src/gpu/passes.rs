@@ -19,6 +19,7 @@ pub struct Passes {
     pub integrate_wide: Pass,
     pub integrate_layout: BindGroupLayout,
     pub finish: Pass,
+    pub balance: Pass,
     pub finish_layout: BindGroupLayout,
 }
 
@@ -88,8 +89,19 @@ impl Passes {
         let draw_layout = layout(device, reads.chain([(6, Write), (7, Write), (8, Uniform)]));
         let integrate_layout =
             layout(device, [(0, Read), (1, Write), (2, Uniform), (3, Uniform), (4, Write)]);
-        let finish_layout =
-            layout(device, [(2, Uniform), (3, Uniform), (5, Read), (6, Read), (7, Write), (8, Write)]);
+        let finish_layout = layout(
+            device,
+            [
+                (2, Uniform),
+                (3, Uniform),
+                (5, Read),
+                (6, Read),
+                (7, Write),
+                (8, Write),
+                (9, Write),
+                (10, Read),
+            ],
+        );
         let of_kind = |is_wide: f64, kind: usize| {
             Pass::new(&draw, &draw_layout, "draw", &[("IS_WIDE", is_wide), ("KIND", kind as f64)])
         };
@@ -100,6 +112,7 @@ impl Passes {
             integrate_wide: Pass::new(&resolve, &integrate_layout, "integrate_wide", &[]),
             integrate_layout: integrate_layout.clone(),
             finish: Pass::new(&resolve, &finish_layout, "finish", &[]),
+            balance: Pass::new(&resolve, &finish_layout, "balance", &[]),
             finish_layout: finish_layout.clone(),
         }
     }

@@ -1,5 +1,6 @@
 //! Accumulators to a picture, on the card.
 
+use crate::balance::{Gains, KnotSums, Knots};
 use crate::gpu::Gpu;
 use crate::gpu::device::Lost;
 use crate::gpu::passes::Pass;
@@ -21,6 +22,8 @@ pub struct Resolve {
     frame: Buffer,
     lines: [Buffer; 2],
     shares: Buffer,
+    knots: Buffer,
+    gains: Buffer,
     picture: Buffer,
     overflow: Buffer,
 }
@@ -28,6 +31,9 @@ pub struct Resolve {
 /// Words of `Level` and of `Frame` in resolve.wgsl.
 const LEVEL_WORDS: usize = 12;
 const FRAME_WORDS: usize = 12;
+/// Words of a knot's sums, and of its gains.
+const KNOT_WORDS: usize = 16;
+const GAIN_WORDS: usize = 8;
 
 impl Resolve {
     pub fn new(gpu: &Gpu, size: [usize; 2], layout: &Layout) -> Result<Self, Lost> {
@@ -41,6 +47,8 @@ impl Resolve {
             uniforms.push(buffer);
         }
         let lines = || gpu.buffer("lines", 4 * layout.lines, storage);
+        let knots = Knots::new(size);
+        let knot_count = knots.columns() * knots.rows();
         let resolve = Self {
             size,
             levels: layout.levels.clone(),
@@ -49,6 +57,8 @@ impl Resolve {
             frame: gpu.buffer("frame", FRAME_WORDS, uniform)?,
             lines: [lines()?, lines()?],
             shares: gpu.buffer("shares", 2 * pixels, storage)?,
+            knots: gpu.buffer("knots", KNOT_WORDS * knot_count, storage)?,
+            gains: gpu.buffer("gains", GAIN_WORDS * knot_count, storage)?,
             picture: gpu.buffer("picture", 4 * pixels, storage)?,
             overflow: gpu.buffer("overflow", 1, storage)?,
         };
@@ -57,7 +67,7 @@ impl Resolve {
 
     /// Bytes on the card.
     pub fn bytes(&self) -> usize {
-        let buffers = self.lines.iter().chain([&self.shares, &self.picture]);
+        let buffers = self.lines.iter().chain([&self.shares, &self.knots, &self.gains, &self.picture]);
         buffers.map(|buffer| buffer.size() as usize).sum()
     }
 
@@ -124,12 +134,44 @@ impl Resolve {
 
     /// Makes shares or the picture of the lines.
     pub fn finish(&self, gpu: &Gpu, rows: &Range<u32>) {
-        let (level, [free, sharing]) = (&self.uniforms[0], &self.lines);
-        let buffers =
-            [(2, level), (3, &self.frame), (5, free), (6, sharing), (7, &self.shares), (8, &self.picture)];
-        let bound = gpu.bind(&gpu.passes().finish_layout, buffers);
         let across = (self.size[0] as u32).div_ceil(64);
-        dispatch(gpu, &gpu.passes().finish, &bound, [across, rows.len() as u32]);
+        dispatch(gpu, &gpu.passes().finish, &self.finish_bound(gpu), [across, rows.len() as u32]);
+    }
+
+    /// Finds the gains from lines and shares of a standard picture.
+    pub fn balance(&self, gpu: &Gpu) -> Result<(), Lost> {
+        let knots = Knots::new(self.size);
+        let groups = [knots.columns() as u32, knots.rows() as u32];
+        dispatch(gpu, &gpu.passes().balance, &self.finish_bound(gpu), groups);
+        let words = gpu.read(&self.knots, 0..self.knots.size())?;
+        let sums = |words: &[u32]| {
+            let mut sums = KnotSums::default();
+            for (sum, &word) in sums.0.as_flattened_mut().iter_mut().zip(words) {
+                *sum = f32::from_bits(word);
+            }
+            sums
+        };
+        let sums: Vec<KnotSums> = words.chunks_exact(KNOT_WORDS).map(sums).collect();
+        let gains = Gains::of(knots, &sums);
+        let words =
+            gains.of_knots().iter().flatten().flat_map(|[r, g, b]| [*r, *g, *b, 1.0].map(f32::to_bits));
+        gpu.write(&self.gains, &words.collect::<Vec<_>>());
+        Ok(())
+    }
+
+    fn finish_bound(&self, gpu: &Gpu) -> BindGroup {
+        let (level, [free, sharing]) = (&self.uniforms[0], &self.lines);
+        let buffers = [
+            (2, level),
+            (3, &self.frame),
+            (5, free),
+            (6, sharing),
+            (7, &self.shares),
+            (8, &self.picture),
+            (9, &self.knots),
+            (10, &self.gains),
+        ];
+        gpu.bind(&gpu.passes().finish_layout, buffers)
     }
 
     /// Whether all integers held what they were given.

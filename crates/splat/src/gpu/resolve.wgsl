@@ -1,4 +1,4 @@
-// Accumulators to a picture: the twin of ../resolve.rs and ../partition.rs.
+// Accumulators to a picture: the twin of ../resolve.rs, ../partition.rs and ../balance.rs.
 //
 // Floats are added and multiplied in the same order as there. A product that is added to something goes through `exact`,
 // for compilers like to round the two as one.
@@ -312,8 +312,91 @@ fn finish(@builtin(global_invocation_id) id: vec3<u32>) {
         return;
     }
     let share = shares[at];
-    let shared_light = share.x * sharing;
-    let light = free + vec4<f32>(exact(shared_light.x), exact(shared_light.y), exact(shared_light.z), exact(shared_light.w));
-    let even = select(1.0, share.y, frame.is_evened != 0u);
-    picture[at] = even * light;
+    let shared_light = exact_all(share.x * sharing);
+    if frame.is_evened != 0u {
+        let light = share.y * (free + shared_light);
+        picture[at] = vec4<f32>(light.xyz * gain_of(x, y, ALL), light.w);
+    } else {
+        let scaled = shared_light.xyz * gain_of(x, y, SHARING);
+        picture[at] = free + vec4<f32>(exact(scaled.x), exact(scaled.y), exact(scaled.z), shared_light.w);
+    }
+}
+
+// Gains: how light that sharing and evening take is given back.
+
+// Of every knot: red, green, blue and coverage of sharing samples before and after they share, of all before and after it
+// is evened out.
+@group(0) @binding(9) var<storage, read_write> knots: array<vec4<f32>>;
+// Of every knot: of sharing samples, of all.
+@group(0) @binding(10) var<storage, read> gains: array<vec4<f32>>;
+
+const SPACING: i32 = 32;
+const SHARING: i32 = 0;
+const ALL: i32 = 1;
+
+fn exact_all(x: vec4<f32>) -> vec4<f32> {
+    return vec4<f32>(exact(x.x), exact(x.y), exact(x.z), exact(x.w));
+}
+
+// The weight at a pixel of the knot behind it.
+fn behind(pixel: i32) -> f32 {
+    return (f32(pixel % SPACING) + 0.5) * 0.03125;
+}
+
+fn mix_of_gains(a: vec4<f32>, b: vec4<f32>, weight: f32) -> vec4<f32> {
+    return exact_all((1.0 - weight) * a) + exact_all(weight * b);
+}
+
+fn knot_columns() -> i32 {
+    return (frame.width + SPACING - 1) / SPACING + 1;
+}
+
+fn gain_of(x: i32, y: i32, kind: i32) -> vec3<f32> {
+    let columns = knot_columns();
+    let at = 2 * ((y / SPACING) * columns + x / SPACING) + kind;
+    let left = mix_of_gains(gains[at], gains[at + 2 * columns], behind(y));
+    let right = mix_of_gains(gains[at + 2], gains[at + 2 * columns + 2], behind(y));
+    return mix_of_gains(left, right, behind(x)).xyz;
+}
+
+// Rows that a knot's tent reaches.
+const ROWS: u32 = 64u;
+
+var<workgroup> of_rows: array<array<vec4<f32>, 4>, ROWS>;
+
+// The sums of a knot, a thread for each row.
+@compute @workgroup_size(ROWS)
+fn balance(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) thread: u32) {
+    let knot = vec2<i32>(group.xy);
+    let y = (knot.y - 1) * SPACING + i32(thread);
+    var sums: array<vec4<f32>, 4>;
+    if y >= 0 && y < level.height {
+        let end = min((knot.x + 1) * SPACING, frame.width);
+        for (var x = max((knot.x - 1) * SPACING, 0); x < end; x += 1) {
+            let from_line = level.lines + u32((y + 1) * (level.width + 2) + x + 1);
+            let free = free_lines[from_line];
+            let sharing = sharing_lines[from_line];
+            let share = shares[u32(y * frame.width + x)];
+            let shared_light = exact_all(share.x * sharing);
+            let evened = share.y * (free + shared_light);
+            let weight = select(1.0 - behind(x), behind(x), x < knot.x * SPACING);
+            sums[0] += exact_all(weight * sharing);
+            sums[1] += exact_all(weight * shared_light);
+            sums[2] += exact_all(weight * (free + sharing));
+            sums[3] += exact_all(weight * evened);
+        }
+        let weight = select(1.0 - behind(y), behind(y), y < knot.y * SPACING);
+        for (var k = 0u; k < 4u; k += 1u) {
+            sums[k] = exact_all(weight * sums[k]);
+        }
+    }
+    of_rows[thread] = sums;
+    workgroupBarrier();
+    if thread < 4u {
+        var total = vec4<f32>();
+        for (var row = 0u; row < ROWS; row += 1u) {
+            total += of_rows[row][thread];
+        }
+        knots[4u * (group.y * u32(knot_columns()) + group.x) + thread] = total;
+    }
 }

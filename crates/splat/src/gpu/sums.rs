@@ -258,11 +258,12 @@ impl GpuSums {
         Ok(self.gpu.bind(&self.gpu.passes().draw_layout, (0..).zip(buffers)))
     }
 
-    /// Finds the shares of a standard picture whose sums these are.
+    /// Finds the shares and gains of a standard picture whose sums these are.
     pub fn find_shares(&mut self, nodes: &Nodes) -> Result<(), GpuError> {
         let height = self.resolve.size[1] as u32;
         self.integrate(nodes, 0..height, true, false)?;
-        self.resolve.check(&self.gpu)
+        self.resolve.check(&self.gpu)?;
+        Ok(self.resolve.balance(&self.gpu)?)
     }
 
     /// Makes the pixel rows `rows` of a picture.

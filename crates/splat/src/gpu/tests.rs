@@ -49,6 +49,7 @@ fn gpu() -> Option<Gpu> {
     match Gpu::open(BackendChoice::Gpu, None) {
         Ok(gpu) => gpu,
         Err(why) => {
+            assert!(crate::adapters().is_empty(), "there is an adapter, and: {why}");
             eprintln!("SKIPPED: {why}");
             None
         }

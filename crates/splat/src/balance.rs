@@ -1,0 +1,331 @@
+//! What sharing and evening take away is given back nearby.
+//!
+//! That partly occluded samples share what open ones leave, and that the standard picture's coverage is evened out (see
+//! [`crate::partition`]), makes each pixel's coverage right, but moves light: what a small card that is hidden in part
+//! loses, the wall beside it gets. So light is scaled, colour by colour, by gains g that vary slowly over the picture,
+//!
+//! ```text
+//! g(q) = G·Σ_k b_k(q)·r_k,     r_k = (⟨b_k, before⟩/⟨b_k, after⟩) / (the same of coverage)
+//! ```
+//!
+//! b_k the tents of knots [`SPACING`] apart, which sum to 1; "before" and "after" the light of the standard picture before
+//! and after it was shared (or evened). r_k gives back where it was taken, as far as it is not coverage itself that was
+//! mended there. G, one number for each colour and near 1, then makes the whole picture's sum what it was: as
+//!
+//! ```text
+//! Σ_q g(q)·after(q) = G·Σ_k r_k·⟨b_k, after⟩
+//! ```
+//!
+//! that needs the knots alone. Gains are found with the shares, from the standard picture: paint leaves them as they are.
+//! Coverage has none.
+
+use crate::partition::Share;
+use crate::widest::with_widest_instructions;
+use rayon::prelude::*;
+
+/// How far knots lie apart, px. What is taken from a surface is given back within that of it.
+pub const SPACING: usize = 32;
+
+/// Which light is scaled: that of the sharing samples, where the picture is not evened out; else all.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Scaled {
+    Sharing = 0,
+    All = 1,
+}
+
+/// Red, green, blue and coverage of the standard picture, weighted by a knot's tent: of sharing samples before and after
+/// they share, of the picture before that and after it is evened out.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct KnotSums(pub [[f32; 4]; 4]);
+
+impl KnotSums {
+    /// Those of one pixel of weight 1.
+    #[inline(always)]
+    fn of(free: &[f32; 4], sharing: &[f32; 4], share: &Share) -> Self {
+        let shared = sharing.map(|light| share.partial * light);
+        let [before, after] = [sharing, &shared].map(|sharing| std::array::from_fn(|c| free[c] + sharing[c]));
+        Self([*sharing, shared, before, after.map(|light: f32| share.even * light)])
+    }
+
+    #[inline(always)]
+    fn add(&mut self, weight: f32, other: &Self) {
+        for (sum, other) in self.0.as_flattened_mut().iter_mut().zip(other.0.as_flattened()) {
+            *sum += weight * other;
+        }
+    }
+}
+
+/// The knots of a picture, row by row.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Knots {
+    size: [usize; 2],
+}
+
+/// A pixel's place among knots: the one before it, and the weight of the one behind.
+#[inline(always)]
+fn place(pixel: usize) -> (usize, f32) {
+    (pixel / SPACING, ((pixel % SPACING) as f32 + 0.5) / SPACING as f32)
+}
+
+impl Knots {
+    /// Of a picture of this width and height, px.
+    pub fn new(size: [usize; 2]) -> Self {
+        Self { size }
+    }
+
+    /// How many there are in a row.
+    pub fn columns(&self) -> usize {
+        self.size[0].div_ceil(SPACING) + 1
+    }
+
+    /// How many rows there are.
+    pub fn rows(&self) -> usize {
+        self.size[1].div_ceil(SPACING) + 1
+    }
+
+    /// Sums a whole row of pixels, free and sharing: a sum for each column of knots.
+    pub fn sum_row(&self, [free, sharing]: [&[[f32; 4]]; 2], shares: &[Share], sums: &mut [KnotSums]) {
+        with_widest_instructions(
+            #[inline(always)]
+            || {
+                sums.fill(KnotSums::default());
+                for (x, ((free, sharing), share)) in free.iter().zip(sharing).zip(shares).enumerate() {
+                    let of_pixel = KnotSums::of(free, sharing, share);
+                    let (knot, behind) = place(x);
+                    sums[knot].add(1.0 - behind, &of_pixel);
+                    sums[knot + 1].add(behind, &of_pixel);
+                }
+            },
+        );
+    }
+
+    /// The sums of knots from those of all rows of pixels.
+    pub fn sums(&self, rows: &[KnotSums]) -> Vec<KnotSums> {
+        let columns = self.columns();
+        let sum = |knot: usize| {
+            let (row, column) = (knot / columns, knot % columns);
+            let mut sum = KnotSums::default();
+            for y in (row.max(1) - 1) * SPACING..((row + 1) * SPACING).min(self.size[1]) {
+                let (before, behind) = place(y);
+                sum.add(if before == row { 1.0 - behind } else { behind }, &rows[y * columns + column]);
+            }
+            sum
+        };
+        (0..columns * self.rows()).into_par_iter().map(sum).collect()
+    }
+}
+
+/// The gains of a picture, and room to find them.
+pub struct Balance {
+    pub knots: Knots,
+    pub gains: Gains,
+    /// What each row of pixels brings to each column of knots.
+    pub rows: Vec<KnotSums>,
+}
+
+impl Balance {
+    /// Of a picture of this width and height, px, of which nothing is known.
+    pub fn none(size: [usize; 2]) -> Self {
+        let knots = Knots::new(size);
+        let rows = vec![KnotSums::default(); size[1] * knots.columns()];
+        Self { gains: Gains::none(knots), knots, rows }
+    }
+
+    /// Forgets the gains.
+    pub fn forget(&mut self) {
+        self.gains = Gains::none(self.knots);
+    }
+
+    /// Finds the gains from the rows.
+    pub fn settle(&mut self) {
+        self.gains = Gains::of(self.knots, &self.knots.sums(&self.rows));
+    }
+
+    /// Bytes in memory.
+    pub fn bytes(&self) -> usize {
+        size_of_val(self.rows.as_slice()) + size_of_val(self.gains.of_knots.as_slice())
+    }
+}
+
+/// What each knot scales light by.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Gains {
+    knots: Knots,
+    /// Of each knot, by [`Scaled`].
+    of_knots: Vec<[[f32; 3]; 2]>,
+}
+
+impl Gains {
+    /// Those of a picture of which nothing is known: 1.
+    pub fn none(knots: Knots) -> Self {
+        Self { of_knots: vec![[[1.0; 3]; 2]; knots.columns() * knots.rows()], knots }
+    }
+
+    /// Those that give back what the sums of all knots say was taken.
+    ///
+    /// r_k stays within 5 % of 1: a knot may have next to no light, or a lamp that outshines all about it. A light field that
+    /// covers the picture by more than 0.1 % too little or too much has holes or surfaces twice: what evening mends of that
+    /// is not given back, and G stays within 1 % of 1. So what is white stays white to 0.1 %.
+    pub fn of(knots: Knots, sums: &[KnotSums]) -> Self {
+        const LARGEST_RATIO: f64 = 1.05;
+        const LARGEST_RIPPLE: f64 = 1.001;
+        const LARGEST_GAIN: f64 = 1.01;
+        let mut of_knots = vec![[[1.0; 3]; 2]; sums.len()];
+        for (kind, c) in
+            [Scaled::Sharing, Scaled::All].into_iter().flat_map(|kind| (0..3).map(move |c| (kind, c)))
+        {
+            let kind = kind as usize;
+            let of = |sums: &KnotSums, c: usize| {
+                (f64::from(sums.0[2 * kind][c]), f64::from(sums.0[2 * kind + 1][c]))
+            };
+            let ratio = |sums: &KnotSums| {
+                let ((before, after), (covered, evened)) = (of(sums, c), of(sums, 3));
+                let ratio = before * evened / (after * covered);
+                if ratio.is_finite() { ratio.clamp(1.0 / LARGEST_RATIO, LARGEST_RATIO) } else { 1.0 }
+            };
+            let [before, after, covered, evened] = sums.iter().fold([0.0; 4], |all, sums| {
+                let ((before, after), (covered, evened)) = (of(sums, c), of(sums, 3));
+                [all[0] + before, all[1] + ratio(sums) * after, all[2] + covered, all[3] + evened]
+            });
+            let (light, coverage) = (before / after, covered / evened);
+            let gain = light / coverage * coverage.clamp(1.0 / LARGEST_RIPPLE, LARGEST_RIPPLE);
+            let gain = if gain.is_finite() { gain.clamp(1.0 / LARGEST_GAIN, LARGEST_GAIN) } else { 1.0 };
+            for (knot, sums) in of_knots.iter_mut().zip(sums) {
+                knot[kind][c] = (gain * ratio(sums)) as f32;
+            }
+        }
+        Self { knots, of_knots }
+    }
+
+    /// Scales a picture that is evened out.
+    pub fn scale(&self, radiance: &mut [[f32; 3]]) {
+        let width = self.knots.size[0];
+        radiance.par_chunks_mut(width).enumerate().for_each(|(y, row)| {
+            let gains = self.of_row(y, Scaled::All);
+            for (x, light) in row.iter_mut().enumerate() {
+                let gain = gains.at(x);
+                (0..3).for_each(|c| light[c] *= gain[c]);
+            }
+        });
+    }
+
+    /// Those of knots, row by row.
+    pub fn of_knots(&self) -> &[[[f32; 3]; 2]] {
+        &self.of_knots
+    }
+
+    /// Those of a row of pixels, at each column of knots.
+    pub fn of_row(&self, y: usize, scaled: Scaled) -> GainsOfRow {
+        let ((row, behind), columns) = (place(y), self.knots.columns());
+        let of_row =
+            |row: usize| self.of_knots[row * columns..][..columns].iter().map(|knot| knot[scaled as usize]);
+        GainsOfRow(of_row(row).zip(of_row(row + 1)).map(|(a, b)| mix(a, b, behind)).collect())
+    }
+}
+
+/// Gains of a row of pixels.
+pub struct GainsOfRow(Vec<[f32; 3]>);
+
+impl GainsOfRow {
+    /// Those of a pixel.
+    #[inline(always)]
+    pub fn at(&self, x: usize) -> [f32; 3] {
+        let (knot, behind) = place(x);
+        mix(self.0[knot], self.0[knot + 1], behind)
+    }
+}
+
+#[inline(always)]
+fn mix(a: [f32; 3], b: [f32; 3], behind: f32) -> [f32; 3] {
+    std::array::from_fn(|c| (1.0 - behind) * a[c] + behind * b[c])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SIZE: [usize; 2] = [150, 90];
+
+    /// A small red thing, half hidden, that sharing takes light from, before a grey wall that gets it.
+    fn picture() -> Vec<([f32; 4], [f32; 4])> {
+        let pixel = |k: usize| {
+            let (x, y) = (k % SIZE[0], k / SIZE[0]);
+            let ripple = 1.0 + 0.01 * (x as f32 * 0.7).sin() * (y as f32 * 0.3).cos();
+            // What sharing samples see is known to cells alone: too much here, too little there.
+            let (open, excess) =
+                (if x < 70 { 0.6 } else { 0.3 } * ripple, if x / 5 % 2 == 0 { 1.3 } else { 0.7 });
+            let red = if x.abs_diff(42) < 3 && y.abs_diff(40) < 7 { 0.5 } else { 0.0 };
+            let light =
+                |covered: f32, red: f32| [covered * (0.3 + red), covered * 0.3, covered * 0.3, covered];
+            (light(open, 0.0), light((1.0 - open) * excess, red))
+        };
+        (0..SIZE[0] * SIZE[1]).map(pixel).collect()
+    }
+
+    fn shares(picture: &[([f32; 4], [f32; 4])]) -> Vec<Share> {
+        picture.iter().map(|(free, sharing)| Share::of(free[3], sharing[3])).collect()
+    }
+
+    fn gains(picture: &[([f32; 4], [f32; 4])], shares: &[Share]) -> Gains {
+        let knots = Knots::new(SIZE);
+        let mut rows = vec![KnotSums::default(); SIZE[1] * knots.columns()];
+        let lines = picture.chunks(SIZE[0]).zip(shares.chunks(SIZE[0]));
+        for ((pixels, shares), sums) in lines.zip(rows.chunks_mut(knots.columns())) {
+            let [free, sharing] = [|p: &([f32; 4], [f32; 4])| p.0, |p: &([f32; 4], [f32; 4])| p.1]
+                .map(|of| pixels.iter().map(of).collect::<Vec<_>>());
+            knots.sum_row([&free, &sharing], shares, sums);
+        }
+        Gains::of(knots, &knots.sums(&rows))
+    }
+
+    /// The sum of a colour: before, and after with gains and without, of sharing light and of all.
+    fn sums(picture: &[([f32; 4], [f32; 4])], shares: &[Share], gains: &Gains, c: usize) -> [[f64; 3]; 2] {
+        let mut sums = [[0.0; 3]; 2];
+        for (k, ((free, sharing), share)) in picture.iter().zip(shares).enumerate() {
+            let (x, y) = (k % SIZE[0], k / SIZE[0]);
+            let [own, all] =
+                [Scaled::Sharing, Scaled::All].map(|scaled| f64::from(gains.of_row(y, scaled).at(x)[c]));
+            let shared = f64::from(share.partial * sharing[c]);
+            let evened = f64::from(share.even) * (f64::from(free[c]) + shared);
+            let of_pixel = [
+                [f64::from(sharing[c]), own * shared, shared],
+                [f64::from(free[c] + sharing[c]), all * evened, evened],
+            ];
+            (0..2).for_each(|kind| (0..3).for_each(|k| sums[kind][k] += of_pixel[kind][k]));
+        }
+        sums
+    }
+
+    #[test]
+    fn the_sum_is_what_it_was() {
+        let picture = picture();
+        let shares = shares(&picture);
+        let gains = gains(&picture, &shares);
+        for c in 0..3 {
+            for [before, after, without] in sums(&picture, &shares, &gains, c) {
+                assert!((after / before - 1.0).abs() < 1e-6, "{c}: {before} {after}");
+                assert!(c > 0 || (without / before - 1.0).abs() > 5e-4, "the control: {before} {without}");
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_white_stays_uniform() {
+        let white: Vec<_> = picture().iter().map(|(free, sharing)| ([free[3]; 4], [sharing[3]; 4])).collect();
+        let gains = gains(&white, &shares(&white));
+        let first = gains.of_knots[0];
+        for knot in &gains.of_knots {
+            (0..2).for_each(|kind| {
+                (0..3).for_each(|c| {
+                    assert!((knot[kind][c] / first[kind][c] - 1.0).abs() < 1e-5, "{knot:?} {first:?}")
+                })
+            });
+        }
+    }
+
+    #[test]
+    fn nothing_is_given_to_black_pictures() {
+        let black = vec![([0.0; 4], [0.0; 4]); SIZE[0] * SIZE[1]];
+        assert_eq!(gains(&black, &shares(&black)), Gains::none(Knots::new(SIZE)));
+    }
+}
