@@ -37,5 +37,10 @@ pub fn rms_difference(a: &Picture, b: &Picture) -> f64 {
 
 /// The sum of all pixels, green.
 pub fn energy(picture: &Picture) -> f64 {
-    picture.radiance.iter().map(|rgb| f64::from(rgb[1])).sum()
+    energies(picture)[1]
+}
+
+/// The sum of all pixels, colour by colour.
+pub fn energies(picture: &Picture) -> [f64; 3] {
+    [0, 1, 2].map(|c| picture.radiance.iter().map(|rgb| f64::from(rgb[c])).sum())
 }
