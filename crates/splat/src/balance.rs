@@ -164,11 +164,11 @@ impl Gains {
     /// Those that give back what the sums of all knots say was taken.
     ///
     /// r_k stays within 5 % of 1: a knot may have next to no light, or a lamp that outshines all about it. A light field that
-    /// covers the picture by more than 0.1 % too little or too much has holes or surfaces twice: what evening mends of that
-    /// is not given back, and G stays within 1 % of 1. So what is white stays white to 0.1 %.
+    /// covers the picture by 0.1 % too little or too much or more has holes or surfaces twice: what evening mends of that
+    /// is not given back, but all that it takes up to 0.05 %. G stays within 1 % of 1. So what is white stays white to 0.05 %.
     pub fn of(knots: Knots, sums: &[KnotSums]) -> Self {
         const LARGEST_RATIO: f64 = 1.05;
-        const LARGEST_RIPPLE: f64 = 1.001;
+        const RIPPLE: f64 = 5e-4;
         const LARGEST_GAIN: f64 = 1.01;
         let mut of_knots = vec![[[1.0; 3]; 2]; sums.len()];
         for (kind, c) in
@@ -188,7 +188,10 @@ impl Gains {
                 [all[0] + before, all[1] + ratio(sums) * after, all[2] + covered, all[3] + evened]
             });
             let (light, coverage) = (before / after, covered / evened);
-            let gain = light / coverage * coverage.clamp(1.0 / LARGEST_RIPPLE, LARGEST_RIPPLE);
+            // All of a ripple is given back, none of a fault.
+            let excess = coverage - 1.0;
+            let given_back = excess * (2.0 - excess.abs() / RIPPLE).clamp(0.0, 1.0);
+            let gain = light / coverage * (1.0 + given_back);
             let gain = if gain.is_finite() { gain.clamp(1.0 / LARGEST_GAIN, LARGEST_GAIN) } else { 1.0 };
             for (knot, sums) in of_knots.iter_mut().zip(sums) {
                 knot[kind][c] = (gain * ratio(sums)) as f32;
