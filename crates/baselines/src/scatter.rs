@@ -72,8 +72,9 @@ pub fn scatter(
         let offset = sample.surface.map_or_else(|| focus.at_infinity(), |point| focus.at(point));
         optics.splat_radius_px(optics.kappa(f64::from(sample.inverse_depth), offset))
     };
+    let samples = salf.samples.to_vec();
     let thrown: Vec<_> =
-        salf.samples.par_iter().map(|sample| Thrown { sample, radius_px: radius_px(sample), stop }).collect();
+        samples.par_iter().map(|sample| Thrown { sample, radius_px: radius_px(sample), stop }).collect();
     let mut sum = PictureSum::new([camera.width, camera.height]);
     let deposit = |index: usize, thrown: &Thrown, band: &mut Band| {
         // Fibonacci hashing: neighbours take different sets.

@@ -103,8 +103,8 @@ fn grazing(effort: Effort, progress: &dyn Progress) -> Result<Finding, Cancelled
         let shot = Shot::new(scene, camera.clone());
         let salf = shot.salf(FocusOffset::STANDARD, progress)?;
         let focus = shot.focus(FocusOffset::STANDARD);
-        let mut flat = salf.clone();
-        flat.samples.iter_mut().for_each(|sample| sample.tilt = Vec2::ZERO);
+        let untilt = |sample: &mut salf::Sample| sample.tilt = Vec2::ZERO;
+        let flat = salf::Salf { samples: salf.samples.changed(untilt), ..salf.clone() };
         splatted.push(farthest_from(&picture_of(salf, &focus, progress)?, 1.0));
         untilted.push(farthest_from(&picture_of(flat, &focus, progress)?, 1.0));
         traced.push(farthest_from(&shot.truth(FocusOffset::STANDARD, 4, progress)?, 1.0));

@@ -156,8 +156,8 @@ fn invariant_to_paint(effort: Effort, progress: &dyn Progress) -> Result<Finding
 fn behind_an_occluder(effort: Effort, progress: &dyn Progress) -> Result<Finding, Cancelled> {
     let shot = squares(effort, -0.15);
     let salf = shot.salf(OFFSETS[0], progress)?;
-    let mut blind = salf.clone();
-    blind.samples.iter_mut().for_each(|sample| sample.visibility = Visibility::Open);
+    let open = |sample: &mut Sample| sample.visibility = Visibility::Open;
+    let blind = Salf { samples: salf.samples.changed(open), ..salf.clone() };
     let picture = |salf: &Salf, offset| picture_of(salf.clone(), &shot.focus(offset), progress);
     let sums = |salf: &Salf| -> Result<Vec<[f64; 3]>, Cancelled> {
         OFFSETS.iter().map(|&offset| Ok(energies(&picture(salf, offset)?))).collect()
@@ -210,8 +210,8 @@ fn is_hidden_from_center(shot: &Shot, sample: &Sample) -> bool {
 fn just_behind_one_another(effort: Effort, progress: &dyn Progress) -> Result<Finding, Cancelled> {
     let shot = fan(effort);
     let salf = shot.salf(OFFSETS[0], progress)?;
-    let mut central = salf.clone();
-    central.samples.retain(|sample| !is_hidden_from_center(&shot, sample));
+    let seen = salf.samples.iter().filter(|sample| !is_hidden_from_center(&shot, sample));
+    let central = Salf { samples: seen.collect(), ..salf.clone() };
     let sums = |salf: &Salf| -> Result<Vec<[f64; 3]>, Cancelled> {
         let sum = |&offset| Ok(energies(&picture_of(salf.clone(), &shot.focus(offset), progress)?));
         OFFSETS.iter().map(sum).collect()

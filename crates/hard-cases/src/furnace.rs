@@ -31,12 +31,12 @@ fn furnace(effort: Effort, progress: &dyn Progress) -> Result<Finding, Cancelled
 
     // Baked once, for the widest blur and the whole square; every aperture and focus is splatted from it.
     let salf = shot.salf(offset(20.0), progress)?;
-    let mut fallen = salf.clone();
     let optics = camera.optics();
-    for sample in &mut fallen.samples {
+    let fall_off = |sample: &mut salf::Sample| {
         let q = camera.q_from_pixel(sample.center.as_dvec2()) * optics.tan_half_yfov;
         sample.weight *= (1.0 / (1.0 + q.length_squared()).powi(2)) as f32;
-    }
+    };
+    let fallen = salf::Salf { samples: salf.samples.changed(fall_off), ..salf.clone() };
     let mut splatter = Splatter::new(Arc::new(salf));
     let mut vignetted = Splatter::new(Arc::new(fallen));
     let (mut splatted, mut traced, mut wrong) = (Vec::new(), Vec::new(), f64::INFINITY);

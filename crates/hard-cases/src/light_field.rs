@@ -36,5 +36,5 @@ pub fn picture_of_stars(
     progress: &dyn Progress,
 ) -> Result<Picture, Cancelled> {
     let focus = Focus::constant(scene_of([]), offset);
-    picture_of(Salf { camera: camera.clone(), margin_px: 0, samples }, &focus, progress)
+    picture_of(Salf { camera: camera.clone(), margin_px: 0, samples: samples.into() }, &focus, progress)
 }

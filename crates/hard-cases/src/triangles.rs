@@ -7,7 +7,7 @@ use crate::shot::{Shot, picture_of};
 use glam::DVec3;
 use lens::{Camera, FocusOffset};
 use progress::{Cancelled, Progress};
-use salf::Visibility;
+use salf::{Salf, Sample, Visibility};
 
 pub const CASES: &[Case] = &[
     Case {
@@ -61,7 +61,7 @@ fn without_area(effort: Effort, progress: &dyn Progress) -> Result<Finding, Canc
         differences.push(largest_difference(&with, &without));
     }
     let salf = all.salf(FocusOffset::STANDARD, progress)?;
-    let is_undefined = |sample: &&salf::Sample| !(sample.weight.is_finite() && sample.tilt.is_finite());
+    let is_undefined = |sample: &Sample| !(sample.weight.is_finite() && sample.tilt.is_finite());
     let baked = salf.samples.iter().filter(is_undefined).count() as f64;
     let scene = all.tracer.scene();
     let divided = (0..scene.triangles.len() as u32).map(|triangle| {
@@ -89,8 +89,8 @@ fn needles(effort: Effort, progress: &dyn Progress) -> Result<Finding, Cancelled
     let shot = Shot::new(scene_of(meshes), camera(effort));
     let salf = shot.salf(FocusOffset::STANDARD, progress)?;
     let focus = shot.focus(FocusOffset::STANDARD);
-    let mut on_top = salf.clone();
-    on_top.samples.iter_mut().for_each(|sample| sample.visibility = Visibility::Open);
+    let open = |sample: &mut Sample| sample.visibility = Visibility::Open;
+    let on_top = Salf { samples: salf.samples.changed(open), ..salf.clone() };
     let splatted = picture_of(salf, &focus, progress)?;
     let traced = shot.truth(FocusOffset::STANDARD, 16, progress)?;
     let right = [farthest_from(&splatted, 1.0), farthest_from(&traced, 1.0), senseless(&splatted)];
@@ -112,12 +112,12 @@ fn duplicates(effort: Effort, progress: &dyn Progress) -> Result<Finding, Cancel
     let (once, thrice) = (copies(1), copies(3));
     let standard = FocusOffset::STANDARD;
     let salf = thrice.salf(standard, progress)?;
-    let mut drawn = salf.clone();
     let scene = thrice.tracer.scene();
-    let is_copied = |sample: &&salf::Sample| {
+    let is_copied = |sample: &Sample| {
         sample.surface.is_some_and(|point| scene.triangles[point.triangle as usize].part > 0)
     };
-    drawn.samples.extend(salf.samples.iter().filter(is_copied).cloned());
+    let copied = salf.samples.iter().filter(is_copied);
+    let drawn = Salf { samples: salf.samples.iter().chain(copied).collect(), ..salf.clone() };
     let focus = thrice.focus(standard);
     let splatted = picture_of(salf, &focus, progress)?;
     let limits = [("splat", 1e-3), ("splat − 1", 0.03), ("truth", 1e-6)];

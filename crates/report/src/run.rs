@@ -18,7 +18,8 @@ use crate::write::write_report;
 use focus::Focus;
 use progress::Progress;
 use project::{LinearPicture, compare, read_picture, write_error_map, write_rgb};
-use session::{Modelled, RenderOptions, SessionError, Steps, bake};
+use salf::Salf;
+use session::{Modelled, RenderOptions, SessionError, Steps, bake, bake_unpacked};
 use splat::Splatter;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
@@ -314,14 +315,16 @@ impl Runner<'_> {
         let one = OneBar { bar: &*bar, furthest: Mutex::new(0.0) };
         let atlas = subject.input.atlas(&self.options.unwrap, &one)?;
         let tolerance_px = RenderOptions::default().tolerance_px;
-        let drawn = |tolerance_px| {
-            let salf = Arc::new(bake(&subject.tracer, &subject.camera, standard, tolerance_px, &one)?);
+        let drawn = |salf: Salf| {
+            let salf = Arc::new(salf);
             let mut splatter = Splatter::new(salf.clone());
             splatter.render(&subject.camera, standard, &*one.begin("splatting"))?;
             Ok::<_, SessionError>((salf, conserved(splatter.picture())))
         };
-        let (salf, picture) = drawn(tolerance_px)?;
-        let (finest, finest_picture) = drawn(FINEST_TOLERANCE_PX)?;
+        let Subject { tracer, camera, .. } = subject;
+        let (salf, picture) = drawn(bake(tracer, camera, standard, tolerance_px, &one)?)?;
+        let finest = bake_unpacked(tracer, camera, standard, FINEST_TOLERANCE_PX, &one)?;
+        let (finest, finest_picture) = drawn(finest)?;
         let cost = compare(&picture, &finest_picture)?;
         let scene = ModelledScene {
             modelled: Modelled::of(&salf, &subject.tracer, Some(&atlas)),

@@ -74,7 +74,7 @@ pub struct ModelledScene {
     pub modelled: Modelled,
     /// The tolerance that it was baked with, px.
     pub tolerance_px: f64,
-    /// PSNR of its picture against that of the finest light field, dB.
+    /// PSNR of its picture against that of the finest light field, whose samples are not packed, dB.
     pub saving_psnr: f64,
     /// Mean FLIP between the two.
     pub saving_flip: f64,

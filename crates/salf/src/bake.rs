@@ -2,8 +2,10 @@
 //!
 //! 1. The pinhole picture is sampled, cell by cell ([`crate::layers`]): the nearest surfaces.
 //! 2. Their depths tell which of them may be partly occluded, and where hidden ones may show ([`crate::occluders`]).
-//! 3. Those, and only those, are asked what of the aperture they see ([`crate::visibility`]).
-//! 4. Surfaces edge-on to the aperture, and small bright ones, are sampled on the surface ([`crate::surface_patches`]).
+//! 3. Surfaces edge-on to the aperture, and small bright ones, are sampled on the surface ([`crate::surface_patches`]).
+//! 4. What may be partly occluded, and only that, is asked what of the aperture it sees ([`crate::visibility`]).
+//!
+//! The samples of each block are packed as soon as they are all found ([`crate::samples`]).
 
 use crate::domain::{Cell, Domain};
 use crate::layers::{Group, Layers, trace_cell};
@@ -11,14 +13,16 @@ use crate::margin::{painted_margin_px, standard_margin_px};
 use crate::occluders::{Depths, Footprint, Occluders};
 use crate::placement::Placement;
 use crate::sample::{Salf, Sample, Visibility};
+use crate::samples::{Found, Packer, Samples, block_corner};
 use crate::surface_patches;
 use crate::view::View;
 use crate::visibility::{self, Patterns};
-use glam::DVec2;
+use glam::{DVec2, IVec2};
 use lens::{Camera, FocusOffset};
 use progress::{Cancelled, Progress, Stage};
 use rayon::prelude::*;
 use scene::SurfaceField;
+use std::collections::{HashMap, HashSet};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use trace::{Radiance, Tracer};
 
@@ -31,11 +35,13 @@ pub struct BakeOptions {
     /// How large a cell of a partly visible aperture may be on the picture, px, where 16 cells a side allow it: up to
     /// twice this circle of confusion, samples have 8 cells a side. Smaller is more exact and takes more memory.
     pub tolerance_px: f64,
+    /// Whether samples are packed ([`Samples`]). It is right unless what that loses is to be measured.
+    pub packs: bool,
 }
 
 impl Default for BakeOptions {
     fn default() -> Self {
-        Self { margin_px: 0.0, tolerance_px: Self::TOLERANCE_PX }
+        Self { margin_px: 0.0, tolerance_px: Self::TOLERANCE_PX, packs: true }
     }
 }
 
@@ -51,7 +57,7 @@ impl BakeOptions {
 
 /// A nearest surface of a cell, before it is known whether anything occludes it.
 struct Candidate {
-    sample: Sample,
+    found: Found,
     slope: DVec2,
     /// Whether another surface of its own cell is in front of it.
     has_nearer: bool,
@@ -87,26 +93,51 @@ pub fn bake(
     let depths = first_looks.iter().flatten().map(|look| (look.cell, look.depths));
     let occluders = Occluders::new(domain, view.radius_per_kappa_px, depths);
 
-    let second = Stage::new(progress, 0.4, 0.95);
-    let mut rows = each_row(&first_looks, &second, |looks| {
-        let mut samples = Vec::new();
-        for look in looks {
-            baker.second_look(&occluders, look, &mut samples);
-        }
-        samples
-    })?;
-
     let triangles: Vec<u32> = placement.on_surface().collect();
     let chunks: Vec<_> = triangles.chunks(256).collect();
-    rows.extend(each_row(&chunks, &Stage::new(progress, 0.95, 1.0), |chunk| {
+    let patches = each_row(&chunks, &Stage::new(progress, 0.4, 0.45), |chunk| {
         let of =
             |&triangle: &u32| surface_patches::samples(tracer, radiance, &view, &patterns, &domain, triangle);
-        chunk.iter().flat_map(of).collect()
-    })?);
+        chunk.iter().flat_map(of).collect::<Vec<_>>()
+    })?;
+    let mut patches_of_block: HashMap<IVec2, Vec<Sample>> = HashMap::new();
+    for patch in patches.into_iter().flatten() {
+        patches_of_block.entry(block_corner(patch.center.floor().as_ivec2())).or_default().push(patch);
+    }
 
-    let mut samples = Vec::with_capacity(rows.iter().map(Vec::len).sum());
-    rows.into_iter().for_each(|row| samples.extend(row));
-    Ok(Salf { camera: camera.clone(), margin_px: domain.margin as u32, samples })
+    let blocks: Vec<&[FirstLook]> =
+        first_looks.iter().flat_map(|row| row.chunk_by(are_of_one_block)).collect();
+    let mut parts = each_row(&blocks, &Stage::new(progress, 0.45, 1.0), |looks| {
+        let mut found = Vec::new();
+        for look in *looks {
+            baker.second_look(&occluders, look, &mut found);
+        }
+        let corner = block_corner(looks[0].cell.corner);
+        let patches = patches_of_block.get(&corner).into_iter().flatten();
+        found.extend(patches.map(|patch| Found { sample: patch.clone(), rays: None }));
+        together(corner, found, options.packs)
+    })?;
+    // What lies beside the domain has no block.
+    let corners: HashSet<IVec2> = blocks.iter().map(|looks| block_corner(looks[0].cell.corner)).collect();
+    let mut beside: Vec<_> =
+        patches_of_block.into_iter().filter(|(corner, _)| !corners.contains(corner)).collect();
+    beside.sort_by_key(|(corner, _)| (corner.y, corner.x));
+    parts.extend(beside.into_iter().map(|(_, patches)| Samples::from(patches)));
+    Ok(Salf { camera: camera.clone(), margin_px: domain.margin as u32, samples: Samples::join(parts) })
+}
+
+fn are_of_one_block(a: &FirstLook, b: &FirstLook) -> bool {
+    block_corner(a.cell.corner) == block_corner(b.cell.corner)
+}
+
+/// The samples of one block.
+fn together(corner: IVec2, found: Vec<Found>, packs: bool) -> Samples {
+    if !packs {
+        return Samples::from(found.into_iter().map(|found| found.sample).collect::<Vec<_>>());
+    }
+    let mut packer = Packer::new(corner);
+    found.into_iter().for_each(|found| packer.push(found));
+    packer.finish()
 }
 
 /// Works on rows in parallel, in order of result, with progress and cancel.
@@ -143,7 +174,7 @@ impl Baker<'_> {
     fn first_look(&self, cell: Cell) -> FirstLook {
         let layers = self.layers(cell, false);
         let candidate = |group: &Group| Candidate {
-            sample: group.sample(self.radiance, self.view, cell, Visibility::Open),
+            found: group.sample(self.radiance, self.view, cell, Visibility::Open),
             slope: group.slope,
             has_nearer: layers.has_nearer(group, self.view.radius_per_kappa_px),
         };
@@ -151,7 +182,7 @@ impl Baker<'_> {
         FirstLook { cell, depths: layers.depths(cell), has_gap: layers.has_gap, candidates }
     }
 
-    fn second_look(&self, occluders: &Occluders, look: &FirstLook, samples: &mut Vec<Sample>) {
+    fn second_look(&self, occluders: &Occluders, look: &FirstLook, samples: &mut Vec<Found>) {
         let cell = look.cell;
         let may_occlude = |center: DVec2, inverse_depth: f64, slope: DVec2| {
             occluders.may_occlude(&Footprint { center, cell, inverse_depth, slope })
@@ -160,12 +191,12 @@ impl Baker<'_> {
         let hidden = look.has_gap || occluders.may_reveal(cell, look.depths.nearest);
         if is_pinhole || !hidden {
             let is_open = |candidate: &Candidate| {
-                let sample = &candidate.sample;
+                let sample = &candidate.found.sample;
                 let (center, depth) = (sample.center.as_dvec2(), sample.inverse_depth as f64);
                 !candidate.has_nearer && !may_occlude(center, depth, candidate.slope)
             };
             if is_pinhole || look.candidates.iter().all(is_open) {
-                samples.extend(look.candidates.iter().map(|candidate| candidate.sample.clone()));
+                samples.extend(look.candidates.iter().map(|candidate| candidate.found.clone()));
                 return;
             }
         }

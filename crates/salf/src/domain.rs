@@ -32,10 +32,41 @@ impl Cell {
         self.corner.as_dvec2() + IVec2::new(column, row).as_dvec2() * self.sub_side()
     }
 
+    /// The part of it that the sub-cells of `rays`, a bit each, make up; they must not be none.
+    pub fn part(&self, rays: u16) -> CellPart {
+        let (cell_side, side) = (self.side as f64, self.sub_side());
+        if rays == u16::MAX {
+            let half_size = DVec2::splat(cell_side / 2.0);
+            let center = self.corner.as_dvec2() + half_size;
+            return CellPart { center, half_size, weight: cell_side * cell_side };
+        }
+        let count = f64::from(rays.count_ones());
+        let corners = || (0..Self::RAYS).filter(|k| rays >> k & 1 == 1).map(|k| self.sub_corner(k));
+        let center = corners().sum::<DVec2>() / count + side / 2.0;
+        let variance =
+            corners().map(|corner| (corner + side / 2.0 - center).powf(2.0)).sum::<DVec2>() / count;
+        // A box of half side h has the variance h²/3.
+        let low = self.corner.as_dvec2();
+        let room = (center - low).min(low + cell_side - center);
+        let half_size = (3.0 * variance + side * side / 4.0).map(f64::sqrt).min(room);
+        CellPart { center, half_size, weight: side * side * count }
+    }
+
     /// The side of a sub-cell, px.
     pub fn sub_side(&self) -> f64 {
         self.side as f64 / Self::SUBDIVISION as f64
     }
+}
+
+/// Some or all rays of a cell.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CellPart {
+    /// The centre of their sub-cells, px.
+    pub center: DVec2,
+    /// Half the sides of a box with the spread of the sub-cells, within the cell, px.
+    pub half_size: DVec2,
+    /// Their area, px².
+    pub weight: f64,
 }
 
 /// The frame and its margin.

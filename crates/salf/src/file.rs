@@ -4,35 +4,42 @@
 //!
 //! ```text
 //! magic        8 bytes   "FBSALF\r\n"
-//! version      u32       2
+//! version      u32       3
 //! source       text      the scene or project it was baked from, as a path
 //! triangles    u32       of that scene: what surface addresses count in
 //! camera       see `write_camera`
 //! margin       u32       px sampled outside the frame
-//! samples      u64       how many; then, sample after sample:
+//! counts       7 × u64   of blocks, records, planes, rays, patches, codes, loose samples
+//! blocks       each: corner 2 × i32 (px), where its records, planes, rays, patches and codes begin, 5 × u32
+//! records      16 bytes each: place, plane, barycentric 2 × u16, inverse depth (3 bytes), radiance (5 bytes)
+//! planes       10 bytes each: triangle u32, weights 3 × f16
+//! rays         u16 each
+//! patches      10 bytes each: place in the pixel (3 bytes), half size 2 × u16, largest weight (3 bytes)
+//! codes        bytes
+//! loose samples, one after the other:
 //!   center, half_size     2 × f32 each
 //!   inverse_depth, weight f32 each
 //!   tilt                  2 × f32
 //!   radiance              3 × f32
 //!   triangle              u32, 2³² − 1 for the background; else followed by barycentrics, 2 × f64
-//!   words                 u8: 0 open, else that many u64 of visibility cells (1 or 4), followed by
-//!                         occluder_inverse_depth, f32
+//!   words                 u8: 0 open, else that many u64 of visibility cells (1 or 4)
 //! checksum     32 bytes  SHA-256 of everything before
 //! ```
 //!
-//! A text is its length in bytes (u32) and UTF-8.
+//! A text is its length in bytes (u32) and UTF-8. What the packed samples mean is told in `samples.rs` and below it.
 
-use crate::{Salf, Sample, Visibility};
-use glam::{DMat4, DVec2, Vec2, Vec3};
-use lens::{Aperture, ApertureMask, ApertureShape, Camera};
-use scene::SurfacePoint;
+mod camera;
+mod samples;
+
+use crate::Salf;
+use camera::{read_camera, write_camera};
+use samples::{read_samples, write_samples};
 use sha2::{Digest, Sha256};
 use std::io::{self, Read, Write};
 use std::sync::Arc;
 
 const MAGIC: &[u8; 8] = b"FBSALF\r\n";
-const VERSION: u32 = 2;
-const BACKGROUND: u32 = u32::MAX;
+const VERSION: u32 = 3;
 /// More than any path takes.
 const LONGEST_TEXT: u32 = 1 << 16;
 /// Room made for samples before they are read: a wrong count must not take the memory.
@@ -79,8 +86,7 @@ impl SalfFile {
         to.write_all(&self.triangles.to_le_bytes())?;
         write_camera(&mut to, &self.salf.camera)?;
         to.write_all(&self.salf.margin_px.to_le_bytes())?;
-        to.write_all(&(self.salf.samples.len() as u64).to_le_bytes())?;
-        self.salf.samples.iter().try_for_each(|sample| write_sample(&mut to, sample))?;
+        write_samples(&mut to, &self.salf.samples)?;
         let sum = to.hash.finalize();
         to.inner.write_all(&sum)?;
         to.inner.flush()
@@ -102,16 +108,7 @@ impl SalfFile {
         let camera = read_camera(&mut from)?;
         camera.validate().map_err(|error| SalfFileError::Damaged(error.to_string()))?;
         let margin_px = u32::from_le_bytes(bytes(&mut from)?);
-        let count = u64::from_le_bytes(bytes(&mut from)?);
-        let mut samples = Vec::with_capacity(count.min(FIRST_CAPACITY) as usize);
-        for index in 0..count {
-            let sample = read_sample(&mut from)?;
-            if sample.surface.is_some_and(|point| point.triangle >= triangles) {
-                let what = format!("sample {index} lies on a triangle that the scene does not have");
-                return Err(SalfFileError::Damaged(what));
-            }
-            samples.push(sample);
-        }
+        let samples = read_samples(&mut from, triangles)?;
         let expected = from.hash.clone().finalize();
         let found: [u8; 32] = bytes(&mut from)?;
         if found[..] != expected[..] {
@@ -194,146 +191,13 @@ fn read_f32s<const N: usize>(from: &mut impl Read) -> Result<[f32; N], SalfFileE
     Ok(values)
 }
 
-/// Width and height (u32); yfov, focus distance, aperture radius, sensor height, background (3), pose (16, by
-/// columns), aperture ratio (f64); shape (u8): 0 disc, 1 polygon with blades (u32), rotation and roundness
-/// (f64), 2 square, 3 mask with width and height (u32), file (text) and a transmission a texel (f32).
-fn write_camera(to: &mut impl Write, camera: &Camera) -> io::Result<()> {
-    to.write_all(&camera.width.to_le_bytes())?;
-    to.write_all(&camera.height.to_le_bytes())?;
-    write_f64s(to, &[camera.yfov, camera.focus_distance, camera.aperture_radius, camera.sensor_height])?;
-    write_f64s(to, &camera.background)?;
-    write_f64s(to, &camera.camera_to_world.to_cols_array())?;
-    write_f64s(to, &[camera.aperture.ratio])?;
-    match &camera.aperture.shape {
-        ApertureShape::Disc => to.write_all(&[0]),
-        ApertureShape::Polygon { blades, rotation, roundness } => {
-            to.write_all(&[1])?;
-            to.write_all(&blades.to_le_bytes())?;
-            write_f64s(to, &[*rotation, *roundness])
-        }
-        ApertureShape::Square => to.write_all(&[2]),
-        ApertureShape::Mask(mask) => {
-            to.write_all(&[3])?;
-            to.write_all(&mask.width.to_le_bytes())?;
-            to.write_all(&mask.height.to_le_bytes())?;
-            write_text(to, &mask.file)?;
-            write_f32s(to, &mask.transmission)
-        }
-    }
-}
-
-fn read_camera(from: &mut impl Read) -> Result<Camera, SalfFileError> {
-    let width = u32::from_le_bytes(bytes(from)?);
-    let height = u32::from_le_bytes(bytes(from)?);
-    let [yfov, focus_distance, aperture_radius, sensor_height] = read_f64s(from)?;
-    let background = read_f64s(from)?;
-    let camera_to_world = DMat4::from_cols_array(&read_f64s(from)?);
-    let [ratio] = read_f64s(from)?;
-    let [shape] = bytes(from)?;
-    let shape = match shape {
-        0 => ApertureShape::Disc,
-        1 => {
-            let blades = u32::from_le_bytes(bytes(from)?);
-            let [rotation, roundness] = read_f64s(from)?;
-            ApertureShape::Polygon { blades, rotation, roundness }
-        }
-        2 => ApertureShape::Square,
-        3 => ApertureShape::Mask(Arc::new(read_mask(from)?)),
-        other => return Err(SalfFileError::Damaged(format!("aperture shape {other}"))),
-    };
-    Ok(Camera {
-        width,
-        height,
-        yfov,
-        focus_distance,
-        aperture_radius,
-        sensor_height,
-        camera_to_world,
-        background,
-        aperture: Aperture { shape, ratio },
-    })
-}
-
-fn read_mask(from: &mut impl Read) -> Result<ApertureMask, SalfFileError> {
-    let width = u32::from_le_bytes(bytes(from)?);
-    let height = u32::from_le_bytes(bytes(from)?);
-    let file = read_text(from)?;
-    if width > Camera::LARGEST_SIDE_PX || height > Camera::LARGEST_SIDE_PX {
-        return Err(SalfFileError::Damaged(format!("an aperture mask of {width} × {height}")));
-    }
-    let texels = width as u64 * height as u64;
-    let mut transmission = Vec::with_capacity(texels.min(FIRST_CAPACITY) as usize);
-    for _ in 0..texels {
-        let [texel] = read_f32s(from)?;
-        transmission.push(texel);
-    }
-    Ok(ApertureMask { width, height, transmission, file })
-}
-
-fn write_sample(to: &mut impl Write, sample: &Sample) -> io::Result<()> {
-    let Sample { center, half_size, inverse_depth, weight, tilt, radiance, surface, visibility } = sample;
-    write_f32s(to, &[center.x, center.y, half_size.x, half_size.y, *inverse_depth, *weight, tilt.x, tilt.y])?;
-    write_f32s(to, &radiance.to_array())?;
-    match surface {
-        None => to.write_all(&BACKGROUND.to_le_bytes())?,
-        Some(point) => {
-            to.write_all(&point.triangle.to_le_bytes())?;
-            write_f64s(to, &point.barycentric.to_array())?;
-        }
-    }
-    match visibility {
-        Visibility::Open => to.write_all(&[0]),
-        Visibility::Cells { words, occluder_inverse_depth } => {
-            to.write_all(&[words.len() as u8])?;
-            words.iter().try_for_each(|word| to.write_all(&word.to_le_bytes()))?;
-            write_f32s(to, &[*occluder_inverse_depth])
-        }
-    }
-}
-
-fn read_sample(from: &mut impl Read) -> Result<Sample, SalfFileError> {
-    let [cx, cy, hx, hy, inverse_depth, weight, tx, ty, r, g, b] = read_f32s(from)?;
-    let surface = match u32::from_le_bytes(bytes(from)?) {
-        BACKGROUND => None,
-        triangle => {
-            let barycentric = DVec2::from_array(read_f64s(from)?);
-            Some(SurfacePoint { triangle, barycentric })
-        }
-    };
-    let visibility = match bytes(from)? {
-        [0] => Visibility::Open,
-        [count @ (1 | 4)] => {
-            let words = (0..count).map(|_| Ok(u64::from_le_bytes(bytes(from)?)));
-            let words = words.collect::<Result<_, SalfFileError>>()?;
-            let [occluder_inverse_depth] = read_f32s(from)?;
-            Visibility::Cells { words, occluder_inverse_depth }
-        }
-        [count] => return Err(SalfFileError::Damaged(format!("{count} words of visibility"))),
-    };
-    let finite = [cx, cy, hx, hy, inverse_depth, weight, tx, ty, r, g, b].iter().all(|x| x.is_finite());
-    let occluded_somewhere = match visibility {
-        Visibility::Open => true,
-        Visibility::Cells { occluder_inverse_depth, .. } => occluder_inverse_depth.is_finite(),
-    };
-    let addressed = surface.is_none_or(|point| point.barycentric.is_finite());
-    if !(finite && addressed && occluded_somewhere) {
-        return Err(SalfFileError::Damaged("a sample that is not finite".into()));
-    }
-    Ok(Sample {
-        center: Vec2::new(cx, cy),
-        half_size: Vec2::new(hx, hy),
-        inverse_depth,
-        weight,
-        tilt: Vec2::new(tx, ty),
-        radiance: Vec3::new(r, g, b),
-        surface,
-        visibility,
-    })
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::{Sample, Visibility};
+    use glam::{DVec2, Vec2, Vec3};
+    use lens::{Aperture, ApertureMask, ApertureShape, Camera};
+    use scene::SurfacePoint;
 
     fn file() -> SalfFile {
         let mask = ApertureMask { width: 2, height: 1, transmission: vec![0.25, 1.0], file: "f.png".into() };
@@ -350,14 +214,11 @@ mod tests {
             tilt: Vec2::new(0.1, 0.2),
             radiance: Vec3::new(1.0, 2.0, 3.0),
             surface: Some(SurfacePoint { triangle: 6, barycentric: DVec2::new(0.1, 0.7) }),
-            visibility: Visibility::Cells {
-                words: Box::new([1, 2, 3, u64::MAX]),
-                occluder_inverse_depth: 0.7,
-            },
+            visibility: Visibility::Cells { words: Box::new([1, 2, 3, u64::MAX]) },
         };
         let background =
             Sample { surface: None, visibility: Visibility::Open, inverse_depth: 0.0, ..on_surface.clone() };
-        let salf = Salf { camera, margin_px: 32, samples: vec![on_surface, background] };
+        let salf = Salf { camera, margin_px: 32, samples: vec![on_surface, background].into() };
         SalfFile { source: "garden.glb".into(), triangles: 7, salf: Arc::new(salf) }
     }
 

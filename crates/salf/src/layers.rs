@@ -1,10 +1,11 @@
 //! The pinhole picture, one cell at a time: which surfaces lie along its chief rays.
 
-use crate::domain::Cell;
+use crate::domain::{Cell, CellPart};
 use crate::jitter::jitter;
 use crate::occluders::{Depths, Occluders};
 use crate::placement::Placement;
 use crate::sample::{Sample, Visibility};
+use crate::samples::Found;
 use crate::view::View;
 use glam::{DVec2, Vec3};
 use scene::SurfacePoint;
@@ -152,53 +153,37 @@ impl Group {
         self.members.iter().map(|m| m.inverse_depth).sum::<f64>() / self.members.len() as f64
     }
 
+    /// Its sub-cells, a bit each.
+    fn rays(&self) -> u16 {
+        self.members.iter().fold(0, |rays, member| rays | 1 << member.sub_cell)
+    }
+
     /// The centre of its sub-cells, px.
     pub fn center(&self, cell: Cell) -> DVec2 {
-        let corners: DVec2 = self.members.iter().map(|m| cell.sub_corner(m.sub_cell)).sum();
-        corners / self.members.len() as f64 + cell.sub_side() / 2.0
+        cell.part(self.rays()).center
     }
 
     /// The sample of this group: its mean radiance over its share of the cell.
-    pub fn sample(&self, radiance: &dyn Radiance, view: &View, cell: Cell, visibility: Visibility) -> Sample {
-        let count = self.members.len();
-        let center = self.center(cell);
-        let half_size = if count == Cell::RAYS {
-            DVec2::splat(cell.side as f64 / 2.0)
-        } else {
-            self.half_size(cell, center)
-        };
+    pub fn sample(&self, radiance: &dyn Radiance, view: &View, cell: Cell, visibility: Visibility) -> Found {
+        let rays = self.rays();
+        let CellPart { center, half_size, weight } = cell.part(rays);
         let emitted: Vec3 = self.members.iter().map(|m| toward_aperture(radiance, view, m)).sum();
-        let weight = (cell.side * cell.side) as f64 * count as f64 / Cell::RAYS as f64;
         let middle = self
             .members
             .iter()
             .min_by(|a, b| a.pixel.distance_squared(center).total_cmp(&b.pixel.distance_squared(center)))
             .expect("a group has members");
-        Sample {
+        let sample = Sample {
             center: center.as_vec2(),
             half_size: half_size.as_vec2(),
             inverse_depth: self.mean_inverse_depth() as f32,
             weight: weight as f32,
             tilt: (self.tilt * weight).as_vec2(),
-            radiance: emitted / count as f32,
+            radiance: emitted / self.members.len() as f32,
             surface: middle.point,
             visibility,
-        }
-    }
-
-    /// Half the sides of a box with the spread of the group's sub-cells, within the cell.
-    fn half_size(&self, cell: Cell, center: DVec2) -> DVec2 {
-        let side = cell.sub_side();
-        let variance: DVec2 = self
-            .members
-            .iter()
-            .map(|m| (cell.sub_corner(m.sub_cell) + side / 2.0 - center).powf(2.0))
-            .sum::<DVec2>()
-            / self.members.len() as f64;
-        // A box of half side h has the variance h²/3.
-        let low = cell.sub_corner(0);
-        let room = (center - low).min(low + cell.side as f64 - center);
-        (3.0 * variance + side * side / 4.0).map(f64::sqrt).min(room)
+        };
+        Found { sample, rays: Some((cell, rays)) }
     }
 }
 

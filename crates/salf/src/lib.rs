@@ -4,7 +4,8 @@
 //! [`bake()`] samples every surface that some point of the aperture sees. Samples come from the pinhole picture
 //! where surfaces face the aperture (their footprints are the squares of the pixel grid, so that they tile the
 //! picture exactly), and from the surface itself where it is edge-on, or small and bright. A [`Sample`] knows its surface address, its
-//! weight toward every aperture point, its radiance, and what of the aperture it sees ([`Visibility`]).
+//! weight toward every aperture point, its radiance, and what of the aperture it sees ([`Visibility`]); they are kept packed
+//! ([`Samples`]).
 
 mod bake;
 mod domain;
@@ -15,6 +16,7 @@ mod margin;
 mod occluders;
 mod placement;
 mod sample;
+mod samples;
 mod surface_patches;
 pub mod tree;
 mod view;
@@ -25,3 +27,4 @@ pub use domain::{Cell, Domain};
 pub use file::{SalfFile, SalfFileError};
 pub use margin::LARGEST_MARGIN_HEIGHTS;
 pub use sample::{Salf, SalfStatistics, Sample, Visibility};
+pub use samples::{Addresses, Run, Samples, Spot};

@@ -1,5 +1,6 @@
 //! What the light field holds.
 
+use crate::samples::Samples;
 use glam::{Vec2, Vec3};
 use lens::Camera;
 use scene::SurfacePoint;
@@ -14,7 +15,7 @@ pub struct Salf {
     /// How far outside the frame it was sampled, px.
     pub margin_px: u32,
     /// Its samples.
-    pub samples: Vec<Sample>,
+    pub samples: Samples,
 }
 
 /// A patch of surface as the aperture sees it.
@@ -58,8 +59,6 @@ pub enum Visibility {
         /// n × n cells, a bit each, row 0 at v = −R, column 0 at u = −R; n is 8 (one word) or 16
         /// (four words).
         words: Box<[u64]>,
-        /// Mean 1/z of what hides the other cells; 0 if that is the sample's own slant.
-        occluder_inverse_depth: f32,
     },
 }
 
@@ -90,29 +89,16 @@ pub struct SalfStatistics {
     pub bytes: usize,
     /// Of these, what the open samples take.
     pub open_bytes: usize,
-    /// Of these, what the partly occluded samples take, masks included.
+    /// Of these, what the partly occluded samples take, visibility included.
     pub partial_bytes: usize,
 }
 
 impl Salf {
     /// Counts the samples by kind.
     pub fn statistics(&self) -> SalfStatistics {
-        let mut statistics = SalfStatistics::default();
-        for sample in &self.samples {
-            match &sample.visibility {
-                Visibility::Open => {
-                    statistics.open += 1;
-                    statistics.open_bytes += size_of::<Sample>();
-                }
-                Visibility::Cells { words, .. } => {
-                    statistics.partial += 1;
-                    statistics.partial_bytes += size_of::<Sample>() + size_of_val(&**words);
-                }
-            }
-            statistics.background += usize::from(sample.surface.is_none());
-        }
-        statistics.bytes = statistics.open_bytes + statistics.partial_bytes;
-        statistics
+        let [open, partial, background] = self.samples.counts();
+        let [bytes, partial_bytes] = self.samples.bytes();
+        SalfStatistics { open, partial, background, bytes, open_bytes: bytes - partial_bytes, partial_bytes }
     }
 }
 

@@ -70,7 +70,6 @@ pub fn visibility(
     let picks = jitter(seed[0], seed[1], 0);
     let pattern = patterns.of(side, (picks[2] * Patterns::COUNT as f64) as usize);
     let mut words = vec![0u64; side * side / 64];
-    let (mut hidden, mut inverse_distances) = (0, 0.0);
     let mut occluders = RecentOccluders::default();
     for (asked, places) in pattern.iter().enumerate() {
         let pick = (asked as f64 + picks[asked % 2]) / ASKED as f64;
@@ -79,10 +78,8 @@ pub fn visibility(
             Some(point) => Viewpoint::Surface(point),
             None => Viewpoint::Infinity(view.chief_ray(member.pixel).direction),
         };
-        let sight = tracer.sight(viewpoint, &square, places, &mut occluders);
-        hidden += sight.hidden.count_ones();
-        inverse_distances += sight.inverse_distances;
-        for k in (0..places.len()).filter(|&k| sight.hidden >> k & 1 == 0 && is_on_side(places.at(k))) {
+        let hidden = tracer.hidden_places(viewpoint, &square, places, &mut occluders);
+        for k in (0..places.len()).filter(|&k| hidden >> k & 1 == 0 && is_on_side(places.at(k))) {
             let (row, column) = cell_of(side, asked, k);
             let cell = row * side + column;
             words[cell / 64] |= 1 << (cell % 64);
@@ -94,6 +91,5 @@ pub fn visibility(
     if words.iter().all(|&word| word == u64::MAX) {
         return Some(Visibility::Open);
     }
-    let occluder_inverse_depth = (inverse_distances / f64::from(hidden.max(1))) as f32;
-    Some(Visibility::Cells { words: words.into(), occluder_inverse_depth })
+    Some(Visibility::Cells { words: words.into() })
 }

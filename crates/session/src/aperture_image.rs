@@ -131,11 +131,12 @@ impl Session {
             let texels: Vec<_> = rows.flat_map(|y| columns.clone().map(move |x| [x, y])).collect();
             Some(field.index.samples_reading(&texels)).filter(|found| !found.is_empty())
         })?;
-        let position = |index: u32| Some(field.salf.samples[index as usize].surface?.position(&stage.scene));
+        let mut addresses = field.salf.samples.addresses();
+        let mut position = |index: u32| Some(addresses.of(index)?.position(&stage.scene));
         let near =
             samples.into_iter().filter_map(|index| Some((position(index)?.distance(hit.position), index)));
         let (distance, index) = near.min_by(|a, b| a.0.total_cmp(&b.0))?;
-        let sample = &field.salf.samples[index as usize];
+        let sample = field.salf.samples.get(index);
         let (side, cells) = match &sample.visibility {
             Visibility::Open => (1, vec![true]),
             Visibility::Cells { words, .. } => {

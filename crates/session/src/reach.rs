@@ -7,7 +7,7 @@ use focus::Focus;
 use glam::DVec2;
 use lens::{Camera, FocusOffset};
 use rayon::prelude::*;
-use salf::{LARGEST_MARGIN_HEIGHTS, Salf, Sample};
+use salf::{LARGEST_MARGIN_HEIGHTS, Salf, Spot};
 use scene::SurfaceField;
 
 /// Which samples of a light field reach the frame with a circle of confusion that is wider than the baked margin.
@@ -26,12 +26,17 @@ impl Reach {
     /// Looks at all samples.
     pub fn of_all(salf: &Salf, camera: &Camera, focus: &Focus) -> Self {
         let look = Look::new(salf, camera, focus);
-        let word = |samples: &[Sample]| {
-            samples.iter().enumerate().fold(0, |word, (bit, sample)| word | u64::from(look.at(sample)) << bit)
+        let far_of_run = |run: usize| {
+            let run = salf.samples.run(run);
+            let spots = run.indices.clone().zip(run.spots());
+            spots.filter(|(_, spot)| look.at(spot)).map(|(index, _)| index).collect::<Vec<_>>()
         };
-        let too_far: Vec<u64> = salf.samples.par_chunks(64).map(word).collect();
-        let count = too_far.par_iter().map(|word| word.count_ones() as usize).sum();
-        Self { too_far, count }
+        let far: Vec<Vec<u32>> = (0..salf.samples.run_count()).into_par_iter().map(far_of_run).collect();
+        let mut too_far = vec![0; salf.samples.len().div_ceil(64)];
+        for &index in far.iter().flatten() {
+            too_far[index as usize / 64] |= 1 << (index % 64);
+        }
+        Self { too_far, count: far.iter().map(Vec::len).sum() }
     }
 
     /// Looks again at those that moved; all of them must have been looked at before.
@@ -40,7 +45,7 @@ impl Reach {
         for &index in moved {
             let word = &mut self.too_far[index as usize / 64];
             let mask = 1 << (index % 64);
-            let (was, is) = (*word & mask != 0, look.at(&salf.samples[index as usize]));
+            let (was, is) = (*word & mask != 0, look.at(&salf.samples.spot(index)));
             *word = if is { *word | mask } else { *word & !mask };
             self.count = self.count + usize::from(is) - usize::from(was);
         }
@@ -57,7 +62,7 @@ impl Reach {
         let set = |(index, word): (usize, &u64)| (*word != 0).then_some((index * 64, *word));
         let of_word = |(first, word): (usize, u64)| {
             let bits = (0..64).filter(|bit| word >> bit & 1 == 1);
-            bits.map(|bit| look.radius_px(&salf.samples[first + bit])).fold(0.0, f64::max)
+            bits.map(|bit| look.radius_px(&salf.samples.spot((first + bit) as u32))).fold(0.0, f64::max)
         };
         let words = self.too_far.par_iter().enumerate().filter_map(set);
         words.map(of_word).reduce(|| 0.0, f64::max).min(look.largest_px)
@@ -87,17 +92,17 @@ impl<'a> Look<'a> {
     }
 
     /// The radius of its circle of confusion, px.
-    fn radius_px(&self, sample: &Sample) -> f64 {
+    fn radius_px(&self, spot: &Spot) -> f64 {
         let offset: FocusOffset =
-            sample.surface.map_or_else(|| self.focus.at_infinity(), |point| self.focus.at(point));
-        let kappa = self.optics.kappa(f64::from(sample.inverse_depth), offset.or_standard());
+            spot.surface.map_or_else(|| self.focus.at_infinity(), |point| self.focus.at(point));
+        let kappa = self.optics.kappa(f64::from(spot.inverse_depth), offset.or_standard());
         self.optics.splat_radius_px(kappa).abs()
     }
 
     /// Whether it reaches the frame from further outside than the margin.
-    fn at(&self, sample: &Sample) -> bool {
-        let radius = self.radius_px(sample);
-        let center = sample.center.as_dvec2();
+    fn at(&self, spot: &Spot) -> bool {
+        let radius = self.radius_px(spot);
+        let center = spot.center.as_dvec2();
         let outside = (-center).max(center - self.frame).max_element();
         radius.min(self.largest_px) > self.margin_px && radius >= outside
     }

@@ -175,7 +175,28 @@ pub fn bake(
     steps: &dyn Steps,
 ) -> Result<Salf, SessionError> {
     let options = BakeOptions { tolerance_px, ..BakeOptions::for_focus(tracer, camera, focus) };
-    Ok(salf::bake(tracer, &light(tracer, camera), camera, &options, &*steps.begin("baking"))?)
+    bake_with(tracer, camera, &options, steps)
+}
+
+/// The same light field with samples as they were found, not packed: what the saving is measured against.
+pub fn bake_unpacked(
+    tracer: &Arc<Tracer>,
+    camera: &Camera,
+    focus: &Focus,
+    tolerance_px: f64,
+    steps: &dyn Steps,
+) -> Result<Salf, SessionError> {
+    let margin = BakeOptions::for_focus(tracer, camera, focus);
+    bake_with(tracer, camera, &BakeOptions { tolerance_px, packs: false, ..margin }, steps)
+}
+
+fn bake_with(
+    tracer: &Arc<Tracer>,
+    camera: &Camera,
+    options: &BakeOptions,
+    steps: &dyn Steps,
+) -> Result<Salf, SessionError> {
+    Ok(salf::bake(tracer, &light(tracer, camera), camera, options, &*steps.begin("baking"))?)
 }
 
 /// Renders a scene.

@@ -21,7 +21,9 @@ pub(crate) struct SampleIndex {
 impl SampleIndex {
     /// Sorts the samples of `salf` into the tiles of `atlas`.
     pub fn new(salf: &Salf, atlas: &Atlas) -> Self {
-        let positions = salf.samples.iter().map(|sample| Some(atlas.position_of(sample.surface?)));
+        let mut addresses = salf.samples.addresses();
+        let count = salf.samples.len() as u32;
+        let positions = (0..count).map(|index| Some(atlas.position_of(addresses.of(index)?)));
         Self::of_positions([atlas.width, atlas.height], positions)
     }
 

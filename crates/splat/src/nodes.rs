@@ -147,7 +147,8 @@ impl Nodes {
             let range = block.nodes.start as usize..block.nodes.end as usize;
             block_of_node[range].fill(index as u32);
         }
-        let brightest = salf.samples.par_iter().map(|sample| sample.radiance.max_element());
+        let leaves = tree.nodes.par_iter().filter(|node| node.sample.is_some());
+        let brightest = leaves.map(|node| node.radiance.max_element()).reduce(|| 1.0, f32::max);
         Some(Self {
             blocks: tree.blocks.into_iter().map(|block| block.nodes).collect(),
             has_bright: nodes.iter().any(|node| node.is_bright),
@@ -158,7 +159,7 @@ impl Nodes {
             block_of_node,
             scale,
             middle: [salf.camera.width, salf.camera.height].map(|side| side as i32 * (PIXEL / 2)),
-            brightest: brightest.reduce(|| 1.0, f32::max) as f64,
+            brightest: brightest.into(),
         })
     }
 

@@ -4,8 +4,8 @@ use crate::lens_in_use::NodeFocus;
 use crate::nodes::{Nodes, ONE};
 use lens::FocusOffset;
 use rayon::prelude::*;
-use salf::Sample;
-use scene::SurfaceField;
+use salf::Samples;
+use scene::{SurfaceField, SurfacePoint};
 
 /// Focus of all nodes, block by block; a block on which nothing is painted has none.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -15,15 +15,14 @@ pub struct Paint {
 
 impl Paint {
     /// Looks up the focus of every sample.
-    pub fn look_up(nodes: &Nodes, samples: &[Sample], focus: &dyn SurfaceField<FocusOffset>) -> Self {
+    pub fn look_up(nodes: &Nodes, samples: &Samples, focus: &dyn SurfaceField<FocusOffset>) -> Self {
         let blocks = (0..nodes.blocks.len()).into_par_iter().map(|block| {
             let first = nodes.blocks[block].start as usize;
             let of_nodes = nodes.of_block(block);
-            let of_leaf =
-                |index: usize| offset(&samples[nodes.sample_of_node[first + index] as usize], focus);
+            let mut addresses = samples.addresses();
             let mut painted: Option<Box<[NodeFocus]>> = None;
             for index in (0..of_nodes.len()).filter(|&index| of_nodes[index].is_leaf) {
-                let found = of_leaf(index);
+                let found = offset(addresses.of(nodes.sample_of_node[first + index]), focus);
                 if found != NodeFocus::STANDARD {
                     painted.get_or_insert_with(|| vec![NodeFocus::STANDARD; of_nodes.len()].into())[index] =
                         found;
@@ -48,16 +47,17 @@ impl Paint {
         nodes: &Nodes,
         block: usize,
         leaves: &[u32],
-        samples: &[Sample],
+        samples: &Samples,
         focus: &dyn SurfaceField<FocusOffset>,
     ) {
         let first = nodes.blocks[block].start;
         let mut painted = self.blocks[block]
             .take()
             .unwrap_or_else(|| vec![NodeFocus::STANDARD; nodes.of_block(block).len()].into());
+        let mut addresses = samples.addresses();
         for &leaf in leaves {
             painted[(leaf - first) as usize] =
-                offset(&samples[nodes.sample_of_node[leaf as usize] as usize], focus);
+                offset(addresses.of(nodes.sample_of_node[leaf as usize]), focus);
         }
         (0..painted.len()).rev().for_each(|index| take_up(nodes, block, &mut painted, index));
         let is_standard = painted.iter().all(|focus| *focus == NodeFocus::STANDARD);
@@ -70,9 +70,9 @@ impl Paint {
     }
 }
 
-/// What is painted on a sample; an offset that is not valid counts as nothing.
-fn offset(sample: &Sample, focus: &dyn SurfaceField<FocusOffset>) -> NodeFocus {
-    let offset = sample.surface.map_or_else(|| focus.at_infinity(), |point| focus.at(point));
+/// What is painted at a surface address, or on the background; an offset that is not valid counts as nothing.
+fn offset(surface: Option<SurfacePoint>, focus: &dyn SurfaceField<FocusOffset>) -> NodeFocus {
+    let offset = surface.map_or_else(|| focus.at_infinity(), |point| focus.at(point));
     NodeFocus::of(offset.or_standard())
 }
 

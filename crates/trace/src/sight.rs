@@ -60,18 +60,9 @@ pub enum Viewpoint {
 }
 
 /// What hid something from the last viewpoint: likely to hide much from the next one nearby. What is seen does not depend
-/// on it, only how fast that is known (and whose distance is taken where one occluder stands behind another).
+/// on it, only how fast that is known.
 #[derive(Clone, Debug, Default)]
 pub struct RecentOccluders(pub(crate) Vec<u32>);
-
-/// What of the places of a square is seen.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Sight {
-    /// A bit for each place that something hides.
-    pub hidden: u64,
-    /// 1/distance from the square's plane to what hides them, summed over the hidden places.
-    pub inverse_distances: f64,
-}
 
 /// A linear function of u and v.
 #[derive(Clone, Copy)]
@@ -215,18 +206,5 @@ impl<'a> Looking<'a> {
             Eye::Toward(_) => false,
         };
         if starts_there { 0 } else { bits }
-    }
-
-    /// 1/distance from the square's plane to where the ray to `place` meets a triangle's plane.
-    pub fn inverse_distance(&self, corners: &[DVec3; 3], place: DVec2) -> f64 {
-        let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
-        let place = self.square.at(place);
-        // From the place, toward the viewpoint.
-        let direction = match self.eye {
-            Eye::At(point) => point - place,
-            Eye::Toward(direction) => direction,
-        };
-        let t = normal.dot(corners[0] - place) / normal.dot(direction);
-        1.0 / (t * self.axis.dot(direction)).abs()
     }
 }

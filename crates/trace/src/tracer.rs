@@ -5,7 +5,7 @@ mod beams;
 use crate::hierarchy::Hierarchy;
 use crate::local_space::LocalSpace;
 use crate::presence::is_there;
-use crate::sight::{Eye, Looking, Outline, Places, RecentOccluders, Sight, Square, Viewpoint};
+use crate::sight::{Eye, Looking, Outline, Places, RecentOccluders, Square, Viewpoint};
 use crate::watertight::{ShearedRay, has_area, in_plane};
 use crate::{Hit, Ray};
 use glam::{DVec2, DVec3};
@@ -138,25 +138,25 @@ impl Tracer {
         self.any(ray, |_| true)
     }
 
-    /// Which of the `places` of a square something hides from a viewpoint: of each what [`Self::occluded`] (or, from
+    /// Which of the `places` of a square something hides from a viewpoint, a bit each: of each what [`Self::occluded`] (or, from
     /// infinity, [`Self::any_hit`]) says of the ray to it, to the precision of f32 in u and v, for the cost of a few.
     ///
     /// `occluders` remembers what was in the way: it is tried first, and holds what was met afterwards.
-    pub fn sight(
+    pub fn hidden_places(
         &self,
         from: Viewpoint,
         square: &Square,
         places: &Places,
         occluders: &mut RecentOccluders,
-    ) -> Sight {
+    ) -> u64 {
         let (eye, skip) = match from {
             Viewpoint::Surface(point) => (Eye::At(point.position(&self.scene)), Some(point.triangle)),
             Viewpoint::Infinity(direction) => (Eye::Toward(direction.normalize_or_zero()), None),
         };
         let looking = Looking::new(eye, square, places, &self.space);
-        let mut sight = Sight::default();
-        let hide = |sight: &mut Sight, place: usize| {
-            let near = looking.may_hide(&self.outlines[place]) & !sight.hidden;
+        let mut hidden = 0;
+        let hide = |hidden: &mut u64, place: usize| {
+            let near = looking.may_hide(&self.outlines[place]) & !*hidden;
             let triangle = &self.triangles[place];
             if near == 0 || skip == Some(triangle.index) {
                 return false;
@@ -165,21 +165,17 @@ impl Tracer {
             if new != 0 && triangle.may_be_transparent {
                 new = self.opaque_of(triangle, &looking, places.of_bits(new));
             }
-            if let Some((_, place)) = places.of_bits(new).next() {
-                let inverse_distance = looking.inverse_distance(&triangle.corners, place);
-                sight.inverse_distances += inverse_distance * f64::from(new.count_ones());
-                sight.hidden |= new;
-            }
+            *hidden |= new;
             new != 0
         };
-        occluders.0.retain(|&place| hide(&mut sight, place as usize));
-        if sight.hidden != places.all() {
+        occluders.0.retain(|&place| hide(&mut hidden, place as usize));
+        if hidden != places.all() {
             self.hierarchy.walk_within(&looking.shaft(&self.space), f32::INFINITY, |leaf| {
-                occluders.0.extend(leaf.filter(|&place| hide(&mut sight, place)).map(|place| place as u32));
-                if sight.hidden == places.all() { f32::NEG_INFINITY } else { f32::INFINITY }
+                occluders.0.extend(leaf.filter(|&place| hide(&mut hidden, place)).map(|place| place as u32));
+                if hidden == places.all() { f32::NEG_INFINITY } else { f32::INFINITY }
             });
         }
-        sight
+        hidden
     }
 
     /// Those places whose rays a triangle is there for.

@@ -1,7 +1,7 @@
 //! Painting while the picture is watched: what one dab costs.
 
 use lens::FocusOffset;
-use salf::Salf;
+use salf::{Salf, Spot};
 use scene::{SurfaceField, SurfacePoint};
 use std::collections::HashSet;
 use std::sync::Arc;
@@ -21,14 +21,13 @@ impl Dabbed {
     /// A dab on the samples of surfaces nearest to the picture's middle.
     pub fn new(salf: &Salf, focus: Arc<dyn SurfaceField<FocusOffset> + Send>) -> Self {
         let middle = glam::Vec2::new(salf.camera.width as f32, salf.camera.height as f32) / 2.0;
-        let samples = &salf.samples;
-        let on_surfaces = (0..samples.len() as u32).filter(|&k| samples[k as usize].surface.is_some());
-        let mut nearest: Vec<u32> = on_surfaces.collect();
-        let distance = |k: &u32| samples[*k as usize].center.distance_squared(middle);
-        nearest.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
+        let spots = salf.samples.runs().flat_map(|run| run.indices.clone().zip(run.spots()));
+        let mut nearest: Vec<(u32, Spot)> = spots.filter(|(_, spot)| spot.surface.is_some()).collect();
+        let distance = |spot: &Spot| spot.center.distance_squared(middle);
+        nearest.sort_by(|(_, a), (_, b)| distance(a).total_cmp(&distance(b)));
         nearest.truncate(SAMPLES);
-        let points = nearest.iter().filter_map(|&k| samples[k as usize].surface.map(key)).collect();
-        Self { focus, points, samples: nearest }
+        let points = nearest.iter().filter_map(|(_, spot)| spot.surface.map(key)).collect();
+        Self { focus, points, samples: nearest.into_iter().map(|(index, _)| index).collect() }
     }
 }
 

@@ -64,7 +64,7 @@ fn salf(camera: &Camera, margin_px: f64, of: impl Fn(Cell, &mut Vec<Sample>)) ->
     let domain = Domain::new(camera.width, camera.height, margin_px);
     let mut samples = Vec::new();
     domain.block_rows().into_iter().flatten().for_each(|cell| of(cell, &mut samples));
-    Arc::new(Salf { camera: camera.clone(), margin_px: domain.margin as u32, samples })
+    Arc::new(Salf { camera: camera.clone(), margin_px: domain.margin as u32, samples: samples.into() })
 }
 
 /// A plane whose circle of confusion is `diameter` px wide.
@@ -100,9 +100,9 @@ fn ramp(size: [u32; 2]) -> (Arc<Salf>, i32) {
             let columns = ((last + 1.0) * 8.0).round() as u32;
             let row = ((1u64 << columns) - 1) & 0xFFFF;
             let words = vec![row | row << 16 | row << 32 | row << 48; 4];
-            Visibility::Cells { words: words.into(), occluder_inverse_depth: occluder }
+            Visibility::Cells { words: words.into() }
         };
-        if visibility != (Visibility::Cells { words: [0; 4].into(), occluder_inverse_depth: occluder }) {
+        if visibility != (Visibility::Cells { words: [0; 4].into() }) {
             samples.push(sample(cell, inverse_depth(&camera, diameter), visibility));
         }
     });
@@ -124,7 +124,7 @@ pub fn fields(size: [u32; 2]) -> impl Iterator<Item = Field> {
     planes.chain(ramp).map(|(name, coc_px, salf, band)| Field {
         scene: name.into(),
         what: "",
-        with_dense: salf.samples.iter().all(|sample| sample.visibility == Visibility::Open),
+        with_dense: salf.statistics().partial == 0,
         salf,
         focus: Arc::new(Unpainted),
         band,
@@ -193,7 +193,7 @@ mod tests {
         for field in fields([64, 36]) {
             let optics = field.salf.camera.optics();
             let circle =
-                |s: &Sample| optics.circle_of_confusion_px(optics.standard_kappa(s.inverse_depth.into()));
+                |s: Sample| optics.circle_of_confusion_px(optics.standard_kappa(s.inverse_depth.into()));
             let widest =
                 field.salf.samples.iter().filter(|s| s.center.x < 42.0).map(circle).fold(0.0, f64::max);
             let expected = if field.scene.starts_with("ramp") { 80.0 * 41.0 / 64.0 } else { field.coc_px };

@@ -177,7 +177,7 @@ pub fn saving_sentence(scene: &ModelledScene) -> String {
     };
     format!(
         "Under the standard lens. {} B a visible sample, {} of what the dense form takes ({DENSE_SAMPLE_BYTES} B). At a tolerance of {} px \
-         the picture is {saving_psnr:.1} dB (FLIP {saving_flip:.4}) from that of the finest light field, which takes {}.{texels}",
+         the picture is {saving_psnr:.1} dB (FLIP {saving_flip:.4}) from that of the finest light field, not packed, which takes {}.{texels}",
         significant(modelled.bytes_a_sample()),
         if dense > 0.0 {
             format!("{} %", significant(100.0 * modelled.samples.bytes as f64 / dense))

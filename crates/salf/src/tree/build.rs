@@ -23,14 +23,14 @@ const MOST_SCALED: f32 = 1.5;
 
 pub fn build(salf: &Salf, highlight: f32) -> Tree {
     let grid = Grid::new(salf);
-    let of_block = grid.samples_of_blocks(&salf.samples);
+    let contents = grid.contents(&salf.samples);
     let parallax_px = salf.camera.optics().splat_radius_px(1.0) as f32;
-    let parts: Vec<_> = of_block
+    let parts: Vec<_> = contents
         .par_iter()
         .enumerate()
-        .map(|(index, samples)| {
-            let mut builder = Builder { salf, grid: &grid, highlight, parallax_px, arena: Vec::new() };
-            builder.build(grid.corner(index), samples)
+        .map(|(index, content)| {
+            let mut builder = Builder { grid: &grid, highlight, parallax_px, arena: Vec::new() };
+            builder.build(grid.corner(index), content.samples(&salf.samples))
         })
         .collect();
     assemble(&parts, salf.samples.len())
@@ -83,7 +83,6 @@ impl Growing {
 }
 
 struct Builder<'a> {
-    salf: &'a Salf,
     grid: &'a Grid,
     highlight: f32,
     parallax_px: f32,
@@ -91,14 +90,17 @@ struct Builder<'a> {
 }
 
 impl Builder<'_> {
-    fn build(&mut self, corner: IVec2, samples: &[u32]) -> (Vec<Node>, Vec<u64>) {
+    fn build(
+        &mut self,
+        corner: IVec2,
+        samples: impl Iterator<Item = (u32, Sample)>,
+    ) -> (Vec<Node>, Vec<u64>) {
         let mut alone = Vec::new();
         // Nodes that may still be joined, with the corner of their cell in the block.
         let mut open_ended: Vec<(IVec2, usize)> = Vec::new();
-        for &index in samples {
-            let sample = &self.salf.samples[index as usize];
-            let pixel = self.grid.pixel(sample);
-            let growing = leaf(sample, index, self.grid.cell_level(pixel));
+        for (index, sample) in samples {
+            let pixel = self.grid.pixel(sample.center);
+            let growing = leaf(&sample, index, self.grid.cell_level(pixel));
             if self.stays_alone(&growing.node) {
                 alone.push(self.arena.len());
             } else {
@@ -224,7 +226,7 @@ fn weigh_alike(a: &Node, b: &Node) -> bool {
 fn leaf(sample: &Sample, index: u32, level: u8) -> Growing {
     let cells = match &sample.visibility {
         Visibility::Open => None,
-        Visibility::Cells { words, .. } => Some(Cells::of(words)),
+        Visibility::Cells { words } => Some(Cells::of(words)),
     };
     let node = Node {
         center: sample.center,
@@ -379,7 +381,7 @@ mod tests {
     #[test]
     fn most_is_a_majority() {
         let growing = |word: u64| Growing {
-            node: leaf(&plane(|_, _| 1.0).samples[0], 0, 0).node,
+            node: leaf(&plane(|_, _| 1.0).samples.get(0), 0, 0).node,
             cells: Some(Cells { words: [word, 0, u64::MAX, 0], is_coarse: false }),
             children: Vec::new(),
         };
@@ -435,14 +437,16 @@ mod tests {
     #[test]
     fn edge_on_nodes_send_what_their_samples_send() {
         let mut salf = plane(|_, _| 0.5);
-        for (index, sample) in salf.samples.iter_mut().enumerate() {
+        let mut index = 0u64;
+        salf.samples = salf.samples.changed(|sample| {
             // The side that sends nothing is hidden here and there.
-            let hidden = (index as u64).wrapping_mul(0x9E37_79B9_7F4A_7C15);
-            let row = if index % 3 == 0 { 0xFF00 } else { 0x8001 | hidden >> 55 };
+            let hidden = index.wrapping_mul(0x9E37_79B9_7F4A_7C15);
+            let row = if index.is_multiple_of(3) { 0xFF00 } else { 0x8001 | hidden >> 55 };
             let words = vec![row | row << 16 | row << 32 | row << 48; 4];
-            sample.visibility = Visibility::Cells { words: words.into(), occluder_inverse_depth: 0.0 };
+            sample.visibility = Visibility::Cells { words: words.into() };
             (sample.weight, sample.tilt) = (-0.2 + 0.01 * (index % 9) as f32, Vec2::new(1.0, 0.1));
-        }
+            index += 1;
+        });
         let tree = Tree::new(&salf, 4.0);
         let mut joined = 0;
         for (at, node) in tree.nodes.iter().enumerate().filter(|(_, node)| node.sample.is_none()) {

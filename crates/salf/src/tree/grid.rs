@@ -2,14 +2,35 @@
 
 use crate::domain::Domain;
 use crate::sample::{Salf, Sample};
+use crate::samples::Samples;
 use crate::tree::BLOCK_PX;
-use glam::IVec2;
+use glam::{IVec2, Vec2};
 
 /// The blocks of the picture and its margin.
 pub struct Grid {
     domain: Domain,
     /// Blocks in a row, and rows.
     pub size: IVec2,
+}
+
+/// What lies in a block.
+#[derive(Clone, Debug, Default)]
+pub struct Content {
+    /// Numbers of runs.
+    runs: Vec<usize>,
+    /// Numbers of samples that are of no block's run.
+    singles: Vec<u32>,
+}
+
+impl Content {
+    /// Its samples, with their numbers.
+    pub fn samples<'a>(&'a self, samples: &'a Samples) -> impl Iterator<Item = (u32, Sample)> {
+        let in_runs = self.runs.iter().flat_map(|&run| {
+            let run = samples.run(run);
+            run.indices.clone().zip(run.samples())
+        });
+        in_runs.chain(self.singles.iter().map(|&index| (index, samples.get(index))))
+    }
 }
 
 impl Grid {
@@ -25,20 +46,33 @@ impl Grid {
         column_row * BLOCK_PX - self.domain.margin
     }
 
-    /// The pixel that a sample lies in, within the grid.
-    pub fn pixel(&self, sample: &Sample) -> IVec2 {
+    /// The pixel of the grid that a place in the picture lies in.
+    pub fn pixel(&self, center: Vec2) -> IVec2 {
         let low = IVec2::splat(-self.domain.margin);
-        sample.center.floor().as_ivec2().clamp(low, low + self.size * BLOCK_PX - 1)
+        center.floor().as_ivec2().clamp(low, low + self.size * BLOCK_PX - 1)
     }
 
-    /// The samples of each block, in their order.
-    pub fn samples_of_blocks(&self, samples: &[Sample]) -> Vec<Vec<u32>> {
-        let mut of_block = vec![Vec::new(); (self.size.x * self.size.y) as usize];
-        for (index, sample) in samples.iter().enumerate() {
-            let block = (self.pixel(sample) + self.domain.margin) / BLOCK_PX;
-            of_block[(block.y * self.size.x + block.x) as usize].push(index as u32);
+    /// What lies in each block: runs of samples, and single ones that are of no block's run.
+    pub fn contents(&self, samples: &Samples) -> Vec<Content> {
+        let mut contents = vec![Content::default(); (self.size.x * self.size.y) as usize];
+        for (number, run) in samples.runs().enumerate() {
+            match run.block() {
+                Some(corner) => contents[self.block_around(corner)].runs.push(number),
+                None => {
+                    for (index, spot) in run.indices.clone().zip(run.spots()) {
+                        contents[self.block_around(self.pixel(spot.center))].singles.push(index);
+                    }
+                }
+            }
         }
-        of_block
+        contents
+    }
+
+    /// The block that `pixel` lies in, or the nearest.
+    fn block_around(&self, pixel: IVec2) -> usize {
+        let block = (pixel + self.domain.margin).div_euclid(IVec2::splat(BLOCK_PX));
+        let block = block.clamp(IVec2::ZERO, self.size - 1);
+        (block.y * self.size.x + block.x) as usize
     }
 
     /// The side of the cell that was sampled around `pixel`, as a power of two.

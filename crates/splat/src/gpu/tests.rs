@@ -162,13 +162,9 @@ impl Hard {
             let is_partial = self.partial > 0 && (x / 7 + y / 5) % self.partial == 0;
             let visibility = match (is_partial, mixed % 2) {
                 (false, _) => Visibility::Open,
-                (true, 0) => Visibility::Cells {
-                    words: Box::new([u64::MAX << (mixed % 60)]),
-                    occluder_inverse_depth: 0.9,
-                },
+                (true, 0) => Visibility::Cells { words: Box::new([u64::MAX << (mixed % 60)]) },
                 (true, _) => Visibility::Cells {
                     words: Box::new([1, 2, 3, 4].map(|k| u64::MAX / (k + mixed as u64 % 99))),
-                    occluder_inverse_depth: 0.9,
                 },
             };
             let bright = if mixed % 600 == 1 { self.brightest } else { 1.0 };
@@ -268,9 +264,10 @@ fn card_and_processor_sum_the_same_bits() {
             wrong.push(format!("{}: {pixels} pixels differ", hard.name));
         }
         // The control: one sample whose light is some quanta more; those of bright sums are 64 times as large.
-        let mut other = (*salf).clone();
+        let mut samples = salf.samples.to_vec();
         let quanta = if sums.len() == 4 { 2048.0 } else { 32.0 };
-        other.samples[1000].radiance.y += crate::QUANTUM as f32 * quanta;
+        samples[1000].radiance.y += crate::QUANTUM as f32 * quanta;
+        let other = Salf { samples: samples.into(), ..(*salf).clone() };
         let other = hard.rendered(Arc::new(other), &focus, None);
         assert!(first_difference(&sums_here(&other), &others).is_some(), "{}: the control", hard.name);
     }

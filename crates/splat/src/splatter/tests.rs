@@ -29,10 +29,7 @@ fn light_field() -> Arc<Salf> {
         let (x, y) = (index % camera.width, index / camera.width);
         let mixed = index.wrapping_mul(2654435761) >> 8;
         let visibility = match index % 3 {
-            0 => Visibility::Cells {
-                words: Box::new([0x0123_4567_89AB_CDEF ^ mixed as u64]),
-                occluder_inverse_depth: 0.9,
-            },
+            0 => Visibility::Cells { words: Box::new([0x0123_4567_89AB_CDEF ^ mixed as u64]) },
             _ => Visibility::Open,
         };
         Sample {
@@ -204,13 +201,19 @@ fn threads_leave_no_trace() {
     assert_eq!(with(1), with(3));
 }
 
+/// The light field with another radiance of one sample.
+fn with_radiance(index: usize, radiance: f32) -> Arc<Salf> {
+    let salf = light_field();
+    let mut samples = salf.samples.to_vec();
+    samples[index].radiance = Vec3::splat(radiance);
+    Arc::new(Salf { samples: samples.into(), ..(*salf).clone() })
+}
+
 #[test]
 fn a_firefly_changes_no_other_pixel() {
     let sharp = ByTriangle(vec![FocusOffset::SHARP; 96 * 80]);
     let with_firefly = rendered(&sharp);
-    let mut salf = (*light_field()).clone();
-    salf.samples[1234].radiance = Vec3::splat(0.5);
-    let mut without = Splatter::new(Arc::new(salf));
+    let mut without = Splatter::new(with_radiance(1234, 0.5));
     without.render(&camera(), &sharp, &Unwatched).unwrap();
     let pixels = with_firefly.picture().radiance.iter().zip(&without.picture().radiance);
     let changed: Vec<usize> = pixels.enumerate().filter(|(_, (a, b))| a != b).map(|(k, _)| k).collect();
@@ -219,9 +222,7 @@ fn a_firefly_changes_no_other_pixel() {
 
 #[test]
 fn too_bright_is_an_error() {
-    let mut salf = (*light_field()).clone();
-    salf.samples[0].radiance = Vec3::splat(1e8);
-    let result = Splatter::new(Arc::new(salf)).render(&camera(), &standard(), &Unwatched);
+    let result = Splatter::new(with_radiance(0, 1e8)).render(&camera(), &standard(), &Unwatched);
     assert_eq!(result, Err(SplatError::Overflow));
 }
 
@@ -263,7 +264,8 @@ fn ripple_of_wall(slope: f64, tilt: f64, across: bool) -> f64 {
             });
         }
     }
-    let mut splatter = Splatter::new(Arc::new(Salf { camera: camera.clone(), margin_px: 48, samples }));
+    let mut splatter =
+        Splatter::new(Arc::new(Salf { camera: camera.clone(), margin_px: 48, samples: samples.into() }));
     splatter.render(&camera, &standard(), &Unwatched).unwrap();
     let coverage = &splatter.picture().coverage;
     let inside = |k: &usize| [k % 120, k / 120].iter().all(|c| (20..100).contains(c));
@@ -288,12 +290,13 @@ fn what_sees_one_cell_loses_no_light() {
             tilt: Vec2::ZERO,
             radiance: Vec3::ONE,
             surface: Some(SurfacePoint { triangle: index, barycentric: DVec2::ZERO }),
-            visibility: Visibility::Cells { words: words.into(), occluder_inverse_depth: 0.9 },
+            visibility: Visibility::Cells { words: words.into() },
         }
     };
     let samples: Vec<_> = (0..36 * 30).map(sample).collect();
     let sent = samples.len() as f64 / 256.0;
-    let mut splatter = Splatter::new(Arc::new(Salf { camera: camera.clone(), margin_px: 0, samples }));
+    let mut splatter =
+        Splatter::new(Arc::new(Salf { camera: camera.clone(), margin_px: 0, samples: samples.into() }));
     for tolerance in [Tolerance::NONE, Tolerance::VIEWING] {
         splatter.set_tolerance(tolerance);
         for radius_px in [0.3, 1.0, 1.7, 2.5, 4.0, 7.0, 15.0] {

@@ -1,0 +1,133 @@
+//! Samples to packed samples, a block of the picture at a time.
+
+use crate::domain::{Cell, Domain};
+use crate::jitter::jitter;
+use crate::sample::{Sample, Visibility};
+use crate::samples::masks::MaskWriter;
+use crate::samples::numbers::{Float24, Rgb40};
+use crate::samples::record::{Kind, Patch, Record, Shape};
+use crate::samples::{Chunk, Plane, Samples, Starts};
+use glam::{DVec2, IVec2, Vec2};
+use half::f16;
+use std::collections::HashMap;
+
+/// A sample, and how it was found.
+#[derive(Clone, Debug)]
+pub struct Found {
+    pub sample: Sample,
+    /// The cell that it is a group of rays of, and which (a bit each); none for a patch of surface.
+    pub rays: Option<(Cell, u16)>,
+}
+
+/// Packs the samples of one block.
+pub struct Packer {
+    corner: IVec2,
+    part: Samples,
+    plane_of: HashMap<Plane, u16>,
+    masks: MaskWriter,
+    finished: Vec<Samples>,
+}
+
+/// The block that a place in the picture lies in, px of its upper left corner.
+pub fn block_corner(pixel: IVec2) -> IVec2 {
+    pixel.div_euclid(IVec2::splat(Domain::BLOCK)) * Domain::BLOCK
+}
+
+impl Packer {
+    pub fn new(corner: IVec2) -> Self {
+        Self {
+            corner,
+            part: Samples::default(),
+            plane_of: HashMap::new(),
+            masks: MaskWriter::new(),
+            finished: Vec::new(),
+        }
+    }
+
+    /// Takes up a sample: packed, or as it is if it cannot be.
+    pub fn push(&mut self, found: Found) {
+        if self.plane_of.len() >= Record::BACKGROUND as usize {
+            self.close();
+        }
+        if self.pack(&found).is_none() {
+            self.part.loose.push(found.sample);
+        }
+    }
+
+    /// The samples that were taken up.
+    pub fn finish(mut self) -> Samples {
+        self.close();
+        Samples::join(self.finished)
+    }
+
+    fn close(&mut self) {
+        let mut part = std::mem::take(&mut self.part);
+        part.codes = std::mem::replace(&mut self.masks, MaskWriter::new()).finish();
+        self.plane_of.clear();
+        if !part.records.is_empty() {
+            part.chunks.push(Chunk { corner: self.corner, starts: Starts::default() });
+        }
+        self.finished.push(part);
+    }
+
+    /// `None` if what it is made of is beyond what packed samples can tell.
+    fn pack(&mut self, found: &Found) -> Option<()> {
+        let Found { sample, rays } = found;
+        let (pixel, level) = match rays {
+            Some((cell, _)) => (cell.corner, cell.side.ilog2() as u8),
+            None => (sample.center.floor().as_ivec2(), 0),
+        };
+        let pixel = pixel - self.corner;
+        let is_inside = pixel.cmpge(IVec2::ZERO).all() && pixel.cmplt(IVec2::splat(Domain::BLOCK)).all();
+        let shape = match rays {
+            Some((_, u16::MAX)) => Shape::WholeCell,
+            Some(_) => Shape::PartOfCell,
+            None => Shape::Patch,
+        };
+        let cells = match &sample.visibility {
+            Visibility::Open => None,
+            Visibility::Cells { words } => Some(Visibility::side_of(words) as u8),
+        };
+        let kind = is_inside.then_some(Kind { pixel, level, shape, cells })?;
+        let inverse_depth = Float24::new(sample.inverse_depth)?;
+        let place = (self.corner + pixel).as_uvec2();
+        let chance = jitter(place.x, place.y, self.part.records.len() as u32);
+        let radiance = Rgb40::new(sample.radiance, chance)?;
+        let largest = sample.tilt.abs().max_element().max(sample.weight.abs());
+        let patch = match shape {
+            Shape::Patch => {
+                let fraction = sample.center - sample.center.floor();
+                Some(Patch::new(fraction, sample.half_size, Float24::new(largest)?)?)
+            }
+            Shape::WholeCell | Shape::PartOfCell => None,
+        };
+        let scale = if patch.is_some() { largest } else { sample.weight };
+        let plane = match sample.surface {
+            Some(point) => self.plane(point.triangle, sample.weight / scale, sample.tilt / scale)?,
+            None if patch.is_none() && sample.tilt == Vec2::ZERO => Record::BACKGROUND,
+            None => return None,
+        };
+        let barycentric = sample.surface.map_or(DVec2::ZERO, |point| point.barycentric);
+        // Nothing fails from here on.
+        self.part.records.push(Record::new(kind, plane, barycentric, inverse_depth, radiance));
+        self.part.patches.extend(patch);
+        if let (Shape::PartOfCell, Some((_, rays))) = (shape, rays) {
+            self.part.rays.push(*rays);
+        }
+        if let Visibility::Cells { words } = &sample.visibility {
+            self.masks.write(words);
+        }
+        Some(())
+    }
+
+    fn plane(&mut self, triangle: u32, weight: f32, tilt: Vec2) -> Option<u16> {
+        let weights = [weight, tilt.x, tilt.y].map(f16::from_f32);
+        let is_finite = weights.iter().all(|weight| weight.is_finite());
+        let plane = is_finite.then(|| Plane { triangle, weights: weights.map(f16::to_bits) })?;
+        let next = self.plane_of.len() as u16;
+        Some(*self.plane_of.entry(plane).or_insert_with(|| {
+            self.part.planes.push(plane);
+            next
+        }))
+    }
+}

@@ -1,0 +1,224 @@
+//! What a packed sample is made of.
+
+use crate::domain::Cell;
+use crate::samples::numbers::{Float24, Rgb40};
+use glam::{DVec2, IVec2, Vec2};
+
+/// What all packed samples have: 16 bytes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(C)]
+pub struct Record {
+    /// Where in the chunk's block it is and what kind of sample: see [`Kind`].
+    place: u16,
+    /// Which of the chunk's planes it lies on; [`Record::BACKGROUND`] for none.
+    pub plane: u16,
+    /// Barycentrics in its triangle, in 1/65535.
+    pub barycentric: [u16; 2],
+    /// 1/z.
+    pub inverse_depth: Float24,
+    /// Radiance.
+    pub radiance: Rgb40,
+}
+
+/// Which part of the block a sample is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Shape {
+    /// All rays of a cell.
+    WholeCell,
+    /// Some rays of a cell: which they are is told beside the record.
+    PartOfCell,
+    /// A patch of surface: its size is told beside the record, as a [`Patch`].
+    Patch,
+}
+
+/// What a record's place says.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Kind {
+    /// The pixel in its block: of the cell's corner, or of the patch's centre.
+    pub pixel: IVec2,
+    /// The cell's side is 2 to this, px.
+    pub level: u8,
+    pub shape: Shape,
+    /// Cells a side of its visibility; none if it sees the whole aperture.
+    pub cells: Option<u8>,
+}
+
+impl Kind {
+    /// In 16 bits: x and y 4 each, level 3, shape 2, visibility 2.
+    fn place(self) -> u16 {
+        let shape = match self.shape {
+            Shape::WholeCell => 0,
+            Shape::PartOfCell => 1,
+            Shape::Patch => 2,
+        };
+        let cells = match self.cells {
+            None => 0,
+            Some(8) => 1,
+            Some(_) => 2,
+        };
+        (self.pixel.x | self.pixel.y << 4 | i32::from(self.level) << 8 | shape << 11 | cells << 13) as u16
+    }
+
+    /// `None` if it makes no sense.
+    fn of(place: u16) -> Option<Self> {
+        let bits = |at: u32, count: u32| i32::from(place >> at & ((1 << count) - 1));
+        let shape = match bits(11, 2) {
+            0 => Shape::WholeCell,
+            1 => Shape::PartOfCell,
+            2 => Shape::Patch,
+            _ => return None,
+        };
+        let cells = match bits(13, 3) {
+            0 => None,
+            1 => Some(8),
+            2 => Some(16),
+            _ => return None,
+        };
+        let level = bits(8, 3) as u8;
+        (level <= 4).then_some(Self { pixel: IVec2::new(bits(0, 4), bits(4, 4)), level, shape, cells })
+    }
+
+    /// The cell that it is all or part of, in a block at `corner`.
+    pub fn cell(&self, corner: IVec2) -> Cell {
+        Cell { corner: corner + self.pixel, side: 1 << self.level }
+    }
+}
+
+impl Record {
+    pub const BYTES: usize = size_of::<Self>();
+    pub const BACKGROUND: u16 = u16::MAX;
+
+    pub fn new(kind: Kind, plane: u16, barycentric: DVec2, depth: Float24, radiance: Rgb40) -> Self {
+        // Rounding may put it beside its triangle by 1/65535 of it.
+        let barycentric = barycentric.to_array().map(|b| (b * 65535.0).round() as u16);
+        Self { place: kind.place(), plane, barycentric, inverse_depth: depth, radiance }
+    }
+
+    #[inline]
+    pub fn kind(&self) -> Kind {
+        Kind::of(self.place).expect("a record that was read was checked")
+    }
+
+    /// Whether it sees but a part of the aperture.
+    #[inline]
+    pub fn is_partial(&self) -> bool {
+        self.place >> 13 != 0
+    }
+
+    /// Its barycentrics.
+    pub fn barycentric(&self) -> DVec2 {
+        DVec2::from_array(self.barycentric.map(|b| f64::from(b) / 65535.0))
+    }
+
+    /// Whether it makes sense.
+    pub fn is_sound(&self) -> bool {
+        Kind::of(self.place).is_some() && self.inverse_depth.get().is_finite()
+    }
+
+    pub fn to_bytes(self) -> [u8; Self::BYTES] {
+        let mut bytes = [0; Self::BYTES];
+        for (k, word) in [self.place, self.plane, self.barycentric[0], self.barycentric[1]].iter().enumerate()
+        {
+            bytes[2 * k..][..2].copy_from_slice(&word.to_le_bytes());
+        }
+        bytes[8..11].copy_from_slice(&self.inverse_depth.0);
+        bytes[11..].copy_from_slice(&self.radiance.0);
+        bytes
+    }
+
+    pub fn from_bytes(bytes: [u8; Self::BYTES]) -> Self {
+        let word = |k: usize| u16::from_le_bytes([bytes[2 * k], bytes[2 * k + 1]]);
+        let byte = |k: usize| bytes[k];
+        Self {
+            place: word(0),
+            plane: word(1),
+            barycentric: [word(2), word(3)],
+            inverse_depth: Float24([8, 9, 10].map(byte)),
+            radiance: Rgb40([11, 12, 13, 14, 15].map(byte)),
+        }
+    }
+}
+
+/// Size and place of a patch of surface: 10 bytes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Patch {
+    /// Centre in its pixel, x and y, in 1/4096 px: 12 bits each.
+    fraction: [u8; 3],
+    /// Half the sides, in 1/4096 px.
+    half_size: [[u8; 2]; 2],
+    /// Its largest weight, or change of it, px².
+    pub largest: Float24,
+}
+
+impl Patch {
+    pub const BYTES: usize = size_of::<Self>();
+
+    /// `None` if it is larger than what can be told.
+    pub fn new(fraction: Vec2, half_size: Vec2, largest: Float24) -> Option<Self> {
+        let fixed = |px: f32| (px * 4096.0).round();
+        let [x, y] = fraction.to_array().map(|px| fixed(px).clamp(0.0, 4095.0) as u32);
+        let half_size = half_size.to_array().map(fixed);
+        let fits = half_size.iter().all(|half| (1.0..=65535.0).contains(half));
+        let [a, b, c, _] = (x | y << 12).to_le_bytes();
+        let half_size = half_size.map(|half| (half as u16).to_le_bytes());
+        fits.then_some(Self { fraction: [a, b, c], half_size, largest })
+    }
+
+    pub fn fraction(&self) -> Vec2 {
+        let [a, b, c] = self.fraction;
+        let bits = u32::from_le_bytes([a, b, c, 0]);
+        Vec2::new((bits & 0xFFF) as f32, (bits >> 12) as f32) / 4096.0
+    }
+
+    pub fn half_size(&self) -> Vec2 {
+        Vec2::from_array(self.half_size.map(|half| f32::from(u16::from_le_bytes(half)) / 4096.0))
+    }
+
+    pub fn to_bytes(self) -> [u8; Self::BYTES] {
+        let [[h0, h1], [h2, h3]] = self.half_size;
+        let ([f0, f1, f2], [l0, l1, l2]) = (self.fraction, self.largest.0);
+        [f0, f1, f2, h0, h1, h2, h3, l0, l1, l2]
+    }
+
+    pub fn from_bytes([f0, f1, f2, h0, h1, h2, h3, l0, l1, l2]: [u8; Self::BYTES]) -> Self {
+        Self { fraction: [f0, f1, f2], half_size: [[h0, h1], [h2, h3]], largest: Float24([l0, l1, l2]) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::Vec3;
+
+    #[test]
+    fn records_and_patches_keep_to_their_bytes() {
+        assert_eq!((Record::BYTES, Patch::BYTES), (16, 10));
+        for shape in [Shape::WholeCell, Shape::PartOfCell, Shape::Patch] {
+            for cells in [None, Some(8), Some(16)] {
+                for level in 0..5 {
+                    let kind = Kind { pixel: IVec2::new(3, 14), level, shape, cells };
+                    let depth = Float24::new(0.3).unwrap();
+                    let radiance = Rgb40::new(Vec3::new(0.1, 2.0, 0.7), [0.5; 3]).unwrap();
+                    let record = Record::new(kind, 17, DVec2::new(0.0, 1.0), depth, radiance);
+                    assert_eq!(record.kind(), kind);
+                    assert_eq!(record.is_partial(), cells.is_some());
+                    assert_eq!(record.barycentric(), DVec2::Y);
+                    assert_eq!(Record::from_bytes(record.to_bytes()), record);
+                }
+            }
+        }
+        let largest = Float24::new(1.25).unwrap();
+        let patch = Patch::new(Vec2::new(0.25, 0.999999), Vec2::new(0.5, 8.0), largest).unwrap();
+        assert_eq!(patch.fraction(), Vec2::new(0.25, 4095.0 / 4096.0));
+        assert_eq!(patch.half_size(), Vec2::new(0.5, 8.0));
+        assert_eq!(Patch::from_bytes(patch.to_bytes()), patch);
+        assert!(Patch::new(Vec2::ZERO, Vec2::new(16.0, 1.0), largest).is_none());
+        assert!(Patch::new(Vec2::ZERO, Vec2::new(1e-5, 1.0), largest).is_none());
+    }
+
+    #[test]
+    fn places_that_make_no_sense_are_told() {
+        let sound = (0..=u16::MAX).filter(|&place| Kind::of(place).is_some());
+        assert_eq!(sound.count(), 256 * 5 * 3 * 3);
+    }
+}
