@@ -1,6 +1,7 @@
 //! How errors fall with the number of samples, and whether what the estimate says of them is so.
 
 use super::*;
+use lens::Exposure;
 use std::ops::RangeInclusive;
 
 fn options(samples_per_pixel: u32, seed: u32, sampler: Sampler) -> TruthOptions {
@@ -35,7 +36,8 @@ const BLURRED_Z: f64 = 6.0;
 /// A sharp edge has the two of the place, −¾. A blurred edge has all four, −⅝, but for samples that suit its circle
 /// of confusion: then the two of where a ray crosses its depth, −¾. So has one that paint moves alike everywhere. Where
 /// the blur that is painted grows across the surface, how many samples land in a pixel is itself a question of all
-/// four, everywhere on it, and no better than with independent samples.
+/// four, everywhere on it, and little better than with independent samples; divided by the coverage, of which the same is
+/// true, better.
 struct Edges {
     name: &'static str,
     camera: Camera,
@@ -43,6 +45,7 @@ struct Edges {
     focus: FocusOffset,
     /// How much t − 1 grows with x and y, relative, for each unit of length.
     growth: DVec2,
+    exposure: Exposure,
     reached: f64,
 }
 
@@ -77,13 +80,14 @@ impl SurfaceField<FocusOffset> for Growing {
     }
 }
 
-fn edges() -> [Edges; 7] {
+fn edges() -> [Edges; 8] {
     let blurred = |name, circle_px, reached| Edges {
         name,
         camera: camera_that_blurs(circle_px),
         z: BLURRED_Z,
         focus: FocusOffset::STANDARD,
         growth: DVec2::ZERO,
+        exposure: Exposure::Conserve,
         reached,
     };
     let sharp = Edges { name: "sharp", z: SHARP_Z, ..blurred("", 6.0, -0.7) };
@@ -94,13 +98,14 @@ fn edges() -> [Edges; 7] {
         Edges { z: SHARP_Z, focus: FocusOffset::new(t, 1.0), ..blurred("6 px, by paint", 6.0, -0.7) };
     // From 4 to 8 px over the picture's width and height.
     let width = 2.0 * SHARP_Z * optics.tan_half_yfov * sharp.camera.aspect();
-    let growing = Edges {
-        name: "4 to 8 px, by paint",
+    let growing = |name, exposure, reached| Edges {
+        name,
         growth: DVec2::new(0.4, 0.4 * 0.75) / width,
-        reached: -0.5,
-        ..blurred("", 6.0, 0.0)
+        z: SHARP_Z,
+        focus: FocusOffset::new(t, 1.0),
+        exposure,
+        ..blurred(name, 6.0, reached)
     };
-    let growing = Edges { z: SHARP_Z, focus: FocusOffset::new(t, 1.0), ..growing };
     [
         sharp,
         blurred("1 px", 1.0, -0.7),
@@ -108,7 +113,8 @@ fn edges() -> [Edges; 7] {
         blurred("10 px", 10.0, -0.7),
         blurred("40 px", 40.0, -0.7),
         painted,
-        growing,
+        growing("4 to 8 px, by paint", Exposure::Conserve, -0.5),
+        growing("4 to 8 px, by paint, normalised", Exposure::Normalise, -0.55),
     ]
 }
 
@@ -127,10 +133,10 @@ fn rmse(edges: &Edges, samples: u32, sampler: Sampler, pairs: u32) -> [f64; 2] {
                 render(&tracer, &radiance, &focus, &edges.camera, &options, &Unwatched).unwrap()
             });
             let difference = |(a, b): (&[f32; 3], &[f32; 3])| f64::from(a[0] - b[0]).powi(2);
-            let pixels = a.picture.radiance.len() as f64;
-            let sum: f64 = a.picture.radiance.iter().zip(&b.picture.radiance).map(difference).sum();
-            squares += sum / pixels / 2.0;
-            expected += a.expected_rmse(lens::Exposure::Conserve).powi(2);
+            let [first, second] = [&a, &b].map(|estimate| estimate.picture.exposed(edges.exposure));
+            let sum: f64 = first.iter().zip(&second).map(difference).sum();
+            squares += sum / first.len() as f64 / 2.0;
+            expected += a.expected_rmse(edges.exposure).powi(2);
         }
     }
     [squares, expected].map(|sum| (sum / f64::from(pairs * ANGLES.len() as u32)).sqrt())
