@@ -114,6 +114,24 @@ fn splat_and_truth_agree_and_the_blur_by_depth_does_not() {
 }
 
 #[test]
+fn more_cells_a_pixel_are_closer_to_the_truth() {
+    let place = Workplace::new();
+    place.done(&format!("render quads.glb {SHOT} --renderer truth --spp 1024 -o truth.exr"));
+    let errors = [("", 1), ("--cells 2", 2), ("--tolerance 0", 2), ("--tolerance 0 --cells 1", 1)].map(
+        |(how, cells)| {
+            let report = place.json(&format!("render quads.glb {SHOT} {how} -o splat.exr --json"));
+            assert_eq!(report["cells_a_side"].as_u64(), Some(cells), "{how}");
+            assert_eq!(report["width"].as_u64(), Some(96));
+            (place.psnr("splat.exr", "truth.exr"), report["salf"]["bytes"].as_u64().unwrap())
+        },
+    );
+    let [(usual, usual_bytes), (twice, twice_bytes), (exact, _), (exact_once, _)] = errors;
+    assert!(twice > usual + 3.0 && exact > exact_once + 3.0, "{errors:?}");
+    assert!((2 * usual_bytes..6 * usual_bytes).contains(&twice_bytes), "{errors:?}");
+    place.fails("render quads.glb --size 10000x10 --cells 2 -o x.exr", 3, &["cells", "width"]);
+}
+
+#[test]
 fn baselines_draw_and_fall_short() {
     let place = Workplace::new();
     place.done(&format!("render quads.glb {SHOT} --renderer truth --spp 256 -o truth.exr"));

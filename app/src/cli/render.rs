@@ -11,7 +11,7 @@ use session::{
     Aov, Input, LayeredOptions, RenderOptions, Rendered, Renderer, ScatterOptions, SessionError,
     ViewsOptions, render_input,
 };
-use splat::{BackendChoice, Gpu, Tolerance};
+use splat::{BackendChoice, Gpu};
 use std::time::Instant;
 use trace::truth::{Estimator, Sampler, TruthOptions};
 
@@ -28,10 +28,10 @@ pub fn run(arguments: &RenderArguments, console: &Console) -> Result<(), Failure
     let (camera, focus) = shot(&input, &arguments.shot, console)?;
     let open_seconds = start.elapsed().as_secs_f64();
 
-    let default = RenderOptions::default();
+    let usual = arguments.tolerance.map_or_else(RenderOptions::default, RenderOptions::at_tolerance);
+    let cells_a_side = arguments.cells.unwrap_or(usual.cells_a_side);
     let options = RenderOptions {
-        tolerance_px: arguments.tolerance.unwrap_or(default.tolerance_px),
-        splat_tolerance: arguments.tolerance.map_or(default.splat_tolerance, Tolerance::px),
+        cells_a_side,
         gpu,
         renderer,
         truth: truth_options(arguments),
@@ -39,6 +39,7 @@ pub fn run(arguments: &RenderArguments, console: &Console) -> Result<(), Failure
         views: ViewsOptions { views_a_side: arguments.views, ..ViewsOptions::default() },
         scatter: ScatterOptions { rays_a_sample: arguments.rays, seed: arguments.seed },
         aovs: arguments.aov.clone(),
+        ..usual
     };
     let Rendered { picture, layers, cost, warnings } =
         render_input(&input, &camera, &focus, &options, console)?;
@@ -69,6 +70,7 @@ pub fn run(arguments: &RenderArguments, console: &Console) -> Result<(), Failure
             "exposure": format!("{exposure:?}").to_lowercase(),
             "threads": rayon::current_num_threads(),
             "triangles": input.scene.triangles.len(),
+            "cells_a_side": renderer.draws_light_field().then_some(cells_a_side),
             "samples_per_pixel": (renderer == Renderer::Truth).then_some(arguments.spp),
             "layers": (renderer == Renderer::Layers).then_some(arguments.layers),
             "views_a_side": (renderer == Renderer::Views).then_some(arguments.views),

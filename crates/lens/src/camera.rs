@@ -93,6 +93,12 @@ impl Camera {
         self.aperture.validate()
     }
 
+    /// The same camera with `side` × `side` pixels in place of each: see [`Picture::averaged`](crate::Picture::averaged).
+    pub fn finer(&self, side: u32) -> Self {
+        let [width, height] = [self.width, self.height].map(|pixels| pixels.saturating_mul(side));
+        Self { width, height, ..self.clone() }
+    }
+
     /// The numbers of the optics.
     pub fn optics(&self) -> Optics {
         let tan_half_yfov = (self.yfov / 2.0).tan();

@@ -30,6 +30,27 @@ impl Picture {
         Self { width, height, radiance: vec![[0.0; 3]; pixels], coverage: vec![0.0; pixels] }
     }
 
+    /// Pixels that are means of `side` × `side` of this picture, whose sides must be multiples of it.
+    pub fn averaged(&self, side: u32) -> Self {
+        assert!(side > 0 && self.width.is_multiple_of(side) && self.height.is_multiple_of(side));
+        let mut mean = Self::black(self.width / side, self.height / side);
+        let share = 1.0 / (side * side) as f32;
+        for (row, (radiance, coverage)) in self
+            .radiance
+            .chunks(self.width as usize)
+            .zip(self.coverage.chunks(self.width as usize))
+            .enumerate()
+        {
+            let first = row / side as usize * mean.width as usize;
+            for (column, (rgb, covered)) in radiance.iter().zip(coverage).enumerate() {
+                let at = first + column / side as usize;
+                (0..3).for_each(|c| mean.radiance[at][c] += share * rgb[c]);
+                mean.coverage[at] += share * covered;
+            }
+        }
+        mean
+    }
+
     /// The picture under `exposure`. A pixel that nothing covers is black.
     pub fn exposed(&self, exposure: Exposure) -> Vec<[f32; 3]> {
         match exposure {
@@ -41,5 +62,24 @@ impl Picture {
                 .map(|(rgb, &coverage)| if coverage > 0.0 { rgb.map(|c| c / coverage) } else { [0.0; 3] })
                 .collect(),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pixels_are_averaged_by_squares() {
+        let mut fine = Picture::black(6, 4);
+        for (k, (rgb, coverage)) in fine.radiance.iter_mut().zip(&mut fine.coverage).enumerate() {
+            (*rgb, *coverage) = ([k as f32, 2.0 * k as f32, 0.0], 1.0);
+        }
+        let mean = fine.averaged(2);
+        assert_eq!((mean.width, mean.height), (3, 2));
+        // Of 0, 1, 6 and 7; and of 16, 17, 22 and 23.
+        assert_eq!((mean.radiance[0], mean.radiance[5]), ([3.5, 7.0, 0.0], [19.5, 39.0, 0.0]));
+        assert!(mean.coverage.iter().all(|&coverage| coverage == 1.0));
+        assert!(fine.averaged(1) == fine);
     }
 }

@@ -6,7 +6,7 @@ use focus::Focus;
 use lens::{Camera, Picture};
 use salf::Salf;
 use session::{RenderOptions, Renderer, SessionError, Steps, bake, render};
-use splat::{Splatter, Tolerance};
+use splat::Splatter;
 use std::sync::Arc;
 use trace::Tracer;
 
@@ -15,7 +15,7 @@ use trace::Tracer;
 pub enum Contender {
     /// The light field, baked and splatted.
     Splat {
-        /// How coarse partial visibility may be, px.
+        /// How coarse light field and splat may be, px: see [`RenderOptions::at_tolerance`].
         tolerance_px: f64,
     },
     /// Distributed ray tracing.
@@ -132,12 +132,12 @@ impl Contender {
     }
 
     fn options(&self) -> RenderOptions {
-        let mut options = RenderOptions { renderer: self.kind(), ..RenderOptions::default() };
+        let mut options = match *self {
+            Self::Splat { tolerance_px } => RenderOptions::at_tolerance(tolerance_px),
+            _ => RenderOptions { renderer: self.kind(), ..RenderOptions::default() },
+        };
         match *self {
-            Self::Splat { tolerance_px } => {
-                options.tolerance_px = tolerance_px;
-                options.splat_tolerance = Tolerance::px(tolerance_px);
-            }
+            Self::Splat { .. } => {}
             Self::Truth { samples_per_pixel } => {
                 options.truth.samples_per_pixel = samples_per_pixel;
                 options.truth.seed = MEASURED_SEED;
@@ -200,19 +200,20 @@ fn whole(
 /// The splat: what it makes of the light field once counts as baked, each further lens is a picture.
 fn splat(shot: Shot<'_>, options: &RenderOptions, steps: &dyn Steps) -> Result<Drawn, SessionError> {
     let (baked, salf) = light_field(shot, options, steps)?;
+    let camera = &salf.camera;
     let prepared = timed(|| {
         let mut splatter = Splatter::new(salf.clone());
         splatter.set_tolerance(options.splat_tolerance);
-        splatter.render(shot.camera, shot.focus, &*steps.begin("splatting"))?;
+        splatter.render(camera, shot.focus, &*steps.begin("splatting"))?;
         Ok(splatter)
     })?;
     let mut splatter = prepared.value;
     // Another focus distance each time: what the splatter keeps of a lens must not help.
     let mut nudges = (1..).map(|k| 1.0 + 1e-9 * f64::from(k));
     let drawn = timed(|| {
-        let focus_distance = shot.camera.focus_distance * nudges.next().unwrap_or(1.0);
-        splatter.refocus(&Camera { focus_distance, ..shot.camera.clone() }, &*steps.begin("splatting"))?;
-        Ok(splatter.picture().clone())
+        let focus_distance = camera.focus_distance * nudges.next().unwrap_or(1.0);
+        splatter.refocus(&Camera { focus_distance, ..camera.clone() }, &*steps.begin("splatting"))?;
+        Ok(splatter.picture().averaged(options.cells_a_side))
     })?;
     let first = (prepared.seconds - drawn.seconds).max(0.0);
     let bytes = salf.statistics().bytes + splatter.bytes().iter().sum::<usize>();
@@ -225,7 +226,9 @@ fn light_field(
     options: &RenderOptions,
     steps: &dyn Steps,
 ) -> Result<(f64, Arc<Salf>), SessionError> {
-    let baked = timed(|| bake(shot.tracer, shot.camera, shot.focus, options.tolerance_px, steps))?;
+    let camera = options.baked_camera(shot.camera)?;
+    let tolerance_px = options.tolerance_px * f64::from(options.cells_a_side);
+    let baked = timed(|| bake(shot.tracer, &camera, shot.focus, tolerance_px, steps))?;
     Ok((baked.seconds, Arc::new(baked.value)))
 }
 

@@ -71,7 +71,10 @@ pub use painter::replay;
 pub use picking::{SurfaceHit, chief_ray, pick, view_ray};
 pub use preview::{DrawingCosts, PictureTimes, Preview, PreviewActivity, PreviewKind, Quality};
 pub use reference::{Reference, ReferenceKind};
-pub use render::{RenderCost, RenderOptions, Rendered, Renderer, bake, bake_unpacked, render, render_input};
+pub use render::{
+    MOST_CELLS_A_SIDE, RenderCost, RenderOptions, Rendered, Renderer, bake, bake_unpacked, render,
+    render_input,
+};
 pub use salf_file::write_salf;
 pub use screen::Screen;
 pub use selecting::rectangle;

@@ -82,6 +82,9 @@ pub struct RenderOptions {
     pub tolerance_px: f64,
     /// How coarse its splat may be.
     pub splat_tolerance: Tolerance,
+    /// A light field that is to be baked is sampled on a grid of n × n cells a pixel, n from 1 to [`MOST_CELLS_A_SIDE`],
+    /// and a pixel is the mean of what these give. What a tolerance of 0 leaves of the error is how far apart samples lie.
+    pub cells_a_side: u32,
     /// The graphics card that the splat is summed on; none for the processor. The picture is the same.
     pub gpu: Option<Gpu>,
     /// How [`Renderer::Layers`] cuts the picture.
@@ -101,12 +104,42 @@ impl Default for RenderOptions {
             truth: TruthOptions { samples_per_pixel: 64, ..TruthOptions::default() },
             tolerance_px: BakeOptions::TOLERANCE_PX,
             splat_tolerance: Tolerance::NONE,
+            cells_a_side: 1,
             gpu: None,
             layered: LayeredOptions::default(),
             views: ViewsOptions::default(),
             scatter: ScatterOptions::default(),
             aovs: Vec::new(),
         }
+    }
+}
+
+/// The most of [`RenderOptions::cells_a_side`].
+pub const MOST_CELLS_A_SIDE: u32 = 4;
+
+impl RenderOptions {
+    /// A light field and splat as coarse as `px` pixels. At 0 they are as fine as they are meant to get, with four samples a
+    /// pixel and surface.
+    pub fn at_tolerance(px: f64) -> Self {
+        Self {
+            tolerance_px: px,
+            splat_tolerance: Tolerance::px(px),
+            cells_a_side: if px == 0.0 { 2 } else { 1 },
+            ..Self::default()
+        }
+    }
+
+    /// The camera that the light field is baked for: see [`Self::cells_a_side`].
+    pub fn baked_camera(&self, camera: &Camera) -> Result<Camera, SessionError> {
+        let finer = camera.finer(self.cells_a_side);
+        let tell = |error| {
+            let n = self.cells_a_side;
+            SessionError::BadInput(format!(
+                "with {n} × {n} cells a pixel the {error} (take fewer, or a smaller picture)"
+            ))
+        };
+        finer.validate().map_err(tell)?;
+        Ok(finer)
     }
 }
 
@@ -212,11 +245,15 @@ pub fn render(
     let mut estimate = None;
     let picture = match options.renderer {
         Renderer::Splat | Renderer::Scatter => {
-            let salf = bake(tracer, camera, focus, options.tolerance_px, steps)?;
+            let finer = options.baked_camera(camera)?;
+            let tolerance_px = options.tolerance_px * f64::from(options.cells_a_side);
+            let salf = Arc::new(bake(tracer, &finer, focus, tolerance_px, steps)?);
             let bake_seconds = start.elapsed().as_secs_f64();
-            let mut rendered = sum_light_field(Arc::new(salf), tracer, camera, focus, options, steps)?;
-            rendered.cost.bake_seconds = bake_seconds;
-            return Ok(rendered);
+            let drawn;
+            (drawn, cost) = draw_light_field(salf, &finer, focus, options, steps)?;
+            cost.bake_seconds = bake_seconds;
+            let picture = if options.cells_a_side > 1 { drawn.averaged(options.cells_a_side) } else { drawn };
+            return finish(Shot { tracer, camera, focus }, options, Drawn { picture, estimate, cost }, steps);
         }
         Renderer::Truth => {
             let light = light_for_many_points(tracer, camera);
@@ -301,6 +338,18 @@ pub(crate) fn sum_light_field(
     options: &RenderOptions,
     steps: &dyn Steps,
 ) -> Result<Rendered, SessionError> {
+    let (picture, cost) = draw_light_field(salf, camera, focus, options, steps)?;
+    finish(Shot { tracer, camera, focus }, options, Drawn { picture, estimate: None, cost }, steps)
+}
+
+/// The picture of a light field, and what it cost.
+fn draw_light_field(
+    salf: Arc<Salf>,
+    camera: &Camera,
+    focus: &Focus,
+    options: &RenderOptions,
+    steps: &dyn Steps,
+) -> Result<(Picture, RenderCost), SessionError> {
     let mut cost = RenderCost::default();
     cost.count(&salf);
     let start = Instant::now();
@@ -315,8 +364,7 @@ pub(crate) fn sum_light_field(
         splatter.picture().clone()
     };
     cost.picture_seconds = start.elapsed().as_secs_f64();
-    let shot = Shot { tracer, camera, focus };
-    finish(shot, options, Drawn { picture, estimate: None, cost }, steps)
+    Ok((picture, cost))
 }
 
 /// What is rendered.
