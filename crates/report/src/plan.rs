@@ -2,6 +2,7 @@
 
 use crate::contender::Contender;
 use crate::options::ReportOptions;
+use crate::plot::significant;
 use crate::record::Series;
 use crate::subject::Subject;
 use lens::Camera;
@@ -37,6 +38,16 @@ const COST_VIEWS_A_SIDE: u32 = 5;
 
 /// The standard focus is the subject's first.
 const STANDARD: usize = 0;
+
+/// What is drawn where cost is measured, in a sentence.
+pub fn cost_note() -> String {
+    let splat = Contender::usual_splat();
+    format!(
+        "Cost is that under the standard lens: the splat at a tolerance of {} px, the ray tracer with {COST_SPP} rays a pixel, \
+         {COST_VIEWS_A_SIDE} × {COST_VIEWS_A_SIDE} views.",
+        significant(splat.value())
+    )
+}
 
 /// All settings of a subject.
 pub fn settings(subject: &Subject, options: &ReportOptions) -> Vec<Setting> {

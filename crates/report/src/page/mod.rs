@@ -6,6 +6,7 @@ pub mod plots;
 use crate::findings::equal_errors;
 use crate::machine::Machine;
 use crate::markup::escaped;
+use crate::plan::cost_note;
 use crate::plot::{Chart, bytes, significant};
 use crate::record::{Record, Series};
 use crate::run::{Measured, Report};
@@ -19,7 +20,7 @@ const STYLE: &str = include_str!("style.css");
 /// How to read the comparison at equal error.
 pub const EQUAL_ERROR_NOTE: &str = "The splat at its usual tolerance, and the time after which the ray tracer has the same root mean \
 square error, read off its measured curve (*: beyond the measurements, by the law of all of them). What of an error is the \
-reference's own is taken out first. “Refocus” is all that another focus, focus distance or f-stop takes once the light field \
+reference's own is taken out first. A factor below 1 says slower. “Refocus” is all that another focus, focus distance or f-stop takes once the light field \
 is baked.";
 
 /// The page.
@@ -84,11 +85,11 @@ fn scene_section(scene: &SceneSummary, measured: &[Measured]) -> Result<String, 
     let of_series = |series| own.iter().filter(move |m| m.record.series == series).copied();
     let distance = scene.focus_distance.map_or_else(|| "infinity".into(), significant);
     let mut html = format!(
-        "<h2>{}</h2>\n<p>{} triangles in {} parts, {} lights; aperture radius {}, focused at {distance} (scene units). Lens: {}. Hierarchy: {}.</p>\n",
+        "<h2>{}</h2>\n<p>{} in {}, {}; aperture radius {}, focused at {distance} (scene units). Lens: {}. Hierarchy: {}.</p>\n",
         escaped(&scene.name),
-        scene.triangles,
-        scene.parts,
-        scene.lights,
+        counted(scene.triangles, "triangle"),
+        counted(scene.parts, "part"),
+        counted(scene.lights, "light"),
         significant(scene.aperture_radius),
         escaped(&scene.lens),
         bytes(scene.hierarchy_bytes as f64),
@@ -106,7 +107,10 @@ fn scene_section(scene: &SceneSummary, measured: &[Measured]) -> Result<String, 
     }
     html += "<div class=\"charts\">\n";
     charts.iter().for_each(|chart| html += &figure(chart));
-    html += "</div>\n";
+    html += &format!(
+        "</div>\n<p class=\"caption\">Beside marks: where the renderer's knob stands, at the ends of its lines. {}</p>\n",
+        cost_note()
+    );
     for focus in &scene.focuses {
         let shown: Vec<&Measured> =
             of_series(Series::Knob).filter(|m| m.record.focus == focus.name).collect();
@@ -187,6 +191,11 @@ pub fn saving_sentence(scene: &ModelledScene) -> String {
         significant(*tolerance_px),
         bytes(*finest_bytes as f64),
     )
+}
+
+/// A number of things.
+fn counted(count: usize, what: &str) -> String {
+    format!("{count} {what}{}", if count == 1 { "" } else { "s" })
 }
 
 /// With a capital letter.
