@@ -10,7 +10,7 @@ use egui::{Event, Modifiers, PointerButton, Pos2, Response, Ui};
 use focus::ViewFrame;
 use glam::{DVec2, DVec3};
 use project::SelectionShape;
-use session::{Command, Session, StrokePoint, StrokeTarget, view_ray};
+use session::{Command, Session, StrokePoint, StrokeTarget};
 
 /// How far apart the points of a straight line are told, screen points.
 const LINE_STEP: f32 = 4.0;
@@ -134,7 +134,7 @@ impl StrokeInput {
     ) {
         let Some(document) = session.document() else { return };
         let tool = hand.tool;
-        let hit = || session.pick(&view_ray(&view.frame, (view.position)(at)));
+        let hit = || hand.hit(session, view, at);
         if tool == Tool::Curve {
             self.curve.add(at);
         } else if tool == Tool::Clone && modifiers.command {

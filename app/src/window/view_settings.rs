@@ -54,7 +54,7 @@ impl Default for ViewSettings {
         Self {
             focus_share: look.focus_share,
             contours: look.contours,
-            preview_size: 640,
+            preview_size: 960,
             tolerance_px: TOLERANCE_PX,
             display_stops: 0.0,
             tone_curve: ToneCurve::default(),

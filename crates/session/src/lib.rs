@@ -22,6 +22,7 @@ mod command_table;
 mod document;
 mod editing;
 mod error;
+mod field_watch;
 mod input;
 mod job;
 mod key_map;
@@ -78,7 +79,7 @@ pub use render::{
 pub use salf_file::write_salf;
 pub use screen::Screen;
 pub use selecting::rectangle;
-pub use session::{Session, SessionOptions};
+pub use session::{FullSize, Session, SessionOptions};
 pub use stage::{Stage, load_scene};
 pub use steps::Steps;
 pub use tone::{Display, ScreenPixel, Tone, to_screen};

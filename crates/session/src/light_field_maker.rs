@@ -65,9 +65,14 @@ impl LightFieldMaker {
         }
         self.since = Changes::default();
         let (theirs, epoch, store) = (shared.clone(), order.epoch, self.store.clone());
+        // Whoever asks from now on waits for it. One that is there already is only summed.
+        if !matches!(order.begin, Begin::Sum(_)) {
+            shared.field.begin(&order.stage);
+        }
         let work = move || {
             let make = || make(order, &theirs, store.as_ref());
             let made = guarded("drawing the preview", || among_others(make));
+            theirs.field.end();
             theirs.deliver(Delivery { made, epoch });
         };
         let thread = std::thread::Builder::new().name("light field".into()).stack_size(16 << 20).spawn(work);
@@ -75,6 +80,7 @@ impl LightFieldMaker {
             Ok(thread) => self.thread = Some(thread),
             Err(error) => {
                 let made = Err(SessionError::TryAgain(format!("no thread: {error} (try again)")));
+                shared.field.end();
                 shared.deliver(Delivery { made, epoch });
             }
         }
@@ -128,6 +134,7 @@ fn make(order: Order, shared: &Shared, store: Option<&LightFieldStore>) -> Resul
             }
         }
     };
+    shared.field.made(&field.baked().salf);
     shared.helper_sums();
     shared.progress.begin_step("", 0.7, 1.0);
     field.bring_up(&camera, &focus, &Share::new(&shared.progress, 0.7, 1.0))?;

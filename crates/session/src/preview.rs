@@ -5,7 +5,7 @@
 //! Two light fields serve it:
 //!
 //! ```text
-//!                  coarse (a third of the size)          fine (the preview's size)
+//!                  coarse (a quarter of the size)         fine (the preview's size)
 //! scene, pose …    baked at once, after a pinhole        baked on a helper thread
 //! lens             summed at once                        summed on a helper thread, if it takes long
 //! paint            updated until the fine one is there   updated
@@ -16,6 +16,7 @@
 //! snapshots of the focus map (tiles are shared until one is painted on): neither ever waits for the other. What
 //! a newer wish makes useless is stopped. The last good picture is never taken away.
 
+use crate::field_watch::{FieldWatch, Standing};
 use crate::job::{JobProgress, Waker, own_threads};
 use crate::light_field::{BakedField, Changes, LightField};
 use crate::light_field_store::LightFieldStore;
@@ -26,6 +27,7 @@ use crate::{Modelled, SessionError, Stage, Tone};
 use focus::FocusMap;
 use lens::{Camera, Picture};
 use progress::{Cancelled, Progress};
+use salf::Salf;
 use splat::Tolerance;
 use std::sync::atomic::{AtomicBool, AtomicU8, Ordering};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
@@ -121,6 +123,9 @@ impl PreviewActivity {
     }
 }
 
+/// How often it is looked whether the preview is still at work on a light field that others need.
+const LOOK_EVERY: Duration = Duration::from_millis(50);
+
 /// When a finished picture was made.
 #[derive(Clone, Copy, Debug)]
 pub struct PictureTimes {
@@ -195,6 +200,8 @@ pub(crate) struct Shared {
     is_refining: AtomicBool,
     activity: AtomicU8,
     helper: AtomicU8,
+    /// The light field that the helper makes.
+    pub field: FieldWatch,
     published: Mutex<Published>,
     waker: Waker,
 }
@@ -338,6 +345,37 @@ impl Shared {
     }
 }
 
+impl Shared {
+    /// The light field that the preview makes now, if it serves `camera` in `stage`: it is waited for. None is another bake's time
+    /// to begin: the preview's own is over by then, and has the processors for itself as long as it takes.
+    pub fn wait_for_field(
+        &self,
+        stage: &Arc<Stage>,
+        camera: &Camera,
+        progress: &dyn Progress,
+    ) -> Result<Option<Arc<Salf>>, Cancelled> {
+        loop {
+            progress.check()?;
+            match self.field.look(stage, camera, LOOK_EVERY) {
+                Standing::Made(salf) => return Ok(Some(salf)),
+                Standing::Underway => progress.report(self.progress.fraction()),
+                // What the thread does now may end in making one.
+                Standing::Absent if self.is_at_work() => std::thread::sleep(LOOK_EVERY),
+                Standing::Absent => return Ok(None),
+            }
+        }
+    }
+
+    /// Whether there is anything to be done.
+    pub fn is_at_work(&self) -> bool {
+        let wishes = lock(&self.wishes);
+        let idle = [&self.activity, &self.helper]
+            .into_iter()
+            .all(|activity| PreviewActivity::load(activity) == PreviewActivity::Idle);
+        wishes.is_posted || !idle
+    }
+}
+
 /// The session's end of the preview thread.
 pub(crate) struct PreviewThread {
     shared: Arc<Shared>,
@@ -361,6 +399,7 @@ impl PreviewThread {
             is_refining: AtomicBool::new(false),
             activity: AtomicU8::new(PreviewActivity::Idle as u8),
             helper: AtomicU8::new(PreviewActivity::Idle as u8),
+            field: FieldWatch::default(),
             published: Mutex::default(),
             waker,
         });
@@ -439,6 +478,11 @@ impl PreviewThread {
         self.shared.post(Stops::Nothing, |wishes| wishes.tone = Some(tone));
     }
 
+    /// What others need of its work.
+    pub fn shared(&self) -> Arc<Shared> {
+        self.shared.clone()
+    }
+
     /// Sets how coarse pictures may be while one works.
     pub fn set_tolerance(&self, tolerance: Tolerance) {
         self.shared.post(Stops::Refining, |wishes| {
@@ -454,13 +498,11 @@ impl PreviewThread {
 
     /// Whether everything that was posted has been followed, and nothing newer than `id` waits to be taken.
     pub fn is_settled(&self, id: u64) -> bool {
-        let wishes = lock(&self.shared.wishes);
+        if self.shared.is_at_work() {
+            return false;
+        }
         let published = lock(&self.shared.published);
-        let seen = published.news.failures.is_empty() && published.latest.as_ref().is_none_or(|p| p.id <= id);
-        let idle = [&self.shared.activity, &self.shared.helper]
-            .into_iter()
-            .all(|activity| PreviewActivity::load(activity) == PreviewActivity::Idle);
-        !wishes.is_posted && idle && seen
+        published.news.failures.is_empty() && published.latest.as_ref().is_none_or(|p| p.id <= id)
     }
 }
 

@@ -16,8 +16,8 @@ use splat::Tolerance;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// Sides of the coarse picture are this share of the preview's: a ninth of the work.
-const COARSE: f64 = 1.0 / 3.0;
+/// Sides of the coarse picture are this share of the preview's: a sixteenth of the work.
+const COARSE: f64 = 1.0 / 4.0;
 
 /// Below this longest side, px, a picture is quick enough to need no coarse one.
 const SMALLEST_COARSE: u32 = 48;

@@ -8,6 +8,8 @@ mod painting;
 mod showing;
 mod verifying;
 
+pub use exporting::FullSize;
+
 use crate::document::Document;
 use crate::job::{Job, JobProgress, Waker};
 use crate::light_field::BakedField;
@@ -56,7 +58,7 @@ impl Default for SessionOptions {
     fn default() -> Self {
         Self {
             unwrap: UnwrapOptions::default(),
-            preview_size: 640,
+            preview_size: 960,
             undo_budget_bytes: Document::UNDO_BUDGET_BYTES,
             keep_after: Duration::from_secs(15),
             exact_after: None,

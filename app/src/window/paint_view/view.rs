@@ -6,6 +6,7 @@ use super::{
 };
 use crate::window::blit::{Blitter, Drawable, Filter};
 use crate::window::brush_ring;
+use crate::window::drag_tool::DragView;
 use crate::window::hand::Hand;
 use crate::window::navigation::{self, Motion};
 use crate::window::pointer::StrokeInput;
@@ -15,7 +16,7 @@ use egui::{Color32, Pos2, Rect, Response, Sense, Stroke, Ui, pos2, vec2};
 use focus::ViewFrame;
 use glam::{DVec2, DVec3};
 use lens::Camera;
-use session::{Document, Session, SurfaceHit, view_ray};
+use session::{Document, Session, SurfaceHit};
 use std::ops::Range;
 use std::sync::mpsc;
 
@@ -239,7 +240,8 @@ impl PaintView {
         let position = |at: Pos2| view_position(rect, at);
         actions.extend(self.stroke.update(ui, &response, session, hand, frame, position));
         let pointer = response.hover_pos().or_else(|| response.interact_pointer_pos());
-        self.hover = pointer.and_then(|at| session.pick(&view_ray(&frame, view_position(rect, at))));
+        let view = DragView { frame, position: &position };
+        self.hover = pointer.and_then(|at| hand.hit(session, &view, at));
         let painter = ui.painter_at(rect);
         self.paint_shot_camera(&painter, &document.camera, document.stage.bounds);
         if look.focus_share > 0.0 {

@@ -8,6 +8,7 @@ pub use shown::Shown;
 
 use super::blit::{Blitter, Filter};
 use super::brush_ring;
+use super::drag_tool::DragView;
 use super::hand::Hand;
 use super::navigation::{self, Motion};
 use super::paint_view::hint;
@@ -170,14 +171,15 @@ impl PictureView {
             ViewFrame { camera_to_world: shot.camera_to_world, yfov: shot.yfov, aspect: shot.aspect() };
         let is_selecting = self.verify.is_selecting();
         self.verify.select(ui, &response, image, actions);
+        let position = |at: Pos2| picture_position(image, at);
         if !(is_wiping || is_selecting) || session.is_painting() {
-            let position = |at: Pos2| picture_position(image, at);
             actions.extend(self.stroke.update(ui, &response, session, hand, frame, position));
         }
         self.stroke.paint(ui, rect);
         let pointer = response.hover_pos().or_else(|| response.interact_pointer_pos());
         let pointer = pointer.filter(|at| image.contains(*at) && !is_wiping && !is_selecting);
-        self.hover = pointer.and_then(|at| session.pick(&session.picture_ray(picture_position(image, at))?));
+        let view = DragView { frame, position: &position };
+        self.hover = pointer.and_then(|at| hand.hit(session, &view, at));
         let targets = hand.targets(session, self.hover);
         self.highlight.paint(ui, document, (frame, image, rect), &targets);
         if let (Some(hit), Some(ring)) = (self.hover, hand.ring) {

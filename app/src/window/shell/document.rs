@@ -5,7 +5,7 @@ use crate::window::file_dialog::Purpose;
 use crate::window::unsaved_question::{Answer, Next};
 use crate::window::{Tool, demo};
 use egui::{Context, ViewportCommand};
-use session::Command;
+use session::{Command, FullSize};
 use std::path::PathBuf;
 
 impl Shell {
@@ -96,13 +96,19 @@ impl Shell {
         let full = self.session.document().map(|document| size(&document.camera))?;
         match purpose {
             Purpose::ExportShown => Some(format!("{shown}, as it is on screen.")),
-            Purpose::ExportPicture if self.session.has_light_field_of_full_size() => Some(format!(
-                "{full}, exact: rendered in the background, from the light field that is there."
-            )),
-            Purpose::ExportPicture => Some(format!(
-                "{full}, exact. Its light field is baked first, in the background: the status line says for how long. \
-                 At once, but {shown}: File, Export as shown."
-            )),
+            Purpose::ExportPicture => Some(match self.session.full_size() {
+                FullSize::Ready => {
+                    format!("{full}, exact: rendered in the background, from the light field that is there.")
+                }
+                FullSize::Underway => format!(
+                    "{full}, exact: rendered in the background, as soon as the light field of the live picture is \
+                     baked. The status line says how long that takes."
+                ),
+                FullSize::Missing => format!(
+                    "{full}, exact. Its light field is baked first, in the background: the status line says for how \
+                     long. At once, but {shown}: File, Export as shown."
+                ),
+            }),
             _ => None,
         }
     }

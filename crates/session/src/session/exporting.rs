@@ -3,6 +3,7 @@
 use super::{Outcome, Session};
 use crate::error::file_name;
 use crate::light_field::serves;
+use crate::preview::Shared;
 use crate::reach::Reach;
 use crate::render::{RenderOptions, Rendered, bake, sum_light_field};
 use crate::steps::JobSteps;
@@ -15,6 +16,17 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
 
+/// Whether a picture at full size needs a light field of its own.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FullSize {
+    /// No: there is one.
+    Ready,
+    /// No: the live picture's will serve, which is being made.
+    Underway,
+    /// Yes.
+    Missing,
+}
+
 /// The light fields that need not be baked.
 #[derive(Clone)]
 pub(super) struct AtHand {
@@ -22,6 +34,8 @@ pub(super) struct AtHand {
     /// That of the live picture.
     live: Option<Arc<Salf>>,
     store: Option<LightFieldStore>,
+    /// Who may be making another.
+    preview: Arc<Shared>,
 }
 
 impl AtHand {
@@ -32,7 +46,7 @@ impl AtHand {
             let store = self.store.as_ref()?;
             store.find(&self.stage, camera, 0.0).map(Arc::new)
         });
-        found.filter(|salf| !Reach::of_all(salf, camera, focus).is_exceeded())
+        found.filter(|salf| is_wide_enough(salf, camera, focus))
     }
 
     /// Renders a picture, exactly unless `options` say otherwise. What is baked for it is kept.
@@ -44,7 +58,15 @@ impl AtHand {
         steps: &dyn Steps,
     ) -> Result<Rendered, SessionError> {
         let tracer = &self.stage.tracer;
-        let salf = match self.find(camera, focus) {
+        let found = match self.find(camera, focus) {
+            // One bake at a time: what the live picture waits for is the smaller one, and may be the same.
+            None => self
+                .preview
+                .wait_for_field(&self.stage, camera, &*steps.begin("baking the live picture"))?
+                .filter(|salf| is_wide_enough(salf, camera, focus)),
+            found => found,
+        };
+        let salf = match found {
             Some(salf) => salf,
             None => {
                 let start = Instant::now();
@@ -59,20 +81,34 @@ impl AtHand {
     }
 }
 
+/// Whether the margin of a light field holds all that comes into the frame.
+fn is_wide_enough(salf: &Salf, camera: &Camera, focus: &Focus) -> bool {
+    !Reach::of_all(salf, camera, focus).is_exceeded()
+}
+
 impl Session {
     /// The light fields of the document that need not be baked.
     pub(super) fn at_hand(&self, stage: Arc<Stage>) -> AtHand {
         let live = self.field.as_ref().map(|field| field.salf.clone());
-        AtHand { stage, live, store: self.options.light_fields.clone() }
+        let (store, preview) = (self.options.light_fields.clone(), self.preview_thread.shared());
+        AtHand { stage, live, store, preview }
     }
 
-    /// Whether a picture at full size can be exported without baking a light field first, as far as is known without looking
-    /// at the paint.
-    pub fn has_light_field_of_full_size(&self) -> bool {
-        let Some(document) = &self.document else { return false };
-        let live = self.field.as_ref().is_some_and(|field| serves(&field.salf.camera, &document.camera));
+    /// Whether a picture at full size has to wait for a light field, as far as is known without looking at the paint.
+    pub fn full_size(&self) -> FullSize {
+        let Some(document) = &self.document else { return FullSize::Missing };
+        let serves = |baked: &Camera| serves(baked, &document.camera);
+        let live = self.field.as_ref().is_some_and(|field| serves(&field.salf.camera));
         let store = self.options.light_fields.as_ref();
-        live || store.is_some_and(|store| store.has(&document.stage, &document.camera))
+        if live || store.is_some_and(|store| store.has(&document.stage, &document.camera)) {
+            FullSize::Ready
+        } else if self.preview_camera.as_ref().is_some_and(serves)
+            && self.preview_thread.shared().is_at_work()
+        {
+            FullSize::Underway
+        } else {
+            FullSize::Missing
+        }
     }
 
     /// The live picture without tolerance; rendered now, which takes its time.
@@ -108,7 +144,7 @@ impl Session {
         let tone = self.tone();
         let preview = self.preview.as_ref().ok_or(SessionError::NothingOpen)?;
         if preview.quality == Quality::Coarse {
-            let what = "the picture on screen is still rough (wait until the status line says live or exact)";
+            let what = "the picture on screen is still rough (wait until the status line says live or exact; File, Export picture waits by itself)";
             return Err(SessionError::bad(&path, what));
         }
         let picture = preview.picture.clone();
