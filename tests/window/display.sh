@@ -50,7 +50,7 @@ start_app() {
     local window=
     for _ in $(seq 200); do
         kill -0 "$app" 2>/dev/null || fail "the program ended at once"
-        window=$(xdotool search --name "Focus Brush" 2>/dev/null | tail -1)
+        window=$(xdotool search --onlyvisible --name "Focus Brush" 2>/dev/null | tail -1)
         [ -n "$window" ] && break
         sleep 0.1
     done

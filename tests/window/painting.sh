@@ -74,12 +74,15 @@ key Escape
 key F1
 shot 17-help
 key F1
+# Once one is open, the others open under the pointer: a click would close them.
+click 19 12
 for menu in file:19 edit:51 select:90 view:131 focus:173 layer:215 lens:254 render:299 help:343; do
-    click "${menu#*:}" 12
+    at "${menu#*:}" 12
+    pause 8
     import -window root "$out/18-menu-${menu%:*}.png"
-    key Escape
-    away
 done
+key Escape
+away
 palette "light"
 settle "the light theme"
 shot 19-light-theme

@@ -162,9 +162,7 @@ impl Blitter {
     pub fn paint(&self, painter: &Painter, drawn: &Drawable, image: Rect, filter: Filter) {
         // On whole pixels of the screen, as the viewport will be.
         let scale = painter.ctx().pixels_per_point();
-        let seen = image.intersect(painter.clip_rect());
-        let pixels = |at: egui::Pos2| ((at.to_vec2() * scale).round() / scale).to_pos2();
-        let seen = Rect::from_min_max(pixels(seen.min), pixels(seen.max));
+        let seen = on_pixels(image.intersect(painter.clip_rect()), scale);
         if !seen.is_positive() || !image.is_positive() {
             return;
         }
@@ -178,6 +176,12 @@ impl Blitter {
         };
         painter.add(Callback::new_paint_callback(seen, call));
     }
+}
+
+/// A rectangle, in points, with its edges between pixels of a screen that has `scale` of them a point.
+pub fn on_pixels(rect: Rect, scale: f32) -> Rect {
+    let rounded = |at: egui::Pos2| ((at.to_vec2() * scale).round() / scale).to_pos2();
+    Rect::from_min_max(rounded(rect.min), rounded(rect.max))
 }
 
 /// One picture at one place.

@@ -24,11 +24,10 @@ pub fn menu_bar(ui: &mut Ui, state: &MenuState<'_>, actions: &mut Vec<Action>) {
         for menu in Menu::ALL {
             ui.menu_button(menu.title(), |ui| {
                 ui.set_min_width(230.0);
-                // In a low window a long menu scrolls.
+                // Only in a low window a long menu scrolls.
                 let height = ui.ctx().content_rect().height() - ROOM_AROUND_MENU;
-                egui::ScrollArea::vertical().max_height(height).show(ui, |ui| {
-                    entries(ui, menu, state, actions);
-                });
+                let scrolled = egui::ScrollArea::vertical().max_height(height).min_scrolled_height(height);
+                scrolled.show(ui, |ui| entries(ui, menu, state, actions));
             });
         }
     });

@@ -4,6 +4,7 @@
 //! * `paint_view`: the scene in 3D in the colours of its blur. `picture_view`: the refocused picture.
 //!   Both are painted on by the same pointer code.
 //! * `blit`: puts pictures on the screen.
+//! * `graphics`: the device that it is drawn with. `soft_painter`: draws egui's shapes where an adapter in software draws.
 //! * `layout`: where the panels are: docked, in tabs, afloat, or one over all.
 //! * `drawer`: the atlas, the aperture view and the histogram, beneath the views at first.
 //! * `inspector`, `tool_bar`, `menu_bar`, `status_line`: read the document and emit [`Action`]s.
@@ -25,6 +26,7 @@ mod drawer;
 mod false_colour;
 mod file_dialog;
 mod focus_slider;
+mod graphics;
 mod hand;
 mod help;
 mod inspector;
@@ -39,6 +41,7 @@ mod player;
 mod pointer;
 mod region_highlight;
 mod shell;
+mod soft_painter;
 mod status_line;
 mod theme;
 mod toasts;
@@ -60,7 +63,6 @@ pub use tool::Tool;
 pub use view_settings::ViewSettings;
 
 use std::path::PathBuf;
-use std::sync::Arc;
 use std::time::Duration;
 
 /// What the window starts with.
@@ -121,7 +123,7 @@ pub fn run(options: WindowOptions) -> anyhow::Result<()> {
             .with_app_id("focus-brush")
             .with_inner_size([1440.0, 860.0])
             .with_min_inner_size([800.0, 500.0]),
-        wgpu_options: graphics(),
+        wgpu_options: graphics::graphics(),
         persist_window: options.remember,
         // For gradients that the window does not have, every pixel would be worked on.
         dithering: false,
@@ -133,20 +135,4 @@ pub fn run(options: WindowOptions) -> anyhow::Result<()> {
         Box::new(|creation| Ok(Box::new(Shell::new(creation, options).map_err(Box::new)?))),
     )
     .map_err(|error| anyhow::anyhow!("{error}"))
-}
-
-/// A device with the adapter's own limits of texture and buffer size: atlases and scenes are larger than the defaults.
-fn graphics() -> egui_wgpu::WgpuConfiguration {
-    let mut setup = egui_wgpu::WgpuSetupCreateNew::without_display_handle();
-    setup.device_descriptor = Arc::new(|adapter| {
-        let mut limits = adapter.limits();
-        if adapter.get_info().backend != wgpu::Backend::Gl {
-            let own = limits.clone();
-            limits = wgpu::Limits::default();
-            limits.max_texture_dimension_2d = own.max_texture_dimension_2d;
-            limits.max_buffer_size = own.max_buffer_size;
-        }
-        wgpu::DeviceDescriptor { label: Some("focus-brush"), required_limits: limits, ..Default::default() }
-    });
-    egui_wgpu::WgpuConfiguration { wgpu_setup: setup.into(), ..Default::default() }
 }

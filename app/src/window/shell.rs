@@ -28,7 +28,7 @@ use super::status_line::{StatusNotes, status_line};
 use super::toasts::{Severity, Toasts};
 use super::tool_bar::{largest_radius, tool_bar};
 use super::unsaved_question::{Next, UnsavedQuestion};
-use super::{Action, Tool, ViewSettings, WindowOptions, keys, theme};
+use super::{Action, Tool, ViewSettings, WindowOptions, keys, soft_painter, theme};
 use eframe::{CreationContext, Frame, Storage};
 use egui::{CentralPanel, Context, Panel, Ui, ViewportCommand};
 use session::{CameraEdit, Command, CommandId, Event, ReferenceKind, Session, SessionError, SessionOptions};
@@ -76,7 +76,11 @@ pub struct Shell {
 impl Shell {
     /// The window's application, with the file of `options` (or the demo) being opened.
     pub fn new(creation: &CreationContext<'_>, options: WindowOptions) -> Result<Self, SessionError> {
+        let state = creation.wgpu_render_state.as_ref();
         theme::prepare(&creation.egui_ctx);
+        if let Some(state) = state {
+            soft_painter::install(&creation.egui_ctx, state);
+        }
         let stored =
             |key| creation.storage.filter(|_| options.remember).and_then(|storage| storage.get_string(key));
         let settings: ViewSettings =
@@ -91,7 +95,6 @@ impl Shell {
             waker: Arc::new(move || context.request_repaint()),
             ..SessionOptions::default()
         })?;
-        let state = creation.wgpu_render_state.as_ref();
         let blitter = state.map(Blitter::new);
         let mut shell = Self {
             session,
@@ -339,14 +342,17 @@ impl eframe::App for Shell {
         theme::choose(&context, self.settings.light_theme, self.settings.scale);
         self.dropped_files(&context);
         self.keys(&context, &mut actions);
-        Panel::top("menu").show(ui, |ui| {
+        let bar = theme::bar(ui.style());
+        Panel::top("menu").frame(bar).show(ui, |ui| {
             let working = !self.session.jobs().is_empty();
             let state = MenuState { document: self.session.document(), settings: &self.settings, working };
             menu_bar(ui, &state, &mut actions);
         });
-        Panel::top("tools").show(ui, |ui| tool_bar(ui, self.session.document(), self.tool, &mut actions));
+        Panel::top("tools")
+            .frame(bar)
+            .show(ui, |ui| tool_bar(ui, self.session.document(), self.tool, &mut actions));
         let drawing = self.is_drawing_long(&context);
-        Panel::bottom("status").show(ui, |ui| {
+        Panel::bottom("status").frame(bar).show(ui, |ui| {
             let tip = self
                 .session
                 .document()
@@ -368,6 +374,11 @@ impl eframe::App for Shell {
         if !self.session.jobs().is_empty() || self.session.drawing_exactly().is_some() {
             context.request_repaint_after_secs(0.25);
         }
+    }
+
+    /// What lies beneath everything: panels need not be filled.
+    fn clear_color(&self, visuals: &egui::Visuals) -> [f32; 4] {
+        visuals.panel_fill.to_normalized_gamma_f32()
     }
 
     fn save(&mut self, storage: &mut dyn Storage) {

@@ -25,6 +25,12 @@ pub fn prepare(context: &egui::Context) {
     }
 }
 
+/// The frame of a bar along the window's edge. It is not filled: the window is cleared with the colour of panels, and egui's
+/// shader takes its time on an adapter in software.
+pub fn bar(style: &egui::Style) -> egui::Frame {
+    egui::Frame::side_top_panel(style).fill(Color32::TRANSPARENT)
+}
+
 /// Takes a theme and a size of text and controls.
 pub fn choose(context: &egui::Context, light: bool, scale: f32) {
     context.set_theme(if light { Theme::Light } else { Theme::Dark });

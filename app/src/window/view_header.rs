@@ -36,7 +36,11 @@ impl ViewHeader<'_> {
             return false;
         }
         let margin = egui::Margin::symmetric(8, 3);
-        let frame = egui::Frame::new().inner_margin(margin).fill(ui.visuals().panel_fill);
+        let frame = match docked {
+            Docked::Floats => egui::Frame::new().fill(ui.visuals().panel_fill),
+            _ => egui::Frame::new(),
+        };
+        let frame = frame.inner_margin(margin);
         let line = |ui: &mut Ui| {
             let spacing = std::mem::take(&mut ui.spacing_mut().item_spacing.x);
             // The menu has its place at the right end, whatever wraps.

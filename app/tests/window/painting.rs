@@ -1,9 +1,10 @@
 //! Painting in both views: the map, the colours and the picture follow; undo and redo; Esc.
 
 use crate::acting::{Person, at, color_at, difference};
-use crate::small_scene::opened;
+use crate::small_scene::{opened, opened_with_bar};
 use egui::{Key, Modifiers, Pos2};
 use egui_kittest::kittest::Queryable;
+use glam::DVec3;
 use lens::FocusOffset;
 
 /// Chooses strong far blur by the keys.
@@ -282,4 +283,45 @@ fn what_a_fill_would_take_is_outlined_before_the_click() {
     person.window.state_mut().apply(session::Command::SetBrush(brush));
     let both = point(&mut person, 0.27, 0.5).expect("the card and what is at its image");
     assert!(both > 0.9, "{both}");
+}
+
+#[test]
+fn something_thin_is_filled_by_a_click_beside_it() {
+    let (mut person, _folder, bar) = opened_with_bar();
+    let camera = person.document().camera.clone();
+    let x_of = |person: &Person, point| person.shell().picture_view().screen_from_world(&camera, point);
+    let on_bar = x_of(&person, bar).expect("it is in view");
+    person.presses(Modifiers::NONE, Key::G);
+    let share = |person: &mut Person, at: Pos2| {
+        person.window.hover_at(at);
+        person.window.run_steps(4);
+        person.shell().picture_view().highlighted_share().expect("something whole")
+    };
+    assert!(share(&mut person, on_bar) < 0.05, "the bar itself");
+    assert!(share(&mut person, on_bar + egui::vec2(9.0, 0.0)) > 0.5, "the wall");
+    let beside = on_bar + egui::vec2(3.5, 0.0);
+    assert!(share(&mut person, beside) < 0.05, "the bar, close by");
+    person.drags(&[beside]);
+    person.lets_go(beside);
+    person.waits();
+    let session = person.shell().session();
+    let focus_at = |point: DVec3| {
+        let eye = camera.position();
+        let ray = trace::Ray {
+            origin: eye,
+            direction: (point - eye).normalize(),
+            t_min: 0.0,
+            t_max: f64::INFINITY,
+            skip: None,
+        };
+        session.focus_at(&session.pick(&ray).unwrap()).unwrap()
+    };
+    assert_eq!(focus_at(bar), person.document().brush.target);
+    assert_eq!(focus_at(bar + DVec3::new(0.1, 0.0, 0.0)), FocusOffset::STANDARD);
+
+    // What goes on beyond is no such thing: beside the card's edge the wall is taken.
+    let (mut person, _folder) = opened();
+    let edge = x_of(&person, DVec3::new(-0.2, 0.0, -2.0)).expect("it is in view");
+    person.presses(Modifiers::NONE, Key::G);
+    assert!(share(&mut person, edge + egui::vec2(3.0, 0.0)) > 0.5, "the wall");
 }

@@ -15,19 +15,33 @@ pub fn opened() -> (Person, tempfile::TempDir) {
     (Person::opens(&file), folder)
 }
 
+/// The same with a bar, 2 px wide, in the place of the card: its middle.
+pub fn opened_with_bar() -> (Person, tempfile::TempDir, glam::DVec3) {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("bar.glb");
+    write_before(&file, [0.3, -0.35], [0.008, 0.7]);
+    (Person::opens(&file), folder, glam::DVec3::new(0.304, 0.0, -2.0))
+}
+
 /// Writes the scene as GLB.
 pub fn write(file: &Path) {
+    write_before(file, [-0.9, -0.35], [0.7; 2]);
+}
+
+/// The wall with something else before it.
+fn write_before(file: &Path, [left, low]: [f32; 2], size: [f32; 2]) {
+    let card = ([left, low, -2.0], size);
     let mut mesh = Mesh::default();
     let size = 6.0 / FIELDS as f32;
     for row in 0..FIELDS {
         for column in 0..FIELDS {
             let (x, y) = (-3.0 + column as f32 * size, -3.0 + row as f32 * size);
             let bright = if (row + column) % 2 == 0 { 0.85 } else { 0.1 };
-            mesh.quad([x, y, -5.0], size, [bright, bright * 0.9, bright * 0.7]);
+            mesh.quad([x, y, -5.0], [size; 2], [bright, bright * 0.9, bright * 0.7]);
         }
     }
     let wall = mesh.indices.len();
-    mesh.quad([-0.9, -0.35, -2.0], 0.7, [0.1, 0.5, 0.3]);
+    mesh.quad(card.0, card.1, [0.1, 0.5, 0.3]);
     std::fs::write(file, mesh.glb(wall)).unwrap();
 }
 
@@ -39,10 +53,10 @@ struct Mesh {
 }
 
 impl Mesh {
-    /// A square that faces +Z, from its lower left corner.
-    fn quad(&mut self, [x, y, z]: [f32; 3], size: f32, [r, g, b]: [f32; 3]) {
+    /// A rectangle that faces +Z, from its lower left corner.
+    fn quad(&mut self, [x, y, z]: [f32; 3], [width, height]: [f32; 2], [r, g, b]: [f32; 3]) {
         let first = self.positions.len() as u32;
-        for (dx, dy) in [(0.0, 0.0), (size, 0.0), (size, size), (0.0, size)] {
+        for (dx, dy) in [(0.0, 0.0), (width, 0.0), (width, height), (0.0, height)] {
             self.positions.push([x + dx, y + dy, z]);
             self.colors.push([r, g, b, 1.0]);
         }

@@ -68,3 +68,51 @@ impl FieldWatch {
         self.making.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use progress::Unwatched;
+    use std::time::Instant;
+
+    #[test]
+    fn what_is_under_way_is_waited_for() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("quads.glb");
+        crate::light_field::tiny_glb::write(&file);
+        let open = || crate::Document::begin(&file, None, None, &Default::default(), &Unwatched).unwrap();
+        let (document, other) = (open(), open());
+        let camera = Camera { width: 24, height: 16, ..document.camera.clone() };
+        let watch = FieldWatch::default();
+        let now = |stage| watch.look(stage, &camera, Duration::ZERO);
+        assert!(matches!(now(&document.stage), Standing::Absent));
+        watch.begin(&document.stage);
+        assert!(matches!(now(&document.stage), Standing::Underway));
+        let tracer = &document.stage.tracer;
+        let options = salf::BakeOptions::default();
+        let light = crate::render::light(tracer, &camera);
+        let salf = Arc::new(salf::bake(tracer, &light, &camera, &options, &Unwatched).unwrap());
+        let long = Duration::from_secs(60);
+        let start = Instant::now();
+        std::thread::scope(|scope| {
+            scope.spawn(|| {
+                std::thread::sleep(Duration::from_millis(20));
+                watch.made(&salf);
+            });
+            let found = watch.look(&document.stage, &camera, long);
+            assert!(matches!(found, Standing::Made(made) if Arc::ptr_eq(&made, &salf)));
+        });
+        assert!(start.elapsed() < long);
+        watch.end();
+        assert!(matches!(now(&document.stage), Standing::Made(_)), "it stays known");
+        assert!(matches!(now(&other.stage), Standing::Absent), "of another scene");
+        let wider = Camera { width: 30, ..camera.clone() };
+        assert!(matches!(watch.look(&document.stage, &wider, Duration::ZERO), Standing::Absent));
+        drop(salf);
+        assert!(matches!(now(&document.stage), Standing::Absent), "it is gone");
+        // One that fails is not waited for.
+        watch.begin(&document.stage);
+        watch.end();
+        assert!(matches!(now(&document.stage), Standing::Absent));
+    }
+}

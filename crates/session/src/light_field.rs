@@ -1,5 +1,6 @@
 //! A baked light field with its running sum, and what it takes to bring the sum up to date.
 
+use crate::picture_ring::Rectangle;
 use crate::reach::Reach;
 use crate::render::light;
 use crate::sample_index::SampleIndex;
@@ -9,7 +10,6 @@ use lens::{Camera, Picture};
 use progress::Progress;
 use salf::{BakeOptions, Salf};
 use splat::{BackendChoice, Gpu, SplatError, Splatter, Tolerance};
-use std::ops::Range;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -72,8 +72,8 @@ pub(crate) enum Plan {
 pub(crate) enum Brought {
     /// It was.
     Nothing,
-    /// Some samples were moved: rows of the picture changed.
-    Update(Range<u32>),
+    /// Some samples were moved: the picture changed in this rectangle.
+    Update(Rectangle),
     /// The whole sum was made.
     Whole,
 }
@@ -264,11 +264,11 @@ impl LightField {
         let brought = match plan {
             Plan::Move(samples) if samples.is_empty() => Brought::Nothing,
             Plan::Move(samples) => {
-                let rows = self.splatter.update(focus, &samples)?;
+                let [rows, columns] = self.splatter.update(focus, &samples)?;
                 if let Some(reach) = &mut self.reach {
                     reach.look_again(self.splatter.salf(), camera, focus, &samples);
                 }
-                Brought::Update(rows)
+                Brought::Update([columns, rows])
             }
             Plan::Whole => {
                 self.reach = None;
@@ -316,7 +316,7 @@ pub(crate) fn serves(baked: &Camera, camera: &Camera) -> bool {
 
 #[cfg(test)]
 #[path = "../tests/tiny_glb/mod.rs"]
-mod tiny_glb;
+pub(crate) mod tiny_glb;
 
 #[cfg(test)]
 mod tests {

@@ -1,6 +1,6 @@
 //! Making the light field of the preview: a thread of its own bakes and sums it.
 
-use crate::job::{among_others, guarded};
+use crate::job::{Urgency, among_others, guarded};
 use crate::light_field::{Changes, FieldOptions, LightField};
 use crate::light_field_store::LightFieldStore;
 use crate::preview::{Delivery, Shared};
@@ -12,6 +12,9 @@ use splat::Tolerance;
 use std::sync::Arc;
 use std::thread::JoinHandle;
 use std::time::Instant;
+
+/// The share of the work that the bake is; the rest is the first sum.
+pub(crate) const BAKE_SHARE: f32 = 0.7;
 
 /// What is begun with.
 pub(crate) enum Begin {
@@ -65,13 +68,16 @@ impl LightFieldMaker {
         }
         self.since = Changes::default();
         let (theirs, epoch, store) = (shared.clone(), order.epoch, self.store.clone());
-        // Whoever asks from now on waits for it. One that is there already is only summed.
-        if !matches!(order.begin, Begin::Sum(_)) {
+        let is_there = matches!(order.begin, Begin::Sum(_));
+        if !is_there {
+            // Whoever asks from now on waits for it.
             shared.field.begin(&order.stage);
         }
+        // One that is there has only to be summed for another lens that somebody turns.
+        let urgency = if is_there { Urgency::Now } else { Urgency::Later };
         let work = move || {
             let make = || make(order, &theirs, store.as_ref());
-            let made = guarded("drawing the preview", || among_others(make));
+            let made = guarded("drawing the preview", || among_others(urgency, make));
             theirs.field.end();
             theirs.deliver(Delivery { made, epoch });
         };
@@ -114,8 +120,9 @@ fn make(order: Order, shared: &Shared, store: Option<&LightFieldStore>) -> Resul
     let bake = |least_margin_px| {
         let how = FieldOptions { least_margin_px, tolerance };
         let start = Instant::now();
-        shared.progress.begin_step("", 0.0, 0.7);
-        let field = LightField::bake(&stage, &camera, &focus, how, &Share::new(&shared.progress, 0.0, 0.7))?;
+        shared.progress.begin_step("", 0.0, BAKE_SHARE);
+        let field =
+            LightField::bake(&stage, &camera, &focus, how, &Share::new(&shared.progress, 0.0, BAKE_SHARE))?;
         if let Some(store) = store {
             store.keep(&stage, &field.baked().salf, start.elapsed());
         }
@@ -136,8 +143,8 @@ fn make(order: Order, shared: &Shared, store: Option<&LightFieldStore>) -> Resul
     };
     shared.field.made(&field.baked().salf);
     shared.helper_sums();
-    shared.progress.begin_step("", 0.7, 1.0);
-    field.bring_up(&camera, &focus, &Share::new(&shared.progress, 0.7, 1.0))?;
+    shared.progress.begin_step("", BAKE_SHARE, 1.0);
+    field.bring_up(&camera, &focus, &Share::new(&shared.progress, BAKE_SHARE, 1.0))?;
     field.survey(&camera, &focus);
     if !is_begun {
         field.prepare()(&shared.progress);

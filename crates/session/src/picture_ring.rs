@@ -32,12 +32,12 @@ struct Snapshot {
 
 impl PictureRing {
     /// A snapshot of what is shown once `picture` has taken the place of the last one that was followed, from which it
-    /// differs in these rows at most; and where it differs from that, `None` where in nothing.
-    pub fn follow(&mut self, picture: &Picture, rows: Range<u32>) -> (Arc<Picture>, Option<Rectangle>) {
+    /// differs within `window` at most; and where it differs from that, `None` where in nothing.
+    pub fn follow(&mut self, picture: &Picture, window: &Rectangle) -> (Arc<Picture>, Option<Rectangle>) {
         let Some(followed) = self.followed().filter(|followed| same_size(followed, picture)) else {
             return (self.begin(picture), Some(whole(picture)));
         };
-        let changed = difference(&followed, picture, rows);
+        let changed = difference(&followed, picture, window);
         drop(followed);
         if let (Some(beneath), Some(changed)) = (&mut self.beneath, &changed) {
             copy(Arc::make_mut(beneath), picture, changed);
@@ -52,7 +52,7 @@ impl PictureRing {
         };
         self.beneath = Some(followed);
         let shown = self.snapshots.last().map(|snapshot| &snapshot.picture);
-        let changed = shown.and_then(|shown| difference(shown, better, 0..better.height));
+        let changed = shown.and_then(|shown| difference(shown, better, &whole(better)));
         (self.show(better, changed.as_ref()), changed)
     }
 
@@ -115,8 +115,8 @@ pub(crate) fn whole(picture: &Picture) -> Rectangle {
     [0..picture.width, 0..picture.height]
 }
 
-/// The least rectangle within `rows` that holds all pixels in which two pictures of one size differ, to the bit.
-fn difference(a: &Picture, b: &Picture, rows: Range<u32>) -> Option<Rectangle> {
+/// The least rectangle within a `window` that holds all pixels in which two pictures of one size differ, to the bit.
+fn difference(a: &Picture, b: &Picture, [columns, rows]: &Rectangle) -> Option<Rectangle> {
     let width = a.width as usize;
     let differs = |k: usize| {
         a.radiance[k].map(f32::to_bits) != b.radiance[k].map(f32::to_bits)
@@ -124,11 +124,11 @@ fn difference(a: &Picture, b: &Picture, rows: Range<u32>) -> Option<Rectangle> {
     };
     let of_row = |row: u32| {
         let first = row as usize * width;
-        let start = (0..width).find(|x| differs(first + x))? as u32;
-        let end = (0..width).rev().find(|x| differs(first + x))? as u32 + 1;
+        let start = columns.clone().find(|x| differs(first + *x as usize))?;
+        let end = columns.clone().rev().find(|x| differs(first + *x as usize))? + 1;
         Some([start..end, row..row + 1])
     };
-    let differing = rows.into_par_iter().with_min_len(8).filter_map(of_row);
+    let differing = rows.clone().into_par_iter().with_min_len(8).filter_map(of_row);
     differing.reduce_with(|a, b| union(&a, &b))
 }
 
@@ -150,13 +150,16 @@ mod tests {
     fn snapshots_stay_and_the_newest_is_the_picture() {
         let mut ring = PictureRing::default();
         let mut picture = Picture::black(90, 40);
-        let (first, changed) = ring.follow(&picture, 0..40);
+        let (first, changed) = ring.follow(&picture, &[0..90, 0..40]);
         assert_eq!(changed, Some([0..90, 0..40]));
         let mut held = vec![(first, picture.clone())];
         for k in 0..40u32 {
             let [x, y] = [(k * 37) % 90, (k * 11) % 40];
             picture.coverage[(y * 90 + x) as usize] = k as f32 + 1.0;
-            let (next, changed) = ring.follow(&picture, y.saturating_sub(3)..(y + 3).min(40));
+            let (next, changed) = ring.follow(
+                &picture,
+                &[x.saturating_sub(5)..(x + 9).min(90), y.saturating_sub(3)..(y + 3).min(40)],
+            );
             assert_eq!(changed, Some([x..x + 1, y..y + 1]));
             // As a window does: now and then the newest is taken, and those of before are let go.
             if k % 3 == 0 {
@@ -166,9 +169,9 @@ mod tests {
             assert_eq!(*next, picture);
             assert!(held.iter().all(|(snapshot, was)| **snapshot == *was), "what is looked at stays");
         }
-        let (_, changed) = ring.follow(&picture, 0..40);
+        let (_, changed) = ring.follow(&picture, &[0..90, 0..40]);
         assert_eq!(changed, None);
-        let (_, changed) = ring.follow(&Picture::black(4, 4), 0..0);
+        let (_, changed) = ring.follow(&Picture::black(4, 4), &[0..0, 0..0]);
         assert_eq!(changed, Some([0..4, 0..4]), "another size is another picture");
     }
 
@@ -183,7 +186,7 @@ mod tests {
         assert_eq!(room.len(), SNAPSHOTS);
         for k in 0..2 {
             picture.coverage[40 + k] = 2.0;
-            let (next, _) = ring.follow(&picture, 0..20);
+            let (next, _) = ring.follow(&picture, &[0..30, 0..20]);
             assert_eq!(*next, picture);
             assert!(room.contains(&Arc::as_ptr(&next)), "no other snapshot is made");
         }
@@ -207,7 +210,7 @@ mod tests {
             let [x, y] = [(k * 13) % 60, (k * 7) % 30];
             followed.coverage[y * 60 + x] = 2.0 + k as f32;
             expected.coverage[y * 60 + x] = 2.0 + k as f32;
-            let (shown, changed) = ring.follow(&followed, 0..30);
+            let (shown, changed) = ring.follow(&followed, &[0..60, 0..30]);
             let at = |k: usize| k as u32..k as u32 + 1;
             assert_eq!(changed, Some([at(x), at(y)]));
             assert_eq!(*shown, expected);

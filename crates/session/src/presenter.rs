@@ -6,7 +6,6 @@ use crate::screen::Patch;
 use crate::tone::rectangle_to_screen;
 use crate::{DrawingCosts, Modelled, PictureTimes, Preview, PreviewKind, Quality, Tone};
 use lens::{Camera, Exposure, Picture};
-use std::ops::Range;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -27,8 +26,8 @@ pub(crate) struct Made<'a> {
 pub(crate) enum Relation {
     /// Nothing.
     New,
-    /// It differs from it in these rows at most.
-    Changed(Range<u32>),
+    /// It differs from it in this rectangle at most.
+    Changed(Rectangle),
     /// It is a better picture of the same, to be laid over it.
     Better,
 }
@@ -95,7 +94,7 @@ impl Presenter {
         let is_new = matches!(made.relation, Relation::New);
         let (picture, changed) = match made.relation {
             Relation::New => (self.pictures.begin(made.picture), Some(whole(made.picture))),
-            Relation::Changed(rows) => self.pictures.follow(made.picture, rows),
+            Relation::Changed(rectangle) => self.pictures.follow(made.picture, &rectangle),
             Relation::Better => self.pictures.overlay(made.picture),
         };
         self.last_id += 1;

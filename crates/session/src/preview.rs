@@ -17,8 +17,9 @@
 //! a newer wish makes useless is stopped. The last good picture is never taken away.
 
 use crate::field_watch::{FieldWatch, Standing};
-use crate::job::{JobProgress, Waker, own_threads};
+use crate::job::{JobProgress, Urgency, Waker, own_threads};
 use crate::light_field::{BakedField, Changes, LightField};
+use crate::light_field_maker::BAKE_SHARE;
 use crate::light_field_store::LightFieldStore;
 use crate::preview_worker::Worker;
 use crate::refinement::Refined;
@@ -29,7 +30,7 @@ use lens::{Camera, Picture};
 use progress::{Cancelled, Progress};
 use salf::Salf;
 use splat::Tolerance;
-use std::sync::atomic::{AtomicBool, AtomicU8, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU8, AtomicUsize, Ordering};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
@@ -198,6 +199,8 @@ pub(crate) struct Shared {
     /// Of the exact picture.
     pub refining: JobProgress,
     is_refining: AtomicBool,
+    /// Pictures that are being made for the user, which the exact one on screen waits for.
+    exports: AtomicUsize,
     activity: AtomicU8,
     helper: AtomicU8,
     /// The light field that the helper makes.
@@ -354,16 +357,27 @@ impl Shared {
         camera: &Camera,
         progress: &dyn Progress,
     ) -> Result<Option<Arc<Salf>>, Cancelled> {
+        // What is left of the bake when the wait begins.
+        let mut begun = None;
         loop {
             progress.check()?;
             match self.field.look(stage, camera, LOOK_EVERY) {
                 Standing::Made(salf) => return Ok(Some(salf)),
-                Standing::Underway => progress.report(self.progress.fraction()),
+                Standing::Underway => {
+                    let baked = self.progress.fraction() / BAKE_SHARE;
+                    let first = *begun.get_or_insert(baked);
+                    progress.report((baked - first) / (1.0 - first).max(f32::EPSILON));
+                }
                 // What the thread does now may end in making one.
                 Standing::Absent if self.is_at_work() => std::thread::sleep(LOOK_EVERY),
                 Standing::Absent => return Ok(None),
             }
         }
+    }
+
+    /// Whether a picture is being made that the user asked for.
+    pub fn is_exporting(&self) -> bool {
+        self.exports.load(Ordering::Relaxed) > 0
     }
 
     /// Whether there is anything to be done.
@@ -373,6 +387,27 @@ impl Shared {
             .into_iter()
             .all(|activity| PreviewActivity::load(activity) == PreviewActivity::Idle);
         wishes.is_posted || !idle
+    }
+}
+
+/// While there is one, a picture is being made that the user asked for: that comes first, and the exact picture on screen, which
+/// nobody asked for, after it.
+pub(crate) struct Exporting(Arc<Shared>);
+
+impl Exporting {
+    /// Begins.
+    pub fn new(shared: &Arc<Shared>) -> Self {
+        shared.exports.fetch_add(1, Ordering::Relaxed);
+        shared.refining.cancel();
+        Self(shared.clone())
+    }
+}
+
+impl Drop for Exporting {
+    fn drop(&mut self) {
+        self.0.exports.fetch_sub(1, Ordering::Relaxed);
+        // There is time again.
+        self.0.post(Stops::Nothing, |_| {});
     }
 }
 
@@ -397,13 +432,14 @@ impl PreviewThread {
             progress: JobProgress::default(),
             refining: JobProgress::default(),
             is_refining: AtomicBool::new(false),
+            exports: AtomicUsize::new(0),
             activity: AtomicU8::new(PreviewActivity::Idle as u8),
             helper: AtomicU8::new(PreviewActivity::Idle as u8),
             field: FieldWatch::default(),
             published: Mutex::default(),
             waker,
         });
-        let (theirs, pool) = (shared.clone(), own_threads()?);
+        let (theirs, pool) = (shared.clone(), own_threads(Urgency::Now)?);
         let thread = std::thread::Builder::new()
             .name("preview".into())
             .stack_size(16 << 20)

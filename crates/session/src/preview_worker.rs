@@ -251,7 +251,7 @@ impl Worker {
                 seconds: start.elapsed().as_secs_f64() + elsewhere,
                 modelled: fine.modelled(),
                 relation: match brought {
-                    Brought::Update(rows) if !is_new => Relation::Changed(rows),
+                    Brought::Update(rectangle) if !is_new => Relation::Changed(rectangle),
                     _ => Relation::New,
                 },
             });
@@ -313,7 +313,7 @@ impl Worker {
                 seconds: start.elapsed().as_secs_f64(),
                 modelled: coarse.modelled(),
                 relation: match brought {
-                    Brought::Update(rows) => Relation::Changed(rows),
+                    Brought::Update(rectangle) => Relation::Changed(rectangle),
                     _ => Relation::New,
                 },
             });
@@ -334,6 +334,7 @@ impl Worker {
         let field = self.fine.as_ref().zip(self.camera.as_ref());
         let is_up_to_date = field.is_some_and(|(fine, camera)| fine.is_up_to_date(camera));
         let is_quiet = !self.is_held && !self.is_painting && !self.maker.is_at_work();
+        let is_quiet = is_quiet && !self.shared.is_exporting();
         is_viewing && is_up_to_date && is_quiet && !self.refinement.is_at_work()
     }
 

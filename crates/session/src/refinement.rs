@@ -5,7 +5,7 @@
 //! what they moved is summed again.
 
 use crate::SessionError;
-use crate::job::{among_others, guarded};
+use crate::job::{Urgency, among_others, guarded};
 use crate::light_field::{Changes, LightField};
 use crate::preview::Shared;
 use focus::Focus;
@@ -83,7 +83,7 @@ impl Refinement {
         let theirs = shared.clone();
         let work = move || {
             let drawn = guarded("drawing the exact picture", || {
-                among_others(|| {
+                among_others(Urgency::Later, || {
                     let outcome = draw(&mut field, task, &theirs);
                     Ok((field, outcome))
                 })

@@ -57,15 +57,20 @@ impl SampleIndex {
     ///
     /// A lookup at p reads the texels whose centres lie within 1 of p in x and y: p's own and its neighbours.
     pub fn samples_reading(&self, texels: &[[u32; 2]]) -> Vec<u32> {
-        let mut read: HashMap<u32, u64> = HashMap::new();
+        // A dab's texels come tile by tile.
+        let mut own: HashMap<u32, u64> = HashMap::new();
+        let mut last = (u32::MAX, 0);
         for &[x, y] in texels {
-            for row in y.saturating_sub(1)..=(y + 1).min(self.size[1].max(1) - 1) {
-                for column in x.saturating_sub(1)..=(x + 1).min(self.size[0].max(1) - 1) {
-                    let (tile, bit) = place(column, row, self.tiles_across);
-                    *read.entry(tile).or_default() |= 1 << bit;
-                }
+            let (tile, bit) = place(x, y, self.tiles_across);
+            if tile != last.0 {
+                *own.entry(last.0).or_default() |= last.1;
+                last = (tile, 0);
             }
+            last.1 |= 1 << bit;
         }
+        *own.entry(last.0).or_default() |= last.1;
+        own.remove(&u32::MAX);
+        let read = self.with_neighbours(&own);
         let mut samples = Vec::new();
         for (tile, bits) in read {
             let entries = self.starts[tile as usize] as usize..self.starts[tile as usize + 1] as usize;
@@ -76,6 +81,39 @@ impl SampleIndex {
         samples
     }
 }
+
+impl SampleIndex {
+    /// The same texels, and all that touch one of them.
+    fn with_neighbours(&self, own: &HashMap<u32, u64>) -> HashMap<u32, u64> {
+        let [across, down] = self.size.map(|side| side.div_ceil(TILE).max(1));
+        let mut read: HashMap<u32, u64> = HashMap::with_capacity(own.len() + own.len() / 2);
+        for (&tile, &bits) in own {
+            // Wider within the tile, and what of that goes over into the tiles on its left and right.
+            let wide = bits | (bits & !LAST_COLUMN) << 1 | (bits & !FIRST_COLUMN) >> 1;
+            let left = (bits & FIRST_COLUMN) << (TILE - 1);
+            let right = (bits & LAST_COLUMN) >> (TILE - 1);
+            let [column, row] = [tile % across, tile / across];
+            for (step, bits) in [(-1, left), (0, wide), (1, right)] {
+                let Some(column) = column.checked_add_signed(step).filter(|column| *column < across) else {
+                    continue;
+                };
+                let high = bits | bits << TILE | bits >> TILE;
+                let (above, below) = (bits << (TILE * (TILE - 1)), bits >> (TILE * (TILE - 1)));
+                for (step, bits) in [(-1, above), (0, high), (1, below)] {
+                    let row = row.checked_add_signed(step).filter(|row| *row < down && bits != 0);
+                    if let Some(row) = row {
+                        *read.entry(row * across + column).or_default() |= bits;
+                    }
+                }
+            }
+        }
+        read
+    }
+}
+
+/// The texels of a tile's first and last columns.
+const FIRST_COLUMN: u64 = 0x0101_0101_0101_0101;
+const LAST_COLUMN: u64 = FIRST_COLUMN << (TILE - 1);
 
 /// The tile of a texel, and its bit in it.
 fn place(x: u32, y: u32, tiles_across: u32) -> (u32, u8) {

@@ -4,7 +4,8 @@ mod tiny_glb;
 
 use lens::{FocusOffset, Picture};
 use session::{
-    CameraEdit, Command, Event, FillRegion, LightFieldStore, Preview, Quality, Session, SessionOptions,
+    CameraEdit, Command, Event, FillRegion, FullSize, LightFieldStore, Preview, Quality, Session,
+    SessionOptions,
 };
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -101,4 +102,39 @@ fn a_scene_that_was_baked_once_is_not_baked_again() {
     drop(session);
     std::fs::write(&files[0], b"FBSALF").unwrap();
     assert!(fine(&mut opened(&scene, &store)) == picture);
+}
+
+#[test]
+fn an_export_takes_the_light_field_that_is_being_made() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = folder.path().join("quads.glb");
+    tiny_glb::write(&scene);
+    let options = SessionOptions {
+        preview_size: 240,
+        keep_after: Duration::from_secs(3600),
+        ..SessionOptions::default()
+    };
+    let mut session = Session::new(options).unwrap();
+    session.apply(Command::Open(scene)).unwrap();
+    wait(&mut session, "a document", |session| session.document().is_some());
+    session.apply(Command::Camera(CameraEdit::Size(240, 160))).unwrap();
+    assert_eq!(session.full_size(), FullSize::Underway);
+    let path = folder.path().join("picture.png");
+    session.apply(Command::ExportPicture(path.clone())).unwrap();
+    let mut steps = std::collections::BTreeSet::new();
+    let start = Instant::now();
+    while !path.exists() {
+        assert!(start.elapsed() < PATIENCE, "it is never written");
+        let rendering = session.jobs().into_iter().filter(|job| job.label.starts_with("rendering"));
+        steps.extend(rendering.map(|job| job.step));
+        for event in session.poll() {
+            assert!(!matches!(event, Event::Failed(_)), "{event:?}");
+        }
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    assert!(steps.contains("baking the live picture") && !steps.contains("baking"), "{steps:?}");
+    fine(&mut session);
+    assert_eq!(session.full_size(), FullSize::Ready);
+    session.apply(Command::Camera(CameraEdit::Size(480, 320))).unwrap();
+    assert_eq!(session.full_size(), FullSize::Missing, "the live picture is smaller");
 }

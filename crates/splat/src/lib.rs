@@ -3,7 +3,7 @@
 //! ```text
 //! let mut splatter = Splatter::new(salf);             // once a bake
 //! splatter.render(&camera, &focus, progress)?;        // the whole picture: first, or the lens has changed
-//! let rows = splatter.update(&focus, &changed)?;      // painted: subtract and add
+//! let window = splatter.update(&focus, &changed)?;      // painted: subtract and add
 //! let picture = splatter.picture();
 //! ```
 //!

@@ -296,14 +296,15 @@ impl Splatter {
         Ok(self.sums.set(&scene, &mut self.lists, progress)?)
     }
 
-    /// Moves the given samples to where `focus` now sends them. Returns the rows of the picture that changed.
+    /// Moves the given samples to where `focus` now sends them. Returns the rows and columns of the picture outside of which
+    /// nothing changed.
     ///
     /// Equal, bit for bit, to a render from scratch. Cost grows with the number of samples and the size of their splats.
     pub fn update(
         &mut self,
         focus: &dyn SurfaceField<FocusOffset>,
         samples: &[u32],
-    ) -> Result<Range<u32>, SplatError> {
+    ) -> Result<[Range<u32>; 2], SplatError> {
         let nodes = self.nodes.as_ref().ok_or(SplatError::Overflow)?;
         assert_eq!(self.paint.blocks.len(), nodes.blocks.len(), "update follows a render");
         let mut leaves: Vec<u32> =
@@ -326,9 +327,8 @@ impl Splatter {
         if was_evened != self.is_evened() {
             window = self.frame();
         }
-        let rows = window[0].clone();
-        match self.change(&changes, window) {
-            Ok(()) => Ok(rows),
+        match self.change(&changes, window.clone()) {
+            Ok(()) => Ok(window),
             Err(SplatError::Overflow) => self.sum_again(),
             Err(_) if self.drop_lost_card() => self.sum_again(),
             Err(other) => Err(other),
@@ -365,9 +365,9 @@ impl Splatter {
     }
 
     /// Sums all with the paint as it is.
-    fn sum_again(&mut self) -> Result<Range<u32>, SplatError> {
+    fn sum_again(&mut self) -> Result<[Range<u32>; 2], SplatError> {
         self.sum(&progress::Unwatched)?;
-        Ok(0..self.salf.camera.height)
+        Ok(self.frame())
     }
 
     /// Integrates the sums in some rows and columns; on a card in whole rows.

@@ -4,7 +4,7 @@ use super::changed_pixels::changed_pixels;
 use super::{
     FocusTexture, GraphicsError, OrbitCamera, Stale, SurfaceFrame, SurfaceLook, SurfaceMesh, SurfaceRenderer,
 };
-use crate::window::blit::{Blitter, Drawable, Filter};
+use crate::window::blit::{self, Blitter, Drawable, Filter};
 use crate::window::brush_ring;
 use crate::window::drag_tool::DragView;
 use crate::window::hand::Hand;
@@ -312,8 +312,8 @@ impl PaintView {
             return;
         };
         let scale = ui.ctx().pixels_per_point();
-        self.size =
-            [self.rect.width(), self.rect.height()].map(|side| (side * scale).round().max(1.0) as u32);
+        let image = blit::on_pixels(self.rect, scale);
+        self.size = [image.width(), image.height()].map(|side| (side * scale).round().max(1.0) as u32);
         let shown = SurfaceFrame { view: &self.camera, shot: &document.camera, look, size: self.size };
         match renderer.draw(mesh, focus, shown, std::mem::take(&mut self.stale)) {
             Ok(new_texture) => {
@@ -330,7 +330,9 @@ impl PaintView {
             }
         }
         if let Some(drawn) = &self.drawn {
-            blitter.paint(&ui.painter_at(self.rect), drawn, self.rect, Filter::Linear);
+            // Pixel by pixel, unless several are drawn for one.
+            let filter = if drawn.size() == self.size { Filter::Nearest } else { Filter::Linear };
+            blitter.paint(&ui.painter_at(self.rect), drawn, image, filter);
         }
     }
 

@@ -156,7 +156,8 @@ impl Panes for Contents<'_> {
         if ui.rect_contains_pointer(ui.max_rect()) {
             *self.pointed = pane;
         }
-        if pane.is_foldable() {
+        // Nothing but the window is beneath a panel that does not float, in the same colour.
+        if pane.is_foldable() && docked == Docked::Floats {
             ui.painter().rect_filled(ui.max_rect(), 0.0, ui.visuals().panel_fill);
         }
         let spacing = std::mem::take(&mut ui.spacing_mut().item_spacing.y);

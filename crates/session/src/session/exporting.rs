@@ -3,7 +3,7 @@
 use super::{Outcome, Session};
 use crate::error::file_name;
 use crate::light_field::serves;
-use crate::preview::Shared;
+use crate::preview::{Exporting, Shared};
 use crate::reach::Reach;
 use crate::render::{RenderOptions, Rendered, bake, sum_light_field};
 use crate::steps::JobSteps;
@@ -130,7 +130,9 @@ impl Session {
         let (stage, camera) = (document.stage.clone(), document.camera.clone());
         let focus = Focus::painted(stage.scene.clone(), stage.atlas.clone(), Arc::new(document.map.clone()));
         let at_hand = self.at_hand(stage);
+        let exporting = Exporting::new(&at_hand.preview);
         self.start(format!("rendering {}", file_name(&path)), move |progress| {
+            let _until_written = exporting;
             let options = RenderOptions { aovs: vec![Aov::Coverage], ..RenderOptions::default() };
             let rendered = at_hand.render(&camera, &focus, &options, &JobSteps { progress })?;
             write_shown(&path, &rendered.picture, &rendered.layers, tone)?;

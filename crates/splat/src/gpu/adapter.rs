@@ -65,6 +65,13 @@ pub fn adapters() -> Vec<AdapterDescription> {
 }
 
 impl Gpu {
+    /// Whether the machine may have a card at all. Where it has none, drivers need not be woken, which takes a while and lets
+    /// some of them complain on stderr.
+    pub fn may_be_there() -> bool {
+        let devices = ["/dev/dri", "/dev/nvidiactl", "/dev/kfd", "/dev/dxg"];
+        !cfg!(target_os = "linux") || devices.iter().any(|device| std::path::Path::new(device).exists())
+    }
+
     /// The card that `choice` wants; none where that is the processor. With `named` only adapters count whose name
     /// contains it, and then also those in software.
     ///
@@ -75,7 +82,7 @@ impl Gpu {
             return Ok(None);
         }
         let is_asked_for = choice == BackendChoice::Gpu || named.is_some();
-        if !is_asked_for && !may_have_card() {
+        if !is_asked_for && !Self::may_be_there() {
             return Ok(None);
         }
         let Some(adapter) = ranked(&instance(), named).into_iter().next() else {
@@ -94,13 +101,6 @@ impl Gpu {
             Err(_) => Ok(None),
         }
     }
-}
-
-/// Whether the machine may have a card at all. Where it has none, drivers need not be woken, which takes a while and lets
-/// some of them complain on stderr.
-fn may_have_card() -> bool {
-    let devices = ["/dev/dri", "/dev/nvidiactl", "/dev/kfd", "/dev/dxg"];
-    !cfg!(target_os = "linux") || devices.iter().any(|device| std::path::Path::new(device).exists())
 }
 
 /// Without OpenGL: asking for it makes drivers chatter on stderr.

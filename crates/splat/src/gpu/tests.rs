@@ -286,8 +286,8 @@ fn strokes_on_the_card_equal_renders_from_scratch() {
         for &index in &changed {
             focus.0[index as usize] = FocusOffset::new(0.95 + 0.02 * round as f64, 0.5);
         }
-        let rows = here.update(&focus, &changed).unwrap();
-        assert_eq!(there.update(&focus, &changed).unwrap(), rows);
+        let window = here.update(&focus, &changed).unwrap();
+        assert_eq!(there.update(&focus, &changed).unwrap(), window);
         assert_eq!(differing(here.picture(), there.picture()), 0, "round {round}");
     }
     let fresh = hard.rendered(salf, &focus, Some(gpu));

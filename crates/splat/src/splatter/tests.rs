@@ -97,10 +97,11 @@ fn without_evening_the_first_dab_changes_what_it_moves_and_nothing_else() {
     let dab: Vec<u32> =
         (0..5).flat_map(|row| (0..5).map(move |column| (40 + row) * 96 + 40 + column)).collect();
     dab.iter().for_each(|&index| focus.0[index as usize] = FocusOffset::new(1.01, 0.5));
-    let rows = splatter.update(&focus, &dab).unwrap();
-    assert!(rows.len() < 40, "{rows:?}");
-    for (at, (now, before)) in splatter.picture().radiance.iter().zip(&blank.radiance).enumerate() {
-        assert!(now == before || rows.contains(&(at as u32 / 96)), "row {}", at / 96);
+    let [rows, columns] = splatter.update(&focus, &dab).unwrap();
+    assert!(rows.len() < 40 && columns.len() < 40, "{rows:?} {columns:?}");
+    for (at, (now, before)) in (0u32..).zip(splatter.picture().radiance.iter().zip(&blank.radiance)) {
+        let is_inside = rows.contains(&(at / 96)) && columns.contains(&(at % 96));
+        assert!(now == before || is_inside, "row {}, column {}", at / 96, at % 96);
     }
     let mut fresh = uneven();
     fresh.render(&camera(), &focus, &Unwatched).unwrap();

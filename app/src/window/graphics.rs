@@ -1,0 +1,51 @@
+//! The device that the window is drawn with.
+
+use std::sync::Arc;
+
+/// A device with the adapter's own limits of texture and buffer size: atlases and scenes are larger than the defaults.
+pub fn graphics() -> egui_wgpu::WgpuConfiguration {
+    #[cfg(target_os = "linux")]
+    if let Some(existing) = behind_the_sums() {
+        return egui_wgpu::WgpuConfiguration { wgpu_setup: existing.into(), ..Default::default() };
+    }
+    let mut setup = egui_wgpu::WgpuSetupCreateNew::without_display_handle();
+    setup.device_descriptor = Arc::new(descriptor);
+    egui_wgpu::WgpuConfiguration { wgpu_setup: setup.into(), ..Default::default() }
+}
+
+fn descriptor(adapter: &wgpu::Adapter) -> wgpu::DeviceDescriptor<'static> {
+    let mut limits = adapter.limits();
+    if adapter.get_info().backend != wgpu::Backend::Gl {
+        let own = limits.clone();
+        limits = wgpu::Limits::default();
+        limits.max_texture_dimension_2d = own.max_texture_dimension_2d;
+        limits.max_buffer_size = own.max_buffer_size;
+    }
+    wgpu::DeviceDescriptor { label: Some("focus-brush"), required_limits: limits, ..Default::default() }
+}
+
+/// By how much the threads of an adapter in software stand back behind those that sum pictures.
+#[cfg(target_os = "linux")]
+const STANDS_BACK: i32 = 5;
+
+/// A device of an adapter in software, if the machine has no graphics card: its threads stand back, so that what is painted
+/// is summed first and drawn then. Threads inherit that from the one that makes the device.
+#[cfg(target_os = "linux")]
+fn behind_the_sums() -> Option<egui_wgpu::WgpuSetupExisting> {
+    if splat::Gpu::may_be_there() {
+        return None;
+    }
+    let make = || {
+        let setup = egui_wgpu::WgpuSetupCreateNew::without_display_handle();
+        let backends = setup.instance_descriptor.backends;
+        let instance = wgpu::Instance::new(setup.instance_descriptor);
+        let adapters = pollster::block_on(instance.enumerate_adapters(backends));
+        let is_software = |adapter: &wgpu::Adapter| adapter.get_info().device_type == wgpu::DeviceType::Cpu;
+        let adapter = adapters.into_iter().find(is_software)?;
+        rustix::process::nice(STANDS_BACK).ok()?;
+        let (device, queue) = pollster::block_on(adapter.request_device(&descriptor(&adapter))).ok()?;
+        Some(egui_wgpu::WgpuSetupExisting { instance, adapter, device, queue })
+    };
+    let thread = std::thread::Builder::new().name("graphics".into()).spawn(make);
+    thread.ok()?.join().ok()?
+}
