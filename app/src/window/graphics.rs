@@ -24,7 +24,7 @@ fn descriptor(adapter: &wgpu::Adapter) -> wgpu::DeviceDescriptor<'static> {
     wgpu::DeviceDescriptor { label: Some("focus-brush"), required_limits: limits, ..Default::default() }
 }
 
-/// By how much the threads of an adapter in software stand back behind those that sum pictures.
+/// By how much the threads of an adapter in software stand back behind those that sum pictures: as far as work that has time.
 #[cfg(target_os = "linux")]
 const STANDS_BACK: i32 = 5;
 

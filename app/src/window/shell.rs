@@ -370,9 +370,9 @@ impl eframe::App for Shell {
         self.answer_questions(&context);
         self.toasts.show(&context);
         self.perform(actions, &context);
-        // While work goes on, its progress is shown four times a second.
+        // While work goes on, its progress is shown twice a second.
         if !self.session.jobs().is_empty() || self.session.drawing_exactly().is_some() {
-            context.request_repaint_after_secs(0.25);
+            context.request_repaint_after_secs(0.5);
         }
     }
 

@@ -164,13 +164,13 @@ impl Job {
 pub(crate) enum Urgency {
     /// Somebody looks on.
     Now,
-    /// When there is time: it stands back behind the pictures that one paints on, and the drawing of the window.
+    /// When there is time: it stands back behind the pictures that one paints on.
     Later,
 }
 
 /// By how much the threads of work that has time stand back.
 #[cfg(target_os = "linux")]
-const STANDS_BACK: i32 = 10;
+const STANDS_BACK: i32 = 5;
 
 impl Urgency {
     /// Says so to the system, for the thread that calls.
