@@ -1,13 +1,13 @@
 //! What partly occluded samples see of the aperture, coded: about 4 bytes for 8 × 8 or 16 × 16 cells.
 //!
 //! The cells of one sample resemble each other, and those of the sample before it, whose occluder is the same as a rule. So
-//! each cell is foretold from six that were coded before it and five around its place in the sample before: for each of
-//! these patterns it is counted how often a cell was seen (as in JBIG, ITU-T T.82), and an arithmetic coder spends as few
-//! bits on a cell as it was certain. Counts begin anew with every chunk of samples, which can so be read alone.
+//! of each row it is told whether it is that of the sample before; if not, each cell is foretold from six that were coded
+//! before it and five around its place in the sample before: for each of these patterns it is counted how often a cell was
+//! seen (as in JBIG, ITU-T T.82), and an arithmetic coder spends as few bits on a cell as it was certain. Counts begin anew with every chunk of samples, which can so be read alone.
 
 use crate::sample::Visibility;
 
-/// How likely a cell is hidden, as far as is known.
+/// How likely a bit is 0 (a cell is hidden), as far as is known.
 #[derive(Clone, Copy)]
 struct Chance {
     /// In 1/65536.
@@ -46,19 +46,28 @@ impl Chance {
 /// Patterns that foretell a cell: 11 bits, for 8 and for 16 cells a side.
 const PATTERNS: usize = 1 << 12;
 
+/// What foretells that a row is that of the sample before: whether the three rows above it were, for either side.
+const ROW_PATTERNS: usize = 1 << 4;
+
 /// What was learned of the cells so far.
 struct Model {
-    chances: Box<[Chance; PATTERNS]>,
+    cells: Box<[Chance; PATTERNS]>,
+    rows: [Chance; ROW_PATTERNS],
     /// The last field of 8 and that of 16 cells a side, row by row.
     last: [[u16; 16]; 2],
 }
 
 impl Model {
     fn new() -> Self {
-        Self { chances: Box::new([Chance::EVEN; PATTERNS]), last: [[u16::MAX; 16]; 2] }
+        Self {
+            cells: Box::new([Chance::EVEN; PATTERNS]),
+            rows: [Chance::EVEN; ROW_PATTERNS],
+            last: [[u16::MAX; 16]; 2],
+        }
     }
 
-    /// Goes through the cells of a field: `code` is given how likely each is and what it is, and tells what it is.
+    /// Goes through the rows and cells of a field: `code` is given how likely each bit is and what it is, and tells what it
+    /// is.
     #[inline(always)]
     fn pass(&mut self, rows: &mut [u16; 16], side: usize, mut code: impl FnMut(&mut Chance, bool) -> bool) {
         // A row with two cells more on either side, like its outermost ones.
@@ -69,7 +78,17 @@ impl Model {
         let is_fine = usize::from(side == 16);
         let last = self.last[is_fine].map(padded);
         let [mut above, mut two_above] = [last[0]; 2];
+        let mut alike = 0;
         for r in 0..side {
+            let chance = &mut self.rows[alike | is_fine << 3];
+            let is_alike = code(chance, padded(rows[r]) == last[r]);
+            chance.learn(is_alike);
+            alike = (alike << 1 | usize::from(is_alike)) & 7;
+            if is_alike {
+                rows[r] = (last[r] >> 2 & ((1 << side) - 1)) as u16;
+                (two_above, above) = (above, last[r]);
+                continue;
+            }
             let [before, below] = [last[r.saturating_sub(1)], last[(r + 1).min(side - 1)]];
             let mut row = last[r] & 3;
             for c in 0..side {
@@ -79,7 +98,7 @@ impl Model {
                     | (last[r] >> (c + 1) & 7) << 6
                     | (before >> (c + 2) & 1) << 9
                     | (below >> (c + 2) & 1) << 10;
-                let chance = &mut self.chances[pattern as usize | is_fine << 11];
+                let chance = &mut self.cells[pattern as usize | is_fine << 11];
                 let is_seen = code(chance, rows[r] >> c & 1 == 1);
                 chance.learn(is_seen);
                 row |= u32::from(is_seen) << (c + 2);
@@ -240,8 +259,10 @@ mod tests {
     fn fields_come_back_bit_for_bit_and_take_few_bytes() {
         for count in [1, 2, 3, 40, 4000] {
             let mut fields: Vec<_> = (0..count).map(field).collect();
-            fields.push([0u64; 4].into());
-            fields.push([u64::MAX; 4].into());
+            let even: [Box<[u64]>; 4] =
+                [[0; 1].into(), [u64::MAX; 1].into(), [0; 4].into(), [u64::MAX; 4].into()];
+            fields.extend(even.clone());
+            fields.splice(0..0, even.into_iter().rev());
             let codes = codes_of(&fields);
             let mut reader = MaskReader::new(&codes);
             for words in &fields {
