@@ -6,7 +6,8 @@
 //!
 //! ```text
 //!                  coarse (a quarter of the size)         fine (the preview's size)
-//! scene, pose …    baked at once, after a pinhole        baked on a helper thread
+//! scene, pose …    baked at once, after a pinhole and,   baked on a helper thread
+//!                  if large, a rough one
 //! lens             summed at once                        summed on a helper thread, if it takes long
 //! paint            updated until the fine one is there   updated
 //! ```

@@ -19,6 +19,9 @@ use std::time::{Duration, Instant};
 /// Sides of the coarse picture are this share of the preview's: a sixteenth of the work.
 const COARSE: f64 = 1.0 / 4.0;
 
+/// Where the coarse picture has more than twice as many pixels, one of so many comes before it: about a second's work.
+const ROUGH_PIXELS: f64 = 20_000.0;
+
 /// Below this longest side, px, a picture is quick enough to need no coarse one.
 const SMALLEST_COARSE: u32 = 48;
 
@@ -288,26 +291,34 @@ impl Worker {
         Ok(())
     }
 
-    /// The picture of few pixels.
+    /// Pictures of few pixels, each of more than the one before; begins with the best that need not be baked, and ends there
+    /// while a stroke waits for more.
     fn show_coarse(&mut self, stage: &Stage, camera: &Camera, focus: &Focus) -> Result<(), SessionError> {
-        let Some(small) = coarse_of(camera) else { return Ok(()) };
-        self.coarse.take_if(|coarse| !coarse.serves(&small));
+        let sizes = coarse_of(camera);
+        let serves = |small: &Camera| self.coarse.as_ref().is_some_and(|coarse| coarse.serves(small));
+        let first = sizes.iter().rposition(serves).unwrap_or(0);
+        let count = if self.is_painting { 1 } else { sizes.len() };
+        sizes[first..].iter().take(count).try_for_each(|small| self.show_small(stage, small, focus))
+    }
+
+    fn show_small(&mut self, stage: &Stage, small: &Camera, focus: &Focus) -> Result<(), SessionError> {
+        self.coarse.take_if(|coarse| !coarse.serves(small));
         let coarse = match &mut self.coarse {
             Some(coarse) => coarse,
             None => {
                 self.shared.begin(PreviewActivity::RoughBaking)?;
                 let how = FieldOptions { least_margin_px: 0.0, tolerance: self.tolerance };
-                self.coarse.insert(LightField::bake(stage, &small, focus, how, &self.shared.quick)?)
+                self.coarse.insert(LightField::bake(stage, small, focus, how, &self.shared.quick)?)
             }
         };
         self.shared.begin(PreviewActivity::Splatting)?;
         let start = Instant::now();
-        let brought = coarse.bring_up(&small, focus, &self.shared.quick)?;
-        let is_another = self.presenter.shown().is_none_or(|shown| shown.camera != small);
+        let brought = coarse.bring_up(small, focus, &self.shared.quick)?;
+        let is_another = self.presenter.shown().is_none_or(|shown| shown.camera != *small);
         if brought != Brought::Nothing || is_another {
             self.presenter.show(Made {
                 picture: coarse.picture(),
-                camera: &small,
+                camera: small,
                 kind: PreviewKind::from(&brought),
                 quality: Quality::Coarse,
                 seconds: start.elapsed().as_secs_f64(),
@@ -377,15 +388,42 @@ impl Worker {
     }
 }
 
-/// The camera of the coarse picture; none where the picture is small anyway.
-fn coarse_of(camera: &Camera) -> Option<Camera> {
-    let scaled = |side: u32| ((side as f64 * COARSE).round() as u32).max(1);
-    let (width, height) = (scaled(camera.width), scaled(camera.height));
-    (width.max(height) >= SMALLEST_COARSE).then(|| Camera { width, height, ..camera.clone() })
+/// The cameras of coarse pictures, the roughest first; none where the picture is small anyway.
+fn coarse_of(camera: &Camera) -> Vec<Camera> {
+    let scaled = |share: f64| {
+        let [width, height] =
+            [camera.width, camera.height].map(|side| ((f64::from(side) * share).round() as u32).max(1));
+        Camera { width, height, ..camera.clone() }
+    };
+    let coarse = scaled(COARSE);
+    if coarse.width.max(coarse.height) < SMALLEST_COARSE {
+        return Vec::new();
+    }
+    let pixels = f64::from(coarse.width) * f64::from(coarse.height);
+    let rough = (pixels > 2.0 * ROUGH_PIXELS).then(|| scaled(COARSE * (ROUGH_PIXELS / pixels).sqrt()));
+    rough.into_iter().chain([coarse]).collect()
 }
 
 /// Whether the two show the same view, whatever their lens and size.
 fn same_view(a: &Camera, b: &Camera) -> bool {
     (a.yfov, a.camera_to_world) == (b.yfov, b.camera_to_world)
         && (a.aspect() - b.aspect()).abs() < 0.1 * b.aspect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn coarse_pictures_are_few_and_grow() {
+        let sizes = |width, height| {
+            let camera = Camera { width, height, ..Camera::default() };
+            let sizes: Vec<_> = coarse_of(&camera).iter().map(|small| [small.width, small.height]).collect();
+            sizes
+        };
+        assert!(sizes(120, 90).is_empty());
+        assert_eq!(sizes(640, 360), [[160, 90]]);
+        assert_eq!(sizes(1920, 1080), [[189, 106], [480, 270]]);
+        assert_eq!(sizes(16384, 1), [[4096, 1]]);
+    }
 }
