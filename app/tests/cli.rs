@@ -272,6 +272,9 @@ fn a_light_field_renders_as_its_scene_does() {
     assert!(texels("exist") > texels("visible") && texels("partly occluded") > 0, "{baked:?}");
     assert_eq!(texels("open") + texels("partly occluded"), texels("visible"));
     assert!(place.done("info quads.glb --bake").contains("dense form"));
+    place.fails("render quads.salf --cells 2 -o x.exr", 3, &["quads.salf", "--cells"]);
+    let exact = place.json("render quads.salf --tolerance 0 -o x.exr --json");
+    assert_eq!(exact["cells_a_side"].as_u64(), Some(1));
     place.fails("render quads.salf --size 10x10 -o x.exr", 3, &["quads.salf", "96 × 64"]);
     let mut bytes = std::fs::read(place.path("quads.salf")).unwrap();
     let middle = bytes.len() / 2;

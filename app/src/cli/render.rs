@@ -29,7 +29,14 @@ pub fn run(arguments: &RenderArguments, console: &Console) -> Result<(), Failure
     let open_seconds = start.elapsed().as_secs_f64();
 
     let usual = arguments.tolerance.map_or_else(RenderOptions::default, RenderOptions::at_tolerance);
-    let cells_a_side = arguments.cells.unwrap_or(usual.cells_a_side);
+    let cells_a_side = match (&input.salf, arguments.cells) {
+        (Some(_), Some(cells)) if cells > 1 => {
+            let what = "is baked already, a cell a pixel (leave out --cells, or give the scene or project)";
+            return Err(Failure::bad(format!("{}: {what}", arguments.file.display())));
+        }
+        (Some(_), _) => 1,
+        (None, cells) => cells.unwrap_or(usual.cells_a_side),
+    };
     let options = RenderOptions {
         cells_a_side,
         gpu,
