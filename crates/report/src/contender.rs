@@ -5,7 +5,7 @@ use baselines::scatter;
 use focus::Focus;
 use lens::{Camera, Picture};
 use salf::Salf;
-use session::{RenderOptions, Renderer, SessionError, Steps, bake, render};
+use session::{RenderOptions, Renderer, SessionError, Steps, render};
 use splat::Splatter;
 use std::sync::Arc;
 use trace::Tracer;
@@ -226,9 +226,7 @@ fn light_field(
     options: &RenderOptions,
     steps: &dyn Steps,
 ) -> Result<(f64, Arc<Salf>), SessionError> {
-    let camera = options.baked_camera(shot.camera)?;
-    let tolerance_px = options.tolerance_px * f64::from(options.cells_a_side);
-    let baked = timed(|| bake(shot.tracer, &camera, shot.focus, tolerance_px, steps))?;
+    let baked = timed(|| options.bake(shot.tracer, shot.camera, shot.focus, steps))?;
     Ok((baked.seconds, Arc::new(baked.value)))
 }
 

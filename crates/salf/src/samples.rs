@@ -14,17 +14,17 @@ mod masks;
 mod numbers;
 mod pack;
 mod record;
+mod run;
 
 use crate::sample::{Sample, Visibility};
-use glam::{DVec2, IVec2, Vec2};
+use glam::IVec2;
 use half::f16;
-use masks::MaskReader;
 pub(crate) use pack::{Found, Packer, block_corner};
 use rayon::prelude::*;
-use record::{Kind, Shape};
+use record::Shape;
 pub(crate) use record::{Patch, Record};
+pub use run::{Addresses, Run, Spot};
 use scene::SurfacePoint;
-use std::ops::Range;
 
 /// The samples of a light field, numbered from 0.
 ///
@@ -95,26 +95,6 @@ impl Plane {
     }
 }
 
-/// Where a sample is: in the picture, in depth and on the surface.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Spot {
-    /// See [`Sample::center`].
-    pub center: Vec2,
-    /// See [`Sample::inverse_depth`].
-    pub inverse_depth: f32,
-    /// See [`Sample::surface`].
-    pub surface: Option<SurfacePoint>,
-}
-
-/// Samples that follow each other: of one block of the picture, or those that are not packed.
-#[derive(Clone, Debug)]
-pub struct Run<'a> {
-    samples: &'a Samples,
-    chunk: Option<usize>,
-    /// The numbers of its samples.
-    pub indices: Range<u32>,
-}
-
 /// No block lies farther from the frame's corner, px.
 const FARTHEST: i32 = 1 << 20;
 
@@ -172,25 +152,12 @@ impl Samples {
 
     /// A sample. What others its visibility was coded with are decoded, too: for many samples ask for their runs.
     pub fn get(&self, index: u32) -> Sample {
-        let run = self.run(self.run_of(index));
-        if run.chunk.is_none() {
-            return self.loose[index as usize - self.records.len()].clone();
-        }
-        let place = (index - run.indices.start) as usize;
-        run.iter().nth(place).expect("the run that holds it")
+        self.run(self.run_of(index)).sample(index).expect("the run that holds it")
     }
 
     /// Where a sample is.
     pub fn spot(&self, index: u32) -> Spot {
-        let run = self.run(self.run_of(index));
-        let Some(chunk) = run.chunk else {
-            return Spot::of(&self.loose[index as usize - self.records.len()]);
-        };
-        let mut decoder = Decoder::new(self, chunk);
-        self.records[run.indices.start as usize..index as usize]
-            .iter()
-            .for_each(|record| decoder.pass(record));
-        decoder.spot(&self.records[index as usize])
+        self.run(self.run_of(index)).spot(index).expect("the run that holds it")
     }
 
     /// The surface addresses of samples.
@@ -370,313 +337,5 @@ impl Chunk {
     }
 }
 
-impl Spot {
-    fn of(sample: &Sample) -> Self {
-        Self { center: sample.center, inverse_depth: sample.inverse_depth, surface: sample.surface }
-    }
-}
-
-/// Looks up surface addresses, quickly where one sample is of the same block as the one before.
-pub struct Addresses<'a> {
-    samples: &'a Samples,
-    run: Option<Run<'a>>,
-}
-
-impl Addresses<'_> {
-    /// The surface address of a sample; `None` for the background.
-    #[inline]
-    pub fn of(&mut self, index: u32) -> Option<SurfacePoint> {
-        let samples = self.samples;
-        let Some(record) = samples.records.get(index as usize) else {
-            return samples.loose[index as usize - samples.records.len()].surface;
-        };
-        let run = match &self.run {
-            Some(run) if run.indices.contains(&index) => run,
-            _ => self.run.insert(samples.run(samples.run_of(index))),
-        };
-        samples.surface_of(run.chunk?, record)
-    }
-}
-
-impl<'a> Run<'a> {
-    /// A pixel of its block; `None` if its samples lie anywhere.
-    pub(crate) fn block(&self) -> Option<IVec2> {
-        self.chunk.map(|chunk| self.samples.chunks[chunk].corner)
-    }
-
-    /// Its samples, in order.
-    pub fn samples(&self) -> Vec<Sample> {
-        self.iter().collect()
-    }
-
-    /// Where its samples are, in order; what they see is not decoded.
-    pub fn spots(&self) -> impl Iterator<Item = Spot> + use<'a> {
-        let mut decoder = self.chunk.map(|chunk| Decoder::new(self.samples, chunk));
-        let loose = if decoder.is_some() { &[] } else { self.loose() };
-        let records = if decoder.is_some() { self.records() } else { &[] };
-        let packed = records.iter().filter_map(move |record| {
-            let decoder = decoder.as_mut()?;
-            let spot = decoder.spot(record);
-            decoder.pass(record);
-            Some(spot)
-        });
-        packed.chain(loose.iter().map(Spot::of))
-    }
-
-    fn iter(&self) -> impl Iterator<Item = Sample> + use<'a> {
-        let mut decoder =
-            self.chunk.map(|chunk| (Decoder::new(self.samples, chunk), self.samples.masks(chunk)));
-        let loose = if decoder.is_some() { &[] } else { self.loose() };
-        let records = if decoder.is_some() { self.records() } else { &[] };
-        let packed = records.iter().filter_map(move |record| {
-            let (decoder, masks) = decoder.as_mut()?;
-            let visibility = match record.kind().cells {
-                None => Visibility::Open,
-                Some(side) => Visibility::Cells { words: masks.read(side.into()) },
-            };
-            let sample = decoder.sample(record, visibility);
-            decoder.pass(record);
-            Some(sample)
-        });
-        packed.chain(loose.iter().cloned())
-    }
-
-    fn records(&self) -> &'a [Record] {
-        &self.samples.records[self.indices.start as usize..self.indices.end as usize]
-    }
-
-    fn loose(&self) -> &'a [Sample] {
-        let first = self.samples.records.len();
-        &self.samples.loose[self.indices.start as usize - first..self.indices.end as usize - first]
-    }
-}
-
-impl Samples {
-    fn masks(&self, chunk: usize) -> MaskReader<'_> {
-        let [start, end] = [chunk, chunk + 1].map(|chunk| self.starts(chunk).codes as usize);
-        MaskReader::new(&self.codes[start..end])
-    }
-}
-
-/// Unpacks the records of a chunk, one after the other.
-struct Decoder<'a> {
-    samples: &'a Samples,
-    chunk: usize,
-    /// Where the next record finds what is told beside it.
-    rays: usize,
-    patches: usize,
-}
-
-impl<'a> Decoder<'a> {
-    fn new(samples: &'a Samples, chunk: usize) -> Self {
-        let Starts { rays, patches, .. } = samples.chunks[chunk].starts;
-        Self { samples, chunk, rays: rays as usize, patches: patches as usize }
-    }
-
-    /// Goes on behind a record.
-    fn pass(&mut self, record: &Record) {
-        match record.kind().shape {
-            Shape::WholeCell => {}
-            Shape::PartOfCell => self.rays += 1,
-            Shape::Patch => self.patches += 1,
-        }
-    }
-
-    fn corner(&self) -> IVec2 {
-        self.samples.chunks[self.chunk].corner
-    }
-
-    /// Centre and half the sides of the footprint, and the scale of the weights.
-    fn footprint(&self, kind: Kind) -> [Vec2; 3] {
-        let of_cell = |rays: u16| {
-            let part = kind.cell(self.corner()).part(rays);
-            [part.center, part.half_size, DVec2::splat(part.weight)].map(|value| value.as_vec2())
-        };
-        match kind.shape {
-            Shape::WholeCell => of_cell(u16::MAX),
-            Shape::PartOfCell => of_cell(self.samples.rays[self.rays]),
-            Shape::Patch => {
-                let patch = &self.samples.patches[self.patches];
-                let center = (self.corner() + kind.pixel).as_vec2() + patch.fraction();
-                [center, patch.half_size(), Vec2::splat(patch.largest.get())]
-            }
-        }
-    }
-
-    fn spot(&self, record: &Record) -> Spot {
-        Spot {
-            center: self.footprint(record.kind())[0],
-            inverse_depth: record.inverse_depth.get(),
-            surface: self.samples.surface_of(self.chunk, record),
-        }
-    }
-
-    fn sample(&self, record: &Record, visibility: Visibility) -> Sample {
-        let [center, half_size, Vec2 { x: scale, .. }] = self.footprint(record.kind());
-        let weights = self.samples.plane_of(self.chunk, record).map_or([1.0, 0.0, 0.0], Plane::weights);
-        let [weight, tilt_x, tilt_y] = weights.map(|weight| scale * weight);
-        Sample {
-            center,
-            half_size,
-            inverse_depth: record.inverse_depth.get(),
-            weight,
-            tilt: Vec2::new(tilt_x, tilt_y),
-            radiance: record.radiance.get(),
-            surface: self.samples.surface_of(self.chunk, record),
-            visibility,
-        }
-    }
-}
-
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::domain::Cell;
-    use crate::jitter::jitter;
-    use glam::{DVec2, Vec3};
-
-    /// Groups of rays of cells of all sizes, patches of surface and the background, in one block.
-    fn found(count: u32) -> Vec<Found> {
-        (0..count)
-            .map(|k| {
-                let [a, b, c] = jitter(k, 1, 2).map(|x| x as f32);
-                let side = 1 << (k % 5);
-                let corner = IVec2::new(32, -16) + IVec2::new(k as i32, k as i32 / 3) % (16 / side) * side;
-                let cell = Cell { corner, side };
-                let rays = if k % 3 == 0 { u16::MAX } else { 1 | (k * 0x9E37) as u16 };
-                let (is_patch, is_background) = (k % 7 == 6, k % 11 == 5);
-                let part = cell.part(rays);
-                let point =
-                    SurfacePoint { triangle: k / 4, barycentric: DVec2::new(a.into(), (1.0 - a).into()) };
-                let word = u64::from(k).wrapping_mul(0x9E37_79B9_7F4A_7C15);
-                let visibility = match k % 4 {
-                    0 => Visibility::Open,
-                    1 => Visibility::Cells { words: [word].into() },
-                    _ => Visibility::Cells { words: [word, 0, u64::MAX, word >> 9].into() },
-                };
-                let weight = part.weight as f32;
-                let mut sample = Sample {
-                    center: part.center.as_vec2(),
-                    half_size: part.half_size.as_vec2(),
-                    inverse_depth: b,
-                    weight,
-                    tilt: Vec2::new(b - 0.5, c) * weight,
-                    radiance: Vec3::new(a, b, c) * 3.0,
-                    surface: Some(point),
-                    visibility,
-                };
-                if is_patch {
-                    sample.center = corner.as_vec2() + Vec2::new(a, b);
-                    (sample.weight, sample.half_size) = (-0.1, Vec2::new(b + 0.1, 0.5));
-                } else if is_background {
-                    (sample.surface, sample.tilt, sample.inverse_depth) = (None, Vec2::ZERO, 0.0);
-                }
-                Found { sample, rays: (!is_patch).then_some((cell, rays)) }
-            })
-            .collect()
-    }
-
-    fn packed(found: &[Found]) -> Samples {
-        let mut packer = Packer::new(IVec2::new(32, -16));
-        found.iter().for_each(|found| packer.push(found.clone()));
-        packer.finish()
-    }
-
-    fn assert_alike(found: &Sample, wanted: &Sample) {
-        let scale = wanted.weight.abs().max(wanted.tilt.abs().max_element());
-        let weights =
-            Vec3::new(found.weight - wanted.weight, 0.0, 0.0) + (found.tilt - wanted.tilt).extend(0.0);
-        assert!(weights.abs().max_element() <= 1e-3 * scale, "{found:?} for {wanted:?}");
-        assert!((found.inverse_depth - wanted.inverse_depth).abs() <= 8e-6 * wanted.inverse_depth);
-        assert!((found.radiance - wanted.radiance).abs().max_element() < 2e-3);
-        assert!((found.center - wanted.center).abs().max_element() <= 2.5e-4);
-        assert!((found.half_size - wanted.half_size).abs().max_element() <= 1.3e-4);
-        assert_eq!(found.visibility, wanted.visibility);
-        match (found.surface, wanted.surface) {
-            (Some(a), Some(b)) => {
-                assert_eq!(a.triangle, b.triangle);
-                assert!((a.barycentric - b.barycentric).abs().max_element() < 1e-5);
-            }
-            (a, b) => assert_eq!(a, b),
-        }
-    }
-
-    #[test]
-    fn packed_samples_are_what_they_were() {
-        let found = found(3000);
-        let samples = packed(&found);
-        assert_eq!((samples.len(), samples.loose.len()), (3000, 0));
-        assert_eq!(samples.check(3000), Ok(()));
-        let mut addresses = samples.addresses();
-        for (index, (sample, wanted)) in samples.iter().zip(&found).enumerate() {
-            assert_alike(&sample, &wanted.sample);
-            if wanted.rays.is_some() {
-                let exact = |s: &Sample| (s.center, s.half_size, s.weight);
-                assert_eq!(exact(&sample), exact(&wanted.sample));
-            }
-            if index % 97 == 0 {
-                assert_eq!(samples.get(index as u32), sample);
-                assert_eq!(samples.spot(index as u32), Spot::of(&sample));
-            }
-            assert_eq!(addresses.of(index as u32), sample.surface);
-        }
-        let spots: Vec<_> = samples.runs().flat_map(|run| run.spots()).collect();
-        assert!(spots.into_iter().eq(samples.iter().map(|sample| Spot::of(&sample))));
-    }
-
-    #[test]
-    fn what_cannot_be_packed_stays_as_it_is() {
-        let mut odd: Vec<Found> = found(6);
-        odd[0].sample.radiance.y = 1e30;
-        odd[1].sample.inverse_depth = -1.0;
-        odd[2].sample.tilt.x = 1e9;
-        odd[3].rays = None;
-        odd[3].sample.half_size.x = 40.0;
-        odd[4].rays = Some((Cell { corner: IVec2::ZERO, side: 1 }, 1));
-        let samples = packed(&odd);
-        assert_eq!((samples.records.len(), samples.loose.len()), (1, 5));
-        let kept: Vec<Sample> = samples.iter().skip(1).collect();
-        assert!(kept.iter().eq(odd[..5].iter().map(|found| &found.sample)));
-        assert_eq!(samples.get(3), kept[2]);
-    }
-
-    #[test]
-    fn more_planes_than_a_number_has_go_on_in_another_run() {
-        let all: Vec<_> = found(70_000)
-            .into_iter()
-            .enumerate()
-            .map(|(k, mut found)| {
-                found.sample.surface = Some(SurfacePoint { triangle: k as u32, barycentric: DVec2::ZERO });
-                found
-            })
-            .collect();
-        let samples = packed(&all);
-        assert_eq!((samples.run_count(), samples.len(), samples.loose.len()), (2, 70_000, 0));
-        assert_eq!(samples.check(70_000), Ok(()));
-        for index in [0, 65_534, 65_535, 65_536, 69_999] {
-            assert_alike(&samples.get(index), &all[index as usize].sample);
-        }
-    }
-
-    #[test]
-    fn what_refers_to_nothing_is_told() {
-        let good = packed(&found(500));
-        assert!(good.check(125).is_ok() && good.check(124).is_err());
-        let spoilt = |spoil: fn(&mut Samples)| {
-            let mut bad = good.clone();
-            spoil(&mut bad);
-            bad.check(125)
-        };
-        assert!(spoilt(|s| s.chunks.clear()).is_err());
-        assert!(spoilt(|s| s.chunks[0].starts.planes = 1).is_err());
-        assert!(spoilt(|s| s.chunks[0].corner.x = i32::MIN).is_err());
-        assert!(spoilt(|s| s.chunks.push(Chunk { corner: IVec2::ZERO, starts: s.ends() })).is_ok());
-        assert!(spoilt(|s| s.chunks.insert(0, Chunk { starts: s.ends(), ..s.chunks[0] })).is_err());
-        assert!(spoilt(|s| s.records[3].plane = 40_000).is_err());
-        assert!(spoilt(|s| s.rays[0] = 0).is_err());
-        assert!(spoilt(|s| s.rays.truncate(3)).is_err());
-        assert!(spoilt(|s| s.patches.truncate(3)).is_err());
-        assert!(spoilt(|s| s.planes[5].weights[1] = f16::NAN.to_bits()).is_err());
-        assert!(spoilt(|s| s.codes.truncate(3)).is_ok(), "it is read as other visibility");
-    }
-}
+mod tests;

@@ -129,8 +129,14 @@ impl RenderOptions {
         }
     }
 
-    /// The camera that the light field is baked for: see [`Self::cells_a_side`].
-    pub fn baked_camera(&self, camera: &Camera) -> Result<Camera, SessionError> {
+    /// Bakes the light field for `camera`: its own camera is as much finer as [`Self::cells_a_side`] says.
+    pub fn bake(
+        &self,
+        tracer: &Arc<Tracer>,
+        camera: &Camera,
+        focus: &Focus,
+        steps: &dyn Steps,
+    ) -> Result<Salf, SessionError> {
         let finer = camera.finer(self.cells_a_side);
         let tell = |error| {
             let n = self.cells_a_side;
@@ -139,7 +145,7 @@ impl RenderOptions {
             ))
         };
         finer.validate().map_err(tell)?;
-        Ok(finer)
+        bake(tracer, &finer, focus, self.tolerance_px * f64::from(self.cells_a_side), steps)
     }
 }
 
@@ -245,15 +251,12 @@ pub fn render(
     let mut estimate = None;
     let picture = match options.renderer {
         Renderer::Splat | Renderer::Scatter => {
-            let finer = options.baked_camera(camera)?;
-            let tolerance_px = options.tolerance_px * f64::from(options.cells_a_side);
-            let salf = Arc::new(bake(tracer, &finer, focus, tolerance_px, steps)?);
+            let salf = Arc::new(options.bake(tracer, camera, focus, steps)?);
             let bake_seconds = start.elapsed().as_secs_f64();
-            let drawn;
-            (drawn, cost) = draw_light_field(salf, &finer, focus, options, steps)?;
-            cost.bake_seconds = bake_seconds;
-            let picture = if options.cells_a_side > 1 { drawn.averaged(options.cells_a_side) } else { drawn };
-            return finish(Shot { tracer, camera, focus }, options, Drawn { picture, estimate, cost }, steps);
+            let (drawn, cost) = draw_light_field(salf.clone(), &salf.camera, focus, options, steps)?;
+            let (picture, cost) = (drawn.averaged(options.cells_a_side), RenderCost { bake_seconds, ..cost });
+            let shot = Shot { tracer, camera, focus };
+            return finish(shot, options, Drawn { picture, estimate: None, cost }, steps);
         }
         Renderer::Truth => {
             let light = light_for_many_points(tracer, camera);

@@ -1,0 +1,209 @@
+//! Reading packed samples: a run of them in order, or the surface addresses of any.
+
+use crate::sample::{Sample, Visibility};
+use crate::samples::masks::MaskReader;
+use crate::samples::record::{Kind, Record, Shape};
+use crate::samples::{Plane, Samples, Starts};
+use glam::{DVec2, IVec2, Vec2};
+use scene::SurfacePoint;
+use std::ops::Range;
+
+/// Where a sample is: in the picture, in depth and on the surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Spot {
+    /// See [`Sample::center`].
+    pub center: Vec2,
+    /// See [`Sample::inverse_depth`].
+    pub inverse_depth: f32,
+    /// See [`Sample::surface`].
+    pub surface: Option<SurfacePoint>,
+}
+
+/// Samples that follow each other: of one block of the picture, or those that are not packed.
+#[derive(Clone, Debug)]
+pub struct Run<'a> {
+    pub(super) samples: &'a Samples,
+    /// None for those that are not packed.
+    pub(super) chunk: Option<usize>,
+    /// The numbers of its samples.
+    pub indices: Range<u32>,
+}
+
+impl Spot {
+    pub(super) fn of(sample: &Sample) -> Self {
+        Self { center: sample.center, inverse_depth: sample.inverse_depth, surface: sample.surface }
+    }
+}
+
+/// Looks up surface addresses, quickly where one sample is of the same block as the one before.
+pub struct Addresses<'a> {
+    pub(super) samples: &'a Samples,
+    pub(super) run: Option<Run<'a>>,
+}
+
+impl Addresses<'_> {
+    /// The surface address of a sample; `None` for the background.
+    #[inline]
+    pub fn of(&mut self, index: u32) -> Option<SurfacePoint> {
+        let samples = self.samples;
+        let Some(record) = samples.records.get(index as usize) else {
+            return samples.loose[index as usize - samples.records.len()].surface;
+        };
+        let run = match &self.run {
+            Some(run) if run.indices.contains(&index) => run,
+            _ => self.run.insert(samples.run(samples.run_of(index))),
+        };
+        samples.surface_of(run.chunk?, record)
+    }
+}
+
+impl<'a> Run<'a> {
+    /// A pixel of its block; `None` if its samples lie anywhere.
+    pub(crate) fn block(&self) -> Option<IVec2> {
+        self.chunk.map(|chunk| self.samples.chunks[chunk].corner)
+    }
+
+    /// Its samples, in order.
+    pub fn samples(&self) -> Vec<Sample> {
+        self.iter().collect()
+    }
+
+    /// Where its samples are, in order; what they see is not decoded.
+    pub fn spots(&self) -> impl Iterator<Item = Spot> + use<'a> {
+        let mut decoder = self.chunk.map(|chunk| Decoder::new(self.samples, chunk));
+        let packed = self.records().iter().filter_map(move |record| {
+            let decoder = decoder.as_mut()?;
+            let spot = decoder.spot(record);
+            decoder.pass(record);
+            Some(spot)
+        });
+        packed.chain(self.loose().iter().map(Spot::of))
+    }
+
+    /// The sample of this number. What others its visibility was coded with are decoded, too.
+    pub(super) fn sample(&self, index: u32) -> Option<Sample> {
+        let place = (index - self.indices.start) as usize;
+        if let Some(loose) = self.loose().get(place) {
+            return Some(loose.clone());
+        }
+        self.iter().nth(place)
+    }
+
+    /// Where the sample of this number is.
+    pub(super) fn spot(&self, index: u32) -> Option<Spot> {
+        let place = (index - self.indices.start) as usize;
+        let Some(chunk) = self.chunk else { return self.loose().get(place).map(Spot::of) };
+        let mut decoder = Decoder::new(self.samples, chunk);
+        let (before, from_here) = self.records().split_at(place);
+        before.iter().for_each(|record| decoder.pass(record));
+        Some(decoder.spot(from_here.first()?))
+    }
+
+    fn iter(&self) -> impl Iterator<Item = Sample> + use<'a> {
+        let mut decoder =
+            self.chunk.map(|chunk| (Decoder::new(self.samples, chunk), self.samples.masks(chunk)));
+        let packed = self.records().iter().filter_map(move |record| {
+            let (decoder, masks) = decoder.as_mut()?;
+            let visibility = match record.kind().cells {
+                None => Visibility::Open,
+                Some(side) => Visibility::Cells { words: masks.read(side.into()) },
+            };
+            let sample = decoder.sample(record, visibility);
+            decoder.pass(record);
+            Some(sample)
+        });
+        packed.chain(self.loose().iter().cloned())
+    }
+
+    /// Those that are packed: all or none.
+    fn records(&self) -> &'a [Record] {
+        let [start, end] = [self.indices.start, self.indices.end].map(|index| index as usize);
+        if self.chunk.is_some() { &self.samples.records[start..end] } else { &[] }
+    }
+
+    /// Those that are not.
+    fn loose(&self) -> &'a [Sample] {
+        let first = self.samples.records.len();
+        if self.chunk.is_some() {
+            return &[];
+        }
+        &self.samples.loose[self.indices.start as usize - first..self.indices.end as usize - first]
+    }
+}
+
+impl Samples {
+    fn masks(&self, chunk: usize) -> MaskReader<'_> {
+        let [start, end] = [chunk, chunk + 1].map(|chunk| self.starts(chunk).codes as usize);
+        MaskReader::new(&self.codes[start..end])
+    }
+}
+
+/// Unpacks the records of a chunk, one after the other.
+struct Decoder<'a> {
+    samples: &'a Samples,
+    chunk: usize,
+    /// Where the next record finds what is told beside it.
+    rays: usize,
+    patches: usize,
+}
+
+impl<'a> Decoder<'a> {
+    fn new(samples: &'a Samples, chunk: usize) -> Self {
+        let Starts { rays, patches, .. } = samples.chunks[chunk].starts;
+        Self { samples, chunk, rays: rays as usize, patches: patches as usize }
+    }
+
+    /// Goes on behind a record.
+    fn pass(&mut self, record: &Record) {
+        match record.kind().shape {
+            Shape::WholeCell => {}
+            Shape::PartOfCell => self.rays += 1,
+            Shape::Patch => self.patches += 1,
+        }
+    }
+
+    fn corner(&self) -> IVec2 {
+        self.samples.chunks[self.chunk].corner
+    }
+
+    /// Centre and half the sides of the footprint, and the scale of the weights.
+    fn footprint(&self, kind: Kind) -> [Vec2; 3] {
+        let of_cell = |rays: u16| {
+            let part = kind.cell(self.corner()).part(rays);
+            [part.center, part.half_size, DVec2::splat(part.weight)].map(|value| value.as_vec2())
+        };
+        match kind.shape {
+            Shape::WholeCell => of_cell(u16::MAX),
+            Shape::PartOfCell => of_cell(self.samples.rays[self.rays]),
+            Shape::Patch => {
+                let patch = &self.samples.patches[self.patches];
+                let center = (self.corner() + kind.pixel).as_vec2() + patch.fraction();
+                [center, patch.half_size(), Vec2::splat(patch.largest.get())]
+            }
+        }
+    }
+
+    fn spot(&self, record: &Record) -> Spot {
+        Spot {
+            center: self.footprint(record.kind())[0],
+            inverse_depth: record.inverse_depth.get(),
+            surface: self.samples.surface_of(self.chunk, record),
+        }
+    }
+
+    fn sample(&self, record: &Record, visibility: Visibility) -> Sample {
+        let [center, half_size, Vec2 { x: scale, .. }] = self.footprint(record.kind());
+        let weights = self.samples.plane_of(self.chunk, record).map_or([1.0, 0.0, 0.0], Plane::weights);
+        let [weight, tilt_x, tilt_y] = weights.map(|weight| scale * weight);
+        Sample {
+            center,
+            half_size,
+            inverse_depth: record.inverse_depth.get(),
+            weight,
+            tilt: Vec2::new(tilt_x, tilt_y),
+            radiance: record.radiance.get(),
+            surface: self.samples.surface_of(self.chunk, record),
+            visibility,
+        }
+    }
+}
