@@ -153,7 +153,7 @@ impl<'a> Pen<'a> {
         if placed.level < node.level {
             return self.draw_split(node, light, placed, levels, sign);
         }
-        self.draw_whole(node, light, placed, &mut levels[node.level as usize], sign);
+        self.draw_whole(node, light, placed, &mut levels[placed.level as usize], sign);
     }
 
     /// A sample of a large cell, as samples of smaller ones.
@@ -177,11 +177,12 @@ impl<'a> Pen<'a> {
     pub fn image<'n>(&self, node: &'n SplatNode, light: [f32; 4], placed: Placed) -> Image<'n> {
         Image {
             node,
-            center: [node.center[0] >> node.level, node.center[1] >> node.level],
-            radius: halved(placed.radius, node.level),
-            light: Light::of(light),
+            level: placed.level,
+            center: node.center.map(|x| x >> placed.level),
+            radius: halved(placed.radius, placed.level),
+            light: Light::of(light).coarser(placed.level - node.level),
             share: WHOLE,
-            dither: seed(node, self.nodes.middle),
+            dither: seed(node, placed.level, self.nodes.middle),
         }
     }
 
@@ -197,7 +198,7 @@ impl<'a> Pen<'a> {
         let image = self.image(node, light, placed);
         self.forms(
             node,
-            placed.radius,
+            placed,
             #[inline(always)]
             |form| {
                 let mut image = Image { ..image };
@@ -236,16 +237,16 @@ impl<'a> Pen<'a> {
         }
     }
 
-    /// Calls `visit` with the forms that a node of this signed radius (1/4096 px) is drawn in.
+    /// Calls `visit` with the forms that a node that was placed is drawn in.
     #[inline(always)]
-    pub fn forms(&self, node: &SplatNode, radius: i32, mut visit: impl FnMut(Form)) {
-        let radius = radius.unsigned_abs();
+    pub fn forms(&self, node: &SplatNode, placed: Placed, mut visit: impl FnMut(Form)) {
+        let radius = placed.radius.unsigned_abs();
         if !node.is_open() {
-            let is_box = node.level == 0 && radius < self.box_radius;
+            let is_box = placed.level == 0 && radius < self.box_radius;
             return if is_box { visit(Form::SeenBox) } else { visit(Form::Seen) };
         }
         let is_even = node.tilt[0].abs() as i32 + (node.tilt[1].abs() as i32) < self.even_tilt;
-        let far = if node.level > 0 { 1 << 16 } else { self.part_of_stencil(radius) };
+        let far = if placed.level > 0 { 1 << 16 } else { self.part_of_stencil(radius) };
         if far < 1 << 16 {
             let share = WHOLE - (far << 8);
             let is_one = is_even && radius < self.one_box_radius;

@@ -35,7 +35,7 @@ impl Scene<'_> {
             let focus = paint.map_or(NodeFocus::STANDARD, |paint| paint[at]);
             let placed = self.lens.place(node, &focus);
             if node.is_leaf || self.lens.may_merge(node, &focus, placed) {
-                if self.pen.nodes.may_reach_frame(node, placed.radius) {
+                if self.pen.nodes.may_reach_frame(node, placed) {
                     visit(first + at as u32, node, placed);
                 }
                 at = (node.end - first) as usize;

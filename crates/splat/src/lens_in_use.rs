@@ -74,7 +74,8 @@ pub struct Placed {
     pub depth_share: i32,
     /// Whether it is unpainted.
     pub is_standard: bool,
-    /// The level that it is drawn on: a sample of a cell larger than may be drawn as one is drawn in pieces.
+    /// The level that it is drawn on, the coarsest that its image is large enough for: a sample of a cell larger than that is
+    /// drawn in pieces, a smaller one as coarsely as its neighbours would be if they were one.
     pub level: u8,
 }
 
@@ -92,12 +93,35 @@ pub struct LensInUse {
     radius_per_kappa: f64,
     /// Whether what is drawn is drawn as exactly as it can be.
     pub is_exact: bool,
-    /// From which |radius| on, 1/4096 px, open nodes of each level may be drawn, and partly occluded ones.
-    smallest_radius: [[f64; LEVELS]; 2],
+    /// From which |radius| on, 1/4096 px, nodes may be drawn on each level: by [`Fineness`].
+    smallest_radius: [[f64; LEVELS]; 4],
 }
 
-/// Partly occluded nodes are this much finer.
-const FINER_AT_OUTLINES: f64 = 1.5;
+/// How fine a node is drawn.
+#[derive(Clone, Copy)]
+enum Fineness {
+    Open,
+    PartlyOccluded,
+    /// So that the rim of its image can be seen.
+    Highlight,
+    /// Wide sums have one level.
+    Bright,
+}
+
+impl Fineness {
+    /// How much finer than open nodes.
+    const FINER: [f64; 4] = [1.0, 1.5, 4.0, f64::INFINITY];
+
+    #[inline(always)]
+    fn of(node: &SplatNode) -> Self {
+        match node {
+            SplatNode { is_bright: true, .. } => Self::Bright,
+            SplatNode { is_highlight: true, .. } => Self::Highlight,
+            _ if node.is_open() => Self::Open,
+            _ => Self::PartlyOccluded,
+        }
+    }
+}
 
 /// The circles of confusion below a drawn node may differ by this share of its side.
 const FLAT: f64 = 0.3;
@@ -120,7 +144,7 @@ impl LensInUse {
             optics,
             radius_per_kappa: optics.splat_radius_px(1.0) * (1 << POSITION_BITS) as f64,
             is_exact,
-            smallest_radius: [smallest(1.0), smallest(FINER_AT_OUTLINES)],
+            smallest_radius: Fineness::FINER.map(smallest),
         }
     }
 
@@ -141,9 +165,10 @@ impl LensInUse {
         let radius = kappa * self.radius_per_kappa;
         let radius = radius.clamp(-LARGEST_RADIUS, LARGEST_RADIUS).round_ties_even() as i32;
         let depth_share = focus.t * (1.0 - focus.anchor) * ONE as f32;
-        let mut level = node.level;
-        while node.is_leaf && level > 0 && !self.is_far_out(node.is_open(), level, radius) {
-            level -= 1;
+        let mut level = 0;
+        let fineness = Fineness::of(node);
+        while level + 1 < LEVELS as u8 && self.is_far_out(fineness, level + 1, radius) {
+            level += 1;
         }
         Placed {
             radius,
@@ -153,16 +178,16 @@ impl LensInUse {
         }
     }
 
-    /// Whether an aperture image of this radius, 1/4096 px, is large enough for nodes of a level.
+    /// Whether an aperture image of this radius, 1/4096 px, is large enough for a level.
     #[inline(always)]
-    fn is_far_out(&self, is_open: bool, level: u8, radius: i32) -> bool {
-        radius.abs() as f64 >= self.smallest_radius[usize::from(!is_open)][level as usize]
+    fn is_far_out(&self, fineness: Fineness, level: u8, radius: i32) -> bool {
+        radius.abs() as f64 >= self.smallest_radius[fineness as usize][level as usize]
     }
 
     /// Whether a node that was `placed` may stand for all below it.
     #[inline(always)]
     pub fn may_merge(&self, node: &SplatNode, focus: &NodeFocus, placed: Placed) -> bool {
-        if !self.is_far_out(node.is_open(), node.level, placed.radius) {
+        if !self.is_far_out(Fineness::of(node), node.level, placed.radius) {
             return false;
         }
         let optics = &self.optics;

@@ -48,10 +48,12 @@ pub struct SplatNode {
     pub center: [i32; 2],
     /// Half the sides of its footprint.
     pub half_size: [u16; 2],
-    /// Its cell has a side of 2 to this, px; it is drawn on that level.
+    /// Its cell has a side of 2 to this, px: its light is that of a pixel of this level.
     pub level: u8,
     /// Whether it is summed in wide integers.
     pub is_bright: bool,
+    /// Whether its image is to be seen as such: of more than [`HIGHLIGHT`].
+    pub is_highlight: bool,
     /// Where it stands what it sees of the aperture; [`OPEN`] if all.
     pub cells: u32,
     /// Mean 1/z.
@@ -89,7 +91,7 @@ impl SplatNode {
         let center = (self.center[axis] >> POSITION_BITS) as i64;
         let reach = (placed.radius.unsigned_abs() as i64 >> POSITION_BITS) * 65 / 64
             + (self.half_size[axis] as i64 >> (POSITION_BITS - 1))
-            + (4 << self.level);
+            + (4 << self.level.max(placed.level));
         let within = |place: i64| place.clamp(0, side as i64) as u32;
         within(center - reach)..within(center + reach + 1)
     }
@@ -197,14 +199,16 @@ impl Nodes {
         &self.nodes[range.start as usize..range.end as usize]
     }
 
-    /// Whether a node that is drawn with a radius (1/4096 px) may light a pixel of the frame.
+    /// Whether a node that was placed may light a pixel of the frame.
     #[inline(always)]
-    pub fn may_reach_frame(&self, node: &SplatNode, radius: i32) -> bool {
-        let radius = radius.unsigned_abs() as i64;
+    pub fn may_reach_frame(&self, node: &SplatNode, placed: Placed) -> bool {
+        let radius = placed.radius.unsigned_abs() as i64;
         (0..2).all(|k| {
             // Coarse levels spread a little further.
-            let reach =
-                radius + radius / 64 + 2 * node.half_size[k] as i64 + ((4 * PIXEL as i64) << node.level);
+            let reach = radius
+                + radius / 64
+                + 2 * node.half_size[k] as i64
+                + ((4 * PIXEL as i64) << node.level.max(placed.level));
             (node.center[k] as i64 - self.middle[k] as i64).abs() - (self.middle[k] as i64) <= reach
         })
     }
@@ -249,16 +253,18 @@ fn convert(node: &Node, scale: Scale) -> Option<SplatNode> {
         return None;
     }
     let is_bright = brightness > BRIGHT;
+    // Wide sums have one level.
+    let level = if is_bright { 0 } else { node.level };
     let bits = if is_bright { scale.bright_bits } else { scale.dim_bits };
-    let quanta = weight * 0.25f32.powi(node.level as i32) * (bits as f32).exp2();
+    let quanta = weight * 0.25f32.powi(level as i32) * (bits as f32).exp2();
     let [r, g, b] = node.radiance.to_array();
     debug_assert!((node.level as usize) < LEVELS);
     Some(SplatNode {
         center: node.center.to_array().map(fixed),
         half_size: half_size.map(|half| half as u16),
-        // Wide sums have one level.
-        level: if is_bright { 0 } else { node.level },
+        level,
         is_bright,
+        is_highlight: node.radiance.max_element() > HIGHLIGHT,
         cells: OPEN,
         inverse_depth: node.inverse_depth,
         inverse_depth_spread: node.inverse_depth_spread,

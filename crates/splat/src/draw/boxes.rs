@@ -59,7 +59,7 @@ impl Pen<'_> {
         let seen = &self.seen[image.node.cells as usize];
         image.shift(seen.mean.map(i32::from));
         image.share = seen.share;
-        let half_size = image.node.half_size.map(|half| u32::from(half) >> image.node.level);
+        let half_size = image.node.half_size.map(|half| u32::from(half) >> image.level);
         self.draw_box(image, half_size, seen.half.map(|half| u32::from(half) << 2), paper, sign);
     }
 

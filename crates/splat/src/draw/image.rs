@@ -30,6 +30,12 @@ impl Light {
         Self { mantissa, exponent: top as i32 - 157 }
     }
 
+    /// That of a pixel of a level, where it is that of one of a level so many finer.
+    #[inline(always)]
+    pub fn coarser(self, levels: u8) -> Self {
+        Self { exponent: self.exponent - 2 * levels as i32, ..self }
+    }
+
     /// The shift that takes a mantissa times a height with `bits` bits behind the point to quanta.
     #[inline(always)]
     pub fn shift(&self, bits: u32) -> u32 {
@@ -54,6 +60,7 @@ impl Light {
 /// A node's image on its level: centre and signed radius, 1/4096 px of the level.
 pub struct Image<'a> {
     pub node: &'a SplatNode,
+    pub level: u8,
     pub center: [i32; 2],
     pub radius: i32,
     pub light: Light,
@@ -96,11 +103,11 @@ impl Image<'_> {
     }
 }
 
-/// Where a node's dither starts: its place from the picture's middle, whatever else is in the light field.
+/// Where a node's dither starts on a level: its place from the picture's middle, whatever else is in the light field.
 #[inline(always)]
-pub fn seed(node: &SplatNode, middle: [i32; 2]) -> u32 {
+pub fn seed(node: &SplatNode, level: u8, middle: [i32; 2]) -> u32 {
     let [x, y] = [(node.center[0] - middle[0]) as u32, (node.center[1] - middle[1]) as u32];
-    (x.wrapping_mul(0x9E37_79B1) ^ y.wrapping_mul(0x85EB_CA77) ^ node.level as u32).wrapping_mul(0xC2B2_AE3D)
+    (x.wrapping_mul(0x9E37_79B1) ^ y.wrapping_mul(0x85EB_CA77) ^ level as u32).wrapping_mul(0xC2B2_AE3D)
 }
 
 #[cfg(test)]

@@ -94,10 +94,9 @@ impl Pen<'_> {
     pub fn stencil_size_of(&self, image: &Image) -> Option<StencilSize> {
         let [x, y] = image.node.half_size.map(i64::from);
         // A box of half side h has the variance h²/3.
-        let footprint =
-            ((x * x + y * y) >> (2 * image.node.level + 1)) * self.per_variance / (3 * ONE as i64);
+        let footprint = ((x * x + y * y) >> (2 * image.level + 1)) * self.per_variance / (3 * ONE as i64);
         let radius = image.radius as i64;
-        let square = radius * radius + footprint - self.too_blurred[image.node.level as usize];
+        let square = radius * radius + footprint - self.too_blurred[image.level as usize];
         StencilSize::of(square, image.radius < 0)
     }
 }

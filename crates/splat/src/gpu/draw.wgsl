@@ -93,6 +93,7 @@ struct Node {
 
 struct Image {
     node: Node,
+    level: u32,
     center: vec2<i32>,
     radius: i32,
     mantissa: vec4<u32>,
@@ -178,7 +179,7 @@ fn add_end(image: ptr<function, Image>, line: u32, last: i32, at: i32, value: ar
 }
 
 fn add_run(image: ptr<function, Image>, row: i32, start: i32, end: i32, value: array<vec2<u32>, 4>) {
-    let level = pen.levels[(*image).node.level];
+    let level = pen.levels[(*image).level];
     let stride = u32(level.width + 3);
     let last = level.width + 2;
     let place = u32(row + 1);
@@ -194,16 +195,16 @@ fn add_run(image: ptr<function, Image>, row: i32, start: i32, end: i32, value: a
 }
 
 fn clamped(image: ptr<function, Image>, x: i32) -> i32 {
-    let level = pen.levels[(*image).node.level];
+    let level = pen.levels[(*image).level];
     return clamp(x, -4 * PIXEL, (level.width + 4) << POSITION_BITS);
 }
 
 // Images
 
-fn seed(node: Node) -> u32 {
+fn seed(node: Node, level: u32) -> u32 {
     let x = bitcast<u32>(node.center.x - pen.middle.x);
     let y = bitcast<u32>(node.center.y - pen.middle.y);
-    return ((x * 0x9E3779B1u) ^ (y * 0x85EBCA77u) ^ node.level) * 0xC2B2AE3Du;
+    return ((x * 0x9E3779B1u) ^ (y * 0x85EBCA77u) ^ level) * 0xC2B2AE3Du;
 }
 
 fn shift_to(image: ptr<function, Image>, mean: vec2<i32>) {
@@ -248,7 +249,7 @@ fn draw_box(image: ptr<function, Image>, half_size: vec2<u32>, of_aperture: vec2
     let center = (*image).center;
     let top = center.y - i32(half_y);
     let bottom = center.y + i32(half_y);
-    let level = pen.levels[(*image).node.level];
+    let level = pen.levels[(*image).level];
     let first = max(top >> POSITION_BITS, -1);
     let last = min((bottom - 1) >> POSITION_BITS, level.height);
     if first > last {
@@ -272,7 +273,7 @@ fn draw_seen_box(image: ptr<function, Image>, through: u32) {
     shift_to(image, vec2<i32>(low_half(mean), high_half(mean)));
     (*image).share = cells[through + 8u];
     let half = vec2<u32>(cells[through + 10u] & 0xFFFFu, cells[through + 10u] >> 16u);
-    draw_box(image, (*image).node.half_size >> vec2<u32>((*image).node.level), half << vec2<u32>(2u));
+    draw_box(image, (*image).node.half_size >> vec2<u32>((*image).level), half << vec2<u32>(2u));
 }
 
 fn stretched(half_size: u32, tilt: i32, mean: i32, depth_share: i32) -> u32 {
@@ -416,7 +417,7 @@ fn draw_image(image: ptr<function, Image>, place: u32, cells: u32, share: u32) {
     let height_bits = (stencils[2u * place + 1u] >> 16u) & 63u;
     let half_step = i32(stencils[2u * place + 1u] >> 22u);
     let base = ((*image).center.y + half_step) >> POSITION_BITS;
-    let level = pen.levels[(*image).node.level];
+    let level = pen.levels[(*image).level];
     let shift = light_shift(image, height_bits);
     let center = (*image).center.x;
     if KIND == KIND_IMAGES {
@@ -462,7 +463,7 @@ fn draw_large(image: ptr<function, Image>, height_of_clear: u32, height_bits: u3
     let radius = select(size, -size, (*image).radius < 0);
     let per_radius = divisor_of(u32(size));
     let center = (*image).center;
-    let level = pen.levels[(*image).node.level];
+    let level = pen.levels[(*image).level];
     let seen = seen_runs_of(image, cells);
     let shift = light_shift(image, height_bits);
     let first = max((center.y - size) >> POSITION_BITS, -1);
@@ -519,9 +520,9 @@ fn draw(@builtin(global_invocation_id) id: vec3<u32>, @builtin(workgroup_id) gro
     image.node.base = high_half(nodes[at + 3u]);
     image.node.tilt = vec2<i32>(low_half(nodes[at + 4u]), high_half(nodes[at + 4u]));
     image.node.cells = nodes[at + 5u];
+    let level = (flags >> 8u) & 7u;
     if (flags & 64u) != 0u {
         // A piece of a sample of a large cell.
-        let level = (flags >> 8u) & 7u;
         let finer = image.node.level - level;
         let count = 1i << finer;
         let piece = i32(flags >> 16u);
@@ -531,10 +532,11 @@ fn draw(@builtin(global_invocation_id) id: vec3<u32>, @builtin(workgroup_id) gro
         image.node.half_size = half_size;
         image.node.level = level;
     }
-    image.center = image.node.center >> vec2<u32>(image.node.level);
-    image.radius = bitcast<i32>(records[record + 1u]) / (1i << image.node.level);
+    image.level = level;
+    image.center = image.node.center >> vec2<u32>(level);
+    image.radius = bitcast<i32>(records[record + 1u]) / (1i << level);
     image.share = WHOLE;
-    image.dither = seed(image.node);
+    image.dither = seed(image.node, level);
     image.is_sharing = (flags & 8u) != 0u;
     image.is_removed = (flags & 16u) != 0u;
     image.slot = group.x % SLOTS;
@@ -543,11 +545,13 @@ fn draw(@builtin(global_invocation_id) id: vec3<u32>, @builtin(workgroup_id) gro
     if !IS_WIDE {
         gain = select(pen.dim_exponent, pen.coverage_exponent, is_bright);
     }
+    // Light is that of a pixel of the node's own level.
+    gain -= 2 * i32(level - image.node.level);
     light_of(&image, at, gain, is_coverage);
 
     let of_form = records[record + 2u];
     let mixed = part_of_stencil(u32(abs(bitcast<i32>(records[record + 1u]))));
-    let far = select(mixed, 65536u, image.node.level > 0u);
+    let far = select(mixed, 65536u, level > 0u);
     var through = OPEN;
     var share = WHOLE;
     if form == FORM_SEEN || form == FORM_SEEN_BOX {

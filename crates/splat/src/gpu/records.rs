@@ -24,8 +24,10 @@ const IS_SHARING: u32 = 8;
 const IS_REMOVED: u32 = 16;
 const IS_COVERAGE: u32 = 32;
 const IS_PIECE: u32 = 64;
-/// Where the level of a piece stands; behind it, from bit 16 on, which piece it is.
+/// Where the level stands that it is drawn on.
 const LEVEL_BIT: u32 = 8;
+/// Where stands which piece it is.
+const PIECE_BIT: u32 = 16;
 
 /// Records by kind: of ordinary accumulators, then of wide ones.
 #[derive(Clone, Debug, Default)]
@@ -78,10 +80,10 @@ impl Records {
         if placed.level < node.level {
             flags |= IS_PIECE | (placed.level as u32) << LEVEL_BIT;
             for (k, piece) in node.pieces(placed.level).enumerate() {
-                push(&piece, flags | (k as u32) << 16);
+                push(&piece, flags | (k as u32) << PIECE_BIT);
             }
         } else {
-            push(node, flags);
+            push(node, flags | (placed.level as u32) << LEVEL_BIT);
         }
     }
 
@@ -99,7 +101,7 @@ impl Records {
         let Self { words, places } = self;
         let words = &mut words[width];
         let radius = placed.radius as u32;
-        pen.forms(node, placed.radius, |form| {
+        pen.forms(node, placed, |form| {
             let head = |of_form: u32, number: u32| [index - first, radius, of_form, flags | number];
             let mut image = pen.image(node, [0.0; 4], placed);
             let (number, cells) = match form {
