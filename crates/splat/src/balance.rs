@@ -85,15 +85,24 @@ impl Knots {
 
     /// Sums a whole row of pixels, free and sharing: a sum for each column of knots.
     pub fn sum_row(&self, [free, sharing]: [&[[f32; 4]]; 2], shares: &[Share], sums: &mut [KnotSums]) {
+        let spans = free.chunks(SPACING).zip(sharing.chunks(SPACING)).zip(shares.chunks(SPACING));
         with_widest_instructions(
             #[inline(always)]
             || {
-                sums.fill(KnotSums::default());
-                for (x, ((free, sharing), share)) in free.iter().zip(sharing).zip(shares).enumerate() {
-                    let of_pixel = KnotSums::of(free, sharing, share);
-                    let (knot, behind) = place(x);
-                    sums[knot].add(1.0 - behind, &of_pixel);
-                    sums[knot + 1].add(behind, &of_pixel);
+                // Of the knot before the span, and of the one behind it.
+                let mut both = [KnotSums::default(); 2];
+                for (((free, sharing), shares), sum) in spans.zip(&mut *sums) {
+                    for (x, ((free, sharing), share)) in free.iter().zip(sharing).zip(shares).enumerate() {
+                        let of_pixel = KnotSums::of(free, sharing, share);
+                        let (_, behind) = place(x);
+                        both[0].add(1.0 - behind, &of_pixel);
+                        both[1].add(behind, &of_pixel);
+                    }
+                    *sum = both[0];
+                    both = [both[1], KnotSums::default()];
+                }
+                if let Some(last) = sums.last_mut() {
+                    *last = both[0];
                 }
             },
         );
@@ -222,24 +231,25 @@ impl Gains {
         let ((row, behind), columns) = (place(y), self.knots.columns());
         let of_row =
             |row: usize| self.of_knots[row * columns..][..columns].iter().map(|knot| knot[scaled as usize]);
+        let of_row = |row: usize| of_row(row).map(|[r, g, b]| [r, g, b, 1.0]);
         GainsOfRow(of_row(row).zip(of_row(row + 1)).map(|(a, b)| mix(a, b, behind)).collect())
     }
 }
 
-/// Gains of a row of pixels.
-pub struct GainsOfRow(Vec<[f32; 3]>);
+/// Gains of a row of pixels, at each column of knots: of red, green, blue and, always 1, coverage.
+pub struct GainsOfRow(Vec<[f32; 4]>);
 
 impl GainsOfRow {
     /// Those of a pixel.
     #[inline(always)]
-    pub fn at(&self, x: usize) -> [f32; 3] {
+    pub fn at(&self, x: usize) -> [f32; 4] {
         let (knot, behind) = place(x);
         mix(self.0[knot], self.0[knot + 1], behind)
     }
 }
 
 #[inline(always)]
-fn mix(a: [f32; 3], b: [f32; 3], behind: f32) -> [f32; 3] {
+fn mix(a: [f32; 4], b: [f32; 4], behind: f32) -> [f32; 4] {
     std::array::from_fn(|c| (1.0 - behind) * a[c] + behind * b[c])
 }
 

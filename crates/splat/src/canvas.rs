@@ -18,7 +18,7 @@ pub const POSITION_BITS: u32 = 12;
 pub const PIXEL: i32 = 1 << POSITION_BITS;
 
 /// An integer that differences are summed in.
-pub trait Word: Copy + Default + PartialEq + Send + Sync {
+pub trait Word: Copy + Default + Ord + Send + Sync {
     /// As a wide integer.
     fn wide(self) -> i64;
     /// As a float.
@@ -203,20 +203,17 @@ impl<W: Word> Accumulator<W> {
         self.levels.iter().map(|level| size_of_val(&*level.cells) + size_of_val(&*level.totals)).sum()
     }
 
-    /// Cut into bands of `rows` pixel rows each, a multiple of the coarsest level's pixel.
-    pub fn bands(&mut self, rows: i32) -> Vec<Canvas<'_, W>> {
-        let height = self.levels[0].height as i32;
-        let count = (height as usize).div_ceil(rows as usize).max(1) as i32;
+    /// Cut into bands that begin at these pixel rows, from 0 on, multiples of the coarsest level's pixel.
+    pub fn bands(&mut self, starts: &[u32]) -> Vec<Canvas<'_, W>> {
         let mut canvases: Vec<_> =
-            (0..count).map(|_| Canvas { levels: Vec::with_capacity(LEVELS) }).collect();
+            starts.iter().map(|_| Canvas { levels: Vec::with_capacity(LEVELS) }).collect();
         for (k, level) in self.levels.iter_mut().enumerate() {
             let (stride, width, height) = (level.stride(), level.width, level.height as i32);
             let (mut cells, mut totals) = (level.cells.as_mut_slice(), level.totals.as_mut_slice());
             let mut touched = level.touched.as_mut_slice();
             let mut first = -1;
             for (band, canvas) in canvases.iter_mut().enumerate() {
-                let is_last = band as i32 + 1 == count;
-                let end = if is_last { height + 1 } else { (band as i32 + 1) * (rows >> k) };
+                let end = starts.get(band + 1).map_or(height + 1, |&start| start as i32 >> k);
                 let here = (end - first) as usize;
                 let (mine, rest) = cells.split_at_mut(here * stride);
                 let (my_totals, rest_totals) = totals.split_at_mut(here);
@@ -235,7 +232,7 @@ impl<W: Word> Accumulator<W> {
 impl<W: Word> Accumulator<W> {
     /// All of it, to draw on.
     pub fn canvas(&mut self) -> Canvas<'_, W> {
-        self.bands(i32::MAX).remove(0)
+        self.bands(&[0]).remove(0)
     }
 }
 
@@ -399,7 +396,7 @@ mod tests {
     fn bands_cover_every_row_of_every_level_once() {
         let mut accumulator = Accumulator::<i32>::new(50, 150, LEVELS);
         let heights: Vec<_> = accumulator.levels.iter().map(|level| level.height as i32).collect();
-        let bands = accumulator.bands(64);
+        let bands = accumulator.bands(&[0, 64, 128]);
         assert_eq!(bands.len(), 3);
         for (k, height) in heights.into_iter().enumerate() {
             let rows: Vec<_> = bands.iter().map(|band| (band.levels[k].first, band.levels[k].end)).collect();

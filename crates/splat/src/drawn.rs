@@ -46,8 +46,10 @@ impl Scene<'_> {
     }
 
     /// Makes `list` the nodes of a block that are drawn, painted as `paint` says, in order.
-    pub fn list(&self, block: usize, paint: Option<&[NodeFocus]>, list: &mut Vec<Drawn>) {
-        list.clear();
+    pub fn list(&self, block: usize, paint: Option<&[NodeFocus]>, list: &mut BlockList) {
+        let BlockList { drawn, cost, .. } = list;
+        drawn.clear();
+        *cost = 0;
         with_widest_instructions(
             #[inline(always)]
             || {
@@ -58,12 +60,14 @@ impl Scene<'_> {
                     |index, node, placed| {
                         let rows = node.reach(1, placed, self.height);
                         if !rows.is_empty() {
-                            list.push(Drawn { index, placed, rows: [rows.start, rows.end] });
+                            drawn.push(Drawn { index, placed, rows: [rows.start, rows.end] });
+                            *cost += u64::from(self.pen.cost(node, placed));
                         }
                     },
                 )
             },
         );
+        list.rows = rows_of(&list.drawn);
     }
 
     /// What is no longer drawn of some blocks, and what is now, since the paint of each was the one beside it.
@@ -87,9 +91,9 @@ impl Scene<'_> {
         if before == now {
             return changes;
         }
-        let mut lists = [Vec::new(), Vec::new()];
+        let mut lists = [BlockList::default(), BlockList::default()];
         lists.iter_mut().zip([before, now]).for_each(|(list, paint)| self.list(block, paint, list));
-        let [mut old, mut new] = lists.map(|list| list.into_iter().peekable());
+        let [mut old, mut new] = lists.map(|list| list.drawn.into_iter().peekable());
         loop {
             let order = match (old.peek(), new.peek()) {
                 (Some(a), Some(b)) => a.index.cmp(&b.index),
@@ -135,6 +139,8 @@ pub struct BlockList {
     pub drawn: Vec<Drawn>,
     /// The pixel rows that its light may reach.
     pub rows: Range<u32>,
+    /// About what it costs to draw it, in nanoseconds.
+    pub cost: u64,
 }
 
 /// The pixel rows that the light of any of them may reach.

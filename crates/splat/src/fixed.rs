@@ -22,19 +22,21 @@ pub fn integer_sqrt(x: u32) -> u32 {
     (x as f64).sqrt() as u32
 }
 
-/// √(a² + b²) for a, b < 2²⁰, in 15 bits.
+/// √(a² + b² − less) for a, b < 2²⁰, in 15 bits; 0 if that is negative.
 #[inline(always)]
-pub fn hypotenuse(a: u32, b: u32) -> u32 {
+pub fn hypotenuse(a: u32, b: u32, less: u32) -> u32 {
     let shift = 17u32.saturating_sub((a | b).leading_zeros());
     let (a, b) = (a >> shift, b >> shift);
-    integer_sqrt(a * a + b * b) << shift
+    integer_sqrt((a * a + b * b).saturating_sub(less >> (2 * shift))) << shift
 }
 
-/// ⌊numerator·2²⁴ / denominator⌋, at most `most` ≥ 1 times 2²⁴; both below 2²⁶.
+/// ⌊numerator·2²⁴ / denominator⌋, at most `most` ≥ 1 times 2²⁴; both below 2²⁶, `most` below 2⁷.
 #[inline(always)]
 pub fn ratio(numerator: u32, denominator: u32, most: u32) -> u32 {
-    let denominator = denominator.max(1) as u64;
-    (((numerator as u64) << 24) / denominator).min((most as u64) << 24) as u32
+    let [numerator, denominator, most] = [numerator, denominator.max(1), most].map(|x| x as i32 as f64);
+    // The quotient is further below the next integer, by 1/denominator at least, than it is rounded: by 2⁵⁰/denominator
+    // times 2⁻⁵³.
+    (numerator * (1 << 24) as f64 / denominator).min(most * (1 << 24) as f64) as i32 as u32
 }
 
 /// 2 to 31 + `bits` over a number.
@@ -91,8 +93,13 @@ mod tests {
         }
         for (a, b) in [(0, 0), (3, 4), (4096, 5000), (32767, 32767), (65535, 131072), (1 << 19, 77)] {
             let exact = (a as f64).hypot(b as f64);
-            let found = hypotenuse(a, b) as f64;
+            let found = hypotenuse(a, b, 0) as f64;
             assert!((found - exact).abs() <= 1.0 + exact / 8192.0, "{a} {b}: {found} {exact}");
+            let most = a.max(b).min((1 << 15) - 1);
+            assert_eq!(hypotenuse(a.min(most), b.min(most), u32::MAX), 0);
+            let found = hypotenuse(a, b, most * most) as f64;
+            let exact = (exact * exact - (most * most) as f64).sqrt();
+            assert!((found - exact).abs() <= 2.0 + exact / 4096.0, "{a} {b} less {most}: {found} {exact}");
         }
     }
 

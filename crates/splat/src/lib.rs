@@ -15,6 +15,7 @@
 //! occluded samples share what open ones leave of it ([`partition`]), which leaves the sum of light as it is ([`balance`]).
 
 mod balance;
+mod bands;
 mod canvas;
 mod draw;
 mod drawn;

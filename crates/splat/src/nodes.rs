@@ -193,6 +193,11 @@ impl Nodes {
             + size_of_val(&*self.block_of_node)
     }
 
+    /// The pixel row that the centre of a node lies in.
+    pub fn row_of(&self, index: u32) -> i32 {
+        self.nodes[index as usize].center[1] >> POSITION_BITS
+    }
+
     /// The nodes of a block.
     pub fn of_block(&self, block: usize) -> &[SplatNode] {
         let range = &self.blocks[block];

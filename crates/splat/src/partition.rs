@@ -21,6 +21,7 @@
 use crate::balance::{Gains, KnotSums, Knots, Scaled};
 use crate::fixed::ratio;
 use crate::resolve::Lines;
+use crate::widest::with_widest_instructions;
 use std::ops::Range;
 
 /// A pixel's factors.
@@ -40,12 +41,13 @@ impl Share {
     ///
     /// The share of partial samples stays within [0, 8]: where almost nothing partial lies, what is left is the error of
     /// the open ones, and is not blown up.
+    #[inline(always)]
     pub fn of(open: f32, partial: f32) -> Self {
         const LARGEST: u32 = 8;
         const LEAST_PARTIAL: f32 = 1e-3;
         const RIPPLE: f32 = 0.1;
         // Divided in integers: graphics cards round quotients of floats in ways of their own.
-        let fixed = |covered: f32| (covered * (ONE as f32)).clamp(0.0, MOST) as u32;
+        let fixed = |covered: f32| (covered * (ONE as f32)).clamp(0.0, MOST) as i32 as u32;
         let share = if partial < LEAST_PARTIAL {
             1.0
         } else {
@@ -100,9 +102,14 @@ pub fn find_shares(
     let columns = knots.columns();
     strip.each_row(parts, |row, free, sharing| {
         let shares = &mut shares[row * strip.width..][..strip.width];
-        for (share, (free, sharing)) in shares.iter_mut().zip(free.iter().zip(sharing)) {
-            *share = Share::of(free[3], sharing[3]);
-        }
+        with_widest_instructions(
+            #[inline(always)]
+            || {
+                for (share, (free, sharing)) in shares.iter_mut().zip(free.iter().zip(sharing)) {
+                    *share = Share::of(free[3], sharing[3]);
+                }
+            },
+        );
         knots.sum_row([free, sharing], shares, &mut sums[row * columns..][..columns]);
     });
 }
@@ -118,17 +125,28 @@ pub fn join(
 ) {
     strip.each_row(parts, |row, free, sharing| {
         let of_row = gains.of_row(strip.first + row, if is_evened { Scaled::All } else { Scaled::Sharing });
-        for (x, (free, sharing)) in strip.columns.clone().zip(free.iter().zip(sharing)) {
-            let (at, gain) = (row * strip.width + x, of_row.at(x));
-            let share = &shares[at];
-            let shared = sharing.map(|light| share.partial * light);
-            (radiance[at], coverage[at]) = if is_evened {
-                let light: [f32; 4] = std::array::from_fn(|c| share.even * (free[c] + shared[c]));
-                (std::array::from_fn(|c| light[c] * gain[c]), light[3])
-            } else {
-                (std::array::from_fn(|c| free[c] + shared[c] * gain[c]), free[3] + shared[3])
-            };
-        }
+        let here = row * strip.width + strip.columns.start..row * strip.width + strip.columns.end;
+        let (radiance, coverage) = (&mut radiance[here.clone()], &mut coverage[here.clone()]);
+        let lines = free.iter().zip(sharing).zip(&shares[here]).zip(strip.columns.clone());
+        with_widest_instructions(
+            #[inline(always)]
+            || {
+                for ((((free, sharing), share), x), (radiance, coverage)) in
+                    lines.zip(radiance.iter_mut().zip(coverage))
+                {
+                    let gain = of_row.at(x);
+                    let shared = sharing.map(|light| share.partial * light);
+                    let light: [f32; 4] = if is_evened {
+                        let light: [f32; 4] = std::array::from_fn(|c| share.even * (free[c] + shared[c]));
+                        std::array::from_fn(|c| light[c] * gain[c])
+                    } else {
+                        std::array::from_fn(|c| free[c] + shared[c] * gain[c])
+                    };
+                    *radiance = [light[0], light[1], light[2]];
+                    *coverage = light[3];
+                }
+            },
+        );
     });
 }
 

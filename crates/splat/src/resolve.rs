@@ -1,6 +1,7 @@
 //! Accumulators to pictures: running sums, and each level upsampled onto the next finer one.
 
 use crate::canvas::{Accumulator, Level, Pixel, Row, Word};
+use crate::widest::with_widest_instructions;
 use std::ops::Range;
 
 /// A pixel holds more light than its integers are sure to hold.
@@ -113,7 +114,11 @@ pub fn lines<W: Word>(
     for (level, window) in levels().take(coarsest + 1).rev() {
         let mut here = match above.take() {
             Some(coarse) => {
-                let here = upsampled(&coarse, window.clone(), room.take());
+                let pixels = room.take();
+                let here = with_widest_instructions(
+                    #[inline(always)]
+                    || upsampled(&coarse, window.clone(), pixels),
+                );
                 room.give_back(coarse);
                 here
             }
@@ -122,7 +127,10 @@ pub fn lines<W: Word>(
         let width = window.columns.len();
         for (row, line) in window.rows.clone().zip(here.pixels.chunks_exact_mut(width)) {
             if let Some(row) = level.row(row) {
-                integrate(&row, level.width, quanta, &window.columns, line)?;
+                with_widest_instructions(
+                    #[inline(always)]
+                    || integrate(&row, level.width, quanta, &window.columns, line),
+                )?;
             }
         }
         above = Some(here);
@@ -140,7 +148,8 @@ fn integrate<W: Word>(
     line: &mut [[f32; 4]],
 ) -> Result<(), Overflow> {
     let quantum = quanta.quantum as f32;
-    let (mut sum, mut covered, mut largest) = ([W::default(); 4], 0i64, 0i64);
+    // Of all four, though only coverage is asked for: lanes of one register.
+    let (mut sum, mut covered, mut largest) = ([W::default(); 4], [0i64; 4], [W::default(); 4]);
     // In memory the border is column 0; what leaves the picture ends in a column behind the other border.
     let first = row.columns.start;
     let place = |column: usize| column.clamp(first, row.columns.end.min(width + 2).max(first)) - first;
@@ -148,9 +157,9 @@ fn integrate<W: Word>(
     let mut pass = |difference: &Pixel<W>| {
         for c in 0..4 {
             sum[c] = sum[c].plus(difference[c]);
+            covered[c] = covered[c].wrapping_add(sum[c].wide());
+            largest[c] = largest[c].max(sum[c]);
         }
-        covered = covered.wrapping_add(sum[3].wide());
-        largest = largest.max(sum[3].wide());
         sum
     };
     row.differences[..start].iter().for_each(|difference| {
@@ -166,10 +175,15 @@ fn integrate<W: Word>(
     row.differences[end..last].iter().for_each(|difference| {
         pass(difference);
     });
-    if covered == row.total && largest <= quanta.largest_coverage { Ok(()) } else { Err(Overflow) }
+    if covered[3] == row.total && largest[3].wide() <= quanta.largest_coverage {
+        Ok(())
+    } else {
+        Err(Overflow)
+    }
 }
 
 /// Bilinear: a fine pixel lies a quarter of a coarse one off its centre.
+#[inline(always)]
 fn upsampled(coarse: &Lines, window: Window, mut pixels: Vec<[f32; 4]>) -> Lines {
     const NEAR: f32 = 0.75;
     const FAR: f32 = 0.25;

@@ -1,5 +1,6 @@
 //! All nodes of a light field, summed band by band of the picture.
 
+use crate::bands::Work;
 use crate::canvas::{Accumulator, Word};
 use crate::draw::{Paper, Pen};
 use crate::drawn::{BlockList, Drawn, Scene, rows_of};
@@ -13,8 +14,11 @@ use salf::tree::LEVELS;
 use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Pixel rows that one thread sums at a time; a multiple of the coarsest level's pixel.
+/// A picture has no more bands of rows than one for so many: what lies at their edges is drawn twice.
 const BAND_ROWS: u32 = 64;
+
+/// How many blocks are drawn from one report of progress to the next.
+const REPORTED: usize = 64;
 
 /// One kind of samples: ordinary ones, and bright ones if there are any.
 #[derive(Clone, PartialEq)]
@@ -47,9 +51,9 @@ impl Sum {
         }
     }
 
-    fn bands(&mut self, rows: u32) -> Vec<SumCanvas<'_>> {
-        let mut bright = self.bright.as_mut().map(|bright| papers(bright, rows));
-        papers(&mut self.dim, rows)
+    fn bands(&mut self, starts: &[u32]) -> Vec<SumCanvas<'_>> {
+        let mut bright = self.bright.as_mut().map(|bright| papers(bright, starts));
+        papers(&mut self.dim, starts)
             .map(|dim| SumCanvas { dim, bright: bright.as_mut().and_then(Iterator::next) })
             .collect()
     }
@@ -74,10 +78,13 @@ impl Sum {
     }
 }
 
-/// Bands of `rows` pixel rows of an accumulator, level by level.
-fn papers<W: Word>(accumulator: &mut Accumulator<W>, rows: u32) -> impl Iterator<Item = Vec<Paper<'_, W>>> {
-    let bands = accumulator.bands(rows as i32).into_iter();
-    bands.map(|canvas| canvas.levels.into_iter().map(Paper::new).collect())
+/// The bands of an accumulator that begin at these pixel rows, level by level.
+fn papers<'a, W: Word>(
+    accumulator: &'a mut Accumulator<W>,
+    starts: &[u32],
+) -> impl Iterator<Item = Vec<Paper<'a, W>>> {
+    let bands = accumulator.bands(starts).into_iter();
+    bands.map(|canvas| (0..).zip(canvas.levels).map(|(level, rows)| Paper::new(rows, level)).collect())
 }
 
 impl SumCanvas<'_> {
@@ -125,32 +132,46 @@ impl Sums {
     ) -> Result<(), Cancelled> {
         lists.resize_with(scene.pen.nodes.blocks.len(), BlockList::default);
         lists.par_iter_mut().enumerate().for_each(|(block, list)| {
-            scene.list(block, scene.paint.of_block(block), &mut list.drawn);
-            list.rows = rows_of(&list.drawn);
+            scene.list(block, scene.paint.of_block(block), list);
         });
         let lists = &*lists;
-        let bands = self.bands();
-        let (count, done) = (bands.len(), AtomicUsize::new(0));
+        let mut work = Work::none(scene.height);
+        for list in lists {
+            let Some(first) = list.drawn.first() else { continue };
+            work.add(scene.pen.nodes.row_of(first.index), list.cost);
+        }
+        let bands = self.bands(&work, scene.height);
+        let reach = |band: &Band| lists.iter().filter(|list| meet(&list.rows, &band.rows)).count();
+        let (count, done) = (bands.iter().map(reach).sum::<usize>(), AtomicUsize::new(0));
         bands.into_par_iter().with_max_len(1).try_for_each(|mut band| {
             progress.check()?;
             band.free.clear();
             band.sharing.clear();
             let here = band.rows.clone();
             for list in lists.iter().filter(|list| meet(&list.rows, &here)) {
-                // A band of many samples may take a second.
                 progress.check()?;
                 band.draw(&scene.pen, &list.drawn, 1);
+                let done = done.fetch_add(1, Ordering::Relaxed) + 1;
+                if done % REPORTED == 0 {
+                    progress.report(done as f32 / count as f32);
+                }
             }
             band.finish(1);
-            progress.report((done.fetch_add(1, Ordering::Relaxed) + 1) as f32 / count as f32);
             Ok(())
         })
     }
 
     /// Takes away the nodes `removed`, and adds `added`.
     pub fn change(&mut self, pen: &Pen, removed: &[Drawn], added: &[Drawn]) {
-        let rows = rows_of(removed.iter().chain(added));
-        let mut bands = self.bands();
+        let all = || removed.iter().chain(added);
+        let rows = rows_of(all());
+        let height = self.free.dim.levels[0].height as u32;
+        let mut work = Work::none(height);
+        for drawn in all() {
+            let node = &pen.nodes.nodes[drawn.index as usize];
+            work.add(pen.nodes.row_of(drawn.index), pen.cost(node, drawn.placed).into());
+        }
+        let mut bands = self.bands(&work, rows.len() as u32);
         bands.retain(|band| meet(&rows, &band.rows));
         bands.into_par_iter().with_max_len(1).for_each(|mut band| {
             for (list, sign) in [(removed, -1), (added, 1)] {
@@ -160,10 +181,14 @@ impl Sums {
         });
     }
 
-    fn bands(&mut self) -> Vec<Band<'_>> {
-        let free = self.free.bands(BAND_ROWS).into_iter();
-        let both = free.zip(self.sharing.bands(BAND_ROWS)).zip((0..).step_by(BAND_ROWS as usize));
-        both.map(|((free, sharing), first)| Band { rows: first..first + BAND_ROWS, free, sharing }).collect()
+    /// Bands for work in so many rows: one for each thread, but few if there are few rows.
+    fn bands(&mut self, work: &Work, rows: u32) -> Vec<Band<'_>> {
+        let count = rayon::current_num_threads().min(rows.div_ceil(BAND_ROWS) as usize).max(1);
+        let starts = work.divided(count);
+        let ends = starts.iter().skip(1).copied().chain([u32::MAX]);
+        let rows = starts.iter().copied().zip(ends).map(|(start, end)| start..end);
+        let both = self.free.bands(&starts).into_iter().zip(self.sharing.bands(&starts));
+        rows.zip(both).map(|(rows, (free, sharing))| Band { rows, free, sharing }).collect()
     }
 
     /// The pixels in a window: what is free, and what shares the rest.

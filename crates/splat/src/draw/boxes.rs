@@ -76,11 +76,24 @@ impl Pen<'_> {
         let radius = image.radius.unsigned_abs();
         let half = half.map(|half| mul_shift(radius, half, 16));
         let found = UnsizedBox { image, legs: [[half_size[0], half[0]], [half_size[1], half[1]]] };
-        if found.is_small() { paper.add(&found, sign) } else { found.sized().draw(&mut paper.rows, sign) }
+        if found.is_small() {
+            paper.add(&found, sign)
+        } else {
+            found.sized(too_blurred(image.level)).draw(&mut paper.rows, sign)
+        }
     }
 }
 
-/// The box of an image. Half its side along each axis is √(a² + b²), a the footprint's part and b the aperture's.
+/// What a level blurs too much, as the square of half a box's side, (1/4096 px of the level)²: upsampled, a pixel of level ℓ
+/// has a variance that is larger by (4^ℓ − 1)/3 px² than it should be.
+#[inline(always)]
+pub const fn too_blurred(level: u8) -> u32 {
+    const PIXEL_SQUARED: u32 = (PIXEL * PIXEL) as u32;
+    PIXEL_SQUARED - (PIXEL_SQUARED >> (2 * level))
+}
+
+/// The box of an image. Half its side along each axis is √(a² + b²), a the footprint's part and b the aperture's, less what
+/// its level blurs too much.
 pub struct UnsizedBox<'a> {
     pub image: &'a Image<'a>,
     /// By axis a and b, 1/4096 px.
@@ -96,8 +109,8 @@ impl UnsizedBox<'_> {
     }
 
     #[inline(always)]
-    fn sized(&self) -> SizedBox {
-        let half = self.legs.map(|[a, b]| hypotenuse(a, b).max(SMALLEST_HALF));
+    fn sized(&self, less: u32) -> SizedBox {
+        let half = self.legs.map(|[a, b]| hypotenuse(a, b, less).max(SMALLEST_HALF));
         let Image { center, share, light, dither, .. } = *self.image;
         SizedBox { center, half, per_half: half.map(Reciprocal::of), share, light, dither }
     }

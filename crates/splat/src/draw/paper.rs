@@ -1,7 +1,7 @@
 //! What is drawn on.
 
 use crate::canvas::{Rows, Word};
-use crate::draw::boxes::UnsizedBox;
+use crate::draw::boxes::{UnsizedBox, too_blurred};
 use crate::draw::seen_runs::SeenRun;
 use crate::draw::small::SmallBoxes;
 use crate::widest::with_widest_instructions;
@@ -10,14 +10,16 @@ use crate::widest::with_widest_instructions;
 pub struct Paper<'a, W> {
     pub rows: Rows<'a, W>,
     small: SmallBoxes,
+    /// See [`too_blurred`].
+    too_blurred: u32,
     /// Room to work in.
     pub found: Vec<SeenRun>,
 }
 
 impl<'a, W: Word> Paper<'a, W> {
     /// Nothing waits.
-    pub fn new(rows: Rows<'a, W>) -> Self {
-        Self { rows, small: SmallBoxes::default(), found: Vec::new() }
+    pub fn new(rows: Rows<'a, W>, level: u8) -> Self {
+        Self { rows, small: SmallBoxes::default(), too_blurred: too_blurred(level), found: Vec::new() }
     }
 
     /// A small box, drawn with others.
@@ -38,12 +40,12 @@ impl<'a, W: Word> Paper<'a, W> {
         if sign > 0 {
             with_widest_instructions(
                 #[inline(always)]
-                || self.small.draw(&mut self.rows, 1),
+                || self.small.draw(&mut self.rows, self.too_blurred, 1),
             );
         } else {
             with_widest_instructions(
                 #[inline(always)]
-                || self.small.draw(&mut self.rows, -1),
+                || self.small.draw(&mut self.rows, self.too_blurred, -1),
             );
         }
     }

@@ -50,10 +50,10 @@ impl SmallBoxes {
         self.len == 0
     }
 
-    /// Draws them; none are left.
+    /// Draws them, their half sides' squares smaller by `less`; none are left.
     #[inline(always)]
-    pub fn draw<W: Word>(&mut self, rows: &mut Rows<W>, sign: i32) {
-        let [across, down] = self.legs.each_ref().map(sizes);
+    pub fn draw<W: Word>(&mut self, rows: &mut Rows<W>, less: u32, sign: i32) {
+        let [across, down] = self.legs.each_ref().map(|legs| sizes(legs, less));
         for at in 0..self.len {
             let sized = SizedBox {
                 center: self.center[at],
@@ -71,10 +71,10 @@ impl SmallBoxes {
 
 /// The sizes along an axis: what [`crate::fixed::hypotenuse`] and [`Reciprocal::of`] say, several at a time.
 #[inline(always)]
-fn sizes([a, b]: &[[u32; COUNT]; 2]) -> Sizes {
+fn sizes([a, b]: &[[u32; COUNT]; 2], less: u32) -> Sizes {
     let (mut half, mut value, mut bits) = ([0; COUNT], [0; COUNT], [0; COUNT]);
     for at in 0..COUNT {
-        let square = (a[at] * a[at] + b[at] * b[at]) as i32;
+        let square = (a[at] * a[at] + b[at] * b[at]).saturating_sub(less) as i32;
         half[at] = ((square as f64).sqrt() as i32 as u32).max(SMALLEST_HALF);
     }
     for at in 0..COUNT {
@@ -111,11 +111,13 @@ mod tests {
         ]);
         for chunk in legs.chunks(COUNT) {
             let column = |k: usize| std::array::from_fn(|at| chunk.get(at).map_or(0, |legs| legs[k]));
-            let found = sizes(&[column(0), column(1)]);
-            for (at, [a, b]) in chunk.iter().enumerate() {
-                let half = hypotenuse(*a, *b).max(SMALLEST_HALF);
-                let wanted = (half, Reciprocal::of(half));
-                assert_eq!((found.half[at], found.per_half[at]), wanted, "{a} {b}");
+            for less in [0, 12 << 20] {
+                let found = sizes(&[column(0), column(1)], less);
+                for (at, [a, b]) in chunk.iter().enumerate() {
+                    let half = hypotenuse(*a, *b, less).max(SMALLEST_HALF);
+                    let wanted = (half, Reciprocal::of(half));
+                    assert_eq!((found.half[at], found.per_half[at]), wanted, "{a} {b} {less}");
+                }
             }
         }
     }

@@ -242,10 +242,16 @@ fn value_of(image: ptr<function, Image>, height: u32, share: u32, shift: u32, ro
 
 // Boxes
 
+fn too_blurred(level: u32) -> u32 {
+    let pixel = u32(PIXEL) * u32(PIXEL);
+    return pixel - (pixel >> (2u * level));
+}
+
 fn draw_box(image: ptr<function, Image>, half_size: vec2<u32>, of_aperture: vec2<u32>) {
+    let less = too_blurred((*image).level);
     let radius = u32(abs((*image).radius));
-    let half_x = max(hypotenuse(half_size.x, mul_shift(radius, of_aperture.x, 16u)), SMALLEST_HALF);
-    let half_y = max(hypotenuse(half_size.y, mul_shift(radius, of_aperture.y, 16u)), SMALLEST_HALF);
+    let half_x = max(hypotenuse(half_size.x, mul_shift(radius, of_aperture.x, 16u), less), SMALLEST_HALF);
+    let half_y = max(hypotenuse(half_size.y, mul_shift(radius, of_aperture.y, 16u), less), SMALLEST_HALF);
     let center = (*image).center;
     let top = center.y - i32(half_y);
     let bottom = center.y + i32(half_y);

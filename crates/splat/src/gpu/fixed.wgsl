@@ -56,12 +56,13 @@ fn integer_sqrt(x: u32) -> u32 {
     return root;
 }
 
-fn hypotenuse(a: u32, b: u32) -> u32 {
+fn hypotenuse(a: u32, b: u32, less: u32) -> u32 {
     let zeros = min(countLeadingZeros(a | b), 17u);
     let shift = 17u - zeros;
     let x = a >> shift;
     let y = b >> shift;
-    return integer_sqrt(x * x + y * y) << shift;
+    let square = x * x + y * y;
+    return integer_sqrt(square - min(square, less >> (2u * shift))) << shift;
 }
 
 fn ratio(numerator: u32, divisor: u32, most: u32) -> u32 {
