@@ -4,39 +4,44 @@ use crate::draw::Pen;
 use crate::lens_in_use::{LensInUse, NodeFocus, Placed};
 use crate::nodes::{Nodes, SplatNode};
 use crate::paint::Paint;
-use crate::widest::with_widest_instructions;
+use crate::widest::{ask_for, with_widest_instructions};
 use rayon::prelude::*;
 use std::cmp::Ordering;
 use std::ops::Range;
+
+/// How many nodes ahead of the one that is looked at, or drawn, are fetched from memory.
+pub const AHEAD: usize = 8;
 
 /// What is summed: nodes as a lens sees them, and their paint.
 pub struct Scene<'a> {
     pub pen: Pen<'a>,
     pub lens: &'a LensInUse,
     pub paint: &'a Paint,
-    /// Pixel rows of the picture.
-    pub height: u32,
+    /// Pixel columns and rows of the picture.
+    pub size: [u32; 2],
 }
 
 impl Scene<'_> {
-    /// Calls `visit` with each node of a block that is drawn, painted as `paint` says.
+    /// Calls `visit` with each node of a block that is drawn, painted as `paint` says, and the rows that its light may reach.
     #[inline(always)]
     pub fn drawn(
         &self,
         block: usize,
         paint: Option<&[NodeFocus]>,
-        mut visit: impl FnMut(u32, &SplatNode, Placed),
+        mut visit: impl FnMut(u32, &SplatNode, Placed, Range<u32>),
     ) {
         let first = self.pen.nodes.blocks[block].start;
         let nodes = self.pen.nodes.of_block(block);
         let mut at = 0;
         while at < nodes.len() {
             let node = &nodes[at];
+            ask_for(nodes.get(at + AHEAD));
             let focus = paint.map_or(NodeFocus::STANDARD, |paint| paint[at]);
             let placed = self.lens.place(node, &focus);
             if node.is_leaf || self.lens.may_merge(node, &focus, placed) {
-                if self.pen.nodes.may_reach_frame(node, placed) {
-                    visit(first + at as u32, node, placed);
+                let [columns, rows] = [0, 1].map(|axis| node.reach(axis, placed, self.size[axis]));
+                if !columns.is_empty() && !rows.is_empty() {
+                    visit(first + at as u32, node, placed, rows);
                 }
                 at = (node.end - first) as usize;
             } else {
@@ -57,12 +62,9 @@ impl Scene<'_> {
                     block,
                     paint,
                     #[inline(always)]
-                    |index, node, placed| {
-                        let rows = node.reach(1, placed, self.height);
-                        if !rows.is_empty() {
-                            drawn.push(Drawn { index, placed, rows: [rows.start, rows.end] });
-                            *cost += u64::from(self.pen.cost(node, placed));
-                        }
+                    |index, node, placed, rows| {
+                        drawn.push(Drawn { index, placed, rows: [rows.start, rows.end] });
+                        *cost += u64::from(self.pen.cost(node, placed));
                     },
                 )
             },

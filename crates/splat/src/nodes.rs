@@ -88,11 +88,12 @@ impl SplatNode {
     /// The columns (`axis` 0) or rows (1) of a picture of `side` of them that its light may reach.
     #[inline(always)]
     pub fn reach(&self, axis: usize, placed: Placed, side: u32) -> Range<u32> {
-        let center = (self.center[axis] >> POSITION_BITS) as i64;
-        let reach = (placed.radius.unsigned_abs() as i64 >> POSITION_BITS) * 65 / 64
-            + (self.half_size[axis] as i64 >> (POSITION_BITS - 1))
+        // Coarse levels spread a little further.
+        let center = self.center[axis] >> POSITION_BITS;
+        let reach = (placed.radius.abs() >> POSITION_BITS) * 65 / 64
+            + (self.half_size[axis] as i32 >> (POSITION_BITS - 1))
             + (4 << self.level.max(placed.level));
-        let within = |place: i64| place.clamp(0, side as i64) as u32;
+        let within = |place: i32| place.clamp(0, side as i32) as u32;
         within(center - reach)..within(center + reach + 1)
     }
 
@@ -202,20 +203,6 @@ impl Nodes {
     pub fn of_block(&self, block: usize) -> &[SplatNode] {
         let range = &self.blocks[block];
         &self.nodes[range.start as usize..range.end as usize]
-    }
-
-    /// Whether a node that was placed may light a pixel of the frame.
-    #[inline(always)]
-    pub fn may_reach_frame(&self, node: &SplatNode, placed: Placed) -> bool {
-        let radius = placed.radius.unsigned_abs() as i64;
-        (0..2).all(|k| {
-            // Coarse levels spread a little further.
-            let reach = radius
-                + radius / 64
-                + 2 * node.half_size[k] as i64
-                + ((4 * PIXEL as i64) << node.level.max(placed.level));
-            (node.center[k] as i64 - self.middle[k] as i64).abs() - (self.middle[k] as i64) <= reach
-        })
     }
 
     /// What a node sees of the aperture; `None` if all.

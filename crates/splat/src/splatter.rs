@@ -93,15 +93,15 @@ impl ApertureInUse {
         Pen::new(nodes, &self.stencils, &self.seen, self.stop, lens.is_exact)
     }
 
-    /// What is summed of a picture of `height` rows.
+    /// What is summed of `camera`'s picture.
     fn scene<'a>(
         &'a self,
         nodes: &'a Nodes,
         lens: &'a LensInUse,
         paint: &'a Paint,
-        height: u32,
+        camera: &Camera,
     ) -> Scene<'a> {
-        Scene { pen: self.pen(nodes, lens), lens, paint, height }
+        Scene { pen: self.pen(nodes, lens), lens, paint, size: [camera.width, camera.height] }
     }
 }
 
@@ -292,7 +292,7 @@ impl Splatter {
             return summed;
         }
         let nodes = self.nodes.as_ref().ok_or(SplatError::Overflow)?;
-        let scene = self.aperture.scene(nodes, &self.lens, paint, self.salf.camera.height);
+        let scene = self.aperture.scene(nodes, &self.lens, paint, &self.salf.camera);
         Ok(self.sums.set(&scene, &mut self.lists, progress)?)
     }
 
@@ -318,7 +318,7 @@ impl Splatter {
             before.push((block, self.paint.blocks[block].clone()));
             self.paint.update(nodes, block, leaves, &self.salf.samples, focus);
         }
-        let scene = self.aperture.scene(nodes, &self.lens, &self.paint, self.salf.camera.height);
+        let scene = self.aperture.scene(nodes, &self.lens, &self.paint, &self.salf.camera);
         let changes = scene.all_changes(before.par_iter().map(|(block, paint)| (*block, paint.as_deref())));
         let mut window = changes.window(nodes, self.salf.camera.width);
         if nodes.scale != Scale::FINEST {
@@ -356,7 +356,7 @@ impl Splatter {
         if nodes.scale != Scale::FINEST || 2 * count > nodes.nodes.len() {
             return Ok(false);
         }
-        let scene = self.aperture.scene(nodes, &self.lens, &self.paint, self.salf.camera.height);
+        let scene = self.aperture.scene(nodes, &self.lens, &self.paint, &self.salf.camera);
         let changes = scene.all_changes(blocks.map(|block| (block, None)));
         match self.change(&changes, self.frame()) {
             Err(SplatError::Overflow) => Ok(false),

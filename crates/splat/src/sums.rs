@@ -3,11 +3,11 @@
 use crate::bands::Work;
 use crate::canvas::{Accumulator, Word};
 use crate::draw::{Paper, Pen};
-use crate::drawn::{BlockList, Drawn, Scene, rows_of};
+use crate::drawn::{AHEAD, BlockList, Drawn, Scene, rows_of};
 use crate::lens_in_use::Placed;
 use crate::nodes::{Nodes, SplatNode};
 use crate::resolve::{Lines, Overflow, Quanta, Room, Window, lines};
-use crate::widest::with_widest_instructions;
+use crate::widest::{ask_for, with_widest_instructions};
 use progress::{Cancelled, Progress};
 use rayon::prelude::*;
 use salf::tree::LEVELS;
@@ -135,12 +135,12 @@ impl Sums {
             scene.list(block, scene.paint.of_block(block), list);
         });
         let lists = &*lists;
-        let mut work = Work::none(scene.height);
+        let mut work = Work::none(scene.size[1]);
         for list in lists {
             let Some(first) = list.drawn.first() else { continue };
             work.add(scene.pen.nodes.row_of(first.index), list.cost);
         }
-        let bands = self.bands(&work, scene.height);
+        let bands = self.bands(&work, scene.size[1]);
         let reach = |band: &Band| lists.iter().filter(|list| meet(&list.rows, &band.rows)).count();
         let (count, done) = (bands.iter().map(reach).sum::<usize>(), AtomicUsize::new(0));
         bands.into_par_iter().with_max_len(1).try_for_each(|mut band| {
@@ -234,7 +234,8 @@ impl Band<'_> {
 
     #[inline(always)]
     fn draw_signed(&mut self, pen: &Pen, list: &[Drawn], sign: i32) {
-        for drawn in list {
+        for (at, drawn) in list.iter().enumerate() {
+            ask_for(list.get(at + AHEAD).and_then(|later| pen.nodes.nodes.get(later.index as usize)));
             if !meet(&drawn.rows(), &self.rows) {
                 continue;
             }

@@ -42,7 +42,7 @@ impl Records {
     pub fn of_blocks(scene: &Scene, blocks: Range<usize>, first: u32) -> Self {
         let of_block = |block| {
             let mut records = Self::default();
-            scene.drawn(block, scene.paint.of_block(block), |index, node, placed| {
+            scene.drawn(block, scene.paint.of_block(block), |index, node, placed, _| {
                 records.push(&scene.pen, index, first, node, placed, 1);
             });
             records

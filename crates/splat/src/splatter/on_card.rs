@@ -83,7 +83,7 @@ impl Splatter {
         progress: &dyn Progress,
     ) -> Option<Result<(), SplatError>> {
         let (nodes, sums) = (self.nodes.as_ref()?, self.card.sums.as_mut()?);
-        let scene = self.aperture.scene(nodes, &self.lens, paint, self.salf.camera.height);
+        let scene = self.aperture.scene(nodes, &self.lens, paint, &self.salf.camera);
         let set = sums.set(&scene, progress);
         Some(self.card.came_of(set))
     }
