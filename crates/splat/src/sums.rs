@@ -235,7 +235,13 @@ impl Band<'_> {
     #[inline(always)]
     fn draw_signed(&mut self, pen: &Pen, list: &[Drawn], sign: i32) {
         for (at, drawn) in list.iter().enumerate() {
-            ask_for(list.get(at + AHEAD).and_then(|later| pen.nodes.nodes.get(later.index as usize)));
+            let later =
+                |ahead: usize| list.get(at + ahead).map(|later| &pen.nodes.nodes[later.index as usize]);
+            ask_for(later(AHEAD));
+            if let Some(next) = later(AHEAD / 2) {
+                ask_for(pen.nodes.cells(next));
+                ask_for(pen.seen.get(next.cells as usize));
+            }
             if !meet(&drawn.rows(), &self.rows) {
                 continue;
             }

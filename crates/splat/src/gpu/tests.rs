@@ -116,10 +116,17 @@ impl Hard {
         vec![
             plain.clone(),
             Self { name: "exact", tolerance: Tolerance::NONE, ..plain.clone() },
-            Self { name: "partly occluded", partial: 2, ..plain.clone() },
+            Self { name: "partly occluded, alone", aperture_radius: 0.4, partial: 2, ..plain.clone() },
             Self { name: "partly occluded, exact", partial: 2, tolerance: Tolerance::NONE, ..plain.clone() },
             Self { name: "painted", partial: 3, is_painted: true, ..plain.clone() },
-            Self { name: "fireflies", brightest: 1e5, partial: 3, is_painted: true, ..plain.clone() },
+            Self {
+                name: "highlights and fireflies",
+                aperture_radius: 0.4,
+                brightest: 1e5,
+                partial: 3,
+                is_painted: true,
+                ..plain.clone()
+            },
             Self { name: "anamorphic", shape: polygon.clone(), ratio: 0.5, partial: 2, ..plain.clone() },
             Self { name: "stopped down", shape: polygon, stop: 0.4, partial: 2, tilt: 0.2, ..plain.clone() },
             Self { name: "letter", shape: mask(8, |k| k % 8 < 3 || k < 16), partial: 3, ..plain.clone() },

@@ -312,3 +312,60 @@ fn what_sees_one_cell_loses_no_light() {
         }
     }
 }
+
+/// Samples at depths and of masks so mixed that none are joined, far out of focus.
+#[test]
+fn what_stands_alone_is_drawn_coarsely_and_keeps_its_light() {
+    let wide = Camera { aperture_radius: 0.6, ..camera() };
+    let salf = light_field();
+    let dim = |samples: Vec<Sample>| -> Vec<Sample> {
+        let dimmed = |sample: Sample| Sample { radiance: sample.radiance.min(Vec3::ONE), ..sample };
+        samples.into_iter().map(dimmed).collect()
+    };
+    let samples = dim(salf.samples.to_vec()).into();
+    let mut splatter = Splatter::new(Arc::new(Salf { camera: wide.clone(), samples, ..(*salf).clone() }));
+    splatter.render(&wide, &standard(), &Unwatched).unwrap();
+    let exact = splatter.picture().clone();
+    let is_drawn_on = |splatter: &Splatter, level: usize| {
+        let level = &splatter.sums.free.dim.levels[level];
+        (0..level.height as i32).any(|row| level.row(row).is_some())
+    };
+    assert!(is_drawn_on(&splatter, 0) && !is_drawn_on(&splatter, 1));
+    splatter.set_tolerance(Tolerance::VIEWING);
+    splatter.render(&wide, &standard(), &Unwatched).unwrap();
+    assert!(is_drawn_on(&splatter, 2), "circles of {} px", wide.optics().splat_radius_px(1.0));
+    let sum = |picture: &Picture| picture.radiance.iter().flatten().map(|&x| f64::from(x)).sum::<f64>();
+    let (wanted, found) = (sum(&exact), sum(splatter.picture()));
+    assert!((found / wanted - 1.0).abs() < 2e-3, "{found} of {wanted}");
+    // Beside the frame's edge few samples make a pixel.
+    let inner = |picture: &Picture| {
+        let exposed = picture.exposed(lens::Exposure::Normalise);
+        let rows = (16..64).flat_map(|row| (16..80).map(move |column| row * 96 + column));
+        rows.flat_map(|at| exposed[at]).collect::<Vec<f32>>()
+    };
+    let (found, wanted) = (inner(splatter.picture()), inner(&exact));
+    let square: f32 = found.iter().zip(&wanted).map(|(a, b)| (a - b).powi(2)).sum();
+    let rms = (square / found.len() as f32).sqrt();
+    assert!(rms < 0.01, "{rms}");
+}
+
+#[test]
+fn a_bright_sample_of_a_large_cell_sends_all_its_light() {
+    let cell = |radiance: f32| Sample {
+        center: Vec2::new(50.0, 42.0),
+        half_size: Vec2::splat(2.0),
+        inverse_depth: 0.5,
+        weight: 16.0,
+        tilt: Vec2::ZERO,
+        radiance: Vec3::splat(radiance),
+        surface: Some(SurfacePoint { triangle: 0, barycentric: DVec2::ZERO }),
+        visibility: Visibility::Open,
+    };
+    for radiance in [3.0, 12.0, 300.0] {
+        let salf = Salf { camera: camera(), margin_px: 0, samples: vec![cell(radiance)].into() };
+        let mut splatter = Splatter::new(Arc::new(salf));
+        splatter.render(&camera(), &standard(), &Unwatched).unwrap();
+        let sum: f32 = splatter.picture().radiance.iter().map(|pixel| pixel[0]).sum();
+        assert!((sum / (16.0 * radiance) - 1.0).abs() < 1e-4, "{radiance}: {sum}");
+    }
+}
