@@ -71,11 +71,21 @@ impl Lines {
         rows.contains(&row).then(|| &self.pixels[(row - rows.start) as usize * width..][..width])
     }
 
-    /// Adds the light, not the coverage, of lines of the same window.
-    pub fn add_light(&mut self, more: &Self) {
-        for (pixel, more) in self.pixels.iter_mut().zip(&more.pixels) {
-            (0..3).for_each(|c| pixel[c] += more[c]);
-        }
+    /// Adds the first `CHANNELS` channels of a level's pixels.
+    pub fn add<W: Word, const CHANNELS: usize>(
+        &mut self,
+        level: &Level<W>,
+        quanta: Quanta,
+    ) -> Result<(), Overflow> {
+        let Window { rows, columns } = &self.window;
+        let mut lines = rows.clone().zip(self.pixels.chunks_exact_mut(columns.len().max(1)));
+        lines.try_for_each(|(row, line)| match level.row(row) {
+            Some(row) => with_widest_instructions(
+                #[inline(always)]
+                || integrate::<W, CHANNELS>(&row, level.width, quanta, columns, line),
+            ),
+            None => Ok(()),
+        })
     }
 }
 
@@ -122,17 +132,9 @@ pub fn lines<W: Word>(
                 room.give_back(coarse);
                 here
             }
-            None => Lines::black(window.clone(), room.take()),
+            None => Lines::black(window, room.take()),
         };
-        let width = window.columns.len();
-        for (row, line) in window.rows.clone().zip(here.pixels.chunks_exact_mut(width)) {
-            if let Some(row) = level.row(row) {
-                with_widest_instructions(
-                    #[inline(always)]
-                    || integrate(&row, level.width, quanta, &window.columns, line),
-                )?;
-            }
-        }
+        here.add::<W, 4>(level, quanta)?;
         above = Some(here);
     }
     Ok(above)
@@ -140,7 +142,7 @@ pub fn lines<W: Word>(
 
 /// Adds the pixels of a row of a level, `width` wide, in some of its columns to a line.
 #[inline(always)]
-fn integrate<W: Word>(
+fn integrate<W: Word, const CHANNELS: usize>(
     row: &Row<W>,
     width: usize,
     quanta: Quanta,
@@ -168,7 +170,7 @@ fn integrate<W: Word>(
     let line = line.iter_mut().skip((first + start) - (columns.start + 1) as usize);
     for (pixel, difference) in line.zip(&row.differences[start..end]) {
         let sum = pass(difference);
-        for c in 0..4 {
+        for c in 0..CHANNELS {
             pixel[c] += sum[c].float() * quantum;
         }
     }

@@ -66,13 +66,10 @@ impl Sum {
     fn lines(&self, nodes: &Nodes, window: &Window, room: &mut Room) -> Result<Option<Lines>, Overflow> {
         let dim = Quanta::new(nodes.scale.dim_bits, 32, nodes.brightest.min(crate::nodes::BRIGHT as f64));
         let mut found = lines(&self.dim, dim, window, room)?;
-        if let Some(bright) = &self.bright {
-            let quanta = Quanta::new(nodes.scale.bright_bits, 64, nodes.brightest);
+        if let (Some(found), Some(bright)) = (&mut found, &self.bright) {
             // Their coverage is among the ordinary ones'.
-            if let (Some(found), Some(light)) = (&mut found, lines(bright, quanta, window, room)?) {
-                found.add_light(&light);
-                room.give_back(light);
-            }
+            let quanta = Quanta::new(nodes.scale.bright_bits, 64, nodes.brightest);
+            found.add::<i64, 3>(&bright.levels[0], quanta)?;
         }
         Ok(found)
     }
