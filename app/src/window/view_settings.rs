@@ -13,8 +13,8 @@ const RECENT: usize = 8;
 /// The largest tolerance of the live picture, px: as wide as the circle of confusion.
 pub const LARGEST_TOLERANCE_PX: f64 = 16.0;
 
-/// The tolerance of the live picture at first, px: a quarter of the circle of confusion.
-const TOLERANCE_PX: f64 = 4.0;
+/// The tolerance of the live picture at first, px: three eighths of the circle of confusion.
+const TOLERANCE_PX: f64 = 6.0;
 
 /// The user's own settings of the window.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

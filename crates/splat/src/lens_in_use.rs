@@ -19,7 +19,7 @@ impl Tolerance {
     pub const NONE: Self = Self { share_of_circle: 0.0 };
 
     /// For pictures that are looked at while one works on them.
-    pub const VIEWING: Self = Self { share_of_circle: 0.25 };
+    pub const VIEWING: Self = Self { share_of_circle: 0.375 };
 
     /// Nodes of `px` pixels where the circle of confusion is 16.
     pub fn px(px: f64) -> Self {
