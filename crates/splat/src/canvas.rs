@@ -164,10 +164,17 @@ impl<W: Word> Level<W> {
         self.width + 3
     }
 
+    /// Columns in memory that are summed: the picture's, and a border on either side.
+    pub fn columns(&self) -> usize {
+        self.width + 2
+    }
+
     /// A row, from −1 to its height; `None` if it was never drawn on.
     pub fn row(&self, row: i32) -> Option<Row<'_, W>> {
         let place = (row + 1) as usize;
+        // What leaves the picture ends in a column behind the border.
         let columns = self.touched[place].columns()?;
+        let columns = columns.start..columns.end.min(self.columns()).max(columns.start);
         let line = &self.cells[place * self.stride()..(place + 1) * self.stride()];
         Some(Row { differences: &line[columns.clone()], columns, total: self.totals[place] })
     }

@@ -23,6 +23,7 @@ mod fixed;
 mod gpu;
 
 mod lens_in_use;
+mod marks;
 mod nodes;
 mod paint;
 mod partition;

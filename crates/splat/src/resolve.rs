@@ -1,6 +1,7 @@
 //! Accumulators to pictures: running sums, and each level upsampled onto the next finer one.
 
 use crate::canvas::{Accumulator, Level, Pixel, Row, Word};
+use crate::marks::{Mark, Marks, SPAN, spans};
 use crate::widest::with_widest_instructions;
 use std::ops::Range;
 
@@ -71,21 +72,39 @@ impl Lines {
         rows.contains(&row).then(|| &self.pixels[(row - rows.start) as usize * width..][..width])
     }
 
-    /// Adds the first `CHANNELS` channels of a level's pixels.
+    /// Adds the first `CHANNELS` channels of a level's pixels. If marks are kept of it, columns outside of the window are
+    /// those of the last time.
     pub fn add<W: Word, const CHANNELS: usize>(
         &mut self,
         level: &Level<W>,
         quanta: Quanta,
+        mut kept: Option<&mut Marks<W>>,
     ) -> Result<(), Overflow> {
         let Window { rows, columns } = &self.window;
-        let mut lines = rows.clone().zip(self.pixels.chunks_exact_mut(columns.len().max(1)));
-        lines.try_for_each(|(row, line)| match level.row(row) {
-            Some(row) => with_widest_instructions(
+        let in_memory = (columns.start + 1) as usize..(columns.end + 1) as usize;
+        let mut unkept = Marks::none(0..1, level.columns());
+        for (row, line) in rows.clone().zip(self.pixels.chunks_exact_mut(columns.len().max(1))) {
+            let (marks, spans) = match &mut kept {
+                Some(kept) => (kept.of_row(row), spans(&in_memory)),
+                None => (unkept.of_row(0), spans(&(0..level.columns()))),
+            };
+            let Some(row) = level.row(row) else {
+                marks[spans].fill(Mark::default());
+                continue;
+            };
+            with_widest_instructions(
                 #[inline(always)]
-                || integrate::<W, CHANNELS>(&row, level.width, quanta, columns, line),
-            ),
-            None => Ok(()),
-        })
+                || {
+                    let first_span = spans.start;
+                    integrate::<W, CHANNELS>(&row, quanta, &in_memory, line, &mut marks[spans], first_span)
+                },
+            )?;
+            let covered: i64 = marks.iter().fold(0, |sum, mark| sum.wrapping_add(mark.covered));
+            if covered != row.total {
+                return Err(Overflow);
+            }
+        }
+        Ok(())
     }
 }
 
@@ -106,11 +125,12 @@ impl Quanta {
     }
 }
 
-/// The pixels of a sum in a window of the picture; `None` if they are black.
+/// The pixels of a sum in a window of the picture; `None` if they are black. `marks` are those of its rows of the finest level.
 pub fn lines<W: Word>(
     accumulator: &Accumulator<W>,
     quanta: Quanta,
     window: &Window,
+    marks: &mut Marks<W>,
     room: &mut Room,
 ) -> Result<Option<Lines>, Overflow> {
     let levels = || {
@@ -119,9 +139,12 @@ pub fn lines<W: Word>(
     };
     let is_touched =
         |(level, mut window): (&Level<W>, Window)| window.rows.any(|row| level.row(row).is_some());
-    let Some(coarsest) = levels().rposition(is_touched) else { return Ok(None) };
+    let Some(coarsest) = levels().rposition(is_touched) else {
+        window.rows.clone().for_each(|row| marks.of_row(row).fill(Mark::default()));
+        return Ok(None);
+    };
     let mut above: Option<Lines> = None;
-    for (level, window) in levels().take(coarsest + 1).rev() {
+    for (k, (level, window)) in levels().take(coarsest + 1).enumerate().rev() {
         let mut here = match above.take() {
             Some(coarse) => {
                 let pixels = room.take();
@@ -134,54 +157,58 @@ pub fn lines<W: Word>(
             }
             None => Lines::black(window, room.take()),
         };
-        here.add::<W, 4>(level, quanta)?;
+        here.add::<W, 4>(level, quanta, (k == 0).then_some(&mut *marks))?;
         above = Some(here);
     }
     Ok(above)
 }
 
-/// Adds the pixels of a row of a level, `width` wide, in some of its columns to a line.
+/// Adds the pixels of a row of a level in some columns in memory to a line, and sets the marks of the spans from `first_span`
+/// on that hold them.
 #[inline(always)]
 fn integrate<W: Word, const CHANNELS: usize>(
     row: &Row<W>,
-    width: usize,
     quanta: Quanta,
-    columns: &Range<i32>,
+    window: &Range<usize>,
     line: &mut [[f32; 4]],
+    marks: &mut [Mark<W>],
+    first_span: usize,
 ) -> Result<(), Overflow> {
     let quantum = quanta.quantum as f32;
+    let mut sum = marks.first().map_or([W::default(); 4], |mark| mark.sum);
     // Of all four, though only coverage is asked for: lanes of one register.
-    let (mut sum, mut covered, mut largest) = ([W::default(); 4], [0i64; 4], [W::default(); 4]);
-    // In memory the border is column 0; what leaves the picture ends in a column behind the other border.
-    let first = row.columns.start;
-    let place = |column: usize| column.clamp(first, row.columns.end.min(width + 2).max(first)) - first;
-    let [start, end, last] = [(columns.start + 1) as usize, (columns.end + 1) as usize, width + 2].map(place);
-    let mut pass = |difference: &Pixel<W>| {
-        for c in 0..4 {
-            sum[c] = sum[c].plus(difference[c]);
-            covered[c] = covered[c].wrapping_add(sum[c].wide());
-            largest[c] = largest[c].max(sum[c]);
+    let mut largest = [W::default(); 4];
+    for (span, mark) in (first_span..).zip(marks) {
+        let mut covered = [0i64; 4];
+        mark.sum = sum;
+        let mut pass = |difference: &Pixel<W>| {
+            for c in 0..4 {
+                sum[c] = sum[c].plus(difference[c]);
+                covered[c] = covered[c].wrapping_add(sum[c].wide());
+                largest[c] = largest[c].max(sum[c]);
+            }
+            sum
+        };
+        let [first, end] = [span * SPAN, (span + 1) * SPAN]
+            .map(|column| column.clamp(row.columns.start, row.columns.end) - row.columns.start);
+        let [from, to] = [window.start, window.end]
+            .map(|column| column.saturating_sub(row.columns.start).clamp(first, end));
+        row.differences[first..from].iter().for_each(|difference| {
+            pass(difference);
+        });
+        let line = line.iter_mut().skip((row.columns.start + from).saturating_sub(window.start));
+        for (pixel, difference) in line.zip(&row.differences[from..to]) {
+            let sum = pass(difference);
+            for c in 0..CHANNELS {
+                pixel[c] += sum[c].float() * quantum;
+            }
         }
-        sum
-    };
-    row.differences[..start].iter().for_each(|difference| {
-        pass(difference);
-    });
-    let line = line.iter_mut().skip((first + start) - (columns.start + 1) as usize);
-    for (pixel, difference) in line.zip(&row.differences[start..end]) {
-        let sum = pass(difference);
-        for c in 0..CHANNELS {
-            pixel[c] += sum[c].float() * quantum;
-        }
+        row.differences[to..end].iter().for_each(|difference| {
+            pass(difference);
+        });
+        mark.covered = covered[3];
     }
-    row.differences[end..last].iter().for_each(|difference| {
-        pass(difference);
-    });
-    if covered[3] == row.total && largest[3].wide() <= quanta.largest_coverage {
-        Ok(())
-    } else {
-        Err(Overflow)
-    }
+    if largest[3].wide() <= quanta.largest_coverage { Ok(()) } else { Err(Overflow) }
 }
 
 /// Bilinear: a fine pixel lies a quarter of a coarse one off its centre.
@@ -225,7 +252,14 @@ mod tests {
 
     fn part(accumulator: &Accumulator<i32>, window: &Window) -> Vec<[f32; 4]> {
         let black = vec![[0.0; 4]; window.columns.len() * window.rows.len()];
-        let lines = lines(accumulator, FINE, window, &mut Room::default()).unwrap();
+        let level = &accumulator.levels[0];
+        let mut marks = Marks::none(-1..level.height as i32 + 1, level.columns());
+        let whole = Window { rows: -1..level.height as i32 + 1, columns: -1..level.width as i32 + 1 };
+        let mut room = Room::default();
+        lines(accumulator, FINE, &whole, &mut marks, &mut room).unwrap();
+        let marked = marks.clone();
+        let lines = lines(accumulator, FINE, window, &mut marks, &mut room).unwrap();
+        assert_eq!(marks, marked);
         lines.map_or(black, |lines| lines.rows().flatten().copied().collect())
     }
 

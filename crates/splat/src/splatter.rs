@@ -13,7 +13,7 @@ use crate::resolve::{Overflow, Room, Window};
 use crate::seen::{Seen, seen};
 use crate::shape::Shape;
 use crate::stencil::Stencils;
-use crate::sums::{RESOLVE_ROWS, Sums};
+use crate::sums::{RESOLVE_ROWS, SumMarks, Sums};
 use lens::{Aperture, Camera, FocusOffset, Picture};
 use on_card::Card;
 use progress::{Cancelled, Progress, Stage};
@@ -58,6 +58,8 @@ pub struct Splatter {
     lens: LensInUse,
     paint: Paint,
     sums: Sums,
+    /// Of [`RESOLVE_ROWS`] rows each.
+    marks: Vec<SumMarks>,
     /// Room for what is drawn.
     lists: Vec<BlockList>,
     /// What each pixel's sums are multiplied by.
@@ -127,13 +129,17 @@ impl Splatter {
         let (width, height) = (camera.width as usize, camera.height as usize);
         let tolerance = Tolerance::default();
         let shape = &aperture.stencils.shape;
+        let has_bright = nodes.as_ref().is_some_and(|nodes| nodes.has_bright);
+        let rows_of_chunk = |first: usize| first as i32..(first + RESOLVE_ROWS).min(height) as i32;
+        let chunks = (0..height).step_by(RESOLVE_ROWS).map(rows_of_chunk);
         Self {
             lens: LensInUse::new(camera.optics(), shape, tolerance),
             aperture,
             tolerance,
             evens: true,
             paint: Paint::default(),
-            sums: Sums::new([width, height], nodes.as_ref().is_some_and(|nodes| nodes.has_bright)),
+            sums: Sums::new([width, height], has_bright),
+            marks: chunks.map(|rows| SumMarks::none(rows, width, has_bright)).collect(),
             lists: Vec::new(),
             shares: vec![Share::NONE; width * height],
             balance: Balance::none([width, height]),
@@ -191,9 +197,10 @@ impl Splatter {
     pub fn bytes(&self) -> [usize; 2] {
         let [nodes, sums] = self.card.bytes();
         let lists: usize = self.lists.iter().map(|list| list.drawn.capacity() * size_of::<Drawn>()).sum();
+        let marks: usize = self.marks.iter().map(SumMarks::bytes).sum();
         [
             nodes + self.nodes.as_ref().map_or(0, |nodes| nodes.bytes()),
-            sums + self.sums.bytes() + self.balance.bytes() + lists,
+            sums + self.sums.bytes() + self.balance.bytes() + lists + marks,
         ]
     }
 
@@ -408,16 +415,16 @@ impl Splatter {
         let coverage = self.picture.coverage.par_chunks_mut(RESOLVE_ROWS * width);
         let shares = self.shares.par_chunks_mut(RESOLVE_ROWS * width);
         let of_knots = self.balance.rows.par_chunks_mut(RESOLVE_ROWS * knots.columns());
-        let all = radiance.zip(coverage).zip(shares.zip(of_knots)).enumerate();
+        let all = radiance.zip(coverage).zip(shares.zip(of_knots)).zip(&mut self.marks).enumerate();
         let chunks = all.skip(chunks.start).take(chunks.len());
         chunks.try_for_each_init(
             Room::default,
-            |room, (chunk, ((radiance, coverage), (shares, of_knots)))| {
+            |room, (chunk, (((radiance, coverage), (shares, of_knots)), marks))| {
                 let first = (chunk * RESOLVE_ROWS) as u32;
                 let here = rows.start.max(first)..rows.end.min(first + (coverage.len() / width) as u32);
                 let signed = |range: &Range<u32>| range.start as i32..range.end as i32;
-                let parts =
-                    sums.lines(nodes, &Window { rows: signed(&here), columns: signed(&columns) }, room)?;
+                let window = Window { rows: signed(&here), columns: signed(&columns) };
+                let parts = sums.lines(nodes, &window, marks, room)?;
                 let strip = Strip {
                     width,
                     first: first as usize,

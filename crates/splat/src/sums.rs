@@ -5,6 +5,7 @@ use crate::canvas::{Accumulator, Word};
 use crate::draw::{Paper, Pen};
 use crate::drawn::{AHEAD, BlockList, Drawn, Scene, rows_of};
 use crate::lens_in_use::Placed;
+use crate::marks::Marks;
 use crate::nodes::{Nodes, SplatNode};
 use crate::resolve::{Lines, Overflow, Quanta, Room, Window, lines};
 use crate::widest::{ask_for, with_widest_instructions};
@@ -36,6 +37,29 @@ pub struct Sums {
     pub sharing: Sum,
 }
 
+/// Marks of some rows of the sums: of ordinary samples, and of bright ones.
+pub struct SumMarks {
+    free: (Marks<i32>, Marks<i64>),
+    sharing: (Marks<i32>, Marks<i64>),
+}
+
+impl SumMarks {
+    /// Of rows that hold nothing, of a picture of this width.
+    pub fn none(rows: Range<i32>, width: usize, has_bright: bool) -> Self {
+        let columns = width + 2;
+        let of_sum = || {
+            let bright = if has_bright { rows.clone() } else { 0..0 };
+            (Marks::none(rows.clone(), columns), Marks::none(bright, columns))
+        };
+        Self { free: of_sum(), sharing: of_sum() }
+    }
+
+    /// Bytes in memory.
+    pub fn bytes(&self) -> usize {
+        [&self.free, &self.sharing].iter().map(|(dim, bright)| dim.bytes() + bright.bytes()).sum()
+    }
+}
+
 /// Rows of a sum to draw on.
 struct SumCanvas<'a> {
     /// Level by level.
@@ -63,13 +87,19 @@ impl Sum {
     }
 
     /// Its pixels in a window; `None` if they are black.
-    fn lines(&self, nodes: &Nodes, window: &Window, room: &mut Room) -> Result<Option<Lines>, Overflow> {
+    fn lines(
+        &self,
+        nodes: &Nodes,
+        window: &Window,
+        (dim_marks, bright_marks): &mut (Marks<i32>, Marks<i64>),
+        room: &mut Room,
+    ) -> Result<Option<Lines>, Overflow> {
         let dim = Quanta::new(nodes.scale.dim_bits, 32, nodes.brightest.min(crate::nodes::BRIGHT as f64));
-        let mut found = lines(&self.dim, dim, window, room)?;
+        let mut found = lines(&self.dim, dim, window, dim_marks, room)?;
         if let (Some(found), Some(bright)) = (&mut found, &self.bright) {
             // Their coverage is among the ordinary ones'.
             let quanta = Quanta::new(nodes.scale.bright_bits, 64, nodes.brightest);
-            found.add::<i64, 3>(&bright.levels[0], quanta)?;
+            found.add::<i64, 3>(&bright.levels[0], quanta, Some(bright_marks))?;
         }
         Ok(found)
     }
@@ -193,9 +223,11 @@ impl Sums {
         &self,
         nodes: &Nodes,
         window: &Window,
+        marks: &mut SumMarks,
         room: &mut Room,
     ) -> Result<[Option<Lines>; 2], Overflow> {
-        Ok([self.free.lines(nodes, window, room)?, self.sharing.lines(nodes, window, room)?])
+        let SumMarks { free, sharing } = marks;
+        Ok([self.free.lines(nodes, window, free, room)?, self.sharing.lines(nodes, window, sharing, room)?])
     }
 }
 

@@ -336,7 +336,7 @@ fn what_stands_alone_is_drawn_coarsely_and_keeps_its_light() {
     assert!(is_drawn_on(&splatter, 2), "circles of {} px", wide.optics().splat_radius_px(1.0));
     let sum = |picture: &Picture| picture.radiance.iter().flatten().map(|&x| f64::from(x)).sum::<f64>();
     let (wanted, found) = (sum(&exact), sum(splatter.picture()));
-    assert!((found / wanted - 1.0).abs() < 2e-3, "{found} of {wanted}");
+    assert!((found / wanted - 1.0).abs() < 4e-3, "{found} of {wanted}");
     // Beside the frame's edge few samples make a pixel.
     let inner = |picture: &Picture| {
         let exposed = picture.exposed(lens::Exposure::Normalise);
