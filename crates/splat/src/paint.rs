@@ -41,18 +41,40 @@ impl Paint {
         self.blocks.iter().all(Option::is_none)
     }
 
-    /// Looks up again the focus of the samples at `leaves`, nodes of `block` in order.
+    /// Looks up again the focus of the samples at `leaves`, nodes in order. Returns the blocks they are in, and what was
+    /// painted on each.
     pub fn update(
         &mut self,
+        nodes: &Nodes,
+        leaves: &[u32],
+        samples: &Samples,
+        focus: &dyn SurfaceField<FocusOffset>,
+    ) -> Vec<(usize, Option<Box<[NodeFocus]>>)> {
+        let block_of = |leaf: &u32| nodes.block_of_node[*leaf as usize] as usize;
+        let groups: Vec<&[u32]> = leaves.chunk_by(|a, b| block_of(a) == block_of(b)).collect();
+        let updated = groups.par_iter().map(|leaves| {
+            let block = block_of(&leaves[0]);
+            (block, self.updated(nodes, block, leaves, samples, focus))
+        });
+        let mut updated: Vec<_> = updated.collect();
+        for (block, paint) in &mut updated {
+            std::mem::swap(paint, &mut self.blocks[*block]);
+        }
+        updated
+    }
+
+    /// The focus of the nodes of a block, looked up again at `leaves`; `None` if nothing is painted.
+    fn updated(
+        &self,
         nodes: &Nodes,
         block: usize,
         leaves: &[u32],
         samples: &Samples,
         focus: &dyn SurfaceField<FocusOffset>,
-    ) {
+    ) -> Option<Box<[NodeFocus]>> {
         let first = nodes.blocks[block].start;
         let mut painted = self.blocks[block]
-            .take()
+            .clone()
             .unwrap_or_else(|| vec![NodeFocus::STANDARD; nodes.of_block(block).len()].into());
         let mut addresses = samples.addresses();
         for &leaf in leaves {
@@ -61,7 +83,7 @@ impl Paint {
         }
         (0..painted.len()).rev().for_each(|index| take_up(nodes, block, &mut painted, index));
         let is_standard = painted.iter().all(|focus| *focus == NodeFocus::STANDARD);
-        self.blocks[block] = (!is_standard).then_some(painted);
+        (!is_standard).then_some(painted)
     }
 
     /// Focus of the nodes of a block; `None` if nothing is painted.

@@ -318,13 +318,7 @@ impl Splatter {
             samples.iter().map(|&sample| nodes.node_of_sample[sample as usize]).collect();
         leaves.sort_unstable();
         let was_evened = self.is_evened();
-        let mut before = Vec::new();
-        let block_of = |leaf: &u32| nodes.block_of_node[*leaf as usize];
-        for leaves in leaves.chunk_by(|a, b| block_of(a) == block_of(b)) {
-            let block = block_of(&leaves[0]) as usize;
-            before.push((block, self.paint.blocks[block].clone()));
-            self.paint.update(nodes, block, leaves, &self.salf.samples, focus);
-        }
+        let before = self.paint.update(nodes, &leaves, &self.salf.samples, focus);
         let scene = self.aperture.scene(nodes, &self.lens, &self.paint, &self.salf.camera);
         let changes = scene.all_changes(before.par_iter().map(|(block, paint)| (*block, paint.as_deref())));
         let mut window = changes.window(nodes, self.salf.camera.width);
