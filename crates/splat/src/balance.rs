@@ -229,9 +229,11 @@ impl Gains {
     /// Those of a row of pixels, at each column of knots.
     pub fn of_row(&self, y: usize, scaled: Scaled) -> GainsOfRow {
         let ((row, behind), columns) = (place(y), self.knots.columns());
-        let of_row =
-            |row: usize| self.of_knots[row * columns..][..columns].iter().map(|knot| knot[scaled as usize]);
-        let of_row = |row: usize| of_row(row).map(|[r, g, b]| [r, g, b, 1.0]);
+        let of_knot = |knot: &[[f32; 3]; 2]| {
+            let [r, g, b] = knot[scaled as usize];
+            [r, g, b, 1.0]
+        };
+        let of_row = |row: usize| self.of_knots[row * columns..][..columns].iter().map(of_knot);
         GainsOfRow(of_row(row).zip(of_row(row + 1)).map(|(a, b)| mix(a, b, behind)).collect())
     }
 }
