@@ -48,7 +48,8 @@ pub fn html(report: &Report) -> Result<String, SessionError> {
     for series in Series::ALL {
         let table = tables::records(records.iter().copied().filter(|record| record.series == series));
         if !table.rows.is_empty() {
-            body += &format!("<h3>{}</h3>\n{}\n", series_title(series), table.to_html());
+            let (title, table) = (series_title(series), table.to_html());
+            body += &format!("<h3>{title}</h3>\n<div class=\"dense\">{table}</div>\n");
         }
     }
     Ok(document("Focus Brush: speed against error", &body))
@@ -73,7 +74,7 @@ fn method(report: &Report) -> String {
          Andersson et al. 2020 at 67 pixels a degree. At a tolerance of 0 px the light field has 2 × 2 cells a \
          pixel. Times are wall-clock times from a scene whose ray hierarchy stands; those under a quarter of a second are medians of up to five. “Memory” is what a renderer keeps for the next picture: the \
          light field's samples, the hierarchy over the triangles, or a pinhole picture with its defocus; “peak” is how much more the process held at \
-         most. A reference is the mean of two pictures of independent scrambles; their difference gives its own error.</p>\n\
+         most (0 B: what it had held before was enough). A reference is the mean of two pictures of independent scrambles; their difference gives its own error.</p>\n\
          {}<p class=\"caption\">Circles of confusion: the diameters that half / 90 % / 99 % of the pixels with a surface stay below. PSNR of a \
          reference: its own, estimated; a measured PSNR near it or above says only that the picture is at least as good.</p>\n",
         tables::scenes(&report.scenes).to_html()
