@@ -47,7 +47,8 @@ impl<W: Word> Marks<W> {
     }
 }
 
-/// The marks that pixels in these columns in memory lie between.
+/// The spans that hold these columns in memory and the one behind them: beside the frame's edge that is the border, where
+/// what leaves the picture goes on.
 pub fn spans(columns: &Range<usize>) -> Range<usize> {
-    columns.start / SPAN..columns.end.div_ceil(SPAN)
+    columns.start / SPAN..(columns.end + 1).div_ceil(SPAN)
 }

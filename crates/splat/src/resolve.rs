@@ -86,7 +86,11 @@ impl Lines {
         for (row, line) in rows.clone().zip(self.pixels.chunks_exact_mut(columns.len().max(1))) {
             let (marks, spans) = match &mut kept {
                 Some(kept) => (kept.of_row(row), spans(&in_memory)),
-                None => (unkept.of_row(0), spans(&(0..level.columns()))),
+                None => {
+                    let marks = unkept.of_row(0);
+                    let all = 0..marks.len();
+                    (marks, all)
+                }
             };
             let Some(row) = level.row(row) else {
                 marks[spans].fill(Mark::default());
