@@ -17,6 +17,7 @@ pub use image::WHOLE;
 pub use paper::Paper;
 
 use crate::canvas::{PIXEL, POSITION_BITS, Word};
+use crate::drawn::Drawn;
 use crate::fixed::mul_shift;
 use crate::lens_in_use::Placed;
 use crate::nodes::{Cells, Nodes, ONE, SplatNode};
@@ -237,9 +238,10 @@ impl<'a> Pen<'a> {
         }
     }
 
-    /// About what it costs to draw a node that was placed, in nanoseconds.
+    /// About what it costs to draw a node, in nanoseconds.
     #[inline(always)]
-    pub fn cost(&self, node: &SplatNode, placed: Placed) -> u32 {
+    pub fn cost(&self, &Drawn { index, placed, .. }: &Drawn) -> u64 {
+        let node = &self.nodes.nodes[index as usize];
         let radius = placed.radius.unsigned_abs() >> placed.level;
         let rows = (radius >> (POSITION_BITS - 1)) + 2;
         let once = match node.is_open() {
@@ -247,7 +249,7 @@ impl<'a> Pen<'a> {
             false if radius >= self.box_radius => 100 + 40 * rows,
             _ => 50 + 10 * rows,
         };
-        if node.is_bright { 2 * once } else { once }
+        u64::from(if node.is_bright { 2 * once } else { once })
     }
 
     /// Calls `visit` with the forms that a node that was placed is drawn in.

@@ -51,10 +51,8 @@ impl Scene<'_> {
     }
 
     /// Makes `list` the nodes of a block that are drawn, painted as `paint` says, in order.
-    pub fn list(&self, block: usize, paint: Option<&[NodeFocus]>, list: &mut BlockList) {
-        let BlockList { drawn, cost, .. } = list;
-        drawn.clear();
-        *cost = 0;
+    pub fn list(&self, block: usize, paint: Option<&[NodeFocus]>, list: &mut Vec<Drawn>) {
+        list.clear();
         with_widest_instructions(
             #[inline(always)]
             || {
@@ -62,14 +60,12 @@ impl Scene<'_> {
                     block,
                     paint,
                     #[inline(always)]
-                    |index, node, placed, rows| {
-                        drawn.push(Drawn { index, placed, rows: [rows.start, rows.end] });
-                        *cost += u64::from(self.pen.cost(node, placed));
+                    |index, _, placed, rows| {
+                        list.push(Drawn { index, placed, rows: [rows.start, rows.end] });
                     },
                 )
             },
         );
-        list.rows = rows_of(&list.drawn);
     }
 
     /// What is no longer drawn of some blocks, and what is now, since the paint of each was the one beside it.
@@ -93,9 +89,9 @@ impl Scene<'_> {
         if before == now {
             return changes;
         }
-        let mut lists = [BlockList::default(), BlockList::default()];
+        let mut lists = [Vec::new(), Vec::new()];
         lists.iter_mut().zip([before, now]).for_each(|(list, paint)| self.list(block, paint, list));
-        let [mut old, mut new] = lists.map(|list| list.drawn.into_iter().peekable());
+        let [mut old, mut new] = lists.map(|list| list.into_iter().peekable());
         loop {
             let order = match (old.peek(), new.peek()) {
                 (Some(a), Some(b)) => a.index.cmp(&b.index),

@@ -130,6 +130,7 @@ impl Splatter {
         let tolerance = Tolerance::default();
         let shape = &aperture.stencils.shape;
         let has_bright = nodes.as_ref().is_some_and(|nodes| nodes.has_bright);
+        let sums = Sums::new([width, height], has_bright);
         let rows_of_chunk = |first: usize| first as i32..(first + RESOLVE_ROWS).min(height) as i32;
         let chunks = (0..height).step_by(RESOLVE_ROWS).map(rows_of_chunk);
         Self {
@@ -138,8 +139,8 @@ impl Splatter {
             tolerance,
             evens: true,
             paint: Paint::default(),
-            sums: Sums::new([width, height], has_bright),
-            marks: chunks.map(|rows| SumMarks::none(rows, width, has_bright)).collect(),
+            marks: chunks.map(|rows| sums.marks(rows)).collect(),
+            sums,
             lists: Vec::new(),
             shares: vec![Share::NONE; width * height],
             balance: Balance::none([width, height]),

@@ -44,16 +44,6 @@ pub struct SumMarks {
 }
 
 impl SumMarks {
-    /// Of rows that hold nothing, of a picture of this width.
-    pub fn none(rows: Range<i32>, width: usize, has_bright: bool) -> Self {
-        let columns = width + 2;
-        let of_sum = || {
-            let bright = if has_bright { rows.clone() } else { 0..0 };
-            (Marks::none(rows.clone(), columns), Marks::none(bright, columns))
-        };
-        Self { free: of_sum(), sharing: of_sum() }
-    }
-
     /// Bytes in memory.
     pub fn bytes(&self) -> usize {
         [&self.free, &self.sharing].iter().map(|(dim, bright)| dim.bytes() + bright.bytes()).sum()
@@ -80,6 +70,13 @@ impl Sum {
         papers(&mut self.dim, starts)
             .map(|dim| SumCanvas { dim, bright: bright.as_mut().and_then(Iterator::next) })
             .collect()
+    }
+
+    /// Marks of some of its rows, while they hold nothing.
+    fn marks(&self, rows: Range<i32>) -> (Marks<i32>, Marks<i64>) {
+        let columns = self.dim.levels[0].columns();
+        let bright = if self.bright.is_some() { rows.clone() } else { 0..0 };
+        (Marks::none(rows, columns), Marks::none(bright, columns))
     }
 
     fn bytes(&self) -> usize {
@@ -150,6 +147,11 @@ impl Sums {
         self.free.bytes() + self.sharing.bytes()
     }
 
+    /// Marks of some of their rows, while they hold nothing.
+    pub fn marks(&self, rows: Range<i32>) -> SumMarks {
+        SumMarks { free: self.free.marks(rows.clone()), sharing: self.sharing.marks(rows) }
+    }
+
     /// Sets them to what a scene sends. `lists` is room to work in.
     pub fn set(
         &mut self,
@@ -159,7 +161,9 @@ impl Sums {
     ) -> Result<(), Cancelled> {
         lists.resize_with(scene.pen.nodes.blocks.len(), BlockList::default);
         lists.par_iter_mut().enumerate().for_each(|(block, list)| {
-            scene.list(block, scene.paint.of_block(block), list);
+            scene.list(block, scene.paint.of_block(block), &mut list.drawn);
+            list.rows = rows_of(&list.drawn);
+            list.cost = list.drawn.iter().map(|drawn| scene.pen.cost(drawn)).sum();
         });
         let lists = &*lists;
         let mut work = Work::none(scene.size[1]);
@@ -195,8 +199,7 @@ impl Sums {
         let height = self.free.dim.levels[0].height as u32;
         let mut work = Work::none(height);
         for drawn in all() {
-            let node = &pen.nodes.nodes[drawn.index as usize];
-            work.add(pen.nodes.row_of(drawn.index), pen.cost(node, drawn.placed).into());
+            work.add(pen.nodes.row_of(drawn.index), pen.cost(drawn));
         }
         let mut bands = self.bands(&work, rows.len() as u32);
         bands.retain(|band| meet(&rows, &band.rows));

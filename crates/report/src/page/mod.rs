@@ -71,10 +71,11 @@ fn method(report: &Report) -> String {
          <p>Every renderer draws the same pictures, which are compared with references by ray tracing of the same model. \
          Errors are those of the conserved radiance (the exposure “conserve”), linear: RMSE, PSNR and FLIP of values clipped to \
          [0, 1], relMSE = mean of (a − b)²/(b² + 0.01) and the signed mean error (a − b)/b of unclipped ones. FLIP is that of \
-         Andersson et al. 2020 at 67 pixels a degree. At a tolerance of 0 px the light field has 2 × 2 cells a \
-         pixel. Times are wall-clock times from a scene whose ray hierarchy stands; those under a quarter of a second are medians of up to five. “Memory” is what a renderer keeps for the next picture: the \
-         light field's samples, the hierarchy over the triangles, or a pinhole picture with its defocus; “peak” is how much more the process held at \
-         most (0 B: what it had held before was enough). A reference is the mean of two pictures of independent scrambles; their difference gives its own error.</p>\n\
+         Andersson et al. 2020 at 67 pixels a degree. At a tolerance of 0 px the light field has 2 × 2 cells a pixel. Times are \
+         wall-clock times from a scene whose ray hierarchy stands; those under a quarter of a second are medians of up to five. \
+         “Memory” is what a renderer keeps for the next picture: the light field's samples, the hierarchy over the triangles, or \
+         a pinhole picture with its defocus; “peak” is how much more the process held at most (0 B: what it had held before was \
+         enough). A reference is the mean of two pictures of independent scrambles; their difference gives its own error.</p>\n\
          {}<p class=\"caption\">Circles of confusion: the diameters that half / 90 % / 99 % of the pixels with a surface stay below. PSNR of a \
          reference: its own, estimated; a measured PSNR near it or above says only that the picture is at least as good.</p>\n",
         tables::scenes(&report.scenes).to_html()

@@ -3,7 +3,8 @@
 //! The cells of one sample resemble each other, and those of the sample before it, whose occluder is the same as a rule. So
 //! of each row it is told whether it is that of the sample before; if not, each cell is foretold from six that were coded
 //! before it and five around its place in the sample before: for each of these patterns it is counted how often a cell was
-//! seen (as in JBIG, ITU-T T.82), and an arithmetic coder spends as few bits on a cell as it was certain. Counts begin anew with every chunk of samples, which can so be read alone.
+//! seen (as in JBIG, ITU-T T.82), and an arithmetic coder spends as few bits on a cell as it was certain. Counts begin anew
+//! with every chunk of samples, which can so be read alone.
 
 use crate::sample::Visibility;
 

@@ -369,3 +369,33 @@ fn a_bright_sample_of_a_large_cell_sends_all_its_light() {
         assert!((sum / (16.0 * radiance) - 1.0).abs() < 1e-4, "{radiance}: {sum}");
     }
 }
+
+/// Frames whose border is the first column behind a mark, too.
+#[test]
+fn pictures_of_any_width_are_summed() {
+    for width in [126, 127, 128, 129, 255] {
+        let camera = Camera { width, height: 20, aperture_radius: 0.3, ..camera() };
+        let sample = |index: u32| Sample {
+            center: Vec2::new((index % width) as f32 + 0.5, (index / width) as f32 + 0.5),
+            half_size: Vec2::splat(0.5),
+            inverse_depth: 0.8,
+            weight: 1.0,
+            tilt: Vec2::ZERO,
+            radiance: Vec3::ONE,
+            surface: Some(SurfacePoint { triangle: index, barycentric: DVec2::ZERO }),
+            visibility: Visibility::Open,
+        };
+        let samples = (0..width * 20).map(sample).collect();
+        let mut splatter = Splatter::new(Arc::new(Salf { camera: camera.clone(), margin_px: 0, samples }));
+        let mut focus = ByTriangle(vec![FocusOffset::STANDARD; (width * 20) as usize]);
+        splatter.render(&camera, &focus, &Unwatched).unwrap();
+        assert_eq!(splatter.nodes.as_ref().unwrap().scale, Scale::FINEST, "{width}: nothing overflows");
+        let dab: Vec<u32> = (0..12).flat_map(|row| (row * width + width - 9)..(row + 1) * width).collect();
+        dab.iter().for_each(|&index| focus.0[index as usize] = FocusOffset::SHARP);
+        splatter.update(&focus, &dab).unwrap();
+        assert_eq!(splatter.nodes.as_ref().unwrap().scale, Scale::FINEST, "{width}: nothing overflows");
+        let painted = splatter.picture().clone();
+        splatter.render(&camera, &focus, &Unwatched).unwrap();
+        assert_eq!(painted, *splatter.picture(), "{width}");
+    }
+}
