@@ -135,7 +135,7 @@ impl Session {
         let mut position = |index: u32| Some(addresses.of(index)?.position(&stage.scene));
         let near =
             samples.into_iter().filter_map(|index| Some((position(index)?.distance(hit.position), index)));
-        let (distance, index) = near.min_by(|a, b| a.0.total_cmp(&b.0))?;
+        let (distance, index) = near.min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)))?;
         let sample = field.salf.samples.get(index);
         let (side, cells) = match &sample.visibility {
             Visibility::Open => (1, vec![true]),

@@ -208,10 +208,13 @@ impl LightField {
         needed_px.or(is_stopped_down.then_some(0.0))
     }
 
-    /// Looks how far samples reach, where that is not known. It must be summed for this lens and focus.
+    /// Looks how far samples reach, those of which that is not known. It must be summed for this lens and focus.
     pub fn survey(&mut self, camera: &Camera, focus: &Focus) {
         let salf = self.splatter.salf();
-        self.reach.get_or_insert_with(|| Reach::of_all(salf, camera, focus));
+        match &mut self.reach {
+            Some(reach) => reach.look_again(salf, camera, focus),
+            None => self.reach = Some(Reach::of_all(salf, camera, focus)),
+        }
     }
 
     /// Notes changes of the focus map.
@@ -266,7 +269,7 @@ impl LightField {
             Plan::Move(samples) => {
                 let [rows, columns] = self.splatter.update(focus, &samples)?;
                 if let Some(reach) = &mut self.reach {
-                    reach.look_again(self.splatter.salf(), camera, focus, &samples);
+                    reach.note_moved(&samples);
                 }
                 Brought::Update([columns, rows])
             }

@@ -1,7 +1,7 @@
 //! Whether paint or lens spread light into the picture from further outside the frame than was baked.
 //!
 //! Only samples can tell, and a stroke moves few of them: whoever reaches too far is remembered, a bit a sample, and
-//! those that moved are looked at again.
+//! those that moved since are looked at again when it is asked for: after the stroke, not while its pictures are waited for.
 
 use focus::Focus;
 use glam::DVec2;
@@ -14,12 +14,11 @@ use scene::SurfaceField;
 ///
 /// A surface beyond the margin that has as wide a circle is of the same paint, as a rule, as one within it: as for the
 /// margin itself (`BakeOptions::for_focus`), what is found within tells of what lies further out.
-#[derive(Default)]
 pub(crate) struct Reach {
     /// A bit a sample.
     too_far: Vec<u64>,
-    /// How many are set.
-    count: usize,
+    /// Who moved since, a bit a sample.
+    moved: Vec<u64>,
 }
 
 impl Reach {
@@ -32,41 +31,56 @@ impl Reach {
             spots.filter(|(_, spot)| look.at(spot)).map(|(index, _)| index).collect::<Vec<_>>()
         };
         let far: Vec<Vec<u32>> = (0..salf.samples.run_count()).into_par_iter().map(far_of_run).collect();
-        let mut too_far = vec![0; salf.samples.len().div_ceil(64)];
-        for &index in far.iter().flatten() {
-            too_far[index as usize / 64] |= 1 << (index % 64);
-        }
-        Self { too_far, count: far.iter().map(Vec::len).sum() }
+        let mut too_far = vec![0; salf.samples.len().div_ceil(WORD as usize)];
+        set(&mut too_far, far.iter().flatten());
+        Self { moved: vec![0; too_far.len()], too_far }
     }
 
-    /// Looks again at those that moved; all of them must have been looked at before.
-    pub fn look_again(&mut self, salf: &Salf, camera: &Camera, focus: &Focus, moved: &[u32]) {
+    /// Notes who moved.
+    pub fn note_moved(&mut self, samples: &[u32]) {
+        set(&mut self.moved, samples);
+    }
+
+    /// Looks again at those that moved.
+    pub fn look_again(&mut self, salf: &Salf, camera: &Camera, focus: &Focus) {
         let look = Look::new(salf, camera, focus);
-        for &index in moved {
-            let word = &mut self.too_far[index as usize / 64];
-            let mask = 1 << (index % 64);
-            let (was, is) = (*word & mask != 0, look.at(&salf.samples.spot(index)));
-            *word = if is { *word | mask } else { *word & !mask };
-            self.count = self.count + usize::from(is) - usize::from(was);
-        }
+        let words = self.too_far.par_iter_mut().zip(&mut self.moved).enumerate();
+        words.filter(|(_, (_, moved))| **moved != 0).for_each(|(word, (too_far, moved))| {
+            let far = samples_of(word, *moved).filter(|&index| look.at(&salf.samples.spot(index)));
+            *too_far = far.fold(*too_far & !*moved, |far, index| far | 1 << (index % WORD));
+            *moved = 0;
+        });
     }
 
     /// Whether any sample reaches too far.
     pub fn is_exceeded(&self) -> bool {
-        self.count > 0
+        self.too_far.iter().any(|word| *word != 0)
     }
 
     /// The margin that those would need which reach too far, px; 0 if none does.
     pub fn needed_px(&self, salf: &Salf, camera: &Camera, focus: &Focus) -> f64 {
         let look = Look::new(salf, camera, focus);
-        let set = |(index, word): (usize, &u64)| (*word != 0).then_some((index * 64, *word));
-        let of_word = |(first, word): (usize, u64)| {
-            let bits = (0..64).filter(|bit| word >> bit & 1 == 1);
-            bits.map(|bit| look.radius_px(&salf.samples.spot((first + bit) as u32))).fold(0.0, f64::max)
+        let widest = |(word, bits): (usize, &u64)| {
+            samples_of(word, *bits).map(|index| look.radius_px(&salf.samples.spot(index))).fold(0.0, f64::max)
         };
-        let words = self.too_far.par_iter().enumerate().filter_map(set);
-        words.map(of_word).reduce(|| 0.0, f64::max).min(look.largest_px)
+        let words = self.too_far.par_iter().enumerate();
+        words.map(widest).reduce(|| 0.0, f64::max).min(look.largest_px)
     }
+}
+
+/// Samples that a word has a bit for.
+const WORD: u32 = u64::BITS;
+
+/// Sets the bits of samples.
+fn set<'a>(words: &mut [u64], samples: impl IntoIterator<Item = &'a u32>) {
+    for index in samples {
+        words[(index / WORD) as usize] |= 1 << (index % WORD);
+    }
+}
+
+/// The samples whose bits are set in a word.
+fn samples_of(word: usize, bits: u64) -> impl Iterator<Item = u32> {
+    (0..WORD).filter(move |bit| bits >> bit & 1 == 1).map(move |bit| word as u32 * WORD + bit)
 }
 
 /// How a sample is looked at.

@@ -53,7 +53,7 @@ impl SampleIndex {
         Self { tiles_across: across, starts, entries, size }
     }
 
-    /// The samples whose bilinear lookup may read one of `texels` (column and row), each once.
+    /// The samples whose bilinear lookup may read one of `texels` (column and row), each once, in no order.
     ///
     /// A lookup at p reads the texels whose centres lie within 1 of p in x and y: p's own and its neighbours.
     pub fn samples_reading(&self, texels: &[[u32; 2]]) -> Vec<u32> {
@@ -77,7 +77,6 @@ impl SampleIndex {
             let found = self.entries[entries].iter().filter(|(_, bit)| bits >> bit & 1 == 1);
             samples.extend(found.map(|(sample, _)| sample));
         }
-        samples.sort_unstable();
         samples
     }
 }

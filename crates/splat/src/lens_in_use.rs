@@ -123,8 +123,11 @@ impl Fineness {
     }
 }
 
-/// The circles of confusion below a drawn node may differ by this share of its side.
+/// The aperture images below a drawn node may differ in radius by this share of its side.
 const FLAT: f64 = 0.3;
+
+/// Or by this share of their radius, where that is more: a soft rim of paint is as steep as it is blurred.
+const ALIKE: f64 = 0.125;
 
 /// From this share of a circle of confusion on small images are drawn in fewer parts: as coarse as the nodes.
 const COARSE: f64 = 0.1;
@@ -199,7 +202,8 @@ impl LensInUse {
             apart += (1.0 / optics.image_distance + (1.0 - a) * defocus).abs() * focus.t_apart as f64
                 + (t * defocus).abs() * focus.anchor_apart as f64;
         }
-        (apart * self.radius_per_kappa).abs() <= FLAT * (1 << node.level << POSITION_BITS) as f64
+        let side = (1 << node.level << POSITION_BITS) as f64;
+        (apart * self.radius_per_kappa).abs() <= (FLAT * side).max(ALIKE * f64::from(placed.radius).abs())
     }
 }
 

@@ -304,8 +304,8 @@ impl Splatter {
         Ok(self.sums.set(&scene, &mut self.lists, progress)?)
     }
 
-    /// Moves the given samples to where `focus` now sends them. Returns the rows and columns of the picture outside of which
-    /// nothing changed.
+    /// Moves the given samples, in any order, to where `focus` now sends them. Returns the rows and columns of the picture
+    /// outside of which nothing changed.
     ///
     /// Equal, bit for bit, to a render from scratch. Cost grows with the number of samples and the size of their splats.
     pub fn update(
@@ -317,7 +317,7 @@ impl Splatter {
         assert_eq!(self.paint.blocks.len(), nodes.blocks.len(), "update follows a render");
         let mut leaves: Vec<u32> =
             samples.iter().map(|&sample| nodes.node_of_sample[sample as usize]).collect();
-        leaves.sort_unstable();
+        leaves.par_sort_unstable();
         let was_evened = self.is_evened();
         let before = self.paint.update(nodes, &leaves, &self.salf.samples, focus);
         let scene = self.aperture.scene(nodes, &self.lens, &self.paint, &self.salf.camera);
