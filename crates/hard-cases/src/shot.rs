@@ -4,7 +4,7 @@ use focus::Focus;
 use lens::{Camera, FocusOffset, Picture};
 use progress::{Cancelled, Progress};
 use salf::{BakeOptions, Salf, bake};
-use scene::Scene;
+use scene::{Scene, SurfaceField};
 use slf::DirectLight;
 use splat::{SplatError, Splatter};
 use std::sync::Arc;
@@ -95,9 +95,21 @@ impl Shot {
 }
 
 /// A light field's picture. One that was refused as too bright is all NaN, which no check lets pass.
-pub fn picture_of(salf: Salf, focus: &Focus, progress: &dyn Progress) -> Result<Picture, Cancelled> {
-    let camera = salf.camera.clone();
-    let mut splatter = Splatter::new(Arc::new(salf));
+pub fn picture_of(
+    salf: Salf,
+    focus: &dyn SurfaceField<FocusOffset>,
+    progress: &dyn Progress,
+) -> Result<Picture, Cancelled> {
+    picture_by(Splatter::new(Arc::new(salf)), focus, progress)
+}
+
+/// The same by a splatter.
+pub fn picture_by(
+    mut splatter: Splatter,
+    focus: &dyn SurfaceField<FocusOffset>,
+    progress: &dyn Progress,
+) -> Result<Picture, Cancelled> {
+    let camera = splatter.salf().camera.clone();
     match splatter.render(&camera, focus, progress) {
         Ok(()) => Ok(splatter.picture().clone()),
         Err(SplatError::Cancelled) => Err(Cancelled),

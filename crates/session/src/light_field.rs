@@ -142,7 +142,7 @@ impl LightField {
         let mut splatter = Splatter::new(salf);
         splatter.set_tolerance(tolerance);
         // The first dab on it is to cost what any dab does.
-        splatter.set_evening(false);
+        splatter.set_live(true);
         // Without a card, or one that works, the processor sums.
         splatter.use_gpu(Gpu::open(BackendChoice::Auto, None).ok().flatten());
         Self::unsummed(splatter, index, modelled)

@@ -18,6 +18,9 @@
 //!
 //! that needs the knots alone. Gains are found with the shares, from the standard picture: paint leaves them as they are.
 //! Coverage has none.
+//!
+//! Where a part of the scene is painted, the rest, which shares alone now, gets back what was taken while all shared. So the
+//! sum of a painted picture is off by some 0.05 %; but for live ones, all of it is scaled until it is not ([`Gains::rest`]).
 
 use crate::partition::Share;
 use crate::widest::with_widest_instructions;
@@ -145,9 +148,14 @@ impl Balance {
         self.gains = Gains::none(self.knots);
     }
 
-    /// Finds the gains from the rows.
+    /// Finds the gains from the rows, of a standard picture.
     pub fn settle(&mut self) {
         self.gains = Gains::of(self.knots, &self.knots.sums(&self.rows));
+    }
+
+    /// What is left to scale a painted picture by, from its rows.
+    pub fn rest(&self) -> [f32; 3] {
+        self.gains.rest(&self.knots.sums(&self.rows))
     }
 
     /// Bytes in memory.
@@ -178,7 +186,6 @@ impl Gains {
     pub fn of(knots: Knots, sums: &[KnotSums]) -> Self {
         const LARGEST_RATIO: f64 = 1.05;
         const RIPPLE: f64 = 5e-4;
-        const LARGEST_GAIN: f64 = 1.01;
         let mut of_knots = vec![[[1.0; 3]; 2]; sums.len()];
         for (kind, c) in
             [Scaled::Sharing, Scaled::All].into_iter().flat_map(|kind| (0..3).map(move |c| (kind, c)))
@@ -200,13 +207,26 @@ impl Gains {
             // All of a ripple is given back, none of a fault.
             let excess = coverage - 1.0;
             let given_back = excess * (2.0 - excess.abs() / RIPPLE).clamp(0.0, 1.0);
-            let gain = light / coverage * (1.0 + given_back);
-            let gain = if gain.is_finite() { gain.clamp(1.0 / LARGEST_GAIN, LARGEST_GAIN) } else { 1.0 };
+            let gain = within_one_percent(light / coverage * (1.0 + given_back));
             for (knot, sums) in of_knots.iter_mut().zip(sums) {
                 knot[kind][c] = (gain * ratio(sums)) as f32;
             }
         }
         Self { knots, of_knots }
+    }
+
+    /// What is left to scale all of a painted picture by, whose sums those of the knots are, so that it has the light
+    /// that was thrown at it: within 1 % of 1.
+    pub fn rest(&self, sums: &[KnotSums]) -> [f32; 3] {
+        std::array::from_fn(|c| {
+            let [thrown, shown] =
+                sums.iter().zip(&self.of_knots).fold([0.0; 2], |[thrown, shown], (sums, gains)| {
+                    let [sharing, shared, all, _] = sums.0.map(|sum| f64::from(sum[c]));
+                    let gain = f64::from(gains[Scaled::Sharing as usize][c]);
+                    [thrown + all, shown + (all - sharing) + gain * shared]
+                });
+            within_one_percent(thrown / shown) as f32
+        })
     }
 
     /// Scales a picture that is evened out.
@@ -236,6 +256,12 @@ impl Gains {
         let of_row = |row: usize| self.of_knots[row * columns..][..columns].iter().map(of_knot);
         GainsOfRow(of_row(row).zip(of_row(row + 1)).map(|(a, b)| mix(a, b, behind)).collect())
     }
+}
+
+/// A gain of all light; 1 where there is none.
+fn within_one_percent(gain: f64) -> f64 {
+    const LARGEST: f64 = 1.01;
+    if gain.is_finite() { gain.clamp(1.0 / LARGEST, LARGEST) } else { 1.0 }
 }
 
 /// Gains of a row of pixels, at each column of knots: of red, green, blue and, always 1, coverage.

@@ -90,16 +90,8 @@ impl Strip {
     }
 }
 
-/// Finds the factors of the pixels of whole rows from the lines of a standard picture, free and sharing; and what these
-/// rows bring to each column of `knots`.
-pub fn find_shares(
-    parts: &[Option<Lines>; 2],
-    strip: &Strip,
-    knots: &Knots,
-    shares: &mut [Share],
-    sums: &mut [KnotSums],
-) {
-    let columns = knots.columns();
+/// Finds the factors of the pixels of whole rows from the lines of a standard picture, free and sharing.
+pub fn find_shares(parts: &[Option<Lines>; 2], strip: &Strip, shares: &mut [Share]) {
     strip.each_row(parts, |row, free, sharing| {
         let shares = &mut shares[row * strip.width..][..strip.width];
         with_widest_instructions(
@@ -110,6 +102,20 @@ pub fn find_shares(
                 }
             },
         );
+    });
+}
+
+/// Finds what whole rows bring to each column of `knots`.
+pub fn sum_rows(
+    parts: &[Option<Lines>; 2],
+    strip: &Strip,
+    knots: &Knots,
+    shares: &[Share],
+    sums: &mut [KnotSums],
+) {
+    let columns = knots.columns();
+    strip.each_row(parts, |row, free, sharing| {
+        let shares = &shares[row * strip.width..][..strip.width];
         knots.sum_row([free, sharing], shares, &mut sums[row * columns..][..columns]);
     });
 }

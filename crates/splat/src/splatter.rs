@@ -8,7 +8,7 @@ use crate::drawn::{BlockList, Changes, Drawn, Scene};
 use crate::lens_in_use::{LensInUse, Tolerance};
 use crate::nodes::{Nodes, Scale};
 use crate::paint::Paint;
-use crate::partition::{Share, Strip, find_shares, join};
+use crate::partition::{Share, Strip, find_shares, join, sum_rows};
 use crate::resolve::{Overflow, Room, Window};
 use crate::seen::{Seen, seen};
 use crate::shape::Shape;
@@ -52,8 +52,8 @@ pub struct Splatter {
     /// The hierarchy, which twins share; none if a sample is too bright.
     nodes: Option<Arc<Nodes>>,
     tolerance: Tolerance,
-    /// Whether a picture without paint is evened out.
-    evens: bool,
+    /// Whether paint changes what it moves and nothing else.
+    is_live: bool,
     aperture: Arc<ApertureInUse>,
     lens: LensInUse,
     paint: Paint,
@@ -120,7 +120,7 @@ impl Splatter {
     pub fn twin(&self) -> Self {
         let mut twin = Self::of(self.salf.clone(), self.nodes.clone(), self.aperture.clone());
         twin.use_gpu(self.gpu().cloned());
-        twin.set_evening(self.evens);
+        twin.set_live(self.is_live);
         twin
     }
 
@@ -137,7 +137,7 @@ impl Splatter {
             lens: LensInUse::new(camera.optics(), shape, tolerance),
             aperture,
             tolerance,
-            evens: true,
+            is_live: false,
             paint: Paint::default(),
             marks: chunks.map(|rows| sums.marks(rows)).collect(),
             sums,
@@ -162,18 +162,24 @@ impl Splatter {
         self.tolerance = tolerance;
     }
 
-    /// Sets whether a picture without any paint is evened out (the default): its coverage is then 1 but for holes.
+    /// Sets whether pictures are live (no, by default): paint then changes what it moves and nothing else, so that an update
+    /// makes no more of the picture than that.
     ///
-    /// Where it is not, the first paint on it changes what it moves and nothing else, as all further paint does. The two
-    /// differ by the ripple of finite samples; once divided by their coverage, by nothing but how they give light back
-    /// ([`crate::balance`]). From the next [`Self::render`] on.
-    pub fn set_evening(&mut self, evens: bool) {
-        self.evens = evens;
+    /// Others are finished: of one without any paint the coverage is evened out, to 1 but for holes; of one that is painted
+    /// the light is scaled until it is all that was thrown at it. The two differ by the ripple of finite samples; once divided
+    /// by their coverage, by nothing but how they give light back ([`crate::balance`]). From the next [`Self::render`] on.
+    pub fn set_live(&mut self, is_live: bool) {
+        self.is_live = is_live;
     }
 
     /// Whether the picture is evened out.
     fn is_evened(&self) -> bool {
-        self.evens && self.paint.is_standard()
+        !self.is_live && self.paint.is_standard()
+    }
+
+    /// Whether the picture is scaled until it has all light.
+    fn is_scaled(&self) -> bool {
+        !self.is_live && !self.paint.is_standard()
     }
 
     /// What cuts the aperture's image in all sizes that paint may give it, on any thread, while this goes on. Otherwise a size
@@ -318,7 +324,6 @@ impl Splatter {
         let mut leaves: Vec<u32> =
             samples.iter().map(|&sample| nodes.node_of_sample[sample as usize]).collect();
         leaves.par_sort_unstable();
-        let was_evened = self.is_evened();
         let before = self.paint.update(nodes, &leaves, &self.salf.samples, focus);
         let scene = self.aperture.scene(nodes, &self.lens, &self.paint, &self.salf.camera);
         let changes = scene.all_changes(before.par_iter().map(|(block, paint)| (*block, paint.as_deref())));
@@ -326,7 +331,7 @@ impl Splatter {
         if nodes.scale != Scale::FINEST {
             return self.sum_again();
         }
-        if was_evened != self.is_evened() {
+        if !self.is_live {
             window = self.frame();
         }
         match self.change(&changes, window.clone()) {
@@ -381,7 +386,11 @@ impl Splatter {
             return resolved;
         }
         if !wanted.has_shares() {
-            return self.resolve_here([rows, columns], wanted);
+            self.resolve_here([rows, columns], wanted)?;
+            if self.is_scaled() {
+                self.scale(self.balance.rest());
+            }
+            return Ok(());
         }
         // What is evened out is only multiplied by the gains, once they are known.
         self.balance.forget();
@@ -398,6 +407,12 @@ impl Splatter {
         }
     }
 
+    /// Scales all of the picture, colour by colour.
+    fn scale(&mut self, by: [f32; 3]) {
+        let scale = |light: &mut [f32; 3]| (0..3).for_each(|c| light[c] *= by[c]);
+        self.picture.radiance.par_chunks_mut(1 << 14).for_each(|chunk| chunk.iter_mut().for_each(scale));
+    }
+
     /// The same on the processor, with the gains as they are.
     fn resolve_here(&mut self, [rows, columns]: [Range<u32>; 2], wanted: Wanted) -> Result<(), SplatError> {
         let nodes = self.nodes.as_ref().ok_or(SplatError::Overflow)?;
@@ -405,7 +420,7 @@ impl Splatter {
         // The same chunks whatever rows are asked for.
         let chunks = rows.start as usize / RESOLVE_ROWS..(rows.end as usize).div_ceil(RESOLVE_ROWS);
         let (sums, knots, gains) = (&self.sums, &self.balance.knots, &self.balance.gains);
-        let is_evened = self.is_evened();
+        let (is_evened, is_scaled) = (self.is_evened(), self.is_scaled());
         let radiance = self.picture.radiance.par_chunks_mut(RESOLVE_ROWS * width);
         let coverage = self.picture.coverage.par_chunks_mut(RESOLVE_ROWS * width);
         let shares = self.shares.par_chunks_mut(RESOLVE_ROWS * width);
@@ -427,7 +442,10 @@ impl Splatter {
                     columns: columns.start as usize..columns.end as usize,
                 };
                 if wanted.has_shares() {
-                    find_shares(&parts, &strip, knots, shares, of_knots);
+                    find_shares(&parts, &strip, shares);
+                }
+                if wanted.has_shares() || is_scaled {
+                    sum_rows(&parts, &strip, knots, shares, of_knots);
                 }
                 if wanted.has_picture() {
                     join(&parts, &strip, shares, gains, is_evened, (radiance, coverage));

@@ -115,7 +115,7 @@ impl Field {
         record
     }
 
-    /// Paints a dab and takes it back, again and again, at the tolerance of viewing.
+    /// Paints a dab and takes it back, again and again, on a live picture at the tolerance of viewing.
     fn dab(
         &self,
         splatter: &mut Splatter,
@@ -125,6 +125,7 @@ impl Field {
         let camera = &self.salf.camera;
         let progress = steps.begin("painting");
         splatter.set_tolerance(Tolerance::VIEWING);
+        splatter.set_live(true);
         splatter.render(camera, &*self.focus, &*progress)?;
         let before = splatter.picture().clone();
         let dabbed = Dabbed::new(&self.salf, self.focus.clone());
@@ -139,6 +140,7 @@ impl Field {
         record.tolerance = Some(Tolerance::VIEWING.share_of_circle);
         let after = splatter.picture().clone();
         splatter.render(camera, &dabbed, &*progress)?;
+        splatter.set_live(false);
         Ok((record, &after == splatter.picture() && after != before))
     }
 

@@ -138,8 +138,8 @@ impl Resolve {
         dispatch(gpu, &gpu.passes().finish, &self.finish_bound(gpu), [across, rows.len() as u32]);
     }
 
-    /// Finds the gains from lines and shares of a standard picture.
-    pub fn balance(&self, gpu: &Gpu) -> Result<(), Lost> {
+    /// What lines and shares bring to each knot.
+    pub fn knot_sums(&self, gpu: &Gpu) -> Result<Vec<KnotSums>, Lost> {
         let knots = Knots::new(self.size);
         let groups = [knots.columns() as u32, knots.rows() as u32];
         dispatch(gpu, &gpu.passes().balance, &self.finish_bound(gpu), groups);
@@ -151,12 +151,14 @@ impl Resolve {
             }
             sums
         };
-        let sums: Vec<KnotSums> = words.chunks_exact(KNOT_WORDS).map(sums).collect();
-        let gains = Gains::of(knots, &sums);
+        Ok(words.chunks_exact(KNOT_WORDS).map(sums).collect())
+    }
+
+    /// Brings the gains to the card.
+    pub fn set_gains(&self, gpu: &Gpu, gains: &Gains) {
         let words =
             gains.of_knots().iter().flatten().flat_map(|[r, g, b]| [*r, *g, *b, 1.0].map(f32::to_bits));
         gpu.write(&self.gains, &words.collect::<Vec<_>>());
-        Ok(())
     }
 
     fn finish_bound(&self, gpu: &Gpu) -> BindGroup {

@@ -1,5 +1,6 @@
 //! The sums on the card: accumulators, and what is drawn onto them.
 
+use crate::balance::{Gains, KnotSums, Knots};
 use crate::draw::Pen;
 use crate::drawn::{Changes, Scene};
 use crate::gpu::Gpu;
@@ -258,12 +259,19 @@ impl GpuSums {
         Ok(self.gpu.bind(&self.gpu.passes().draw_layout, (0..).zip(buffers)))
     }
 
-    /// Finds the shares and gains of a standard picture whose sums these are.
-    pub fn find_shares(&mut self, nodes: &Nodes) -> Result<(), GpuError> {
+    /// Finds the shares of a standard picture whose sums these are, and the gains.
+    pub fn find_shares(&mut self, nodes: &Nodes) -> Result<Gains, GpuError> {
         let height = self.resolve.size[1] as u32;
         self.integrate(nodes, 0..height, true, false)?;
         self.resolve.check(&self.gpu)?;
-        Ok(self.resolve.balance(&self.gpu)?)
+        let gains = Gains::of(Knots::new(self.resolve.size), &self.knot_sums()?);
+        self.resolve.set_gains(&self.gpu, &gains);
+        Ok(gains)
+    }
+
+    /// What all rows of the picture that was made last bring to each knot.
+    pub fn knot_sums(&self) -> Result<Vec<KnotSums>, GpuError> {
+        Ok(self.resolve.knot_sums(&self.gpu)?)
     }
 
     /// Makes the pixel rows `rows` of a picture.

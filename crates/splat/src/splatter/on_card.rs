@@ -94,13 +94,27 @@ impl Splatter {
         rows: Range<u32>,
         wanted: Wanted,
     ) -> Option<Result<(), SplatError>> {
-        let is_evened = self.is_evened();
-        let (nodes, sums) = (self.nodes.as_ref()?, self.card.sums.as_mut()?);
-        let mut resolved = if wanted.has_shares() { sums.find_shares(nodes) } else { Ok(()) };
-        if resolved.is_ok() && wanted.has_picture() {
-            resolved = sums.picture(nodes, rows, is_evened, &mut self.picture);
-        }
+        self.card.sums.as_ref()?;
+        let resolved = self.resolve_there(rows, wanted);
         Some(self.card.came_of(resolved))
+    }
+
+    fn resolve_there(&mut self, rows: Range<u32>, wanted: Wanted) -> Result<(), GpuError> {
+        let (is_evened, is_scaled) = (self.is_evened(), self.is_scaled());
+        let (Some(nodes), Some(sums)) = (&self.nodes, &mut self.card.sums) else {
+            return Err(GpuError::Lost);
+        };
+        if wanted.has_shares() {
+            self.balance.gains = sums.find_shares(nodes)?;
+        }
+        if wanted.has_picture() {
+            sums.picture(nodes, rows, is_evened, &mut self.picture)?;
+            if is_scaled {
+                let rest = self.balance.gains.rest(&sums.knot_sums()?);
+                self.scale(rest);
+            }
+        }
+        Ok(())
     }
 
     /// See [`Splatter::change`].

@@ -78,14 +78,14 @@ fn an_update_equals_a_render_bit_for_bit() {
 }
 
 #[test]
-fn without_evening_the_first_dab_changes_what_it_moves_and_nothing_else() {
-    let uneven = || {
+fn the_first_dab_on_a_live_picture_changes_what_it_moves_and_nothing_else() {
+    let live = || {
         let mut splatter = Splatter::new(light_field());
-        splatter.set_evening(false);
+        splatter.set_live(true);
         splatter
     };
     let mut focus = standard();
-    let mut splatter = uneven();
+    let mut splatter = live();
     splatter.render(&camera(), &focus, &Unwatched).unwrap();
     let (blank, even) = (splatter.picture().clone(), rendered(&focus));
     assert_ne!(blank, *even.picture());
@@ -103,7 +103,7 @@ fn without_evening_the_first_dab_changes_what_it_moves_and_nothing_else() {
         let is_inside = rows.contains(&(at / 96)) && columns.contains(&(at % 96));
         assert!(now == before || is_inside, "row {}, column {}", at / 96, at % 96);
     }
-    let mut fresh = uneven();
+    let mut fresh = live();
     fresh.render(&camera(), &focus, &Unwatched).unwrap();
     assert_eq!(splatter.picture(), fresh.picture());
     splatter.update(&standard(), &dab).unwrap();
