@@ -49,7 +49,7 @@ pub const CASES: &[Case] = &[
     Case {
         name: "energy: a part of the scene is painted",
         reason: "So it is where paint takes some of the half hidden samples from those that share what open ones leave: the rest \
-                 share otherwise, but the picture is scaled until it has all light.",
+                 share otherwise, but what they lose is given back.",
         control: "the live picture, in which paint changes what it moves and nothing else",
         check: partly_painted,
     },

@@ -20,7 +20,8 @@
 //! Coverage has none.
 //!
 //! Where a part of the scene is painted, the rest, which shares alone now, gets back what was taken while all shared. So the
-//! sum of a painted picture is off by some 0.05 %; but for live ones, all of it is scaled until it is not ([`Gains::rest`]).
+//! sum of a painted picture is off by some 0.05 %; but for live ones, a further gain for each colour of the light that shares
+//! makes it what it was ([`Gains::find_rest`]).
 
 use crate::partition::Share;
 use crate::widest::with_widest_instructions;
@@ -153,9 +154,9 @@ impl Balance {
         self.gains = Gains::of(self.knots, &self.knots.sums(&self.rows));
     }
 
-    /// What is left to scale a painted picture by, from its rows.
-    pub fn rest(&self) -> [f32; 3] {
-        self.gains.rest(&self.knots.sums(&self.rows))
+    /// Finds what is left to give back in a painted picture, from its rows.
+    pub fn find_rest(&mut self) {
+        self.gains.find_rest(&self.knots.sums(&self.rows));
     }
 
     /// Bytes in memory.
@@ -164,18 +165,23 @@ impl Balance {
     }
 }
 
+/// No gain of light that shares is larger.
+const LARGEST_RATIO: f64 = 1.05;
+
 /// What each knot scales light by.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Gains {
     knots: Knots,
     /// Of each knot, by [`Scaled`].
     of_knots: Vec<[[f32; 3]; 2]>,
+    /// Of all that shares, beside them.
+    rest: [f32; 3],
 }
 
 impl Gains {
     /// Those of a picture of which nothing is known: 1.
     pub fn none(knots: Knots) -> Self {
-        Self { of_knots: vec![[[1.0; 3]; 2]; knots.columns() * knots.rows()], knots }
+        Self { of_knots: vec![[[1.0; 3]; 2]; knots.columns() * knots.rows()], knots, rest: [1.0; 3] }
     }
 
     /// Those that give back what the sums of all knots say was taken.
@@ -184,7 +190,6 @@ impl Gains {
     /// covers the picture by 0.1 % too little or too much or more has holes or surfaces twice: what evening mends of that
     /// is not given back, but all that it takes up to 0.05 %. G stays within 1 % of 1. So what is white stays white to 0.05 %.
     pub fn of(knots: Knots, sums: &[KnotSums]) -> Self {
-        const LARGEST_RATIO: f64 = 1.05;
         const RIPPLE: f64 = 5e-4;
         let mut of_knots = vec![[[1.0; 3]; 2]; sums.len()];
         for (kind, c) in
@@ -196,8 +201,7 @@ impl Gains {
             };
             let ratio = |sums: &KnotSums| {
                 let ((before, after), (covered, evened)) = (of(sums, c), of(sums, 3));
-                let ratio = before * evened / (after * covered);
-                if ratio.is_finite() { ratio.clamp(1.0 / LARGEST_RATIO, LARGEST_RATIO) } else { 1.0 }
+                within(LARGEST_RATIO, before * evened / (after * covered))
             };
             let [before, after, covered, evened] = sums.iter().fold([0.0; 4], |all, sums| {
                 let ((before, after), (covered, evened)) = (of(sums, c), of(sums, 3));
@@ -207,26 +211,30 @@ impl Gains {
             // All of a ripple is given back, none of a fault.
             let excess = coverage - 1.0;
             let given_back = excess * (2.0 - excess.abs() / RIPPLE).clamp(0.0, 1.0);
-            let gain = within_one_percent(light / coverage * (1.0 + given_back));
+            let gain = within(1.01, light / coverage * (1.0 + given_back));
             for (knot, sums) in of_knots.iter_mut().zip(sums) {
                 knot[kind][c] = (gain * ratio(sums)) as f32;
             }
         }
-        Self { knots, of_knots }
+        Self { knots, of_knots, rest: [1.0; 3] }
     }
 
-    /// What is left to scale all of a painted picture by, whose sums those of the knots are, so that it has the light
-    /// that was thrown at it: within 1 % of 1.
-    pub fn rest(&self, sums: &[KnotSums]) -> [f32; 3] {
-        std::array::from_fn(|c| {
-            let [thrown, shown] =
-                sums.iter().zip(&self.of_knots).fold([0.0; 2], |[thrown, shown], (sums, gains)| {
-                    let [sharing, shared, all, _] = sums.0.map(|sum| f64::from(sum[c]));
-                    let gain = f64::from(gains[Scaled::Sharing as usize][c]);
-                    [thrown + all, shown + (all - sharing) + gain * shared]
-                });
-            within_one_percent(thrown / shown) as f32
-        })
+    /// Finds what is left to give back to the light that shares in a painted picture, whose sums those of the knots are:
+    /// within 5 % of it. Until then, and of a live picture, it is nothing.
+    pub fn find_rest(&mut self, sums: &[KnotSums]) {
+        self.rest = std::array::from_fn(|c| {
+            let both = |[before, after]: [f64; 2], (sums, gains): (&KnotSums, &[[f32; 3]; 2])| {
+                let [sharing, shared, ..] = sums.0.map(|sum| f64::from(sum[c]));
+                [before + sharing, after + f64::from(gains[Scaled::Sharing as usize][c]) * shared]
+            };
+            let [before, after] = sums.iter().zip(&self.of_knots).fold([0.0; 2], both);
+            within(LARGEST_RATIO, before / after) as f32
+        });
+    }
+
+    /// Forgets what was left to give back.
+    pub fn forget_rest(&mut self) {
+        self.rest = [1.0; 3];
     }
 
     /// Scales a picture that is evened out.
@@ -241,16 +249,23 @@ impl Gains {
         });
     }
 
-    /// Those of knots, row by row.
-    pub fn of_knots(&self) -> &[[[f32; 3]; 2]] {
-        &self.of_knots
+    /// Those of knots, row by row, by [`Scaled`].
+    pub fn of_knots(&self) -> impl Iterator<Item = [[f32; 3]; 2]> {
+        self.of_knots.iter().map(|[sharing, all]| [self.with_rest(sharing), *all])
+    }
+
+    fn with_rest(&self, sharing: &[f32; 3]) -> [f32; 3] {
+        std::array::from_fn(|c| sharing[c] * self.rest[c])
     }
 
     /// Those of a row of pixels, at each column of knots.
     pub fn of_row(&self, y: usize, scaled: Scaled) -> GainsOfRow {
         let ((row, behind), columns) = (place(y), self.knots.columns());
         let of_knot = |knot: &[[f32; 3]; 2]| {
-            let [r, g, b] = knot[scaled as usize];
+            let [r, g, b] = match scaled {
+                Scaled::Sharing => self.with_rest(&knot[0]),
+                Scaled::All => knot[1],
+            };
             [r, g, b, 1.0]
         };
         let of_row = |row: usize| self.of_knots[row * columns..][..columns].iter().map(of_knot);
@@ -258,10 +273,9 @@ impl Gains {
     }
 }
 
-/// A gain of all light; 1 where there is none.
-fn within_one_percent(gain: f64) -> f64 {
-    const LARGEST: f64 = 1.01;
-    if gain.is_finite() { gain.clamp(1.0 / LARGEST, LARGEST) } else { 1.0 }
+/// A gain, at most `largest` and at least as much less than 1; 1 where there is no light.
+fn within(largest: f64, gain: f64) -> f64 {
+    if gain.is_finite() { gain.clamp(1.0 / largest, largest) } else { 1.0 }
 }
 
 /// Gains of a row of pixels, at each column of knots: of red, green, blue and, always 1, coverage.

@@ -166,7 +166,7 @@ impl Splatter {
     /// makes no more of the picture than that.
     ///
     /// Others are finished: of one without any paint the coverage is evened out, to 1 but for holes; of one that is painted
-    /// the light is scaled until it is all that was thrown at it. The two differ by the ripple of finite samples; once divided
+    /// what shares is scaled until the light is all that was thrown at it. The two differ by the ripple of finite samples; once divided
     /// by their coverage, by nothing but how they give light back ([`crate::balance`]). From the next [`Self::render`] on.
     pub fn set_live(&mut self, is_live: bool) {
         self.is_live = is_live;
@@ -177,8 +177,8 @@ impl Splatter {
         !self.is_live && self.paint.is_standard()
     }
 
-    /// Whether the picture is scaled until it has all light.
-    fn is_scaled(&self) -> bool {
+    /// Whether all that sharing takes is given back as the scene is painted.
+    fn is_balanced(&self) -> bool {
         !self.is_live && !self.paint.is_standard()
     }
 
@@ -386,11 +386,12 @@ impl Splatter {
             return resolved;
         }
         if !wanted.has_shares() {
-            self.resolve_here([rows, columns], wanted)?;
-            if self.is_scaled() {
-                self.scale(self.balance.rest());
+            self.balance.gains.forget_rest();
+            if self.is_balanced() {
+                self.resolve_here(self.frame(), Wanted::Light)?;
+                self.balance.find_rest();
             }
-            return Ok(());
+            return self.resolve_here([rows, columns], wanted);
         }
         // What is evened out is only multiplied by the gains, once they are known.
         self.balance.forget();
@@ -407,12 +408,6 @@ impl Splatter {
         }
     }
 
-    /// Scales all of the picture, colour by colour.
-    fn scale(&mut self, by: [f32; 3]) {
-        let scale = |light: &mut [f32; 3]| (0..3).for_each(|c| light[c] *= by[c]);
-        self.picture.radiance.par_chunks_mut(1 << 14).for_each(|chunk| chunk.iter_mut().for_each(scale));
-    }
-
     /// The same on the processor, with the gains as they are.
     fn resolve_here(&mut self, [rows, columns]: [Range<u32>; 2], wanted: Wanted) -> Result<(), SplatError> {
         let nodes = self.nodes.as_ref().ok_or(SplatError::Overflow)?;
@@ -420,7 +415,7 @@ impl Splatter {
         // The same chunks whatever rows are asked for.
         let chunks = rows.start as usize / RESOLVE_ROWS..(rows.end as usize).div_ceil(RESOLVE_ROWS);
         let (sums, knots, gains) = (&self.sums, &self.balance.knots, &self.balance.gains);
-        let (is_evened, is_scaled) = (self.is_evened(), self.is_scaled());
+        let is_evened = self.is_evened();
         let radiance = self.picture.radiance.par_chunks_mut(RESOLVE_ROWS * width);
         let coverage = self.picture.coverage.par_chunks_mut(RESOLVE_ROWS * width);
         let shares = self.shares.par_chunks_mut(RESOLVE_ROWS * width);
@@ -434,7 +429,10 @@ impl Splatter {
                 let here = rows.start.max(first)..rows.end.min(first + (coverage.len() / width) as u32);
                 let signed = |range: &Range<u32>| range.start as i32..range.end as i32;
                 let window = Window { rows: signed(&here), columns: signed(&columns) };
-                let parts = sums.lines(nodes, &window, marks, room)?;
+                let parts = match wanted {
+                    Wanted::Light => [None, sums.sharing_lines(nodes, &window, marks, room)?],
+                    _ => sums.lines(nodes, &window, marks, room)?,
+                };
                 let strip = Strip {
                     width,
                     first: first as usize,
@@ -444,7 +442,7 @@ impl Splatter {
                 if wanted.has_shares() {
                     find_shares(&parts, &strip, shares);
                 }
-                if wanted.has_shares() || is_scaled {
+                if wanted.has_sums() {
                     sum_rows(&parts, &strip, knots, shares, of_knots);
                 }
                 if wanted.has_picture() {
@@ -469,15 +467,21 @@ enum Wanted {
     Shares,
     Picture,
     SharesAndPicture,
+    /// How much light shares, before and after.
+    Light,
 }
 
 impl Wanted {
     fn has_shares(self) -> bool {
+        matches!(self, Self::Shares | Self::SharesAndPicture)
+    }
+
+    fn has_sums(self) -> bool {
         self != Self::Picture
     }
 
     fn has_picture(self) -> bool {
-        self != Self::Shares
+        matches!(self, Self::Picture | Self::SharesAndPicture)
     }
 }
 

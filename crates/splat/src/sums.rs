@@ -232,6 +232,17 @@ impl Sums {
         let SumMarks { free, sharing } = marks;
         Ok([self.free.lines(nodes, window, free, room)?, self.sharing.lines(nodes, window, sharing, room)?])
     }
+
+    /// Of these what shares the rest.
+    pub fn sharing_lines(
+        &self,
+        nodes: &Nodes,
+        window: &Window,
+        marks: &mut SumMarks,
+        room: &mut Room,
+    ) -> Result<Option<Lines>, Overflow> {
+        self.sharing.lines(nodes, window, &mut marks.sharing, room)
+    }
 }
 
 /// Whether two ranges have anything in common.

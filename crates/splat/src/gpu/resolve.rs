@@ -156,8 +156,7 @@ impl Resolve {
 
     /// Brings the gains to the card.
     pub fn set_gains(&self, gpu: &Gpu, gains: &Gains) {
-        let words =
-            gains.of_knots().iter().flatten().flat_map(|[r, g, b]| [*r, *g, *b, 1.0].map(f32::to_bits));
+        let words = gains.of_knots().flatten().flat_map(|[r, g, b]| [r, g, b, 1.0].map(f32::to_bits));
         gpu.write(&self.gains, &words.collect::<Vec<_>>());
     }
 

@@ -261,29 +261,30 @@ impl GpuSums {
 
     /// Finds the shares of a standard picture whose sums these are, and the gains.
     pub fn find_shares(&mut self, nodes: &Nodes) -> Result<Gains, GpuError> {
-        let height = self.resolve.size[1] as u32;
-        self.integrate(nodes, 0..height, true, false)?;
+        let rows = 0..self.resolve.size[1] as u32;
+        self.resolve.begin(&self.gpu, nodes, rows.clone(), true, false);
+        self.integrate_lines(&rows)?;
+        self.resolve.finish(&self.gpu, &rows);
         self.resolve.check(&self.gpu)?;
-        let gains = Gains::of(Knots::new(self.resolve.size), &self.knot_sums()?);
-        self.resolve.set_gains(&self.gpu, &gains);
-        Ok(gains)
+        Ok(Gains::of(Knots::new(self.resolve.size), &self.knot_sums()?))
     }
 
-    /// What all rows of the picture that was made last bring to each knot.
+    /// Integrates pixel rows, for a picture of them.
+    pub fn integrate(&self, nodes: &Nodes, rows: &Range<u32>, is_evened: bool) -> Result<(), GpuError> {
+        self.resolve.begin(&self.gpu, nodes, rows.clone(), false, is_evened);
+        self.integrate_lines(rows)?;
+        self.resolve.check(&self.gpu)
+    }
+
+    /// What all rows bring to each knot, once they are integrated.
     pub fn knot_sums(&self) -> Result<Vec<KnotSums>, GpuError> {
         Ok(self.resolve.knot_sums(&self.gpu)?)
     }
 
-    /// Makes the pixel rows `rows` of a picture.
-    pub fn picture(
-        &mut self,
-        nodes: &Nodes,
-        rows: Range<u32>,
-        is_evened: bool,
-        picture: &mut Picture,
-    ) -> Result<(), GpuError> {
-        self.integrate(nodes, rows.clone(), false, is_evened)?;
-        self.resolve.check(&self.gpu)?;
+    /// Makes pixel rows of a picture, which were integrated last.
+    pub fn picture(&self, gains: &Gains, rows: Range<u32>, picture: &mut Picture) -> Result<(), GpuError> {
+        self.resolve.set_gains(&self.gpu, gains);
+        self.resolve.finish(&self.gpu, &rows);
         let width = self.resolve.size[0];
         let pixels = self.resolve.read(&self.gpu, rows.clone())?;
         let first = rows.start as usize * width;
@@ -295,22 +296,14 @@ impl GpuSums {
         Ok(())
     }
 
-    fn integrate(
-        &self,
-        nodes: &Nodes,
-        rows: Range<u32>,
-        is_sharing: bool,
-        is_evened: bool,
-    ) -> Result<(), GpuError> {
+    fn integrate_lines(&self, rows: &Range<u32>) -> Result<(), Lost> {
         self.gpu.check()?;
-        self.resolve.begin(&self.gpu, nodes, rows.clone(), is_sharing, is_evened);
         for kind in 0..2 {
-            self.resolve.integrate(&self.gpu, kind, &self.accumulators[0].sums[kind], &rows);
+            self.resolve.integrate(&self.gpu, kind, &self.accumulators[0].sums[kind], rows);
             if let Some(wide) = self.accumulators.get(1) {
-                self.resolve.integrate_wide(&self.gpu, kind, &wide.sums[kind], &wide.layout, &rows)?;
+                self.resolve.integrate_wide(&self.gpu, kind, &wide.sums[kind], &wide.layout, rows)?;
             }
         }
-        self.resolve.finish(&self.gpu, &rows);
         Ok(())
     }
 

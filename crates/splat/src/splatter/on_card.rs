@@ -100,19 +100,21 @@ impl Splatter {
     }
 
     fn resolve_there(&mut self, rows: Range<u32>, wanted: Wanted) -> Result<(), GpuError> {
-        let (is_evened, is_scaled) = (self.is_evened(), self.is_scaled());
+        let (is_evened, is_balanced) = (self.is_evened(), self.is_balanced());
         let (Some(nodes), Some(sums)) = (&self.nodes, &mut self.card.sums) else {
             return Err(GpuError::Lost);
         };
+        let gains = &mut self.balance.gains;
         if wanted.has_shares() {
-            self.balance.gains = sums.find_shares(nodes)?;
+            *gains = sums.find_shares(nodes)?;
         }
         if wanted.has_picture() {
-            sums.picture(nodes, rows, is_evened, &mut self.picture)?;
-            if is_scaled {
-                let rest = self.balance.gains.rest(&sums.knot_sums()?);
-                self.scale(rest);
+            sums.integrate(nodes, &rows, is_evened)?;
+            gains.forget_rest();
+            if is_balanced {
+                gains.find_rest(&sums.knot_sums()?);
             }
+            sums.picture(gains, rows, &mut self.picture)?;
         }
         Ok(())
     }

@@ -166,8 +166,13 @@ fn ten_thousand_dabs_and_undos_leave_no_trace() {
         random = random.wrapping_mul(1664525).wrapping_add(1013904223);
         (random >> 8) % below
     };
-    let mut splatter = Splatter::new(light_field());
-    splatter.set_tolerance(Tolerance::VIEWING);
+    let live = || {
+        let mut splatter = Splatter::new(light_field());
+        splatter.set_tolerance(Tolerance::VIEWING);
+        splatter.set_live(true);
+        splatter
+    };
+    let mut splatter = live();
     splatter.render(&camera(), &focus, &Unwatched).unwrap();
     let mut done: Vec<Vec<(u32, FocusOffset)>> = Vec::new();
     for _ in 0..10_000 {
@@ -184,8 +189,7 @@ fn ten_thousand_dabs_and_undos_leave_no_trace() {
         let changed: Vec<u32> = changes.iter().map(|&(index, _)| index).collect();
         splatter.update(&focus, &changed).unwrap();
     }
-    let mut fresh = Splatter::new(light_field());
-    fresh.set_tolerance(Tolerance::VIEWING);
+    let mut fresh = live();
     fresh.render(&camera(), &focus, &Unwatched).unwrap();
     assert!(splatter.sums == fresh.sums, "the accumulators");
     assert_eq!(splatter.picture(), fresh.picture());
