@@ -181,12 +181,12 @@ pub struct RenderArguments {
     #[arg(long, value_name = "NAME")]
     pub adapter: Option<String>,
     /// How coarse, in pixels, the light field may be: what partly hidden points see of the aperture, and which samples
-    /// are joined where they are out of focus. Smaller is more exact and slower; 0 joins none, and takes 2 cells (default: 2
+    /// are joined where they are out of focus. Smaller is more exact and slower; 0 joins none, and takes 3 cells (default: 2
     /// for the first, 0 for the second)
     #[arg(long, value_name = "PX", value_parser = not_negative)]
     pub tolerance: Option<f64>,
     /// Samples the light field on a grid of N × N cells a pixel: less is softened, for N² times the time and memory. For what
-    /// is not baked yet (default: 1, at --tolerance 0 2)
+    /// is not baked yet (default: 1, at --tolerance 0 3)
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=session::MOST_CELLS_A_SIDE as i64))]
     pub cells: Option<u32>,
     /// Rays a pixel of the ground truth

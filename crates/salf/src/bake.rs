@@ -33,7 +33,8 @@ pub struct BakeOptions {
     /// may give. What the standard picture needs is always sampled.
     pub margin_px: f64,
     /// How large a cell of a partly visible aperture may be on the picture, px, where 16 cells a side allow it: up to
-    /// twice this circle of confusion, samples have 8 cells a side. Smaller is more exact and takes more memory.
+    /// twice this circle of confusion, samples have 8 cells a side. A pixel of a surface whose radiance varies by more
+    /// than [`Self::EVEN_PER_PX`] times this is a sample a quadrant. Smaller is more exact and takes more memory.
     pub tolerance_px: f64,
     /// Whether samples are packed ([`Samples`]). It is right unless what that loses is to be measured.
     pub packs: bool,
@@ -49,6 +50,10 @@ impl BakeOptions {
     /// The tolerance unless another one is asked for, px.
     pub const TOLERANCE_PX: f64 = 2.0;
 
+    /// The mean radiances of the quadrants of a pixel that is one sample differ by at most this share of the largest, for
+    /// each px of tolerance.
+    pub const EVEN_PER_PX: f64 = 0.025;
+
     /// Sampled as far outside the frame as `focus` needs.
     pub fn for_focus(tracer: &Tracer, camera: &Camera, focus: &dyn SurfaceField<FocusOffset>) -> Self {
         Self { margin_px: painted_margin_px(tracer, &View::new(camera), focus), ..Self::default() }
@@ -57,7 +62,9 @@ impl BakeOptions {
 
 /// A nearest surface of a cell, before it is known whether anything occludes it.
 struct Candidate {
-    found: Found,
+    samples: Vec<Found>,
+    center: DVec2,
+    inverse_depth: f64,
     slope: DVec2,
     /// Whether another surface of its own cell is in front of it.
     has_nearer: bool,
@@ -174,7 +181,9 @@ impl Baker<'_> {
     fn first_look(&self, cell: Cell) -> FirstLook {
         let layers = self.layers(cell, false);
         let candidate = |group: &Group| Candidate {
-            found: group.sample(self.radiance, self.view, cell, Visibility::Open),
+            samples: group.samples(self.radiance, self.view, cell),
+            center: group.center(cell),
+            inverse_depth: group.mean_inverse_depth(),
             slope: group.slope,
             has_nearer: layers.has_nearer(group, self.view.radius_per_kappa_px),
         };
@@ -191,12 +200,12 @@ impl Baker<'_> {
         let hidden = look.has_gap || occluders.may_reveal(cell, look.depths.nearest);
         if is_pinhole || !hidden {
             let is_open = |candidate: &Candidate| {
-                let sample = &candidate.found.sample;
-                let (center, depth) = (sample.center.as_dvec2(), sample.inverse_depth as f64);
-                !candidate.has_nearer && !may_occlude(center, depth, candidate.slope)
+                let Candidate { center, inverse_depth, slope, has_nearer, .. } = *candidate;
+                !has_nearer && !may_occlude(center, inverse_depth, slope)
             };
             if is_pinhole || look.candidates.iter().all(is_open) {
-                samples.extend(look.candidates.iter().map(|candidate| candidate.found.clone()));
+                samples
+                    .extend(look.candidates.iter().flat_map(|candidate| candidate.samples.iter().cloned()));
                 return;
             }
         }
@@ -210,9 +219,12 @@ impl Baker<'_> {
             } else {
                 self.partial_visibility(cell, group, index as u32)
             };
-            if let Some(visibility) = visibility {
-                samples.push(group.sample(self.radiance, self.view, cell, visibility));
-            }
+            // The quadrants of a cell see about the same: they are not asked one by one.
+            let Some(visibility) = visibility else { continue };
+            samples.extend(group.samples(self.radiance, self.view, cell).into_iter().map(|mut found| {
+                found.sample.visibility = visibility.clone();
+                found
+            }));
         }
     }
 

@@ -32,6 +32,12 @@ impl Cell {
         self.corner.as_dvec2() + IVec2::new(column, row).as_dvec2() * self.sub_side()
     }
 
+    /// The quadrant that sub-cell `k` lies in.
+    pub fn quadrant(k: usize) -> usize {
+        const HALF: usize = Cell::SUBDIVISION as usize / 2;
+        k / Cell::RAYS.isqrt() / HALF * 2 + k % Cell::RAYS.isqrt() / HALF
+    }
+
     /// The part of it that the sub-cells of `rays`, a bit each, make up; they must not be none.
     pub fn part(&self, rays: u16) -> CellPart {
         let (cell_side, side) = (self.side as f64, self.sub_side());

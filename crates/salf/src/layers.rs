@@ -1,5 +1,6 @@
 //! The pinhole picture, one cell at a time: which surfaces lie along its chief rays.
 
+use crate::bake::BakeOptions;
 use crate::domain::{Cell, CellPart};
 use crate::jitter::jitter;
 use crate::occluders::{Depths, Occluders};
@@ -9,6 +10,7 @@ use crate::samples::Found;
 use crate::view::View;
 use glam::{DVec2, Vec3};
 use scene::SurfacePoint;
+use std::ops::Range;
 use trace::{Hit, Radiance, Tracer};
 
 /// Surfaces along one chief ray beyond which nothing is looked for.
@@ -150,41 +152,68 @@ impl Layers {
 impl Group {
     /// Mean of 1/z.
     pub fn mean_inverse_depth(&self) -> f64 {
-        self.members.iter().map(|m| m.inverse_depth).sum::<f64>() / self.members.len() as f64
-    }
-
-    /// Its sub-cells, a bit each.
-    fn rays(&self) -> u16 {
-        self.members.iter().fold(0, |rays, member| rays | 1 << member.sub_cell)
+        mean_inverse_depth(&self.members)
     }
 
     /// The centre of its sub-cells, px.
     pub fn center(&self, cell: Cell) -> DVec2 {
-        cell.part(self.rays()).center
+        cell.part(rays_of(&self.members)).center
     }
 
-    /// The sample of this group: its mean radiance over its share of the cell.
-    pub fn sample(&self, radiance: &dyn Radiance, view: &View, cell: Cell, visibility: Visibility) -> Found {
-        let rays = self.rays();
+    /// Its samples, as if each saw the whole aperture: one with its mean radiance over its share of the cell; where that
+    /// varies, one a quadrant.
+    pub fn samples(&self, radiance: &dyn Radiance, view: &View, cell: Cell) -> Vec<Found> {
+        let emitted: Vec<Vec3> = self.members.iter().map(|m| toward_aperture(radiance, view, m)).collect();
+        let quadrants = self.quadrants();
+        let mean = |rays: &Range<usize>| emitted[rays.clone()].iter().sum::<Vec3>() / rays.len() as f32;
+        let low = quadrants.iter().map(mean).fold(Vec3::INFINITY, Vec3::min);
+        let high = quadrants.iter().map(mean).fold(Vec3::ZERO, Vec3::max);
+        let even = (BakeOptions::EVEN_PER_PX * view.tolerance_px) as f32;
+        let is_even = (high - low).max_element() <= even * high.max_element();
+        // Light from outside the frame is spread over eight cells and more.
+        let parts = if is_even || cell.side > 1 { vec![0..emitted.len()] } else { quadrants };
+        parts.into_iter().map(|rays| self.sample(cell, rays.clone(), mean(&rays))).collect()
+    }
+
+    /// The members of each quadrant that has any.
+    fn quadrants(&self) -> Vec<Range<usize>> {
+        let quadrant = |member: &Member| Cell::quadrant(member.sub_cell);
+        let mut end = 0;
+        let parts = self.members.chunk_by(|a, b| quadrant(a) == quadrant(b));
+        parts.map(|part| (end..end + part.len(), end += part.len()).0).collect()
+    }
+
+    /// The sample that some of its members make.
+    fn sample(&self, cell: Cell, members: Range<usize>, radiance: Vec3) -> Found {
+        let members = &self.members[members];
+        let rays = rays_of(members);
         let CellPart { center, half_size, weight } = cell.part(rays);
-        let emitted: Vec3 = self.members.iter().map(|m| toward_aperture(radiance, view, m)).sum();
-        let middle = self
-            .members
+        let middle = members
             .iter()
             .min_by(|a, b| a.pixel.distance_squared(center).total_cmp(&b.pixel.distance_squared(center)))
             .expect("a group has members");
         let sample = Sample {
             center: center.as_vec2(),
             half_size: half_size.as_vec2(),
-            inverse_depth: self.mean_inverse_depth() as f32,
+            inverse_depth: mean_inverse_depth(members) as f32,
             weight: weight as f32,
             tilt: (self.tilt * weight).as_vec2(),
-            radiance: emitted / self.members.len() as f32,
+            radiance,
             surface: middle.point,
-            visibility,
+            visibility: Visibility::Open,
         };
         Found { sample, rays: Some((cell, rays)) }
     }
+}
+
+/// The sub-cells of members, a bit each.
+fn rays_of(members: &[Member]) -> u16 {
+    members.iter().fold(0, |rays, member| rays | 1 << member.sub_cell)
+}
+
+/// Mean of 1/z.
+fn mean_inverse_depth(members: &[Member]) -> f64 {
+    members.iter().map(|m| m.inverse_depth).sum::<f64>() / members.len() as f64
 }
 
 fn toward_aperture(radiance: &dyn Radiance, view: &View, member: &Member) -> Vec3 {

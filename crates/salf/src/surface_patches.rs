@@ -18,6 +18,12 @@ use trace::{Radiance, Tracer};
 /// More pieces than this are not made of one triangle: the largest is then split no further.
 const MOST_PATCHES: usize = 20_000;
 
+/// Pieces whose image on the picture is brighter are cut further: one alone would show the cells of its visibility.
+const GLARING: f64 = 0.5;
+
+/// Pieces of at most this extent, px, are cut no further, however bright.
+const FINEST_PX: f64 = 1.0 / 16.0;
+
 /// A piece of a triangle: its corners as barycentrics and in camera space.
 #[derive(Clone, Copy)]
 struct Piece {
@@ -26,6 +32,25 @@ struct Piece {
 }
 
 impl Piece {
+    fn center(&self) -> DVec3 {
+        self.corners.iter().sum::<DVec3>() / 3.0
+    }
+
+    /// Along its normal, as long as it is large.
+    fn area_normal(&self) -> DVec3 {
+        let [a, b, c] = self.corners;
+        (b - a).cross(c - a) / 2.0
+    }
+
+    /// How bright its image is at most, where the standard lens makes it, if its points are of such a `brightness`.
+    fn glare(&self, view: &View, brightness: f64) -> f64 {
+        let (position, normal) = (self.center(), self.area_normal());
+        let rim = view.optics.aperture_radius * normal.truncate().abs().element_sum();
+        let largest = (normal.dot(position).abs() + rim) * view.density(position.z);
+        let kappa = view.optics.standard_kappa(1.0 / position.z);
+        largest * brightness / view.optics.circle_of_confusion_px(kappa).powi(2).max(1.0)
+    }
+
     /// The centroids of its four quarters, as barycentrics of the triangle.
     fn quarters(&self) -> [DVec2; 4] {
         let [a, b, c] = self.barycentric;
@@ -64,7 +89,9 @@ pub fn samples(
     let front = -normal;
     let whole = Piece { barycentric: [DVec2::ZERO, DVec2::X, DVec2::Y], corners };
     let mut samples = Vec::new();
-    for piece in split(whole, view, domain) {
+    let center = SurfacePoint { triangle, barycentric: DVec2::splat(1.0 / 3.0) };
+    let brightness = f64::from(scene.emitted(center).max_element());
+    for piece in split(whole, view, domain, brightness) {
         let point = SurfacePoint { triangle, barycentric: piece.barycentric.iter().sum::<DVec2>() / 3.0 };
         for side in [front, -front] {
             samples.extend(patch(tracer, radiance, view, patterns, point, piece, side));
@@ -84,12 +111,9 @@ fn patch(
     normal: DVec3,
 ) -> Option<Sample> {
     let optics = &view.optics;
-    let position = piece.corners.iter().sum::<DVec3>() / 3.0;
-    let [a, b, c] = piece.corners;
-    let area = (b - a).cross(c - a).length() / 2.0;
-    let scale = optics.half_height_px / optics.tan_half_yfov;
+    let position = piece.center();
     // w(P, U) = dA·n·(U − P)/(z³ tan²θ), linear in U.
-    let density = area / position.z.powi(3) * scale * scale;
+    let density = piece.area_normal().length() * view.density(position.z);
     let weight = -normal.dot(position) * density;
     let tilt = normal.truncate() * (optics.aperture_radius * density);
     let largest = weight + tilt.abs().element_sum();
@@ -121,7 +145,9 @@ fn patch(
 
 /// Cuts a triangle by its longest projected side until every piece is about a pixel, or an eighth of its own circle of
 /// confusion; drops what lies behind the aperture or outside the domain.
-fn split(whole: Piece, view: &View, domain: &Domain) -> Vec<Piece> {
+///
+/// Pieces of such a `brightness` that the image of one could be told are cut further.
+fn split(whole: Piece, view: &View, domain: &Domain, brightness: f64) -> Vec<Piece> {
     let mut pieces = Vec::new();
     let mut pending = vec![(whole, 0)];
     let low = DVec2::splat(-domain.margin as f64);
@@ -139,7 +165,9 @@ fn split(whole: Piece, view: &View, domain: &Domain) -> Vec<Piece> {
             let nearest = piece.corners.iter().map(|p| p.z).fold(f64::INFINITY, f64::min);
             let kappa = view.optics.standard_kappa(1.0 / nearest);
             let fine = (view.optics.circle_of_confusion_px(kappa) / 8.0).max(1.0);
-            if (last - first).max_element() <= fine || depth >= 24 || pieces.len() >= MOST_PATCHES {
+            let extent = (last - first).max_element();
+            let is_small = extent <= FINEST_PX || extent <= fine && piece.glare(view, brightness) <= GLARING;
+            if is_small || depth >= 24 || pieces.len() >= MOST_PATCHES {
                 pieces.push(piece);
                 continue;
             }

@@ -60,6 +60,12 @@ impl<'a> View<'a> {
         Square { center: self.eye, right: radius * self.right, up: radius * self.up }
     }
 
+    /// The weight of a surface at depth `z`, px², for each unit of its area and of n·(U − P): 1/(z³ tan²θ) in pixels.
+    pub fn density(&self, z: f64) -> f64 {
+        let scale = self.optics.half_height_px / self.optics.tan_half_yfov;
+        scale * scale / z.powi(3)
+    }
+
     /// How the weight of a surface with `normal` through `point` changes over the aperture, as a share of its
     /// weight at the centre: w(u)/w(0) = n·(P − U)/n·P = 1 + tilt·u. Unbounded where the plane passes
     /// through the aperture's centre.

@@ -118,13 +118,13 @@ impl Default for RenderOptions {
 pub const MOST_CELLS_A_SIDE: u32 = 4;
 
 impl RenderOptions {
-    /// A light field and splat as coarse as `px` pixels. At 0 they are as fine as they are meant to get, with four samples a
-    /// pixel and surface.
+    /// A light field and splat as coarse as `px` pixels. At 0 they are as fine as they are meant to get, with nine cells a
+    /// pixel.
     pub fn at_tolerance(px: f64) -> Self {
         Self {
             tolerance_px: px,
             splat_tolerance: Tolerance::px(px),
-            cells_a_side: if px == 0.0 { 2 } else { 1 },
+            cells_a_side: if px == 0.0 { 3 } else { 1 },
             ..Self::default()
         }
     }

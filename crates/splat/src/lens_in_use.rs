@@ -129,6 +129,9 @@ const FLAT: f64 = 0.3;
 /// Or by this share of their radius, where that is more: a soft rim of paint is as steep as it is blurred.
 const ALIKE: f64 = 0.125;
 
+/// Aperture images of at most this radius, 1/4096 px, leave the samples of a pixel within it: one stands for them all.
+const SHARP: f64 = 16.0;
+
 /// From this share of a circle of confusion on small images are drawn in fewer parts: as coarse as the nodes.
 const COARSE: f64 = 0.1;
 
@@ -190,7 +193,8 @@ impl LensInUse {
     /// Whether a node that was `placed` may stand for all below it.
     #[inline(always)]
     pub fn may_merge(&self, node: &SplatNode, focus: &NodeFocus, placed: Placed) -> bool {
-        if !self.is_far_out(Fineness::of(node), node.level, placed.radius) {
+        let is_sharp = node.level == 0 && f64::from(placed.radius).abs() <= SHARP;
+        if !is_sharp && !self.is_far_out(Fineness::of(node), node.level, placed.radius) {
             return false;
         }
         let optics = &self.optics;
@@ -203,7 +207,8 @@ impl LensInUse {
                 + (t * defocus).abs() * focus.anchor_apart as f64;
         }
         let side = (1 << node.level << POSITION_BITS) as f64;
-        (apart * self.radius_per_kappa).abs() <= (FLAT * side).max(ALIKE * f64::from(placed.radius).abs())
+        let most = (FLAT * side).max(ALIKE * f64::from(placed.radius).abs());
+        (apart * self.radius_per_kappa).abs() <= if is_sharp { SHARP } else { most }
     }
 }
 

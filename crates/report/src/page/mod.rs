@@ -71,7 +71,7 @@ fn method(report: &Report) -> String {
          <p>Every renderer draws the same pictures, which are compared with references by ray tracing of the same model. \
          Errors are those of the conserved radiance (the exposure “conserve”), linear: RMSE, PSNR and FLIP of values clipped to \
          [0, 1], relMSE = mean of (a − b)²/(b² + 0.01) and the signed mean error (a − b)/b of unclipped ones. FLIP is that of \
-         Andersson et al. 2020 at 67 pixels a degree. At a tolerance of 0 px the light field has 2 × 2 cells a pixel. Times are \
+         Andersson et al. 2020 at 67 pixels a degree. At a tolerance of 0 px the light field has 3 × 3 cells a pixel. Times are \
          wall-clock times from a scene whose ray hierarchy stands; those under a quarter of a second are medians of up to five. \
          “Memory” is what a renderer keeps for the next picture: the light field's samples, the hierarchy over the triangles, or \
          a pinhole picture with its defocus; “peak” is how much more the process held at most (0 B: what it had held before was \

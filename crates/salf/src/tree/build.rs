@@ -76,6 +76,12 @@ struct Cells {
 }
 
 impl Growing {
+    /// Whether it may be joined with what else is in its cell of `level`: the samples of a cell at that of the cell.
+    fn may_join(&self, level: u8) -> bool {
+        let is_sample = self.node.sample.is_some();
+        if is_sample { self.node.level <= level } else { self.node.level < level }
+    }
+
     /// See [`Cells::sent`].
     fn sent(&self) -> f32 {
         self.cells.as_ref().map_or(0.0, |cells| cells.sent(&self.node))
@@ -108,7 +114,7 @@ impl Builder<'_> {
             }
             self.arena.push(growing);
         }
-        for level in 1..LEVELS as u8 {
+        for level in 0..LEVELS as u8 {
             open_ended = self.join(level, open_ended);
         }
         let (mut nodes, mut words) = (Vec::with_capacity(self.arena.len()), Vec::new());
@@ -138,7 +144,7 @@ impl Builder<'_> {
             let mut groups: Vec<(IVec2, Vec<usize>)> = Vec::new();
             for (pixel, index) in members {
                 // A cell that was sampled more coarsely waits for its level.
-                let fits = self.arena[index].node.level < level;
+                let fits = self.arena[index].may_join(level);
                 let group = groups.iter_mut().find(|(_, group)| {
                     fits && group.len() < MOST_MEMBERS && self.belongs(level, index, group[0])
                 });
@@ -160,7 +166,7 @@ impl Builder<'_> {
     fn belongs(&self, level: u8, index: usize, first: usize) -> bool {
         let (a, b) = (&self.arena[index], &self.arena[first]);
         let apart = (a.node.inverse_depth - b.node.inverse_depth).abs() * self.parallax_px;
-        let is_smooth = b.node.level < level && apart <= SMOOTH * (1 << level) as f32;
+        let is_smooth = b.may_join(level) && apart <= SMOOTH * (1 << level) as f32;
         is_smooth
             && weigh_alike(&a.node, &b.node)
             && match (&a.cells, &b.cells) {
@@ -286,7 +292,8 @@ fn most(members: &[&Growing]) -> Cells {
         let (more, even) = compare(&count, seen.len() / 2);
         more | if seen.len() % 2 == 0 { even & CHECKERS } else { 0 }
     });
-    Cells { words, is_coarse: false }
+    let is_coarse = seen.iter().all(|cells| cells.is_coarse) && finer(coarser(words)) == words;
+    Cells { words, is_coarse }
 }
 
 /// Bits of the counts of [`most`].
