@@ -1,6 +1,7 @@
 //! Scene and camera to light field.
 //!
-//! 1. The pinhole picture is sampled, cell by cell ([`crate::layers`]): the nearest surfaces.
+//! 1. The pinhole picture is sampled, cell by cell ([`crate::layers`]): the nearest surfaces, a sample each or, where their
+//!    radiance varies, one a quadrant.
 //! 2. Their depths tell which of them may be partly occluded, and where hidden ones may show ([`crate::occluders`]).
 //! 3. Surfaces edge-on to the aperture, and small bright ones, are sampled on the surface ([`crate::surface_patches`]).
 //! 4. What may be partly occluded, and only that, is asked what of the aperture it sees ([`crate::visibility`]).
@@ -52,7 +53,7 @@ impl BakeOptions {
 
     /// The mean radiances of the quadrants of a pixel that is one sample differ by at most this share of the largest, for
     /// each px of tolerance.
-    pub const EVEN_PER_PX: f64 = 0.025;
+    pub const EVEN_PER_PX: f64 = 0.05;
 
     /// Sampled as far outside the frame as `focus` needs.
     pub fn for_focus(tracer: &Tracer, camera: &Camera, focus: &dyn SurfaceField<FocusOffset>) -> Self {

@@ -222,3 +222,59 @@ fn toward_aperture(radiance: &dyn Radiance, view: &View, member: &Member) -> Vec
         None => radiance.from_infinity(view.chief_ray(member.pixel).direction.normalize()),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::{DVec3, IVec2};
+    use lens::Camera;
+
+    /// Light from infinity: so much on the left, so much on the right.
+    struct Halves([f32; 2]);
+
+    impl Radiance for Halves {
+        fn toward(&self, _point: SurfacePoint, _eye: DVec3) -> Vec3 {
+            unreachable!("there is no surface")
+        }
+        fn from_infinity(&self, direction: DVec3) -> Vec3 {
+            Vec3::splat(self.0[usize::from(direction.x > 0.0)])
+        }
+    }
+
+    /// The samples of a cell of the background whose upright middle line is the picture's.
+    fn samples(side: i32, light: [f32; 2]) -> Vec<Found> {
+        let camera = Camera { width: 64, height: 64, ..Camera::default() };
+        let view = View::new(&camera);
+        // Half a pixel further right, the middle is that of a cell of one pixel.
+        let shift = if side == 1 { 0.5 } else { 0.0 };
+        let cell = Cell { corner: IVec2::new(32 - side / 2, 8), side };
+        let member = |sub_cell: usize| {
+            let pixel = cell.sub_corner(sub_cell) + cell.sub_side() / 2.0 - DVec2::new(shift, 0.0);
+            Member { sub_cell, pixel, point: None, inverse_depth: 0.0 }
+        };
+        let members = Cell::sub_cells().map(member).collect();
+        let (tilt, slope) = (DVec2::ZERO, DVec2::ZERO);
+        let group = Group { members, is_nearest: true, is_just_behind: false, part: None, tilt, slope };
+        group.samples(&Halves(light), &view, cell)
+    }
+
+    #[test]
+    fn a_pixel_is_a_sample_a_quadrant_where_its_radiance_varies() {
+        for (side, light, count) in [
+            (1, [0.5, 0.5], 1),
+            (1, [0.5, 0.52], 1),
+            (1, [0.5, 2.0], 4),
+            (1, [0.0, 1e-6], 4),
+            (4, [0.5, 2.0], 1),
+        ] {
+            let found = samples(side, light);
+            assert_eq!(found.len(), count, "{side} px, {light:?}");
+            let weight: f32 = found.iter().map(|found| found.sample.weight).sum();
+            let sent: f32 = found.iter().map(|found| found.sample.weight * found.sample.radiance.x).sum();
+            assert_eq!(weight, (side * side) as f32);
+            assert!((sent / weight - (light[0] + light[1]) / 2.0).abs() < 1e-6, "{found:?}");
+            let rays = found.iter().fold(0, |all, found| all | found.rays.expect("they are of a cell").1);
+            assert_eq!(rays, u16::MAX);
+        }
+    }
+}

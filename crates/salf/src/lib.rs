@@ -2,10 +2,10 @@
 //! sees it.
 //!
 //! [`bake()`] samples every surface that some point of the aperture sees. Samples come from the pinhole picture
-//! where surfaces face the aperture (their footprints are the squares of the pixel grid, so that they tile the
-//! picture exactly), and from the surface itself where it is edge-on, or small and bright. A [`Sample`] knows its surface address, its
-//! weight toward every aperture point, its radiance, and what of the aperture it sees ([`Visibility`]); they are kept packed
-//! ([`Samples`]).
+//! where surfaces face the aperture (their footprints are the squares of the pixel grid or quadrants of them, so that they
+//! tile the picture exactly), and from the surface itself where it is edge-on, or small and bright. A [`Sample`] knows its
+//! surface address, its weight toward every aperture point, its radiance, and what of the aperture it sees ([`Visibility`]);
+//! they are kept packed ([`Samples`]).
 
 mod bake;
 mod domain;

@@ -194,3 +194,30 @@ fn halves(piece: Piece) -> [Piece; 2] {
     };
     [piece_of(i, k), piece_of(k, j)]
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use lens::Camera;
+
+    #[test]
+    fn glaring_lamps_are_cut_finely() {
+        let camera = Camera { width: 64, height: 64, aperture_radius: 0.1, ..Camera::default() };
+        let (view, domain) = (View::new(&camera), Domain::new(64, 64, 0.0));
+        let side = 0.3 / (view.density(4.0) * 4.0).sqrt();
+        let corners = [DVec3::ZERO, DVec3::X * side, DVec3::Y * side].map(|corner| corner + DVec3::Z * 4.0);
+        let lamp = Piece { barycentric: [DVec2::ZERO, DVec2::X, DVec2::Y], corners };
+        let cut = [0.0, 1.0, 1e3, 1e9].map(|brightness| split(lamp, &view, &domain, brightness));
+        for pieces in &cut {
+            let area: f64 = pieces.iter().map(|piece| piece.area_normal().length()).sum();
+            assert!((area / lamp.area_normal().length() - 1.0).abs() < 1e-9);
+        }
+        let [dark, dim, bright, glaring] = cut.each_ref().map(Vec::len);
+        assert!(dark == 1 && dim == 1 && bright > 4 && glaring >= bright, "{dark} {dim} {bright} {glaring}");
+        assert!(
+            cut[2].iter().all(|piece| piece.glare(&view, 1e3) <= GLARING),
+            "none is smaller than need be"
+        );
+        assert!(glaring <= 256, "however bright: {glaring}");
+    }
+}

@@ -1,12 +1,12 @@
 //! The samples as a hierarchy: quadtrees of samples that lie on one smooth surface.
 //!
 //! A splat that spreads its light over a circle of confusion of D pixels does not care for samples closer together than a
-//! fraction of D. So samples are joined, two cells by two, to nodes that stand for all of them: their weight, their mean
+//! fraction of D. So samples are joined, the quadrants of a cell and then two cells by two, to nodes that stand for all of them: their weight, their mean
 //! position, radiance, depth and tilt, how far they spread, and what most of them see of the aperture. Which nodes are
 //! used is decided when the picture is made, from the defocus that each then has; the hierarchy knows no focus.
 //!
 //! Only like is joined with like: samples of about one depth, and among the partly occluded ones those that see about the
-//! same part of the aperture. Highlights stay alone: their aperture images are seen one by one.
+//! same part of the aperture. Highlights are joined within their cell only: their aperture images are seen one by one.
 
 mod build;
 mod grid;

@@ -13,13 +13,13 @@ pub fn cells_a_side(view: &View, inverse_depth: f64) -> usize {
     if view.optics.circle_of_confusion_px(kappa) <= 2.0 * view.tolerance_px { 8 } else { 16 }
 }
 
-/// Points of a patch that are asked; each for every second cell of every second row.
-const ASKED: usize = 4;
+/// Cells that a point of a patch is asked for: what the one walk of the hierarchy tells that a point takes.
+const CELLS_A_POINT: usize = 64;
 
 /// Where in each cell of the aperture its ray goes through: several patterns, so that neighbours do not share their errors.
 pub struct Patterns {
     /// For 8 and for 16 cells a side; by pattern, then by the point that is asked.
-    of_side: [Vec<[Places; ASKED]>; 2],
+    of_side: [Vec<Vec<Places>>; 2],
 }
 
 impl Patterns {
@@ -31,30 +31,33 @@ impl Patterns {
         Self { of_side: [of_side(8), of_side(16)] }
     }
 
-    fn pattern(side: usize, number: u32) -> [Places; ASKED] {
-        std::array::from_fn(|asked| {
+    fn pattern(side: usize, number: u32) -> Vec<Places> {
+        let of_point = |point: usize| {
             let place = |k: usize| {
-                let (row, column) = cell_of(side, asked, k);
+                let (row, column) = cell_of(side, point, k);
                 let [jx, jy, _] = jitter(number, side as u32, (row * side + column) as u32);
                 DVec2::new(column as f64 + jx, row as f64 + jy) * (2.0 / side as f64) - 1.0
             };
-            Places::new(&(0..side * side / ASKED).map(place).collect::<Vec<_>>())
-        })
+            Places::new(&(0..CELLS_A_POINT).map(place).collect::<Vec<_>>())
+        };
+        (0..side * side / CELLS_A_POINT).map(of_point).collect()
     }
 
-    fn of(&self, side: usize, number: usize) -> &[Places; ASKED] {
+    fn of(&self, side: usize, number: usize) -> &[Places] {
         &self.of_side[usize::from(side == 16)][number % Self::COUNT]
     }
 }
 
-/// Row and column of the cell of a point's k-th place.
-fn cell_of(side: usize, asked: usize, k: usize) -> (usize, usize) {
-    let half = side / 2;
-    (2 * (k / half) + asked / 2, 2 * (k % half) + asked % 2)
+/// Row and column of the cell of a point's k-th place: of 16 cells a side each of four points has every second cell of every
+/// second row, of 8 one point has all.
+fn cell_of(side: usize, point: usize, k: usize) -> (usize, usize) {
+    let a_row = CELLS_A_POINT.isqrt();
+    let step = side / a_row;
+    (step * (k / a_row) + point / step, step * (k % a_row) + point % step)
 }
 
-/// The cells of the aperture that a patch sees: one jittered ray each, from four of its members in turn. `None` if it sees
-/// none.
+/// The cells of the aperture that a patch sees: one jittered ray each, from one of its members or four in turn. `None` if it
+/// sees none.
 ///
 /// `is_on_side` tells which aperture points lie on the side of the surface that the patch stands for.
 pub fn visibility(
@@ -71,8 +74,8 @@ pub fn visibility(
     let pattern = patterns.of(side, (picks[2] * Patterns::COUNT as f64) as usize);
     let mut words = vec![0u64; side * side / 64];
     let mut occluders = RecentOccluders::default();
-    for (asked, places) in pattern.iter().enumerate() {
-        let pick = (asked as f64 + picks[asked % 2]) / ASKED as f64;
+    for (point, places) in pattern.iter().enumerate() {
+        let pick = (point as f64 + picks[point % 2]) / pattern.len() as f64;
         let member = &members[(pick * members.len() as f64) as usize];
         let viewpoint = match member.point {
             Some(point) => Viewpoint::Surface(point),
@@ -80,7 +83,7 @@ pub fn visibility(
         };
         let hidden = tracer.hidden_places(viewpoint, &square, places, &mut occluders);
         for k in (0..places.len()).filter(|&k| hidden >> k & 1 == 0 && is_on_side(places.at(k))) {
-            let (row, column) = cell_of(side, asked, k);
+            let (row, column) = cell_of(side, point, k);
             let cell = row * side + column;
             words[cell / 64] |= 1 << (cell % 64);
         }

@@ -278,6 +278,33 @@ impl<W: Word> Rows<'_, W> {
         x.clamp(-4 * PIXEL, (self.width as i32 + 4) << POSITION_BITS)
     }
 
+    /// Whether a column is the picture's, or the border's before it.
+    #[inline(always)]
+    pub fn has_column(&self, column: i32) -> bool {
+        (-1..self.width as i32).contains(&column)
+    }
+
+    /// Adds (`sign` 1) or takes away (−1) the light of one pixel, as [`Self::add_run`] would; nothing in rows that are not
+    /// these.
+    #[inline(always)]
+    pub fn add_pixel(&mut self, row: i32, column: i32, value: [u64; 4], sign: i32) {
+        if !(self.first..self.end).contains(&row) {
+            return;
+        }
+        let place = (row - self.first) as usize;
+        // The border is column 0.
+        let first = (column + 1) as usize;
+        let whole = value.map(|value| W::of(W::bits(value)));
+        let cells = &mut self.cells[place * (self.width + 3) + first..][..2];
+        add(&mut cells[0], &whole, sign);
+        add(&mut cells[1], &whole, -sign);
+        let touched = &mut self.touched[place];
+        touched.first = touched.first.min(first as u32);
+        touched.end = touched.end.max(first as u32 + 2);
+        let (total, thrown) = (&mut self.totals[place], whole[3].wide());
+        *total = if sign < 0 { total.wrapping_sub(thrown) } else { total.wrapping_add(thrown) };
+    }
+
     /// Adds (`sign` 1) or takes away (−1) light from `start` to `end` ≥ `start` (1/4096 px) of a row: `value` a pixel.
     #[inline(always)]
     pub fn add_run(&mut self, row: i32, start: i32, end: i32, value: [u64; 4], sign: i32) {

@@ -16,6 +16,14 @@ pub fn signed_mul_shift(a: i32, b: i32, shift: u32) -> i32 {
     if (a ^ b) < 0 { -size } else { size }
 }
 
+/// ⌊x⌋ of 0 ≤ x < 2³²: without what `as` does for other numbers, several are made at a time.
+#[inline(always)]
+pub fn floored(x: f64) -> u32 {
+    // Sums of this size have no digits behind the point.
+    const SIZE: f64 = (1u64 << 52) as f64;
+    (x.floor() + SIZE).to_bits() as u32
+}
+
 /// ⌊√x⌋.
 #[inline(always)]
 pub fn integer_sqrt(x: u32) -> u32 {
@@ -36,7 +44,7 @@ pub fn ratio(numerator: u32, denominator: u32, most: u32) -> u32 {
     let [numerator, denominator, most] = [numerator, denominator.max(1), most].map(|x| x as i32 as f64);
     // The quotient is further below the next integer, by 1/denominator at least, than it is rounded: by 2⁵⁰/denominator
     // times 2⁻⁵³.
-    (numerator * (1 << 24) as f64 / denominator).min(most * (1 << 24) as f64) as i32 as u32
+    floored((numerator * (1 << 24) as f64 / denominator).min(most * (1 << 24) as f64))
 }
 
 /// 2 to 31 + `bits` over a number.
@@ -84,6 +92,13 @@ impl Divisor {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn floored_numbers_are_those_of_as() {
+        for x in [0.0, 0.3, 0.999, 1.0, 1.5, 77.9999, 2147483647.5, 4294967295.0, 4294967295.9] {
+            assert_eq!(floored(x), x as u32, "{x}");
+        }
+    }
 
     #[test]
     fn roots_are_exact_to_their_bits() {

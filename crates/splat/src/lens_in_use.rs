@@ -10,7 +10,8 @@ use salf::tree::LEVELS;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tolerance {
     /// A node may be drawn as one where its side is at most this share of the diameter of a 16 px circle of confusion
-    /// (of larger ones a smaller share, so that the cost a pixel stays). 0: every sample is drawn.
+    /// (of larger ones a smaller share, so that the cost a pixel stays). 0: every sample is drawn, but those of a pixel that
+    /// is sharp as one.
     pub share_of_circle: f64,
 }
 

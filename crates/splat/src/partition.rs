@@ -19,7 +19,7 @@
 //! Light that either takes from a surface is given back nearby ([`crate::balance`]): none is made or lost.
 
 use crate::balance::{Gains, KnotSums, Knots, Scaled};
-use crate::fixed::ratio;
+use crate::fixed::{floored, ratio};
 use crate::resolve::Lines;
 use crate::widest::with_widest_instructions;
 use std::ops::Range;
@@ -47,7 +47,7 @@ impl Share {
         const LEAST_PARTIAL: f32 = 1e-3;
         const RIPPLE: f32 = 0.1;
         // Divided in integers: graphics cards round quotients of floats in ways of their own.
-        let fixed = |covered: f32| (covered * (ONE as f32)).clamp(0.0, MOST) as i32 as u32;
+        let fixed = |covered: f32| floored((covered * (ONE as f32)).clamp(0.0, MOST).into());
         let share = if partial < LEAST_PARTIAL {
             1.0
         } else {

@@ -76,12 +76,6 @@ struct Cells {
 }
 
 impl Growing {
-    /// Whether it may be joined with what else is in its cell of `level`: the samples of a cell at that of the cell.
-    fn may_join(&self, level: u8) -> bool {
-        let is_sample = self.node.sample.is_some();
-        if is_sample { self.node.level <= level } else { self.node.level < level }
-    }
-
     /// See [`Cells::sent`].
     fn sent(&self) -> f32 {
         self.cells.as_ref().map_or(0.0, |cells| cells.sent(&self.node))
@@ -107,7 +101,7 @@ impl Builder<'_> {
         for (index, sample) in samples {
             let pixel = self.grid.pixel(sample.center);
             let growing = leaf(&sample, index, self.grid.cell_level(pixel));
-            if self.stays_alone(&growing.node) {
+            if Self::stays_alone(&growing.node) {
                 alone.push(self.arena.len());
             } else {
                 open_ended.push((pixel - corner, self.arena.len()));
@@ -124,11 +118,17 @@ impl Builder<'_> {
         (nodes, words)
     }
 
-    fn stays_alone(&self, node: &Node) -> bool {
+    /// Whether a sample is never joined with others.
+    fn stays_alone(node: &Node) -> bool {
         let cell = (1 << node.level) as f32;
-        node.radiance.max_element() > self.highlight
-            || !is_edge_on(node) && node.half_size.max_element() > cell / 2.0
-            || 1 << node.level >= BLOCK_PX
+        !is_edge_on(node) && node.half_size.max_element() > cell / 2.0 || 1 << node.level >= BLOCK_PX
+    }
+
+    /// Whether a node may be joined with what else is in its cell of `level`: the samples of a cell at that of the cell, if
+    /// they are highlights only then.
+    fn may_join(&self, level: u8, node: &Node) -> bool {
+        let is_of_cell = node.sample.is_some() && node.level == level;
+        is_of_cell || node.level < level && node.radiance.max_element() <= self.highlight
     }
 
     /// Joins the nodes of each cell of `level`.
@@ -144,7 +144,7 @@ impl Builder<'_> {
             let mut groups: Vec<(IVec2, Vec<usize>)> = Vec::new();
             for (pixel, index) in members {
                 // A cell that was sampled more coarsely waits for its level.
-                let fits = self.arena[index].may_join(level);
+                let fits = self.may_join(level, &self.arena[index].node);
                 let group = groups.iter_mut().find(|(_, group)| {
                     fits && group.len() < MOST_MEMBERS && self.belongs(level, index, group[0])
                 });
@@ -166,7 +166,7 @@ impl Builder<'_> {
     fn belongs(&self, level: u8, index: usize, first: usize) -> bool {
         let (a, b) = (&self.arena[index], &self.arena[first]);
         let apart = (a.node.inverse_depth - b.node.inverse_depth).abs() * self.parallax_px;
-        let is_smooth = b.may_join(level) && apart <= SMOOTH * (1 << level) as f32;
+        let is_smooth = self.may_join(level, &b.node) && apart <= SMOOTH * (1 << level) as f32;
         is_smooth
             && weigh_alike(&a.node, &b.node)
             && match (&a.cells, &b.cells) {

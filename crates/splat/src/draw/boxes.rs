@@ -73,6 +73,12 @@ impl Pen<'_> {
         paper: &mut Paper<W>,
         sign: i32,
     ) {
+        if let Some([column, row]) = image.filled_pixel(half_size).filter(|at| paper.rows.has_column(at[0])) {
+            // What such a box is, without its arithmetic.
+            let shift = image.light.shift(HEIGHT_BITS);
+            let value = image.light.in_pixel(image.share, shift, image.dither, 0);
+            return paper.rows.add_pixel(row, column, value, sign);
+        }
         let radius = image.radius.unsigned_abs();
         let half = half.map(|half| mul_shift(radius, half, 16));
         let found = UnsizedBox { image, legs: [[half_size[0], half[0]], [half_size[1], half[1]]] };
@@ -81,6 +87,16 @@ impl Pen<'_> {
         } else {
             found.sized(too_blurred(image.level)).draw(&mut paper.rows, sign)
         }
+    }
+}
+
+impl Image<'_> {
+    /// The column and row of the pixel of the picture that is its footprint, if it is in focus.
+    #[inline(always)]
+    fn filled_pixel(&self, half_size: [u32; 2]) -> Option<[i32; 2]> {
+        const HALF: i32 = PIXEL / 2;
+        let is_pixel = half_size == [HALF as u32; 2] && self.center.map(|x| x & (PIXEL - 1)) == [HALF; 2];
+        (self.radius == 0 && self.level == 0 && is_pixel).then(|| self.center.map(|x| x >> POSITION_BITS))
     }
 }
 
@@ -151,6 +167,33 @@ impl SizedBox {
             let height = mul_shift(share, density, across.bits + 25);
             let value = self.light.in_pixel(height, shift, self.dither, row - middle);
             rows.add_run(row, start, end, value, sign);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::canvas::Accumulator;
+    use crate::draw::image::WHOLE;
+
+    #[test]
+    fn a_filled_pixel_is_a_box_bit_for_bit() {
+        const HALF: u32 = PIXEL as u32 / 2;
+        for (light, share, sign) in
+            [([1e6f32, 3e5, 7.0, 4.2e6], WHOLE, 1), ([0.3, 0.0, 8.1, 1.0], 12_345_678, -1), ([2.0; 4], 1, 1)]
+        {
+            let light = Light::of(light);
+            let [mut wanted, mut found] = [0, 1].map(|_| Accumulator::<i32>::new(8, 8, 1));
+            for (column, row) in [(-1, 0), (3, 2), (7, 7), (5, -1)] {
+                let center = [column, row].map(|at| (at << POSITION_BITS) + HALF as i32);
+                let (half, per_half) = ([HALF; 2], [Reciprocal::of(HALF); 2]);
+                let sized = SizedBox { center, half, per_half, share, light, dither: 77 };
+                sized.draw(&mut wanted.canvas().levels[0], sign);
+                let value = light.in_pixel(share, light.shift(HEIGHT_BITS), 77, 0);
+                found.canvas().levels[0].add_pixel(row, column, value, sign);
+            }
+            assert!(found == wanted, "{light:?} {share}");
         }
     }
 }

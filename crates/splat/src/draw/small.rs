@@ -3,7 +3,7 @@
 use crate::canvas::{Rows, Word};
 use crate::draw::boxes::{SMALLEST_HALF, SizedBox, UnsizedBox};
 use crate::draw::image::Light;
-use crate::fixed::Reciprocal;
+use crate::fixed::{Reciprocal, floored};
 
 /// How many wait until they are drawn.
 const COUNT: usize = 32;
@@ -75,7 +75,7 @@ fn sizes([a, b]: &[[u32; COUNT]; 2], less: u32) -> Sizes {
     let (mut half, mut value, mut bits) = ([0; COUNT], [0; COUNT], [0; COUNT]);
     for at in 0..COUNT {
         let square = (a[at] * a[at] + b[at] * b[at]).saturating_sub(less) as i32;
-        half[at] = ((square as f64).sqrt() as i32 as u32).max(SMALLEST_HALF);
+        half[at] = floored((square as f64).sqrt()).max(SMALLEST_HALF);
     }
     for at in 0..COUNT {
         // 2^bits·mantissa. Of numbers below 2^16 the quotient 2^31/mantissa is much further below the next integer
@@ -84,8 +84,7 @@ fn sizes([a, b]: &[[u32; COUNT]; 2], less: u32) -> Sizes {
         let exponent = (number >> 52) - 1023;
         let mantissa = f64::from_bits(number - (exponent << 52));
         let quotient = (1u64 << 31) as f64 / mantissa;
-        // It may not fit 31 bits.
-        value[at] = (quotient - (1u32 << 30) as f64) as i32 as u32 + (1 << 30);
+        value[at] = floored(quotient);
         bits[at] = exponent as u32;
     }
     Sizes { half, per_half: std::array::from_fn(|at| Reciprocal { value: value[at], bits: bits[at] }) }
