@@ -171,7 +171,8 @@ impl Group {
         let even = (BakeOptions::EVEN_PER_PX * view.tolerance_px) as f32;
         let is_even = (high - low).max_element() <= even * high.max_element();
         // Light from outside the frame is spread over eight cells and more.
-        let parts = if is_even || cell.side > 1 { vec![0..emitted.len()] } else { quadrants };
+        let all = 0..emitted.len();
+        let parts = if is_even || cell.side > 1 { vec![all] } else { quadrants };
         parts.into_iter().map(|rays| self.sample(cell, rays.clone(), mean(&rays))).collect()
     }
 
