@@ -179,9 +179,13 @@ impl Group {
     /// The members of each quadrant that has any.
     fn quadrants(&self) -> Vec<Range<usize>> {
         let quadrant = |member: &Member| Cell::quadrant(member.sub_cell);
-        let mut end = 0;
         let parts = self.members.chunk_by(|a, b| quadrant(a) == quadrant(b));
-        parts.map(|part| (end..end + part.len(), end += part.len()).0).collect()
+        let following = |end: &mut usize, part: &[Member]| {
+            let start = *end;
+            *end += part.len();
+            Some(start..*end)
+        };
+        parts.scan(0, following).collect()
     }
 
     /// The sample that some of its members make.
