@@ -242,10 +242,17 @@ impl Gains {
         let width = self.knots.size[0];
         radiance.par_chunks_mut(width).enumerate().for_each(|(y, row)| {
             let gains = self.of_row(y, Scaled::All);
-            for (x, light) in row.iter_mut().enumerate() {
-                let gain = gains.at(x);
-                (0..3).for_each(|c| light[c] *= gain[c]);
-            }
+            with_widest_instructions(
+                #[inline(always)]
+                || {
+                    for (x, light) in row.iter_mut().enumerate() {
+                        let gain = gains.at(x);
+                        for c in 0..3 {
+                            light[c] *= gain[c];
+                        }
+                    }
+                },
+            );
         });
     }
 
@@ -292,7 +299,11 @@ impl GainsOfRow {
 
 #[inline(always)]
 fn mix(a: [f32; 4], b: [f32; 4], behind: f32) -> [f32; 4] {
-    std::array::from_fn(|c| (1.0 - behind) * a[c] + behind * b[c])
+    let mut mixed = [0.0; 4];
+    for c in 0..4 {
+        mixed[c] = (1.0 - behind) * a[c] + behind * b[c];
+    }
+    mixed
 }
 
 #[cfg(test)]

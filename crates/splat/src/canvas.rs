@@ -8,7 +8,8 @@
 //! Beside every row stands how much coverage was thrown at it. If the pixels of the row do not sum to that, one of
 //! them has wrapped: it is never unseen.
 
-use salf::tree::LEVELS;
+use crate::widest::ask_for;
+use salf::tree::{BLOCK_PX, LEVELS};
 use std::ops::Range;
 
 /// Bits behind the point of positions: 1/4096 px.
@@ -278,6 +279,19 @@ impl<W: Word> Rows<'_, W> {
         x.clamp(-4 * PIXEL, (self.width as i32 + 4) << POSITION_BITS)
     }
 
+    /// Asks for the memory of the block of pixels about a position (1/4096 px).
+    pub fn ask_for_block(&self, [x, y]: [i32; 2]) {
+        const SIDE: i32 = BLOCK_PX;
+        let [column, row] = [x, y].map(|at| (at >> POSITION_BITS) & -SIDE);
+        for row in row.max(self.first)..(row + SIDE).min(self.end) {
+            let line = &self.cells[(row - self.first) as usize * (self.width + 3)..];
+            // Four pixels a line of the cache.
+            for column in (column + 1..column + 1 + SIDE).step_by(4) {
+                ask_for(line.get(column as usize));
+            }
+        }
+    }
+
     /// Whether a column is the picture's, or the border's before it.
     #[inline(always)]
     pub fn has_column(&self, column: i32) -> bool {
@@ -294,7 +308,10 @@ impl<W: Word> Rows<'_, W> {
         let place = (row - self.first) as usize;
         // The border is column 0.
         let first = (column + 1) as usize;
-        let whole = value.map(|value| W::of(W::bits(value)));
+        let mut whole = [W::default(); 4];
+        for c in 0..4 {
+            whole[c] = W::of(W::bits(value[c]));
+        }
         let cells = &mut self.cells[place * (self.width + 3) + first..][..2];
         add(&mut cells[0], &whole, sign);
         add(&mut cells[1], &whole, -sign);
@@ -312,7 +329,7 @@ impl<W: Word> Rows<'_, W> {
         let place = (row - self.first) as usize;
         let line = &mut self.cells[place * stride..][..stride];
         // The border is column 0.
-        let [from, to] = [start, end].map(|at| (at >> POSITION_BITS) + 1);
+        let [from, to] = [(start >> POSITION_BITS) + 1, (end >> POSITION_BITS) + 1];
         let (mut bits, mut whole) = ([W::Bits::default(); 4], [W::default(); 4]);
         for c in 0..4 {
             bits[c] = W::bits(value[c]);
@@ -322,7 +339,7 @@ impl<W: Word> Rows<'_, W> {
         let last = stride - 1;
         let touched = &mut self.touched[place];
         // Columns before the border are far beyond the last one too.
-        let [first, second] = [from, to].map(|column| column as u32 as usize);
+        let [first, second] = [from as u32 as usize, to as u32 as usize];
         let total = if first < last && second < last {
             add(&mut line[first], &begun, sign);
             add(&mut line[first + 1], &rest(&whole, &begun), sign);

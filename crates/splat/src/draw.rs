@@ -17,7 +17,6 @@ pub use image::WHOLE;
 pub use paper::Paper;
 
 use crate::canvas::{PIXEL, POSITION_BITS, Word};
-use crate::drawn::Drawn;
 use crate::fixed::mul_shift;
 use crate::lens_in_use::Placed;
 use crate::nodes::{Cells, Nodes, ONE, SplatNode};
@@ -63,6 +62,8 @@ pub struct Pen<'a> {
     pub parts: Vec<BoxPart>,
     /// Even images of a smaller radius, 1/4096 px, are one box; others one a part of the aperture.
     one_box_radius: u32,
+    /// Whether what is drawn is drawn as exactly as it can be.
+    pub is_exact: bool,
     /// From which |radius| on, 1/4096 px, stencils follow boxes; at twice that they are alone.
     pub stencil_radius: u32,
     /// 2³² over it.
@@ -117,7 +118,7 @@ impl<'a> Pen<'a> {
         let stop = fixed(stop);
         // To look at, one box will do until the stencils take over.
         let [stencil_radius, one_box_radius] =
-            if is_exact { [deviations(2.0), deviations(0.5)] } else { [deviations(0.4), u32::MAX] };
+            if is_exact { [deviations(2.0), deviations(0.5)] } else { [deviations(0.3), u32::MAX] };
         let [even_tilt, even_seen_tilt] = if is_exact { [ONE / 40, 0] } else { [ONE / 20, ONE / 20] };
         Self {
             nodes,
@@ -131,6 +132,7 @@ impl<'a> Pen<'a> {
             too_blurred,
             per_variance: (ONE as f64 / variance).round() as i64,
             parts: parts.collect(),
+            is_exact,
             stencil_radius,
             per_stencil_radius: u32::MAX / stencil_radius,
             box_radius: deviations(if is_exact { 1.0 } else { 2.0 }),
@@ -179,7 +181,7 @@ impl<'a> Pen<'a> {
         Image {
             node,
             level: placed.level,
-            center: node.center.map(|x| x >> placed.level),
+            center: [node.center[0] >> placed.level, node.center[1] >> placed.level],
             radius: halved(placed.radius, placed.level),
             light: Light::of(light).coarser(placed.level - node.level),
             share: WHOLE,
@@ -208,7 +210,8 @@ impl<'a> Pen<'a> {
                         image.share = share;
                         image.lean(node, self.tilt_shift);
                         image.shift(self.mean);
-                        self.draw_box(&image, node.half_size.map(u32::from), self.half, paper, sign);
+                        let half_size = [node.half_size[0].into(), node.half_size[1].into()];
+                        self.draw_box(&image, half_size, self.half, paper, sign);
                     }
                     Form::Parts(share) => {
                         image.share = share;
@@ -240,8 +243,7 @@ impl<'a> Pen<'a> {
 
     /// About what it costs to draw a node, in nanoseconds.
     #[inline(always)]
-    pub fn cost(&self, &Drawn { index, placed, .. }: &Drawn) -> u64 {
-        let node = &self.nodes.nodes[index as usize];
+    pub fn cost(&self, node: &SplatNode, placed: Placed) -> u64 {
         let radius = placed.radius.unsigned_abs() >> placed.level;
         let rows = (radius >> (POSITION_BITS - 1)) + 2;
         let once = match node.is_open() {
@@ -261,7 +263,10 @@ impl<'a> Pen<'a> {
             return if is_box { visit(Form::SeenBox) } else { visit(Form::Seen) };
         }
         let is_even = self.is_even(node);
-        let far = if placed.level > 0 { 1 << 16 } else { self.part_of_stencil(radius) };
+        let far = match placed.level {
+            0 => self.part_drawn_as_stencil(node, radius),
+            _ => 1 << 16,
+        };
         if far < 1 << 16 {
             let share = WHOLE - (far << 8);
             let is_one = is_even && radius < self.one_box_radius;
@@ -282,8 +287,19 @@ impl<'a> Pen<'a> {
         node.tilt[0].abs() as i32 + (node.tilt[1].abs() as i32) < self.even_tilt
     }
 
-    /// How much of a node's light is drawn as a stencil, times 65536; the rest is boxes. Where one form follows the
-    /// other on a surface they mix, for they differ a little.
+    /// How much of a node's light is drawn as a stencil, times 65536; the rest is boxes. To look at, all of it or nothing, by
+    /// chance: one form costs half of two.
+    #[inline(always)]
+    fn part_drawn_as_stencil(&self, node: &SplatNode, radius: u32) -> u32 {
+        let part = self.part_of_stencil(radius);
+        if self.is_exact || part.is_multiple_of(1 << 16) {
+            return part;
+        }
+        let chance = seed(node, 0, self.nodes.middle) >> 16;
+        u32::from(chance < part) << 16
+    }
+
+    /// How much of it is one on average. Where one form follows the other on a surface they mix, for they differ a little.
     #[inline(always)]
     fn part_of_stencil(&self, radius: u32) -> u32 {
         const ONE: u32 = 1 << 16;

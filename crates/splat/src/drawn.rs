@@ -39,7 +39,9 @@ impl Scene<'_> {
             let focus = paint.map_or(NodeFocus::STANDARD, |paint| paint[at]);
             let placed = self.lens.place(node, &focus);
             if node.is_leaf || self.lens.may_merge(node, &focus, placed) {
-                let [columns, rows] = [0, 1].map(|axis| node.reach(axis, placed, self.size[axis]));
+                // One by one, and so wherever nodes are many: what maps an array is not always inlined.
+                let columns = node.reach(0, placed, self.size[0]);
+                let rows = node.reach(1, placed, self.size[1]);
                 if !columns.is_empty() && !rows.is_empty() {
                     visit(first + at as u32, node, placed, rows);
                 }
@@ -50,20 +52,29 @@ impl Scene<'_> {
         }
     }
 
-    /// Makes `list` the nodes of a block that are drawn, painted as `paint` says, in order.
-    pub fn list(&self, block: usize, paint: Option<&[NodeFocus]>, list: &mut Vec<Drawn>) {
-        list.clear();
-        with_widest_instructions(
+    /// Makes `list` what is drawn of a block, painted as `paint` says.
+    pub fn list(&self, block: usize, paint: Option<&[NodeFocus]>, list: &mut BlockList) {
+        let drawn = &mut list.drawn;
+        // Those of before are probably the same. Where they are few, and far from each other, each would be waited for.
+        if 2 * drawn.len() < self.pen.nodes.blocks[block].len() {
+            drawn.iter().for_each(|before| ask_for(self.pen.nodes.nodes.get(before.index as usize)));
+        }
+        drawn.clear();
+        (list.rows, list.cost) = with_widest_instructions(
             #[inline(always)]
             || {
+                let (mut first, mut end, mut cost) = (u32::MAX, 0, 0);
                 self.drawn(
                     block,
                     paint,
                     #[inline(always)]
-                    |index, _, placed, rows| {
-                        list.push(Drawn { index, placed, rows: [rows.start, rows.end] });
+                    |index, node, placed, rows| {
+                        (first, end) = (first.min(rows.start), end.max(rows.end));
+                        cost += self.pen.cost(node, placed);
+                        drawn.push(Drawn { index, placed, rows: [rows.start, rows.end] });
                     },
-                )
+                );
+                (first.min(end)..end, cost)
             },
         );
     }
@@ -89,9 +100,9 @@ impl Scene<'_> {
         if before == now {
             return changes;
         }
-        let mut lists = [Vec::new(), Vec::new()];
+        let mut lists = [BlockList::default(), BlockList::default()];
         lists.iter_mut().zip([before, now]).for_each(|(list, paint)| self.list(block, paint, list));
-        let [mut old, mut new] = lists.map(|list| list.into_iter().peekable());
+        let [mut old, mut new] = lists.map(|list| list.drawn.into_iter().peekable());
         loop {
             let order = match (old.peek(), new.peek()) {
                 (Some(a), Some(b)) => a.index.cmp(&b.index),
@@ -134,6 +145,7 @@ impl Drawn {
 /// What is drawn of a block.
 #[derive(Default)]
 pub struct BlockList {
+    /// In the order of the nodes.
     pub drawn: Vec<Drawn>,
     /// The pixel rows that its light may reach.
     pub rows: Range<u32>,

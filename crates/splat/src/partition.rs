@@ -120,40 +120,70 @@ pub fn sum_rows(
     });
 }
 
-/// Joins lines, free and sharing, to pixels and their coverage; evened out if asked for: only where nothing is painted.
+/// Joins lines, free and sharing, to pixels and their coverage, scaled by `gains` once these are known; evened out if asked
+/// for: only where nothing is painted.
 pub fn join(
     parts: &[Option<Lines>; 2],
     strip: &Strip,
     shares: &[Share],
-    gains: &Gains,
+    gains: Option<&Gains>,
     is_evened: bool,
     (radiance, coverage): (&mut [[f32; 3]], &mut [f32]),
 ) {
     strip.each_row(parts, |row, free, sharing| {
-        let of_row = gains.of_row(strip.first + row, if is_evened { Scaled::All } else { Scaled::Sharing });
         let here = row * strip.width + strip.columns.start..row * strip.width + strip.columns.end;
-        let (radiance, coverage) = (&mut radiance[here.clone()], &mut coverage[here.clone()]);
-        let lines = free.iter().zip(sharing).zip(&shares[here]).zip(strip.columns.clone());
-        with_widest_instructions(
-            #[inline(always)]
-            || {
-                for ((((free, sharing), share), x), (radiance, coverage)) in
-                    lines.zip(radiance.iter_mut().zip(coverage))
-                {
-                    let gain = of_row.at(x);
-                    let shared = sharing.map(|light| share.partial * light);
-                    let light: [f32; 4] = if is_evened {
-                        let light: [f32; 4] = std::array::from_fn(|c| share.even * (free[c] + shared[c]));
-                        std::array::from_fn(|c| light[c] * gain[c])
-                    } else {
-                        std::array::from_fn(|c| free[c] + shared[c] * gain[c])
-                    };
-                    *radiance = [light[0], light[1], light[2]];
-                    *coverage = light[3];
-                }
-            },
-        );
+        let mut row_of = RowToJoin {
+            free,
+            sharing,
+            shares: &shares[here.clone()],
+            radiance: &mut radiance[here.clone()],
+            coverage: &mut coverage[here],
+            is_evened,
+        };
+        let scaled = if is_evened { Scaled::All } else { Scaled::Sharing };
+        match gains.map(|gains| gains.of_row(strip.first + row, scaled)) {
+            Some(of_row) => with_widest_instructions(
+                #[inline(always)]
+                || row_of.join(|x| of_row.at(strip.columns.start + x)),
+            ),
+            None => with_widest_instructions(
+                #[inline(always)]
+                || row_of.join(|_| [1.0; 4]),
+            ),
+        }
     });
+}
+
+/// Some pixels of a row.
+struct RowToJoin<'a> {
+    free: &'a [[f32; 4]],
+    sharing: &'a [[f32; 4]],
+    shares: &'a [Share],
+    radiance: &'a mut [[f32; 3]],
+    coverage: &'a mut [f32],
+    is_evened: bool,
+}
+
+impl RowToJoin<'_> {
+    #[inline(always)]
+    fn join(&mut self, gain: impl Fn(usize) -> [f32; 4]) {
+        let lines = self.free.iter().zip(self.sharing).zip(self.shares);
+        let pixels = self.radiance.iter_mut().zip(&mut *self.coverage);
+        for (x, (((free, sharing), share), (radiance, coverage))) in lines.zip(pixels).enumerate() {
+            let gain = gain(x);
+            let mut light = [0.0; 4];
+            for c in 0..4 {
+                let shared = share.partial * sharing[c];
+                light[c] = if self.is_evened {
+                    share.even * (free[c] + shared) * gain[c]
+                } else {
+                    free[c] + shared * gain[c]
+                };
+            }
+            *radiance = [light[0], light[1], light[2]];
+            *coverage = light[3];
+        }
+    }
 }
 
 /// A coverage of 1.

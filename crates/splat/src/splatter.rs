@@ -414,7 +414,9 @@ impl Splatter {
         let width = self.salf.camera.width as usize;
         // The same chunks whatever rows are asked for.
         let chunks = rows.start as usize / RESOLVE_ROWS..(rows.end as usize).div_ceil(RESOLVE_ROWS);
-        let (sums, knots, gains) = (&self.sums, &self.balance.knots, &self.balance.gains);
+        let (sums, knots) = (&self.sums, &self.balance.knots);
+        // With the shares they are still to be found.
+        let gains = (!wanted.has_shares()).then_some(&self.balance.gains);
         let is_evened = self.is_evened();
         let radiance = self.picture.radiance.par_chunks_mut(RESOLVE_ROWS * width);
         let coverage = self.picture.coverage.par_chunks_mut(RESOLVE_ROWS * width);

@@ -11,7 +11,7 @@ use crate::resolve::{Lines, Overflow, Quanta, Room, Window, lines};
 use crate::widest::{ask_for, with_widest_instructions};
 use progress::{Cancelled, Progress};
 use rayon::prelude::*;
-use salf::tree::LEVELS;
+use salf::tree::{BLOCK_PX, LEVELS};
 use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -161,9 +161,7 @@ impl Sums {
     ) -> Result<(), Cancelled> {
         lists.resize_with(scene.pen.nodes.blocks.len(), BlockList::default);
         lists.par_iter_mut().enumerate().for_each(|(block, list)| {
-            scene.list(block, scene.paint.of_block(block), &mut list.drawn);
-            list.rows = rows_of(&list.drawn);
-            list.cost = list.drawn.iter().map(|drawn| scene.pen.cost(drawn)).sum();
+            scene.list(block, scene.paint.of_block(block), list);
         });
         let lists = &*lists;
         let mut work = Work::none(scene.size[1]);
@@ -179,8 +177,12 @@ impl Sums {
             band.free.clear();
             band.sharing.clear();
             let here = band.rows.clone();
-            for list in lists.iter().filter(|list| meet(&list.rows, &here)) {
+            let mut lists = lists.iter().filter(|list| meet(&list.rows, &here)).peekable();
+            while let Some(list) = lists.next() {
                 progress.check()?;
+                if let Some(next) = lists.peek() {
+                    band.ask_for(&scene.pen, &next.drawn);
+                }
                 band.draw(&scene.pen, &list.drawn, 1);
                 let done = done.fetch_add(1, Ordering::Relaxed) + 1;
                 if done % REPORTED == 0 {
@@ -199,7 +201,8 @@ impl Sums {
         let height = self.free.dim.levels[0].height as u32;
         let mut work = Work::none(height);
         for drawn in all() {
-            work.add(pen.nodes.row_of(drawn.index), pen.cost(drawn));
+            let node = &pen.nodes.nodes[drawn.index as usize];
+            work.add(pen.nodes.row_of(drawn.index), pen.cost(node, drawn.placed));
         }
         let mut bands = self.bands(&work, rows.len() as u32);
         bands.retain(|band| meet(&rows, &band.rows));
@@ -277,14 +280,17 @@ impl Band<'_> {
 
     #[inline(always)]
     fn draw_signed(&mut self, pen: &Pen, list: &[Drawn], sign: i32) {
-        for (at, drawn) in list.iter().enumerate() {
-            let later =
-                |ahead: usize| list.get(at + ahead).map(|later| &pen.nodes.nodes[later.index as usize]);
-            ask_for(later(AHEAD));
-            if let Some(next) = later(AHEAD / 2) {
-                ask_for(pen.nodes.cells(next));
-                ask_for(pen.seen.get(next.cells as usize));
+        let node_at = |at: usize| list.get(at).map(|drawn| &pen.nodes.nodes[drawn.index as usize]);
+        let ask_for_seen = |at: usize| {
+            if let Some(node) = node_at(at) {
+                ask_for(pen.nodes.cells(node));
+                ask_for(pen.seen.get(node.cells as usize));
             }
+        };
+        (0..AHEAD / 2).for_each(ask_for_seen);
+        for (at, drawn) in list.iter().enumerate() {
+            ask_for(node_at(at + AHEAD));
+            ask_for_seen(at + AHEAD / 2);
             if !meet(&drawn.rows(), &self.rows) {
                 continue;
             }
@@ -293,6 +299,19 @@ impl Band<'_> {
             let canvas = if is_sharing { &mut self.sharing } else { &mut self.free };
             canvas.draw(pen, node, drawn.placed, sign);
         }
+    }
+
+    /// Asks for the first nodes of a block, and for the finest level's pixels if it has samples to be drawn there: they lie in
+    /// many rows, which a processor does not foresee.
+    fn ask_for(&self, pen: &Pen, list: &[Drawn]) {
+        list.iter().take(AHEAD).for_each(|drawn| ask_for(pen.nodes.nodes.get(drawn.index as usize)));
+        const MANY: usize = (BLOCK_PX * BLOCK_PX / 4) as usize;
+        let Some(first) = list.first().filter(|first| list.len() >= MANY && first.placed.level == 0) else {
+            return;
+        };
+        let node = &pen.nodes.nodes[first.index as usize];
+        let canvas = if is_sharing(node, first.placed) { &self.sharing } else { &self.free };
+        canvas.dim[0].rows.ask_for_block(node.center);
     }
 
     /// Draws what waits.

@@ -57,10 +57,12 @@ impl Pen<'_> {
     #[inline(always)]
     pub fn draw_seen_box<W: Word>(&self, image: &mut Image, paper: &mut Paper<W>, sign: i32) {
         let seen = &self.seen[image.node.cells as usize];
-        image.shift(seen.mean.map(i32::from));
+        image.shift([seen.mean[0].into(), seen.mean[1].into()]);
         image.share = seen.share;
-        let half_size = image.node.half_size.map(|half| u32::from(half) >> image.level);
-        self.draw_box(image, half_size, seen.half.map(|half| u32::from(half) << 2), paper, sign);
+        let half_size = image.node.half_size;
+        let half_size = [u32::from(half_size[0]) >> image.level, u32::from(half_size[1]) >> image.level];
+        let half = [u32::from(seen.half[0]) << 2, u32::from(seen.half[1]) << 2];
+        self.draw_box(image, half_size, half, paper, sign);
     }
 
     /// A box of the variance of footprint and aperture together; `half` of the aperture as [`BoxPart::half`].
@@ -80,7 +82,7 @@ impl Pen<'_> {
             return paper.rows.add_pixel(row, column, value, sign);
         }
         let radius = image.radius.unsigned_abs();
-        let half = half.map(|half| mul_shift(radius, half, 16));
+        let half = [mul_shift(radius, half[0], 16), mul_shift(radius, half[1], 16)];
         let found = UnsizedBox { image, legs: [[half_size[0], half[0]], [half_size[1], half[1]]] };
         if found.is_small() {
             paper.add(&found, sign)
@@ -95,8 +97,9 @@ impl Image<'_> {
     #[inline(always)]
     fn filled_pixel(&self, half_size: [u32; 2]) -> Option<[i32; 2]> {
         const HALF: i32 = PIXEL / 2;
-        let is_pixel = half_size == [HALF as u32; 2] && self.center.map(|x| x & (PIXEL - 1)) == [HALF; 2];
-        (self.radius == 0 && self.level == 0 && is_pixel).then(|| self.center.map(|x| x >> POSITION_BITS))
+        let [x, y] = self.center;
+        let is_pixel = half_size == [HALF as u32; 2] && [x & (PIXEL - 1), y & (PIXEL - 1)] == [HALF; 2];
+        (self.radius == 0 && self.level == 0 && is_pixel).then_some([x >> POSITION_BITS, y >> POSITION_BITS])
     }
 }
 

@@ -74,13 +74,14 @@ impl Image<'_> {
     /// Moves the centre by what the node's tilt moves its light's mean aperture point.
     #[inline(always)]
     pub fn lean(&mut self, node: &SplatNode, tilt_shift: [i32; 2]) {
-        self.shift([0, 1].map(|k| (node.tilt[k] as i32 * tilt_shift[k]) >> 14));
+        let lean = |k: usize| (node.tilt[k] as i32 * tilt_shift[k]) >> 14;
+        self.shift([lean(0), lean(1)]);
     }
 
     /// Moves the centre to that of the light whose mean aperture point is `mean` (1/16384).
     #[inline(always)]
     pub fn shift(&mut self, mean: [i32; 2]) {
-        let [x, y] = mean.map(|mean| signed_mul_shift(self.radius, mean, 14));
+        let [x, y] = [signed_mul_shift(self.radius, mean[0], 14), signed_mul_shift(self.radius, mean[1], 14)];
         // Pixel rows go down, v goes up.
         self.center = [self.center[0].wrapping_add(x), self.center[1].wrapping_sub(y)];
     }

@@ -33,6 +33,7 @@ struct Pen {
     coverage_exponent: i32,
     part_count: u32,
     even_seen_tilt: i32,
+    is_exact: u32,
     levels: array<Level, 5>,
     // Share, mean, variance, half.
     parts: array<Part, 16>,
@@ -308,6 +309,14 @@ fn draw_parts(image: ptr<function, Image>, depth_share: i32) {
     }
 }
 
+fn part_drawn_as_stencil(radius: u32, dither: u32) -> u32 {
+    let part = part_of_stencil(radius);
+    if pen.is_exact != 0u || part % 65536u == 0u {
+        return part;
+    }
+    return select(0u, 65536u, (dither >> 16u) < part);
+}
+
 fn part_of_stencil(radius: u32) -> u32 {
     if radius <= pen.stencil_radius {
         return 0u;
@@ -556,8 +565,8 @@ fn draw(@builtin(global_invocation_id) id: vec3<u32>, @builtin(workgroup_id) gro
     light_of(&image, at, gain, is_coverage);
 
     let of_form = records[record + 2u];
-    let mixed = part_of_stencil(u32(abs(bitcast<i32>(records[record + 1u]))));
-    let far = select(mixed, 65536u, level > 0u);
+    let of_finest = part_drawn_as_stencil(u32(abs(bitcast<i32>(records[record + 1u]))), image.dither);
+    let far = select(of_finest, 65536u, level > 0u);
     var through = OPEN;
     var share = WHOLE;
     if form == FORM_SEEN || form == FORM_SEEN_BOX {
