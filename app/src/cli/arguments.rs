@@ -253,7 +253,7 @@ pub struct ReportArguments {
     pub output: PathBuf,
     #[command(flatten)]
     pub shot: ShotArguments,
-    /// Rays a pixel of the reference pictures (default: 1024, with --quick 512)
+    /// Rays a pixel of the reference pictures (default: 1024, with --quick 512, with --engine 256)
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=1 << 20))]
     pub spp: Option<u32>,
     /// Measure only a few points of every sweep
@@ -262,9 +262,9 @@ pub struct ReportArguments {
     /// Run the numerically hard cases as well: hard.json, and a table on the page
     #[arg(long)]
     pub hard: bool,
-    /// Measure the splat engine alone instead: times at every tolerance with their errors, 1920x1080 unless --size says
-    /// otherwise
-    #[arg(long, conflicts_with_all = ["hard", "spp", "quick"])]
+    /// Measure the splat engine alone instead: times at every tolerance with their errors, and the ray tracer at the same
+    /// error, 1920x1080 unless --size says otherwise
+    #[arg(long, conflicts_with_all = ["hard", "quick"])]
     pub engine: bool,
     /// Write what was done as JSON to stdout
     #[arg(long)]

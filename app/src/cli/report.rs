@@ -13,8 +13,11 @@ use std::path::PathBuf;
 
 /// Measures, and writes the report.
 pub fn run(arguments: &ReportArguments, console: &Console) -> Result<(), Failure> {
-    let usual_spp =
-        if arguments.quick { ReportOptions::QUICK_REFERENCE_SPP } else { ReportOptions::REFERENCE_SPP };
+    let usual_spp = match (arguments.engine, arguments.quick) {
+        (true, _) => ReportOptions::ENGINE_REFERENCE_SPP,
+        (false, true) => ReportOptions::QUICK_REFERENCE_SPP,
+        (false, false) => ReportOptions::REFERENCE_SPP,
+    };
     let options = ReportOptions {
         size: arguments.shot.size,
         reference_spp: arguments.spp.unwrap_or(usual_spp),

@@ -38,6 +38,8 @@ impl ReportOptions {
     pub const REFERENCE_SPP: u32 = 1024;
     /// The same for a quick report.
     pub const QUICK_REFERENCE_SPP: u32 = 512;
+    /// The same where the engine alone is measured: its pictures are large.
+    pub const ENGINE_REFERENCE_SPP: u32 = 256;
     /// Fewest rays a pixel of a reference: two halves are compared.
     pub const FEWEST_REFERENCE_SPP: u32 = 2;
 }

@@ -3,6 +3,7 @@
 use crate::band::{Band, psnr_of};
 use crate::engine::dab::Dabbed;
 use crate::engine::dense::dense_seconds;
+use crate::engine::ray_tracer::{RayTracer, Traced};
 use crate::engine::{Check, EngineRecord, Measured};
 use crate::stopwatch::{median, timed};
 use lens::{Camera, FocusOffset, Picture};
@@ -14,7 +15,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 /// Shares of a circle of confusion of 16 px that a node's side may have, from the converged picture on.
-pub const SHARES: [f64; 6] = [0.0, 1.0 / 8.0, 1.0 / 4.0, 3.0 / 8.0, 5.0 / 8.0, 1.0];
+pub const SHARES: [f64; 7] = [0.0, 1.0 / 8.0, 3.0 / 16.0, 1.0 / 4.0, 3.0 / 8.0, 5.0 / 8.0, 1.0];
 
 /// How often a dab is painted and taken back.
 const DABS: usize = 21;
@@ -34,6 +35,16 @@ pub struct Field {
     pub with_dense: bool,
     /// Whether to paint dabs.
     pub with_dab: bool,
+    /// The ground truth of it; nothing that is made up has one.
+    pub truth: Option<Truth>,
+}
+
+/// What the splat of a scene is held against.
+pub struct Truth {
+    /// The ray tracer's pictures.
+    pub ray_tracer: RayTracer,
+    /// What the light field took to bake, s.
+    pub bake_seconds: f64,
 }
 
 impl Field {
@@ -49,16 +60,22 @@ impl Field {
             measured.records.push(record);
         };
         let copy = measured.copy;
+        for traced in self.truth.iter().flat_map(|truth| &truth.ray_tracer.curve) {
+            keep(self.traced(traced, copy));
+        }
         let start = Instant::now();
         let mut splatter = Splatter::new(self.salf.clone());
-        keep(self.record("hierarchy", copy, start.elapsed().as_secs_f64(), &splatter));
+        let hierarchy_seconds = start.elapsed().as_secs_f64();
+        keep(self.record("hierarchy", copy, hierarchy_seconds, &splatter));
         let mut converged: Option<Picture> = None;
         let mut errors = Vec::new();
         for share in SHARES {
             splatter.set_tolerance(Tolerance { share_of_circle: share });
             let camera = &self.salf.camera;
             let progress = steps.begin("splatting");
+            let start = Instant::now();
             splatter.render(camera, &*self.focus, &*progress)?;
+            let first_seconds = hierarchy_seconds + start.elapsed().as_secs_f64();
             // Another focus distance each time, or what is kept for a lens would be kept.
             let mut nudges = (1..).map(|k| 1.0 + 1e-9 * f64::from(k));
             let drawn = timed(|| {
@@ -78,6 +95,13 @@ impl Field {
                     record.band_psnr = self.band.psnr(&picture.radiance, &converged.radiance);
                     record.band_coverage_rms = self.band.rms(&picture.coverage, &converged.coverage);
                 }
+            }
+            if let Some(Truth { ray_tracer, bake_seconds }) = &self.truth {
+                record.truth = Some(ray_tracer.against(splatter.picture(), &self.band)?);
+                keep(EngineRecord {
+                    what: self.named("bake and first picture"),
+                    ..record.clone().lasting(copy, bake_seconds + first_seconds)
+                });
             }
             keep(record);
         }
@@ -106,6 +130,19 @@ impl Field {
 
     fn check(&self, what: &str, holds: bool) -> Check {
         Check { scene: self.scene.clone(), what: self.named(what), holds }
+    }
+
+    fn traced(&self, traced: &Traced, copy: f64) -> EngineRecord {
+        let record =
+            EngineRecord::of(&self.scene, &self.named("ray tracer"), &self.salf, copy, traced.seconds);
+        EngineRecord {
+            renderer: "truth".into(),
+            coc_px: self.coc_px,
+            samples: 0,
+            spp: Some(traced.spp),
+            psnr: Some(project::psnr(traced.rmse.powi(2))),
+            ..record
+        }
     }
 
     fn record(&self, what: &str, copy: f64, seconds: f64, splatter: &Splatter) -> EngineRecord {

@@ -2,13 +2,15 @@
 //!
 //! Fields of samples that are made up, each a case of its own, and light fields of scenes are splatted at every tolerance;
 //! each picture is compared with the converged one, as a whole and beside outlines, and each time with that of copying
-//! one frame in the same run.
+//! one frame in the same run. Pictures of scenes are compared with the ground truth, too, and with the ray tracer at the same
+//! error.
 
 mod dab;
 mod dense;
 mod field;
 mod frame_copy;
 mod plots;
+mod ray_tracer;
 mod record;
 mod synthetic;
 mod write;
@@ -16,11 +18,13 @@ mod write;
 pub use record::EngineRecord;
 
 use crate::band::{Band, inverse_depths};
+use crate::contender::Shot;
 use crate::machine::Machine;
 use crate::options::{ReportOptions, SceneRequest};
 use crate::subject::Subject;
-use field::Field;
+use field::{Field, Truth};
 use frame_copy::copy_seconds;
+use ray_tracer::RayTracer;
 use session::{RenderOptions, SessionError, Steps, bake};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -71,7 +75,7 @@ pub fn run_engine(
     for request in requests {
         let options = ReportOptions { size: Some([width, height]), ..options.clone() };
         let subject = Subject::open(request, &options, steps)?;
-        measure_scene(&subject, &mut measured, steps, note)?;
+        measure_scene(&subject, options.reference_spp, &mut measured, steps, note)?;
     }
     let Measured { records, checks, .. } = measured;
     let mut report = EngineReport { records, checks, machine: Machine::here(), files: Vec::new() };
@@ -87,9 +91,10 @@ struct Measured {
     checks: Vec<Check>,
 }
 
-/// Bakes a scene's light field and measures it under each focus.
+/// Bakes a scene's light field and measures it and the ray tracer under each focus.
 fn measure_scene(
     subject: &Subject,
+    reference_spp: u32,
     measured: &mut Measured,
     steps: &dyn Steps,
     note: &dyn Fn(&str),
@@ -107,6 +112,8 @@ fn measure_scene(
     let band = Band::of_depths(&depths, &subject.camera);
     let coc_px = circle_of_confusion_px(&depths, &subject.camera);
     for named in &subject.focuses {
+        let shot = Shot { tracer: &subject.tracer, camera: &subject.camera, focus: &named.focus };
+        let ray_tracer = RayTracer::measure(shot, reference_spp, steps)?;
         let field = Field {
             scene: subject.name.clone(),
             what: named.name,
@@ -116,6 +123,7 @@ fn measure_scene(
             coc_px,
             with_dense: false,
             with_dab: true,
+            truth: Some(Truth { ray_tracer, bake_seconds: seconds }),
         };
         field.measure(measured, steps, note)?;
     }

@@ -7,22 +7,23 @@ use crate::plot::{Axis, Chart, Kind, Point, Series, plain, seconds};
 /// Pictures that are at least so close, dB, are the converged one: there is no error to draw.
 const EXACT: f64 = 150.0;
 
-/// Error against tolerance, time against error, and time against circle of confusion.
-pub fn plots(records: &[EngineRecord]) -> [Chart; 3] {
+/// Error against tolerance, time against error, time against circle of confusion; and for each scene and focus, the splat
+/// and the ray tracer against the ground truth.
+pub fn plots(records: &[EngineRecord]) -> Vec<Chart> {
     let tolerance = |record: &EngineRecord| record.tolerance.filter(|&tolerance| tolerance > 0.0);
-    [
+    let mut charts = vec![
         Chart {
             title: "error against tolerance".into(),
             x: Axis { label: "tolerance (log)".into(), kind: Kind::Log, number: plain },
             y: error_axis(),
-            series: sweeps(records, |record| Some((tolerance(record)?, rmse(record)?))),
+            series: sweeps(records, |record| Some((tolerance(record)?, rmse(record.psnr)?))),
             rules: Vec::new(),
         },
         Chart {
             title: "time of a full splat against error".into(),
             x: time_axis(),
             y: error_axis(),
-            series: sweeps(records, |record| Some((record.ms_median / 1e3, rmse(record)?))),
+            series: sweeps(records, |record| Some((record.ms_median / 1e3, rmse(record.psnr)?))),
             rules: Vec::new(),
         },
         Chart {
@@ -32,23 +33,53 @@ pub fn plots(records: &[EngineRecord]) -> [Chart; 3] {
             series: circles(records).into_iter().collect(),
             rules: Vec::new(),
         },
-    ]
+    ];
+    let traced = records.iter().filter(|record| record.renderer == "truth");
+    let mut names: Vec<String> = traced.map(name).collect();
+    names.dedup();
+    charts.extend(names.into_iter().map(|name| against_truth(name, records)));
+    charts
+}
+
+/// A scene and focus: the splat and the ray tracer, time against error.
+fn against_truth(of: String, records: &[EngineRecord]) -> Chart {
+    let line = |what: &str, style, is_dashed| {
+        let own = records.iter().filter(|record| name(record) == of && record.what.starts_with(what));
+        let point = |record: &EngineRecord| {
+            let psnr = record.truth.as_ref().map(|truth| truth.psnr).or(record.psnr);
+            let spp = record.spp.map(|spp| format!("{spp} rays"));
+            let label = spp.or(record.tolerance.map(plain)).unwrap_or_default();
+            Some(Point { x: record.ms_median / 1e3, y: rmse(psnr)?, label })
+        };
+        Series { name: what.replace('_', " "), style, is_dashed, points: own.filter_map(point).collect() }
+    };
+    let series = vec![
+        line("bake and first picture", 0, false),
+        line("full_splat", 0, true),
+        line("ray tracer", 1, false),
+    ];
+    Chart {
+        title: format!("{of}: time against error, the ground truth's"),
+        x: time_axis(),
+        y: error_axis(),
+        series,
+        rules: Vec::new(),
+    }
 }
 
 /// From the PSNR on a range of 1.
-fn rmse(record: &EngineRecord) -> Option<f64> {
-    record.psnr.filter(|&psnr| psnr < EXACT).map(|psnr| 10f64.powf(-psnr / 20.0))
+fn rmse(psnr: Option<f64>) -> Option<f64> {
+    psnr.filter(|&psnr| psnr < EXACT).map(|psnr| 10f64.powf(-psnr / 20.0))
 }
 
 /// A line for each field and focus that was splatted at several tolerances, as `of` places its records.
 fn sweeps(records: &[EngineRecord], of: impl Fn(&EngineRecord) -> Option<(f64, f64)>) -> Vec<Series> {
     let mut lines: Vec<Series> = Vec::new();
-    for record in records.iter().filter(|record| record.renderer == "splat") {
+    let splats =
+        records.iter().filter(|record| record.renderer == "splat" && record.what.starts_with("full_splat"));
+    for record in splats {
         let Some((x, y)) = of(record) else { continue };
-        let name = match record.what.split_once(", ") {
-            Some((_, focus)) => format!("{}, {focus}", record.scene),
-            None => record.scene.clone(),
-        };
+        let name = name(record);
         let label = record.tolerance.map_or(String::new(), plain);
         let point = Point { x, y, label };
         match lines.iter_mut().find(|line| line.name == name) {
@@ -59,6 +90,14 @@ fn sweeps(records: &[EngineRecord], of: impl Fn(&EngineRecord) -> Option<(f64, f
         }
     }
     lines
+}
+
+/// The scene or field, and its focus.
+fn name(record: &EngineRecord) -> String {
+    match record.what.split_once(", ") {
+        Some((_, focus)) => format!("{}, {focus}", record.scene),
+        None => record.scene.clone(),
+    }
 }
 
 /// Planes of growing circles.
@@ -77,6 +116,7 @@ fn circles(records: &[EngineRecord]) -> Option<Series> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::engine::ray_tracer::AgainstTruth;
 
     fn record(what: &str, tolerance: f64, psnr: f64) -> EngineRecord {
         EngineRecord {
@@ -89,11 +129,13 @@ mod tests {
             samples: 64,
             coc_px: 4.0,
             tolerance: Some(tolerance),
+            spp: None,
             ms_median: 2.0,
             frame_copies: 1.0,
             psnr: Some(psnr),
             band_psnr: None,
             band_coverage_rms: None,
+            truth: None,
             bytes: 0,
         }
     }
@@ -107,11 +149,39 @@ mod tests {
             record("full_splat, painted", 0.5, 30.0),
             record("against circle", 0.25, 200.0),
         ];
-        let [errors, _, circles] = plots(&records);
+        let [errors, _, circles] = &plots(&records)[..] else { panic!("no ray tracer, no other plots") };
         let names: Vec<_> =
             errors.series.iter().map(|line| (line.name.as_str(), line.points.len())).collect();
         assert_eq!(names, [("wall, unpainted", 2), ("wall, painted", 1)]);
         assert!((errors.series[0].points[1].y - 0.1).abs() < 1e-12);
         assert_eq!(circles.series[0].points.len(), 1);
+    }
+
+    #[test]
+    fn the_ray_tracer_stands_beside_what_it_is_compared_with() {
+        let truth = |psnr| AgainstTruth {
+            psnr,
+            band_psnr: None,
+            flip: 0.0,
+            ray_tracer_ms: 9.0,
+            ray_tracer_takes_longer: false,
+        };
+        let traced = EngineRecord {
+            renderer: "truth".into(),
+            spp: Some(4),
+            ..record("ray tracer, painted", 0.0, 30.0)
+        };
+        let splat = EngineRecord { truth: Some(truth(20.0)), ..record("full_splat, painted", 0.25, 40.0) };
+        let first = EngineRecord { ms_median: 5.0, ..splat.clone() };
+        let first = EngineRecord { what: "bake and first picture, painted".into(), ..first };
+        let other = EngineRecord { scene: "other".into(), ..splat.clone() };
+        let charts = plots(&[traced, splat, first, other]);
+        let [_, _, _, chart] = &charts[..] else { panic!("{} charts", charts.len()) };
+        let points: Vec<_> =
+            chart.series.iter().flat_map(|line| &line.points).map(|p| (p.x * 1e3, p.y)).collect();
+        for (found, expected) in points.iter().zip([(5.0, 0.1), (2.0, 0.1), (2.0, 10f64.powf(-1.5))]) {
+            assert!((found.0 - expected.0).abs() < 1e-9 && (found.1 - expected.1).abs() < 1e-9, "{points:?}");
+        }
+        assert_eq!(points.len(), 3);
     }
 }

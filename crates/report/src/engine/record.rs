@@ -1,10 +1,11 @@
 //! One measurement of the engine, as written to `report.json`.
 
+use crate::engine::ray_tracer::AgainstTruth;
 use salf::Salf;
 use serde::Serialize;
 
-/// A time with its error. Pictures are compared with the converged splat of the same light field, on linear values clipped
-/// to [0, 1].
+/// A time with its error. Pictures are compared with the converged splat of the same light field, those of the ray tracer
+/// with the ground truth, on linear values clipped to [0, 1].
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct EngineRecord {
     /// The scene, or the made-up field.
@@ -25,16 +26,20 @@ pub struct EngineRecord {
     pub coc_px: f64,
     /// A node may be drawn as one where its side is this share of a 16 px circle of confusion; 0: every sample is drawn.
     pub tolerance: Option<f64>,
+    /// Rays a pixel of the ray tracer.
+    pub spp: Option<u32>,
     /// Median time, ms.
     pub ms_median: f64,
     /// The same in times of copying one frame.
     pub frame_copies: f64,
-    /// Against the converged picture, dB.
+    /// Against the converged picture, or the ray tracer against the ground truth, dB.
     pub psnr: Option<f64>,
     /// The same within 6 px of outlines, dB; none where there are none.
     pub band_psnr: Option<f64>,
     /// Root mean square difference of the coverage within 6 px of outlines.
     pub band_coverage_rms: Option<f64>,
+    /// A splat of a scene against the ground truth.
+    pub truth: Option<AgainstTruth>,
     /// Bytes of the samples, or of the hierarchy over them and the sums.
     pub bytes: u64,
 }
@@ -52,13 +57,25 @@ impl EngineRecord {
             samples: salf.samples.len() as u64,
             coc_px: 0.0,
             tolerance: None,
+            spp: None,
             ms_median: seconds * 1e3,
             frame_copies: seconds / copy,
             psnr: None,
             band_psnr: None,
             band_coverage_rms: None,
+            truth: None,
             bytes: 0,
         }
+    }
+
+    /// The same with another time.
+    pub(super) fn lasting(self, copy: f64, seconds: f64) -> Self {
+        Self { ms_median: seconds * 1e3, frame_copies: seconds / copy, ..self }
+    }
+
+    /// How many times as fast as the ray tracer it comes to its error; at least so many, if that takes longer than known.
+    pub(super) fn times_as_fast(&self) -> Option<f64> {
+        self.truth.as_ref().map(|truth| truth.ray_tracer_ms / self.ms_median)
     }
 
     /// It in a line.
@@ -66,14 +83,23 @@ impl EngineRecord {
         let decibels =
             |name: &str, value: Option<f64>| value.map_or(String::new(), |v| format!(", {name}{v:.1} dB"));
         format!(
-            "{} {}{}: {:.1} ms = {:.1} F{}{}",
+            "{} {}{}{}: {:.1} ms = {:.1} F{}{}{}",
             self.scene,
             self.what,
             self.tolerance.map_or(String::new(), |t| format!(" at {t}")),
+            self.spp.map_or(String::new(), |spp| format!(" of {spp} rays")),
             self.ms_median,
             self.frame_copies,
             decibels("", self.psnr),
             decibels("outlines ", self.band_psnr),
+            self.against_truth(),
         )
+    }
+
+    fn against_truth(&self) -> String {
+        let (Some(truth), Some(times)) = (&self.truth, self.times_as_fast()) else { return String::new() };
+        let least = if truth.ray_tracer_takes_longer { "at least " } else { "" };
+        let AgainstTruth { psnr, flip, .. } = truth;
+        format!("; truth {psnr:.1} dB, FLIP {flip:.4}, {least}{times:.2} times as fast as the ray tracer")
     }
 }

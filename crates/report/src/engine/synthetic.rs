@@ -130,6 +130,7 @@ pub fn fields(size: [u32; 2]) -> impl Iterator<Item = Field> {
         band,
         coc_px,
         with_dab: false,
+        truth: None,
     })
 }
 

@@ -4,6 +4,7 @@ use crate::engine::plots::plots;
 use crate::engine::{Check, EngineRecord, EngineReport};
 use crate::markup::escaped;
 use crate::page;
+use crate::plot::significant;
 use crate::store::{to_json, write_files};
 use crate::table::Table;
 use serde_json::json;
@@ -28,7 +29,9 @@ fn method(copy: f64) -> String {
     format!(
         "F = {:.2} ms: copying one RGB float frame with all threads in the same run. PSNR against the converged splat of \
          the same light field, on linear values clipped to [0, 1]; outlines: within 6 px of depth discontinuities. \
-         Tolerance: the side of a node as a share of a circle of confusion of 16 px.",
+         Tolerance: the side of a node as a share of a circle of confusion of 16 px. Truth: against ray tracing with many \
+         rays, exposure \"conserve\", the own error of which is part of it; the ray tracer itself: how many times as long it \
+         takes to be as close.",
         copy * 1e3
     )
 }
@@ -74,6 +77,10 @@ fn table(report: &EngineReport) -> Table {
         "#PSNR, dB",
         "#Outlines, dB",
         "#Coverage rms",
+        "#Truth, dB",
+        "#Outlines",
+        "#FLIP",
+        "#Ray tracer, ×",
         "#MiB",
     ];
     let mut table = Table::new(&titles);
@@ -84,6 +91,10 @@ fn table(report: &EngineReport) -> Table {
 fn row(record: &EngineRecord) -> Vec<String> {
     let decimals =
         |value: Option<f64>, digits: usize| value.map_or(String::new(), |v| format!("{v:.digits$}"));
+    let truth = record.truth.as_ref();
+    let least = if truth.is_some_and(|truth| truth.ray_tracer_takes_longer) { "> " } else { "" };
+    let times =
+        record.times_as_fast().map_or(String::new(), |times| format!("{least}{}", significant(times)));
     vec![
         record.scene.clone(),
         record.what.clone(),
@@ -91,12 +102,16 @@ fn row(record: &EngineRecord) -> Vec<String> {
         format!("{} × {}", record.size[0], record.size[1]),
         record.samples.to_string(),
         format!("{:.0}", record.coc_px),
-        decimals(record.tolerance, 3),
+        record.spp.map_or(decimals(record.tolerance, 3), |spp| format!("{spp} rays")),
         format!("{:.1}", record.ms_median),
         format!("{:.1}", record.frame_copies),
         decimals(record.psnr, 1),
         decimals(record.band_psnr, 1),
         decimals(record.band_coverage_rms, 4),
+        decimals(truth.map(|truth| truth.psnr), 1),
+        decimals(truth.and_then(|truth| truth.band_psnr), 1),
+        decimals(truth.map(|truth| truth.flip), 4),
+        times,
         format!("{:.1}", record.bytes as f64 / f64::from(1 << 20)),
     ]
 }

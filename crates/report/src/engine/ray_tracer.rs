@@ -1,0 +1,138 @@
+//! When the ray tracer gets as close to the ground truth as the splat.
+
+use crate::band::Band;
+use crate::contender::{Contender, Shot};
+use crate::reference::{ReferenceError, conserved, trace_reference};
+use lens::Picture;
+use project::{LinearPicture, compare};
+use serde::Serialize;
+use session::{SessionError, Steps};
+
+/// Rays a pixel with which it is measured, beside those of the reference.
+const SPPS: [u32; 4] = [1, 4, 16, 64];
+
+/// A picture of the ray tracer: what it took, and how far off it was.
+#[derive(Clone, Copy, Debug)]
+pub struct Traced {
+    /// Rays a pixel.
+    pub spp: u32,
+    /// Time, s.
+    pub seconds: f64,
+    /// Root mean square difference from the reference, of values clipped to [0, 1].
+    pub rmse: f64,
+}
+
+/// The ray tracer on one scene and focus, with the ground truth.
+#[derive(Clone, Debug)]
+pub struct RayTracer {
+    reference: LinearPicture,
+    /// Its pictures, from few rays to many.
+    pub curve: Vec<Traced>,
+}
+
+/// A picture against the ground truth, and the ray tracer at the same error in the same run. The reference's own error is
+/// part of either's.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct AgainstTruth {
+    /// Against the reference, on linear values clipped to [0, 1], exposure "conserve", dB.
+    pub psnr: f64,
+    /// The same within 6 px of outlines.
+    pub band_psnr: Option<f64>,
+    /// Mean FLIP.
+    pub flip: f64,
+    /// When the ray tracer is as far off, ms.
+    pub ray_tracer_ms: f64,
+    /// Whether it would take longer than that: the picture is closer than a second reference would be.
+    pub ray_tracer_takes_longer: bool,
+}
+
+impl RayTracer {
+    /// Traces the reference and the ray tracer's pictures with fewer rays.
+    pub fn measure(shot: Shot<'_>, reference_spp: u32, steps: &dyn Steps) -> Result<Self, SessionError> {
+        let (reference, error) = trace_reference(shot, reference_spp, steps)?;
+        let mut curve = Vec::new();
+        for samples_per_pixel in SPPS.into_iter().filter(|&spp| 2 * spp < error.spp) {
+            let drawn = Contender::Truth { samples_per_pixel }.draw(shot, steps)?;
+            let rmse = compare(&conserved(&drawn.picture), &reference)?.rmse;
+            curve.push(Traced { spp: samples_per_pixel, seconds: drawn.picture_seconds, rmse });
+        }
+        curve.extend(of_reference(&error));
+        Ok(Self { reference, curve })
+    }
+
+    /// Compares a picture of the same scene and focus.
+    pub fn against(&self, picture: &Picture, band: &Band) -> Result<AgainstTruth, SessionError> {
+        let picture = conserved(picture);
+        let found = compare(&picture, &self.reference)?;
+        let at = seconds_at(&self.curve, found.rmse);
+        Ok(AgainstTruth {
+            psnr: found.psnr,
+            band_psnr: band.psnr(&picture.rgb, &self.reference.rgb),
+            flip: found.flip,
+            ray_tracer_ms: at.seconds * 1e3,
+            ray_tracer_takes_longer: at.takes_longer,
+        })
+    }
+}
+
+/// What the reference tells of the ray tracer. If r is its error, a half of it errs by √2 r, and would be √(2 + 1) r from
+/// another reference, as a picture like itself would be √(1 + 1) r.
+fn of_reference(reference: &ReferenceError) -> [Traced; 2] {
+    let of = |spp, share: f64, squares: f64| Traced {
+        spp,
+        seconds: reference.seconds * share,
+        rmse: reference.rmse * squares.sqrt(),
+    };
+    [of(reference.spp / 2, 0.5, 3.0), of(reference.spp, 1.0, 2.0)]
+}
+
+/// When an error is reached.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Reached {
+    seconds: f64,
+    /// Later than all of the curve.
+    takes_longer: bool,
+}
+
+/// When a curve, from few rays to many, has come down to `rmse`: between its points by the power law through them; never
+/// before its first.
+fn seconds_at(curve: &[Traced], rmse: f64) -> Reached {
+    let after = curve.iter().position(|traced| traced.rmse <= rmse);
+    let reached = |seconds| Reached { seconds, takes_longer: false };
+    match after {
+        None => Reached { seconds: curve.last().map_or(f64::NAN, |last| last.seconds), takes_longer: true },
+        Some(0) => reached(curve[0].seconds),
+        Some(after) => {
+            let [a, b] = [curve[after - 1], curve[after]];
+            let share = (rmse / a.rmse).ln() / (b.rmse / a.rmse).ln();
+            reached(a.seconds * (b.seconds / a.seconds).powf(share))
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn between_two_pictures_the_error_falls_by_a_power_law() {
+        // Independent rays: half the error takes four times as long.
+        let curve =
+            [1u32, 16, 256].map(|spp| Traced { spp, seconds: spp.into(), rmse: f64::from(spp).powf(-0.5) });
+        let at = |rmse| seconds_at(&curve, rmse);
+        assert!((at(0.5).seconds - 4.0).abs() < 1e-9 && (at(0.125).seconds - 64.0).abs() < 1e-9);
+        assert_eq!(at(2.0), Reached { seconds: 1.0, takes_longer: false });
+        assert_eq!(at(1.0 / 16.0), Reached { seconds: 256.0, takes_longer: false });
+        assert_eq!(at(0.01), Reached { seconds: 256.0, takes_longer: true });
+        assert!(seconds_at(&[], 0.1).seconds.is_nan());
+    }
+
+    #[test]
+    fn the_reference_counts_as_a_picture_seen_from_another_reference() {
+        let error = ReferenceError { spp: 64, seconds: 8.0, rmse: 0.01, psnr: 40.0 };
+        let [half, whole] = of_reference(&error);
+        assert_eq!((half.spp, half.seconds, whole.spp, whole.seconds), (32, 4.0, 64, 8.0));
+        // Its error and the other reference's, squared and added.
+        assert!((half.rmse.powi(2) - 3e-4).abs() < 1e-12 && (whole.rmse.powi(2) - 2e-4).abs() < 1e-12);
+    }
+}
