@@ -9,10 +9,15 @@ use std::sync::Arc;
 /// Samples of a dab.
 const SAMPLES: usize = 5000;
 
+/// The circle of confusion that it gives them, px: in a large scene any t that is written in a few digits would blur them
+/// beyond the picture.
+const CIRCLE_PX: f64 = 48.0;
+
 /// A focus with a dab on it: the samples at some points are blurred.
 pub struct Dabbed {
     focus: Arc<dyn SurfaceField<FocusOffset> + Send>,
     points: HashSet<[u64; 3]>,
+    offset: FocusOffset,
     /// The samples that it covers.
     pub samples: Vec<u32>,
 }
@@ -27,7 +32,11 @@ impl Dabbed {
         nearest.sort_by(|(_, a), (_, b)| distance(a).total_cmp(&distance(b)));
         nearest.truncate(SAMPLES);
         let points = nearest.iter().filter_map(|(_, spot)| spot.surface.map(key)).collect();
-        Self { focus, points, samples: nearest.into_iter().map(|(index, _)| index).collect() }
+        let optics = salf.camera.optics();
+        // With an anchor of 1 the blur is the same at any depth; without an aperture there is none.
+        let kappa = optics.kappa_for_circle_px(CIRCLE_PX).unwrap_or(0.0);
+        let offset = FocusOffset::new(1.0 + kappa * optics.image_distance, 1.0);
+        Self { focus, points, offset, samples: nearest.into_iter().map(|(index, _)| index).collect() }
     }
 }
 
@@ -37,7 +46,7 @@ fn key(point: SurfacePoint) -> [u64; 3] {
 
 impl SurfaceField<FocusOffset> for Dabbed {
     fn at(&self, point: SurfacePoint) -> FocusOffset {
-        if self.points.contains(&key(point)) { FocusOffset::new(1.03, 1.0) } else { self.focus.at(point) }
+        if self.points.contains(&key(point)) { self.offset } else { self.focus.at(point) }
     }
     fn at_infinity(&self) -> FocusOffset {
         self.focus.at_infinity()
