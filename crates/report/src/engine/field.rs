@@ -5,6 +5,7 @@ use crate::engine::dab::Dabbed;
 use crate::engine::dense::dense_seconds;
 use crate::engine::ray_tracer::{RayTracer, Traced};
 use crate::engine::{Check, EngineRecord, Measured};
+use crate::findings::CurvePoint;
 use crate::stopwatch::{median, timed};
 use lens::{Camera, FocusOffset, Picture};
 use salf::Salf;
@@ -133,14 +134,14 @@ impl Field {
     }
 
     fn traced(&self, traced: &Traced, copy: f64) -> EngineRecord {
-        let record =
-            EngineRecord::of(&self.scene, &self.named("ray tracer"), &self.salf, copy, traced.seconds);
+        let CurvePoint { seconds, rmse } = traced.point;
+        let record = EngineRecord::of(&self.scene, &self.named("ray tracer"), &self.salf, copy, seconds);
         EngineRecord {
             renderer: "truth".into(),
             coc_px: self.coc_px,
             samples: 0,
             spp: Some(traced.spp),
-            psnr: Some(project::psnr(traced.rmse.powi(2))),
+            psnr: Some(project::psnr(rmse.powi(2))),
             ..record
         }
     }

@@ -2,6 +2,7 @@
 
 use crate::band::Band;
 use crate::contender::{Contender, Shot};
+use crate::findings::{CurvePoint, seconds_at};
 use crate::reference::{ReferenceError, conserved, trace_reference};
 use lens::Picture;
 use project::{LinearPicture, compare};
@@ -16,10 +17,8 @@ const SPPS: [u32; 4] = [1, 4, 16, 64];
 pub struct Traced {
     /// Rays a pixel.
     pub spp: u32,
-    /// Time, s.
-    pub seconds: f64,
-    /// Root mean square difference from the reference, of values clipped to [0, 1].
-    pub rmse: f64,
+    /// Time, and the difference from the reference, of values clipped to [0, 1].
+    pub point: CurvePoint,
 }
 
 /// The ray tracer on one scene and focus, with the ground truth.
@@ -54,7 +53,8 @@ impl RayTracer {
         for samples_per_pixel in SPPS.into_iter().filter(|&spp| 2 * spp < error.spp) {
             let drawn = Contender::Truth { samples_per_pixel }.draw(shot, steps)?;
             let rmse = compare(&conserved(&drawn.picture), &reference)?.rmse;
-            curve.push(Traced { spp: samples_per_pixel, seconds: drawn.picture_seconds, rmse });
+            let point = CurvePoint { seconds: drawn.picture_seconds, rmse };
+            curve.push(Traced { spp: samples_per_pixel, point });
         }
         curve.extend(of_reference(&error));
         Ok(Self { reference, curve })
@@ -64,7 +64,7 @@ impl RayTracer {
     pub fn against(&self, picture: &Picture, band: &Band) -> Result<AgainstTruth, SessionError> {
         let picture = conserved(picture);
         let found = compare(&picture, &self.reference)?;
-        let at = seconds_at(&self.curve, found.rmse);
+        let at = reached(&self.curve, found.rmse);
         Ok(AgainstTruth {
             psnr: found.psnr,
             band_psnr: band.psnr(&picture.rgb, &self.reference.rgb),
@@ -78,10 +78,9 @@ impl RayTracer {
 /// What the reference tells of the ray tracer. If r is its error, a half of it errs by √2 r, and would be √(2 + 1) r from
 /// another reference, as a picture like itself would be √(1 + 1) r.
 fn of_reference(reference: &ReferenceError) -> [Traced; 2] {
-    let of = |spp, share: f64, squares: f64| Traced {
-        spp,
-        seconds: reference.seconds * share,
-        rmse: reference.rmse * squares.sqrt(),
+    let of = |spp, share: f64, squares: f64| {
+        let seconds = reference.seconds * share;
+        Traced { spp, point: CurvePoint { seconds, rmse: reference.rmse * squares.sqrt() } }
     };
     [of(reference.spp / 2, 0.5, 3.0), of(reference.spp, 1.0, 2.0)]
 }
@@ -94,19 +93,17 @@ struct Reached {
     takes_longer: bool,
 }
 
-/// When a curve, from few rays to many, has come down to `rmse`: between its points by the power law through them; never
-/// before its first.
-fn seconds_at(curve: &[Traced], rmse: f64) -> Reached {
-    let after = curve.iter().position(|traced| traced.rmse <= rmse);
-    let reached = |seconds| Reached { seconds, takes_longer: false };
-    match after {
-        None => Reached { seconds: curve.last().map_or(f64::NAN, |last| last.seconds), takes_longer: true },
-        Some(0) => reached(curve[0].seconds),
-        Some(after) => {
-            let [a, b] = [curve[after - 1], curve[after]];
-            let share = (rmse / a.rmse).ln() / (b.rmse / a.rmse).ln();
-            reached(a.seconds * (b.seconds / a.seconds).powf(share))
+/// When a curve, from few rays to many, has come down to `rmse`: never before its first picture, and no further than it was
+/// traced.
+fn reached(curve: &[Traced], rmse: f64) -> Reached {
+    let points: Vec<_> = curve.iter().map(|traced| traced.point).collect();
+    let of = |point: Option<&CurvePoint>| point.map_or(f64::NAN, |point| point.seconds);
+    match seconds_at(&points, rmse) {
+        Some((seconds, false)) => Reached { seconds, takes_longer: false },
+        _ if points.first().is_some_and(|first| rmse > first.rmse) => {
+            Reached { seconds: of(points.first()), takes_longer: false }
         }
+        _ => Reached { seconds: of(points.last()), takes_longer: true },
     }
 }
 
@@ -117,22 +114,26 @@ mod tests {
     #[test]
     fn between_two_pictures_the_error_falls_by_a_power_law() {
         // Independent rays: half the error takes four times as long.
-        let curve =
-            [1u32, 16, 256].map(|spp| Traced { spp, seconds: spp.into(), rmse: f64::from(spp).powf(-0.5) });
-        let at = |rmse| seconds_at(&curve, rmse);
+        let curve = [1u32, 16, 256].map(|spp| Traced {
+            spp,
+            point: CurvePoint { seconds: spp.into(), rmse: f64::from(spp).powf(-0.5) },
+        });
+        let at = |rmse| reached(&curve, rmse);
         assert!((at(0.5).seconds - 4.0).abs() < 1e-9 && (at(0.125).seconds - 64.0).abs() < 1e-9);
         assert_eq!(at(2.0), Reached { seconds: 1.0, takes_longer: false });
         assert_eq!(at(1.0 / 16.0), Reached { seconds: 256.0, takes_longer: false });
         assert_eq!(at(0.01), Reached { seconds: 256.0, takes_longer: true });
-        assert!(seconds_at(&[], 0.1).seconds.is_nan());
+        assert_eq!(at(0.0), Reached { seconds: 256.0, takes_longer: true });
+        assert!(reached(&[], 0.1).seconds.is_nan());
     }
 
     #[test]
     fn the_reference_counts_as_a_picture_seen_from_another_reference() {
         let error = ReferenceError { spp: 64, seconds: 8.0, rmse: 0.01, psnr: 40.0 };
         let [half, whole] = of_reference(&error);
-        assert_eq!((half.spp, half.seconds, whole.spp, whole.seconds), (32, 4.0, 64, 8.0));
+        assert_eq!((half.spp, half.point.seconds, whole.spp, whole.point.seconds), (32, 4.0, 64, 8.0));
         // Its error and the other reference's, squared and added.
-        assert!((half.rmse.powi(2) - 3e-4).abs() < 1e-12 && (whole.rmse.powi(2) - 2e-4).abs() < 1e-12);
+        let squares = [half, whole].map(|traced| traced.point.rmse.powi(2));
+        assert!((squares[0] - 3e-4).abs() < 1e-12 && (squares[1] - 2e-4).abs() < 1e-12);
     }
 }

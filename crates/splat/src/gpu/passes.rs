@@ -7,7 +7,7 @@ use wgpu::{BindGroupLayout, BufferBindingType, ComputePipeline, Device, ShaderMo
 pub const KINDS: usize = 4;
 
 const FIXED: &str = include_str!("fixed.wgsl");
-const DRAW: &str = include_str!("draw.wgsl");
+const DRAW: &str = concat!(include_str!("draw.wgsl"), "\n", include_str!("seen_runs.wgsl"));
 const RESOLVE: &str = include_str!("resolve.wgsl");
 
 /// All passes.
