@@ -26,7 +26,8 @@ pub const LEVELS: usize = BLOCK_PX.ilog2() as usize + 1;
 pub struct Tree {
     /// The blocks of the picture and its margin, row by row from the upper left one.
     pub blocks: Vec<Block>,
-    /// All nodes: block by block, each node before those below it.
+    /// All nodes: block by block, those that stand on their own first, then all that are one below these, and so on. What
+    /// is drawn of a block, which is not far below the former, so lies together.
     pub nodes: Vec<Node>,
     /// Visibility of the nodes (see [`Node::visibility`]).
     pub words: Vec<u64>,
@@ -39,6 +40,8 @@ pub struct Tree {
 pub struct Block {
     /// Its nodes.
     pub nodes: Range<u32>,
+    /// Those of them that no other stands for: the first ones.
+    pub roots: Range<u32>,
 }
 
 /// One sample, or several as one.
@@ -62,8 +65,8 @@ pub struct Node {
     pub level: u8,
     /// What it sees of the aperture.
     pub visibility: NodeVisibility,
-    /// The index behind the last node below it.
-    pub end: u32,
+    /// The nodes that it stands for; none if it is a sample.
+    pub children: Range<u32>,
     /// The sample, if it is one.
     pub sample: Option<u32>,
 }

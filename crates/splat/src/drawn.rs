@@ -22,51 +22,66 @@ pub struct Scene<'a> {
 }
 
 impl Scene<'_> {
-    /// Calls `visit` with each node of a block that is drawn, painted as `paint` says, and the rows that its light may reach.
+    /// Calls `visit` with each node of a block that is drawn, painted as `paint` says, and the rows that its light may reach: in
+    /// the order of the nodes.
     #[inline(always)]
     pub fn drawn(
         &self,
         block: usize,
         paint: Option<&[NodeFocus]>,
+        Spans(spans): &mut Spans,
         mut visit: impl FnMut(u32, &SplatNode, Placed, Range<u32>),
     ) {
-        let first = self.pen.nodes.blocks[block].start;
-        let nodes = self.pen.nodes.of_block(block);
-        let mut at = 0;
-        while at < nodes.len() {
-            let node = &nodes[at];
-            ask_for(nodes.get(at + AHEAD));
-            let focus = paint.map_or(NodeFocus::STANDARD, |paint| paint[at]);
-            let placed = self.lens.place(node, &focus);
-            if node.is_leaf || self.lens.may_merge(node, &focus, placed) {
-                // One by one, and so wherever nodes are many: what maps an array is not always inlined.
-                let columns = node.reach(0, placed, self.size[0]);
-                let rows = node.reach(1, placed, self.size[1]);
-                if !columns.is_empty() && !rows.is_empty() {
-                    visit(first + at as u32, node, placed, rows);
+        let Nodes { nodes, blocks, roots, .. } = self.pen.nodes;
+        let first = blocks[block].start;
+        spans.clear();
+        spans.push(roots[block].clone());
+        let mut next = 0;
+        while let Some(span) = spans.get(next).cloned() {
+            next += 1;
+            for index in span {
+                let node = &nodes[index as usize];
+                ask_for(nodes.get(index as usize + AHEAD));
+                let focus = paint.map_or(NodeFocus::STANDARD, |paint| paint[(index - first) as usize]);
+                let placed = self.lens.place(node, &focus);
+                if node.is_leaf() || self.lens.may_merge(node, &focus, placed) {
+                    // One by one, and so wherever nodes are many: what maps an array is not always inlined.
+                    let columns = node.reach(0, placed, self.size[0]);
+                    let rows = node.reach(1, placed, self.size[1]);
+                    if !columns.is_empty() && !rows.is_empty() {
+                        visit(index, node, placed, rows);
+                    }
+                    continue;
                 }
-                at = (node.end - first) as usize;
-            } else {
-                at += 1;
+                let children = node.children();
+                match spans[next..].last_mut() {
+                    Some(last) if last.end == children.start => last.end = children.end,
+                    _ => {
+                        ask_for(nodes.get(children.start as usize));
+                        spans.push(children);
+                    }
+                }
             }
         }
     }
 
     /// Makes `list` what is drawn of a block, painted as `paint` says.
-    pub fn list(&self, block: usize, paint: Option<&[NodeFocus]>, list: &mut BlockList) {
-        let drawn = &mut list.drawn;
-        // Those of before are probably the same. Where they are few, and far from each other, each would be waited for.
-        if 2 * drawn.len() < self.pen.nodes.blocks[block].len() {
-            drawn.iter().for_each(|before| ask_for(self.pen.nodes.nodes.get(before.index as usize)));
-        }
+    pub fn list(
+        &self,
+        block: usize,
+        paint: Option<&[NodeFocus]>,
+        spans: &mut Spans,
+        BlockList { drawn, rows: all_rows, cost }: &mut BlockList,
+    ) {
         drawn.clear();
-        (list.rows, list.cost) = with_widest_instructions(
+        (*all_rows, *cost) = with_widest_instructions(
             #[inline(always)]
             || {
                 let (mut first, mut end, mut cost) = (u32::MAX, 0, 0);
                 self.drawn(
                     block,
                     paint,
+                    spans,
                     #[inline(always)]
                     |index, node, placed, rows| {
                         (first, end) = (first.min(rows.start), end.max(rows.end));
@@ -78,52 +93,11 @@ impl Scene<'_> {
             },
         );
     }
-
-    /// What is no longer drawn of some blocks, and what is now, since the paint of each was the one beside it.
-    pub fn all_changes<'p>(
-        &self,
-        blocks: impl ParallelIterator<Item = (usize, Option<&'p [NodeFocus]>)>,
-    ) -> Changes {
-        let of_blocks: Vec<_> = blocks.map(|(block, before)| self.changes(block, before)).collect();
-        let mut changes = Changes::default();
-        for more in of_blocks {
-            changes.removed.extend(more.removed);
-            changes.added.extend(more.added);
-        }
-        changes
-    }
-
-    /// Those of one block.
-    fn changes(&self, block: usize, before: Option<&[NodeFocus]>) -> Changes {
-        let mut changes = Changes::default();
-        let now = self.paint.of_block(block);
-        if before == now {
-            return changes;
-        }
-        let mut lists = [BlockList::default(), BlockList::default()];
-        lists.iter_mut().zip([before, now]).for_each(|(list, paint)| self.list(block, paint, list));
-        let [mut old, mut new] = lists.map(|list| list.drawn.into_iter().peekable());
-        loop {
-            let order = match (old.peek(), new.peek()) {
-                (Some(a), Some(b)) => a.index.cmp(&b.index),
-                (Some(_), None) => Ordering::Less,
-                (None, Some(_)) => Ordering::Greater,
-                (None, None) => return changes,
-            };
-            match order {
-                Ordering::Less => changes.removed.extend(old.next()),
-                Ordering::Greater => changes.added.extend(new.next()),
-                Ordering::Equal => {
-                    let (was, is) = (old.next(), new.next());
-                    if was != is {
-                        changes.removed.extend(was);
-                        changes.added.extend(is);
-                    }
-                }
-            }
-        }
-    }
 }
+
+/// Nodes of a block that are yet to be looked at; room to work in.
+#[derive(Default)]
+pub struct Spans(Vec<Range<u32>>);
 
 /// A node that is drawn.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -143,7 +117,7 @@ impl Drawn {
 }
 
 /// What is drawn of a block.
-#[derive(Default)]
+#[derive(Clone, Debug, Default)]
 pub struct BlockList {
     /// In the order of the nodes.
     pub drawn: Vec<Drawn>,
@@ -153,24 +127,116 @@ pub struct BlockList {
     pub cost: u64,
 }
 
-/// The pixel rows that the light of any of them may reach.
-pub fn rows_of<'a>(drawn: impl IntoIterator<Item = &'a Drawn>) -> Range<u32> {
-    hull(drawn.into_iter().map(Drawn::rows))
+impl BlockList {
+    /// About what it costs to draw a part of it.
+    fn cost_of(&self, part: &[Drawn]) -> u64 {
+        self.cost * part.len() as u64 / self.drawn.len().max(1) as u64
+    }
+
+    /// Bytes in memory.
+    pub fn bytes(&self) -> usize {
+        self.drawn.capacity() * size_of::<Drawn>()
+    }
 }
 
-/// What is no longer drawn, and what is now.
-#[derive(Clone, Debug, Default)]
-pub struct Changes {
-    pub removed: Vec<Drawn>,
-    pub added: Vec<Drawn>,
+/// What was drawn of a block.
+pub enum Before<'a> {
+    Drawn(&'a BlockList),
+    /// What is with this paint.
+    PaintedAs(Option<&'a [NodeFocus]>),
 }
+
+/// What is no longer drawn, and what is now, block by block; room for others once they are made.
+#[derive(Clone, Debug, Default)]
+pub struct Changes(pub Vec<BlockChanges>);
 
 impl Changes {
+    /// Makes them those of some blocks.
+    pub fn find(&mut self, scene: &Scene, blocks: &[(usize, Before)]) {
+        self.0.resize_with(blocks.len(), BlockChanges::default);
+        let room = <(Spans, [BlockList; 2])>::default;
+        self.0.par_iter_mut().zip(blocks).for_each_init(
+            room,
+            |(spans, [old, new]), (changes, (block, before))| {
+                scene.list(*block, scene.paint.of_block(*block), spans, new);
+                match before {
+                    Before::Drawn(list) => changes.find(list, new),
+                    Before::PaintedAs(paint) => {
+                        scene.list(*block, *paint, spans, old);
+                        changes.find(old, new);
+                    }
+                }
+            },
+        );
+    }
+
+    /// The rows that they change.
+    pub fn rows(&self) -> Range<u32> {
+        hull(self.0.iter().filter(|block| !block.is_empty()).map(|block| block.rows.clone()))
+    }
+
     /// The rows, and the columns of a picture `width` px wide, that they change.
     pub fn window(&self, nodes: &Nodes, width: u32) -> [Range<u32>; 2] {
-        let all = || self.removed.iter().chain(&self.added);
+        let all = || self.0.iter().flat_map(|block| block.removed.iter().chain(&block.added));
         let columns = |drawn: &Drawn| nodes.nodes[drawn.index as usize].reach(0, drawn.placed, width);
-        [rows_of(all()), hull(all().map(columns).filter(|columns| !columns.is_empty()))]
+        [self.rows(), hull(all().map(columns).filter(|columns| !columns.is_empty()))]
+    }
+
+    /// Bytes in memory.
+    pub fn bytes(&self) -> usize {
+        let drawn: usize = self.0.iter().map(|block| block.removed.capacity() + block.added.capacity()).sum();
+        drawn * size_of::<Drawn>()
+    }
+}
+
+/// What is no longer drawn of a block, and what is now: each in the order of the nodes.
+#[derive(Clone, Debug, Default)]
+pub struct BlockChanges {
+    pub removed: Vec<Drawn>,
+    pub added: Vec<Drawn>,
+    /// The pixel rows that their light may reach.
+    pub rows: Range<u32>,
+    /// About what it costs to draw them, in nanoseconds.
+    pub cost: u64,
+}
+
+impl BlockChanges {
+    /// Makes them what is in one list alone.
+    fn find(&mut self, old: &BlockList, new: &BlockList) {
+        let Self { removed, added, .. } = self;
+        removed.clear();
+        added.clear();
+        let (mut was, mut is) = (old.drawn.as_slice(), new.drawn.as_slice());
+        loop {
+            let order = match (was.first(), is.first()) {
+                (Some(a), Some(b)) if a == b => {
+                    (was, is) = (&was[1..], &is[1..]);
+                    continue;
+                }
+                (Some(a), Some(b)) => a.index.cmp(&b.index),
+                (Some(_), None) => Ordering::Less,
+                (None, Some(_)) => Ordering::Greater,
+                (None, None) => break,
+            };
+            if order.is_le() {
+                removed.extend(was.split_off_first());
+            }
+            if order.is_ge() {
+                added.extend(is.split_off_first());
+            }
+        }
+        self.rows = hull(removed.iter().chain(&*added).map(Drawn::rows));
+        self.cost = old.cost_of(removed) + new.cost_of(added);
+    }
+
+    /// The first node that changes.
+    pub fn first(&self) -> Option<u32> {
+        self.removed.first().or(self.added.first()).map(|drawn| drawn.index)
+    }
+
+    /// Whether nothing does.
+    pub fn is_empty(&self) -> bool {
+        self.first().is_none()
     }
 }
 

@@ -66,10 +66,10 @@ pub struct SplatNode {
     pub base: i16,
     /// See `base`.
     pub tilt: [i16; 2],
-    /// The index behind the last node below it.
-    pub end: u32,
-    /// Whether it is a sample.
-    pub is_leaf: bool,
+    /// The first of the nodes that it stands for.
+    first_child: u32,
+    /// How many these are; none if it is a sample.
+    child_count: u8,
 }
 
 /// What a node sees of the aperture: rows of 16 cells, row 0 at v = −1, column 0 (u = −1) the lowest bit.
@@ -83,6 +83,18 @@ impl SplatNode {
     #[inline(always)]
     pub fn is_open(&self) -> bool {
         self.cells == OPEN
+    }
+
+    /// Whether it is a sample.
+    #[inline(always)]
+    pub fn is_leaf(&self) -> bool {
+        self.child_count == 0
+    }
+
+    /// The nodes that it stands for, which come after it.
+    #[inline(always)]
+    pub fn children(&self) -> Range<u32> {
+        self.first_child..self.first_child + u32::from(self.child_count)
     }
 
     /// The columns (`axis` 0) or rows (1) of a picture of `side` of them that its light may reach.
@@ -115,6 +127,8 @@ impl SplatNode {
 pub struct Nodes {
     /// Nodes of each block.
     pub blocks: Vec<Range<u32>>,
+    /// Those of them that no other stands for.
+    pub roots: Vec<Range<u32>>,
     pub nodes: Vec<SplatNode>,
     cells: Vec<Cells>,
     /// The sample of each node that is one.
@@ -153,6 +167,7 @@ impl Nodes {
         let leaves = tree.nodes.par_iter().filter(|node| node.sample.is_some());
         let brightest = leaves.map(|node| node.radiance.max_element()).reduce(|| 1.0, f32::max);
         Some(Self {
+            roots: tree.blocks.iter().map(|block| block.roots.clone()).collect(),
             blocks: tree.blocks.into_iter().map(|block| block.nodes).collect(),
             has_bright: nodes.iter().any(|node| node.is_bright),
             nodes,
@@ -264,8 +279,8 @@ fn convert(node: &Node, scale: Scale) -> Option<SplatNode> {
         light: [r, g, b, 1.0].map(|value| value * quanta).map(|value| if value > 0.0 { value } else { 0.0 }),
         base: if is_edge_on { share(node.weight) } else { ONE as i16 },
         tilt: [share(node.tilt.x), share(node.tilt.y)],
-        end: node.end,
-        is_leaf: node.sample.is_some(),
+        first_child: node.children.start,
+        child_count: node.children.len() as u8,
     })
 }
 
@@ -286,7 +301,7 @@ mod tests {
             radiance: Vec3::NAN,
             level: 1,
             visibility: NodeVisibility::Open,
-            end: 1,
+            children: 0..0,
             sample: None,
         };
         let converted = convert(&node, Scale::FINEST).expect("it is not bright");

@@ -21,7 +21,7 @@ impl Paint {
             let of_nodes = nodes.of_block(block);
             let mut addresses = samples.addresses();
             let mut painted: Option<Box<[NodeFocus]>> = None;
-            for index in (0..of_nodes.len()).filter(|&index| of_nodes[index].is_leaf) {
+            for index in (0..of_nodes.len()).filter(|&index| of_nodes[index].is_leaf()) {
                 let found = offset(addresses.of(nodes.sample_of_node[first + index]), focus);
                 if found != NodeFocus::STANDARD {
                     painted.get_or_insert_with(|| vec![NodeFocus::STANDARD; of_nodes.len()].into())[index] =
@@ -102,23 +102,13 @@ fn offset(surface: Option<SurfacePoint>, focus: &dyn SurfaceField<FocusOffset>) 
 fn take_up(nodes: &Nodes, block: usize, painted: &mut [NodeFocus], index: usize) {
     let of_nodes = nodes.of_block(block);
     let node = &of_nodes[index];
-    if node.is_leaf {
+    if node.is_leaf() {
         return;
     }
     let first = nodes.blocks[block].start;
-    let end = (node.end - first) as usize;
-    let children = || {
-        let mut next = index + 1;
-        std::iter::from_fn(move || {
-            let child = next;
-            (child < end).then(|| {
-                next = (of_nodes[child].end - first) as usize;
-                child
-            })
-        })
-    };
+    let children = || node.children().map(|child| (child - first) as usize);
     let standard = children().filter(|&child| painted[child] == NodeFocus::STANDARD).count();
-    if standard == children().count() {
+    if standard == children().len() {
         painted[index] = NodeFocus::STANDARD;
         return;
     }

@@ -4,7 +4,7 @@ mod on_card;
 
 use crate::balance::Balance;
 use crate::draw::Pen;
-use crate::drawn::{BlockList, Changes, Drawn, Scene};
+use crate::drawn::{Before, BlockList, Changes, Scene};
 use crate::lens_in_use::{LensInUse, Tolerance};
 use crate::nodes::{Nodes, Scale};
 use crate::paint::Paint;
@@ -60,8 +60,10 @@ pub struct Splatter {
     sums: Sums,
     /// Of [`RESOLVE_ROWS`] rows each.
     marks: Vec<SumMarks>,
-    /// Room for what is drawn.
+    /// What was drawn when all was summed last; room for what is.
     lists: Vec<BlockList>,
+    /// Room for what changes.
+    changes: Changes,
     /// What each pixel's sums are multiplied by.
     shares: Vec<Share>,
     /// What gives back the light that shares take.
@@ -142,6 +144,7 @@ impl Splatter {
             marks: chunks.map(|rows| sums.marks(rows)).collect(),
             sums,
             lists: Vec::new(),
+            changes: Changes::default(),
             shares: vec![Share::NONE; width * height],
             balance: Balance::none([width, height]),
             shares_of: None,
@@ -203,11 +206,11 @@ impl Splatter {
     /// are not.
     pub fn bytes(&self) -> [usize; 2] {
         let [nodes, sums] = self.card.bytes();
-        let lists: usize = self.lists.iter().map(|list| list.drawn.capacity() * size_of::<Drawn>()).sum();
+        let lists: usize = self.lists.iter().map(BlockList::bytes).sum();
         let marks: usize = self.marks.iter().map(SumMarks::bytes).sum();
         [
             nodes + self.nodes.as_ref().map_or(0, |nodes| nodes.bytes()),
-            sums + self.sums.bytes() + self.balance.bytes() + lists + marks,
+            sums + self.sums.bytes() + self.balance.bytes() + lists + self.changes.bytes() + marks,
         ]
     }
 
@@ -326,15 +329,16 @@ impl Splatter {
         leaves.par_sort_unstable();
         let before = self.paint.update(nodes, &leaves, &self.salf.samples, focus);
         let scene = self.aperture.scene(nodes, &self.lens, &self.paint, &self.salf.camera);
-        let changes = scene.all_changes(before.par_iter().map(|(block, paint)| (*block, paint.as_deref())));
-        let mut window = changes.window(nodes, self.salf.camera.width);
+        let before = before.iter().map(|(block, paint)| (*block, Before::PaintedAs(paint.as_deref())));
+        self.changes.find(&scene, &before.collect::<Vec<_>>());
+        let mut window = self.changes.window(nodes, self.salf.camera.width);
         if nodes.scale != Scale::FINEST {
             return self.sum_again();
         }
         if !self.is_live {
             window = self.frame();
         }
-        match self.change(&changes, window.clone()) {
+        match self.change(window.clone()) {
             Ok(()) => Ok(window),
             Err(SplatError::Overflow) => self.sum_again(),
             Err(_) if self.drop_lost_card() => self.sum_again(),
@@ -342,14 +346,14 @@ impl Splatter {
         }
     }
 
-    /// Changes the sums, and makes some rows and columns of the picture.
-    fn change(&mut self, changes: &Changes, window: [Range<u32>; 2]) -> Result<(), SplatError> {
-        if let Some(changed) = self.change_on_card(changes) {
+    /// Makes the changes that were found to the sums, and some rows and columns of the picture.
+    fn change(&mut self, window: [Range<u32>; 2]) -> Result<(), SplatError> {
+        if let Some(changed) = self.change_on_card() {
             changed?;
         } else {
             let nodes = self.nodes.as_ref().ok_or(SplatError::Overflow)?;
             let pen = self.aperture.pen(nodes, &self.lens);
-            self.sums.change(&pen, &changes.removed, &changes.added);
+            self.sums.change(&pen, &self.changes);
         }
         self.resolve(window, Wanted::Picture)
     }
@@ -358,14 +362,20 @@ impl Splatter {
     fn paint_over(&mut self) -> Result<bool, SplatError> {
         let nodes = self.nodes.as_ref().ok_or(SplatError::Overflow)?;
         let painted = |block: &usize| self.paint.of_block(*block).is_some();
-        let blocks = (0..nodes.blocks.len()).into_par_iter().filter(painted);
-        let count: usize = blocks.clone().map(|block| nodes.blocks[block].len()).sum();
+        let blocks: Vec<_> = (0..nodes.blocks.len()).filter(painted).collect();
+        let count: usize = blocks.iter().map(|&block| nodes.blocks[block].len()).sum();
         if nodes.scale != Scale::FINEST || 2 * count > nodes.nodes.len() {
             return Ok(false);
         }
         let scene = self.aperture.scene(nodes, &self.lens, &self.paint, &self.salf.camera);
-        let changes = scene.all_changes(blocks.map(|block| (block, None)));
-        match self.change(&changes, self.frame()) {
+        // The card keeps no list of what it drew.
+        let standard = |block: usize| match self.card.is_used() {
+            true => Before::PaintedAs(None),
+            false => Before::Drawn(&self.lists[block]),
+        };
+        let blocks: Vec<_> = blocks.into_iter().map(|block| (block, standard(block))).collect();
+        self.changes.find(&scene, &blocks);
+        match self.change(self.frame()) {
             Err(SplatError::Overflow) => Ok(false),
             other => other.map(|()| true),
         }

@@ -3,7 +3,7 @@
 use crate::bands::Work;
 use crate::canvas::{Accumulator, Word};
 use crate::draw::{Paper, Pen};
-use crate::drawn::{AHEAD, BlockList, Drawn, Scene, rows_of};
+use crate::drawn::{AHEAD, BlockList, Changes, Drawn, Scene, Spans};
 use crate::lens_in_use::Placed;
 use crate::marks::Marks;
 use crate::nodes::{Nodes, SplatNode};
@@ -12,11 +12,16 @@ use crate::widest::{ask_for, with_widest_instructions};
 use progress::{Cancelled, Progress};
 use rayon::prelude::*;
 use salf::tree::{BLOCK_PX, LEVELS};
+use std::convert::Infallible;
 use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// A picture has no more bands of rows than one for so many: what lies at their edges is drawn twice.
 const BAND_ROWS: u32 = 64;
+
+/// How many blocks, a row or two of them, are changed before the next: what is added to one lies in memory that taking away from
+/// it has brought near.
+const CHANGED: usize = 128;
 
 /// How many blocks are drawn from one report of progress to the next.
 const REPORTED: usize = 64;
@@ -152,7 +157,7 @@ impl Sums {
         SumMarks { free: self.free.marks(rows.clone()), sharing: self.sharing.marks(rows) }
     }
 
-    /// Sets them to what a scene sends. `lists` is room to work in.
+    /// Sets them to what a scene sends: to what `lists` then say.
     pub fn set(
         &mut self,
         scene: &Scene,
@@ -160,8 +165,8 @@ impl Sums {
         progress: &dyn Progress,
     ) -> Result<(), Cancelled> {
         lists.resize_with(scene.pen.nodes.blocks.len(), BlockList::default);
-        lists.par_iter_mut().enumerate().for_each(|(block, list)| {
-            scene.list(block, scene.paint.of_block(block), list);
+        lists.par_iter_mut().enumerate().for_each_init(Spans::default, |spans, (block, list)| {
+            scene.list(block, scene.paint.of_block(block), spans, list);
         });
         let lists = &*lists;
         let mut work = Work::none(scene.size[1]);
@@ -177,39 +182,33 @@ impl Sums {
             band.free.clear();
             band.sharing.clear();
             let here = band.rows.clone();
-            let mut lists = lists.iter().filter(|list| meet(&list.rows, &here)).peekable();
-            while let Some(list) = lists.next() {
-                progress.check()?;
-                if let Some(next) = lists.peek() {
-                    band.ask_for(&scene.pen, &next.drawn);
-                }
-                band.draw(&scene.pen, &list.drawn, 1);
+            let lists = lists.iter().filter(|list| meet(&list.rows, &here)).map(|list| list.drawn.as_slice());
+            band.draw_each(&scene.pen, lists, 1, || {
                 let done = done.fetch_add(1, Ordering::Relaxed) + 1;
                 if done % REPORTED == 0 {
                     progress.report(done as f32 / count as f32);
                 }
-            }
-            band.finish(1);
-            Ok(())
+                progress.check()
+            })
         })
     }
 
-    /// Takes away the nodes `removed`, and adds `added`.
-    pub fn change(&mut self, pen: &Pen, removed: &[Drawn], added: &[Drawn]) {
-        let all = || removed.iter().chain(added);
-        let rows = rows_of(all());
-        let height = self.free.dim.levels[0].height as u32;
-        let mut work = Work::none(height);
-        for drawn in all() {
-            let node = &pen.nodes.nodes[drawn.index as usize];
-            work.add(pen.nodes.row_of(drawn.index), pen.cost(node, drawn.placed));
+    /// Takes away what is no longer drawn, and adds what is now.
+    pub fn change(&mut self, pen: &Pen, changes: &Changes) {
+        let changed: Vec<_> = changes.0.iter().filter(|block| !block.is_empty()).collect();
+        let mut work = Work::none(self.free.dim.levels[0].height as u32);
+        for block in &changed {
+            block.first().map(|first| work.add(pen.nodes.row_of(first), block.cost));
         }
+        let rows = changes.rows();
         let mut bands = self.bands(&work, rows.len() as u32);
         bands.retain(|band| meet(&rows, &band.rows));
         bands.into_par_iter().with_max_len(1).for_each(|mut band| {
-            for (list, sign) in [(removed, -1), (added, 1)] {
-                band.draw(pen, list, sign);
-                band.finish(sign);
+            let here = band.rows.clone();
+            for blocks in changed.chunks(CHANGED) {
+                let blocks = || blocks.iter().filter(|block| meet(&block.rows, &here));
+                let Ok(()) = band.draw_each(pen, blocks().map(|block| &*block.removed), -1, unwatched);
+                let Ok(()) = band.draw_each(pen, blocks().map(|block| &*block.added), 1, unwatched);
             }
         });
     }
@@ -248,6 +247,11 @@ impl Sums {
     }
 }
 
+/// Nobody waits for so little.
+fn unwatched() -> Result<(), Infallible> {
+    Ok(())
+}
+
 /// Whether two ranges have anything in common.
 #[inline(always)]
 fn meet(a: &Range<u32>, b: &Range<u32>) -> bool {
@@ -262,6 +266,26 @@ struct Band<'a> {
 }
 
 impl Band<'_> {
+    /// Adds (`sign` 1) the nodes of some blocks' lists, or takes them away (−1). Ends with `check` if that fails after one.
+    fn draw_each<'l, E>(
+        &mut self,
+        pen: &Pen,
+        lists: impl Iterator<Item = &'l [Drawn]>,
+        sign: i32,
+        mut check: impl FnMut() -> Result<(), E>,
+    ) -> Result<(), E> {
+        let mut lists = lists.peekable();
+        while let Some(list) = lists.next() {
+            if let Some(next) = lists.peek() {
+                self.ask_for(pen, next);
+            }
+            self.draw(pen, list, sign);
+            check()?;
+        }
+        self.finish(sign);
+        Ok(())
+    }
+
     /// Adds (`sign` 1) the nodes of a list, or takes them away (−1): at the latest when it is finished with that sign.
     fn draw(&mut self, pen: &Pen, list: &[Drawn], sign: i32) {
         // Compiled for either sign.

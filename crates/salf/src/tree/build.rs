@@ -25,7 +25,7 @@ pub fn build(salf: &Salf, highlight: f32) -> Tree {
     let grid = Grid::new(salf);
     let contents = grid.contents(&salf.samples);
     let parallax_px = salf.camera.optics().splat_radius_px(1.0) as f32;
-    let parts: Vec<_> = contents
+    let parts: Vec<Part> = contents
         .par_iter()
         .enumerate()
         .map(|(index, content)| {
@@ -37,11 +37,11 @@ pub fn build(salf: &Salf, highlight: f32) -> Tree {
 }
 
 /// Joins the blocks' parts.
-fn assemble(parts: &[(Vec<Node>, Vec<u64>)], samples: usize) -> Tree {
+fn assemble(parts: &[Part], samples: usize) -> Tree {
     let mut tree = Tree { node_of_sample: vec![0; samples], ..Tree::default() };
-    tree.nodes.reserve_exact(parts.iter().map(|(nodes, _)| nodes.len()).sum());
-    tree.words.reserve_exact(parts.iter().map(|(_, words)| words.len()).sum());
-    for (nodes, words) in parts {
+    tree.nodes.reserve_exact(parts.iter().map(|part| part.nodes.len()).sum());
+    tree.words.reserve_exact(parts.iter().map(|part| part.words.len()).sum());
+    for Part { nodes, roots, words } in parts {
         let (first, first_word) = (tree.nodes.len() as u32, tree.words.len() as u32);
         for node in nodes {
             if let Some(sample) = node.sample {
@@ -52,12 +52,21 @@ fn assemble(parts: &[(Vec<Node>, Vec<u64>)], samples: usize) -> Tree {
                 NodeVisibility::Cells8(at) => NodeVisibility::Cells8(first_word + at),
                 NodeVisibility::Cells16(at) => NodeVisibility::Cells16(first_word + at),
             };
-            tree.nodes.push(Node { visibility, end: first + node.end, ..node.clone() });
+            let children = first + node.children.start..first + node.children.end;
+            tree.nodes.push(Node { visibility, children, ..node.clone() });
         }
         tree.words.extend(words);
-        tree.blocks.push(Block { nodes: first..tree.nodes.len() as u32 });
+        tree.blocks.push(Block { nodes: first..tree.nodes.len() as u32, roots: first..first + roots });
     }
     tree
+}
+
+/// A block on its own: places are counted from its beginning.
+struct Part {
+    nodes: Vec<Node>,
+    /// How many of them no other stands for.
+    roots: u32,
+    words: Vec<u64>,
 }
 
 /// A node while its block is being built.
@@ -90,11 +99,7 @@ struct Builder<'a> {
 }
 
 impl Builder<'_> {
-    fn build(
-        &mut self,
-        corner: IVec2,
-        samples: impl Iterator<Item = (u32, Sample)>,
-    ) -> (Vec<Node>, Vec<u64>) {
+    fn build(&mut self, corner: IVec2, samples: impl Iterator<Item = (u32, Sample)>) -> Part {
         let mut alone = Vec::new();
         // Nodes that may still be joined, with the corner of their cell in the block.
         let mut open_ended: Vec<(IVec2, usize)> = Vec::new();
@@ -111,11 +116,8 @@ impl Builder<'_> {
         for level in 0..LEVELS as u8 {
             open_ended = self.join(level, open_ended);
         }
-        let (mut nodes, mut words) = (Vec::with_capacity(self.arena.len()), Vec::new());
-        for root in open_ended.into_iter().map(|(_, index)| index).chain(alone) {
-            self.emit(root, &mut nodes, &mut words);
-        }
-        (nodes, words)
+        let roots: Vec<_> = open_ended.into_iter().map(|(_, index)| index).chain(alone).collect();
+        self.emit(roots)
     }
 
     /// Whether a sample is never joined with others.
@@ -198,15 +200,18 @@ impl Builder<'_> {
         Some(self.arena.len() - 1)
     }
 
-    fn emit(&self, index: usize, nodes: &mut Vec<Node>, words: &mut Vec<u64>) {
-        let growing = &self.arena[index];
-        let place = nodes.len();
-        let visibility = growing.cells.map_or(NodeVisibility::Open, |cells| cells.store(words));
-        nodes.push(Node { visibility, ..growing.node.clone() });
-        for &child in &growing.children {
-            self.emit(child, nodes, words);
+    /// The block's nodes, level by level below its `roots`.
+    fn emit(&self, roots: Vec<usize>) -> Part {
+        let (mut nodes, mut words) = (Vec::with_capacity(self.arena.len()), Vec::new());
+        let (count, mut order) = (roots.len() as u32, roots);
+        while let Some(&index) = order.get(nodes.len()) {
+            let growing = &self.arena[index];
+            let visibility = growing.cells.map_or(NodeVisibility::Open, |cells| cells.store(&mut words));
+            let first = order.len() as u32;
+            order.extend(&growing.children);
+            nodes.push(Node { visibility, children: first..order.len() as u32, ..growing.node.clone() });
         }
-        nodes[place].end = nodes.len() as u32;
+        Part { nodes, roots: count, words }
     }
 }
 
@@ -244,7 +249,7 @@ fn leaf(sample: &Sample, index: u32, level: u8) -> Growing {
         radiance: sample.radiance,
         level,
         visibility: NodeVisibility::Open,
-        end: 0,
+        children: 0..0,
         sample: Some(index),
     };
     Growing { node, cells, children: Vec::new() }
@@ -271,7 +276,7 @@ fn mean(level: u8, members: &[&Growing]) -> Node {
         radiance: nodes().map(|node| largest_weight(node) * node.radiance).sum::<Vec3>() / total,
         level,
         visibility: NodeVisibility::Open,
-        end: 0,
+        children: 0..0,
         sample: None,
     }
 }
@@ -431,14 +436,29 @@ mod tests {
         assert!((block.radiance.x - 0.235).abs() < 1e-5);
         let highlight = &tree.nodes[tree.node_of_sample[3 * 40 + 3] as usize];
         assert_eq!((highlight.radiance.x, highlight.level), (100.0, 0));
-        // Sums of each level of each tree are those of its leaves.
-        let mut at = 0;
-        let mut weight = 0.0;
-        while at < tree.nodes.len() {
-            weight += tree.nodes[at].weight;
-            at = tree.nodes[at].end as usize;
-        }
+        // The sum of each tree is that of its leaves.
+        let roots = tree.blocks.iter().flat_map(|block| block.roots.clone());
+        let weight: f32 = roots.map(|root| tree.nodes[root as usize].weight).sum();
         assert_eq!(weight, 40.0 * 24.0);
+    }
+
+    #[test]
+    fn every_node_is_a_root_or_below_one_node_that_comes_before_it() {
+        let tree = Tree::new(&plane(|x, y| if (x * 7 + y * 3) % 11 < 4 { 0.5 } else { 3.0 }), 4.0);
+        let mut found = vec![0; tree.nodes.len()];
+        for block in &tree.blocks {
+            assert_eq!(block.roots.start, block.nodes.start);
+            block.roots.clone().for_each(|root| found[root as usize] += 1);
+            let mut next = block.roots.end;
+            for at in block.nodes.clone() {
+                let Node { children, sample, .. } = &tree.nodes[at as usize];
+                assert_eq!((children.start, children.is_empty()), (next, sample.is_some()), "{at}");
+                children.clone().for_each(|child| found[child as usize] += 1);
+                next = children.end;
+            }
+            assert_eq!(next, block.nodes.end);
+        }
+        assert!(found.iter().all(|&times| times == 1));
     }
 
     #[test]
@@ -456,9 +476,14 @@ mod tests {
         });
         let tree = Tree::new(&salf, 4.0);
         let mut joined = 0;
-        for (at, node) in tree.nodes.iter().enumerate().filter(|(_, node)| node.sample.is_none()) {
-            let below = tree.nodes[at..node.end as usize].iter().filter(|node| node.sample.is_some());
-            let most: f32 = below.map(largest_weight).sum();
+        for node in tree.nodes.iter().filter(|node| node.sample.is_none()) {
+            let mut below: Vec<_> = node.children.clone().collect();
+            let mut most = 0.0;
+            while let Some(at) = below.pop() {
+                let node = &tree.nodes[at as usize];
+                below.extend(node.children.clone());
+                most += if node.sample.is_some() { largest_weight(node) } else { 0.0 };
+            }
             assert!(largest_weight(node) <= MOST_SCALED.powi(node.level.into()) * most, "{node:?}");
             joined += 1;
         }

@@ -1,7 +1,7 @@
 //! Which nodes are drawn, as the card reads it.
 
 use crate::draw::{Form, Pen};
-use crate::drawn::Scene;
+use crate::drawn::{Scene, Spans};
 use crate::gpu::passes::KINDS;
 use crate::lens_in_use::Placed;
 use crate::nodes::SplatNode;
@@ -42,9 +42,14 @@ impl Records {
     pub fn of_blocks(scene: &Scene, blocks: Range<usize>, first: u32) -> Self {
         let of_block = |block| {
             let mut records = Self::default();
-            scene.drawn(block, scene.paint.of_block(block), |index, node, placed, _| {
-                records.push(&scene.pen, index, first, node, placed, 1);
-            });
+            scene.drawn(
+                block,
+                scene.paint.of_block(block),
+                &mut Spans::default(),
+                |index, node, placed, _| {
+                    records.push(&scene.pen, index, first, node, placed, 1);
+                },
+            );
             records
         };
         let mut all = blocks.into_par_iter().map(of_block).reduce(Self::default, Self::joined);

@@ -2,7 +2,7 @@
 
 use crate::balance::{Gains, KnotSums, Knots};
 use crate::draw::Pen;
-use crate::drawn::{Changes, Scene};
+use crate::drawn::{BlockChanges, Changes, Scene};
 use crate::gpu::Gpu;
 use crate::gpu::device::Lost;
 use crate::gpu::passes::KINDS;
@@ -172,17 +172,21 @@ impl GpuSums {
         Ok(())
     }
 
-    /// Takes nodes away and adds others; both in the hierarchy's order.
+    /// Takes nodes away and adds others.
     pub fn change(&mut self, pen: &Pen, changes: &Changes) -> Result<(), GpuError> {
         self.take_up(pen)?;
         for chunk in 0..self.scene.chunks.len() {
             let first = self.scene.chunks[chunk].first;
             let end = self.scene.chunks.get(chunk + 1).map_or(u32::MAX, |next| next.first);
             let mut records = Records::default();
-            for (changed, sign) in [(&changes.removed, -1), (&changes.added, 1)] {
-                for drawn in changed.iter().filter(|drawn| (first..end).contains(&drawn.index)) {
-                    let node = &pen.nodes.nodes[drawn.index as usize];
-                    records.push(pen, drawn.index, first, node, drawn.placed, sign);
+            let of_chunk =
+                |block: &&BlockChanges| block.first().is_some_and(|node| (first..end).contains(&node));
+            for block in changes.0.iter().filter(of_chunk) {
+                for (changed, sign) in [(&block.removed, -1), (&block.added, 1)] {
+                    for drawn in changed {
+                        let node = &pen.nodes.nodes[drawn.index as usize];
+                        records.push(pen, drawn.index, first, node, drawn.placed, sign);
+                    }
                 }
             }
             self.draw(pen, chunk, &records, &progress::Unwatched)?;

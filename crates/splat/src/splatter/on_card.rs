@@ -1,7 +1,6 @@
 //! Sums on a graphics card, and on the processor again once the card is lost.
 
 use super::{SplatError, Splatter, Wanted};
-use crate::drawn::Changes;
 use crate::gpu::{Gpu, GpuError, GpuSums};
 use crate::paint::Paint;
 use progress::Progress;
@@ -17,6 +16,11 @@ pub struct Card {
 }
 
 impl Card {
+    /// Whether the sums are on one.
+    pub fn is_used(&self) -> bool {
+        self.sums.is_some()
+    }
+
     /// The next picture is of another aperture.
     pub fn forget_aperture(&mut self) {
         if let Some(sums) = &mut self.sums {
@@ -120,10 +124,10 @@ impl Splatter {
     }
 
     /// See [`Splatter::change`].
-    pub(super) fn change_on_card(&mut self, changes: &Changes) -> Option<Result<(), SplatError>> {
+    pub(super) fn change_on_card(&mut self) -> Option<Result<(), SplatError>> {
         let (nodes, sums) = (self.nodes.as_ref()?, self.card.sums.as_mut()?);
         let pen = self.aperture.pen(nodes, &self.lens);
-        let changed = sums.change(&pen, changes);
+        let changed = sums.change(&pen, &self.changes);
         Some(self.card.came_of(changed))
     }
 }
