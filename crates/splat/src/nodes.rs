@@ -104,7 +104,7 @@ impl SplatNode {
         let center = self.center[axis] >> POSITION_BITS;
         let reach = (placed.radius.abs() >> POSITION_BITS) * 65 / 64
             + (self.half_size[axis] as i32 >> (POSITION_BITS - 1))
-            + (4 << self.level.max(placed.level));
+            + (3 << placed.level);
         let within = |place: i32| place.clamp(0, side as i32) as u32;
         within(center - reach)..within(center + reach + 1)
     }

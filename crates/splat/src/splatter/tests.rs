@@ -1,6 +1,7 @@
 //! The promises of the sums: order, threads and paint leave no trace.
 
 use super::*;
+use crate::lens_in_use::NodeFocus;
 use glam::{DVec2, Vec2, Vec3};
 use progress::Unwatched;
 use salf::{Sample, Visibility};
@@ -402,4 +403,57 @@ fn pictures_of_any_width_are_summed() {
         splatter.render(&camera, &focus, &Unwatched).unwrap();
         assert_eq!(painted, *splatter.picture(), "{width}");
     }
+}
+
+/// Else a band would lack what the one beside it sends.
+#[test]
+fn light_stays_within_reach() {
+    let camera =
+        Camera { width: 256, height: 192, focus_distance: 2.0, aperture_radius: 0.3, ..Camera::default() };
+    let mut hash = 7u32;
+    let mut random = move || {
+        hash = (hash ^ hash >> 15).wrapping_mul(0x2C1B_3C6D).wrapping_add(0x9E37_79B9);
+        (hash >> 8) as f32 / (1 << 24) as f32
+    };
+    let mut levels = [0; salf::tree::LEVELS];
+    for trial in 0..600 {
+        // Cells of the margin are large: some are drawn in pieces.
+        let (center, half) = match trial % 3 {
+            0 => (Vec2::new(-30.0 * random(), 20.0 + 150.0 * random()), 4.0),
+            _ => (Vec2::new(60.0 + 136.0 * random(), 60.0 + 72.0 * random()), 0.5),
+        };
+        let seen = (random() * u32::MAX as f32) as u64;
+        let visibility = match trial % 2 {
+            0 => Visibility::Open,
+            _ => Visibility::Cells { words: Box::new([seen << 32 | seen >> 7]) },
+        };
+        let sample = Sample {
+            center,
+            half_size: half * Vec2::new(0.5 + 2.0 * random(), 0.5 + random()),
+            inverse_depth: 0.5 + (random() - 0.5) * 0.6 * random(),
+            weight: 1.0,
+            tilt: Vec2::new(random() - 0.5, random() - 0.5),
+            radiance: Vec3::ONE,
+            surface: Some(SurfacePoint { triangle: 0, barycentric: DVec2::ZERO }),
+            visibility,
+        };
+        let samples = vec![sample].into();
+        let mut splatter = Splatter::new(Arc::new(Salf { camera: camera.clone(), margin_px: 64, samples }));
+        splatter.set_live(true);
+        splatter.set_tolerance([Tolerance::NONE, Tolerance::px(2.0), Tolerance::px(10.0)][trial / 6 % 3]);
+        let t = if trial % 5 == 0 { 1.0 + 0.05 * f64::from(random()) } else { 1.0 };
+        let offset = FocusOffset::new(t, 0.0);
+        splatter.render(&camera, &ByTriangle(vec![offset]), &Unwatched).unwrap();
+        let node = &splatter.nodes.as_ref().unwrap().nodes[0];
+        let placed = splatter.lens.place(node, &NodeFocus::of(offset));
+        let [columns, rows] =
+            [(0, camera.width), (1, camera.height)].map(|(axis, side)| node.reach(axis, placed, side));
+        for (at, &covered) in (0u32..).zip(&splatter.picture().coverage) {
+            let (x, y) = (at % camera.width, at / camera.width);
+            let is_within = columns.contains(&x) && rows.contains(&y);
+            assert!(is_within || covered == 0.0, "{trial}: {x}, {y} of {columns:?}, {rows:?}: {placed:?}");
+            levels[placed.level as usize] += usize::from(covered != 0.0);
+        }
+    }
+    assert!(levels.iter().all(|&lit| lit > 1000), "{levels:?}");
 }
