@@ -1,23 +1,27 @@
 //! Inner loops with the widest instructions of the machine they run on, and memory asked for ahead of them.
 
-/// Does `work`, compiled once for any machine and once for those with AVX2. Its inner loops, and what they call, must be
-/// inlined to gain from it. Results are the same either way: they are integers, and single float operations.
+/// Does `work`, compiled for any machine, for those with AVX2 and for those with AVX-512. Its inner loops, and what they call,
+/// must be inlined to gain from it. Results are the same either way: they are integers, and single float operations.
 #[inline(always)]
 pub fn with_widest_instructions<R>(work: impl FnOnce() -> R) -> R {
     #[cfg(target_arch = "x86_64")]
     {
+        use std::is_x86_feature_detected as has;
+
         #[target_feature(enable = "avx2,bmi1,bmi2,lzcnt")]
         #[inline(never)]
         fn wide<R>(work: impl FnOnce() -> R) -> R {
             work()
         }
-        if std::is_x86_feature_detected!("avx2")
-            && std::is_x86_feature_detected!("bmi1")
-            && std::is_x86_feature_detected!("bmi2")
-            && std::is_x86_feature_detected!("lzcnt")
-        {
-            // SAFETY: the machine has what `wide` is compiled for.
-            return unsafe { wide(work) };
+        #[target_feature(enable = "avx2,bmi1,bmi2,lzcnt,avx512f,avx512bw,avx512dq,avx512vl")]
+        #[inline(never)]
+        fn wider<R>(work: impl FnOnce() -> R) -> R {
+            work()
+        }
+        if has!("avx2") && has!("bmi1") && has!("bmi2") && has!("lzcnt") {
+            let is_wider = has!("avx512f") && has!("avx512bw") && has!("avx512dq") && has!("avx512vl");
+            // SAFETY: the machine has what either is compiled for.
+            return unsafe { if is_wider { wider(work) } else { wide(work) } };
         }
     }
     work()
