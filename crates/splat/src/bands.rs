@@ -1,9 +1,12 @@
 //! How the picture's rows are divided among threads.
 //!
 //! What a node sends is drawn by every band that it reaches, and of a partly occluded one all rows must be known to draw any.
-//! So there are as few bands as keep all threads busy, each with about the same work to do.
+//! So there are as few bands as keep all threads busy, each with about the same work to do: by what drawing is estimated to cost,
+//! and by how long the last picture took.
 
 use salf::tree::BLOCK_PX;
+use std::ops::Range;
+use std::time::Duration;
 
 /// Rows of a slot, which is never divided: a pixel of the coarsest level.
 const SLOT_ROWS: u32 = BLOCK_PX as u32;
@@ -24,18 +27,58 @@ impl Work {
     }
 
     /// Where the first rows of `count` bands are, or of fewer: the first is 0.
-    pub fn divided(&self, count: usize) -> Vec<u32> {
-        let total: u64 = self.0.iter().sum();
-        let (mut before, mut starts) = (0, vec![0]);
-        for (slot, cost) in self.0.iter().enumerate() {
+    pub fn divided(&self, count: usize, pace: &Pace) -> Vec<u32> {
+        let costs = || self.0.iter().enumerate().map(|(slot, &cost)| cost as f64 * pace.of_slot(slot));
+        let total: f64 = costs().sum();
+        let (mut before, mut starts) = (0.0, vec![0]);
+        for (slot, cost) in costs().enumerate() {
             // A band begins where the half of a slot's work is on its side.
-            let wanted = total * starts.len() as u64 / count as u64;
-            if starts.len() < count && slot > 0 && before + cost / 2 >= wanted {
+            let wanted = total * starts.len() as f64 / count as f64;
+            if starts.len() < count && slot > 0 && before + cost / 2.0 >= wanted {
                 starts.push(slot as u32 * SLOT_ROWS);
             }
             before += cost;
         }
         starts
+    }
+
+    /// The work of some rows.
+    fn of_rows(&self, rows: &Range<u32>) -> u64 {
+        self.0[slots(rows, self.0.len())].iter().sum()
+    }
+}
+
+/// The slots of some rows, of `count` in all.
+fn slots(rows: &Range<u32>, count: usize) -> Range<usize> {
+    let end = (rows.end.div_ceil(SLOT_ROWS) as usize).min(count);
+    (rows.start / SLOT_ROWS) as usize..end
+}
+
+/// How much longer work takes than it was estimated to, slot by slot, beside that of all slots: what pictures before took.
+#[derive(Clone, Debug, Default)]
+pub struct Pace(Vec<f64>);
+
+impl Pace {
+    /// Nothing is known of a slot of which there was no work.
+    fn of_slot(&self, slot: usize) -> f64 {
+        self.0.get(slot).copied().unwrap_or(1.0)
+    }
+
+    /// Learns from bands of a picture that were worked on for so long. Half of what was known stays: a band may have been
+    /// disturbed.
+    pub fn learn(&mut self, work: &Work, bands: &[(Range<u32>, Duration)]) {
+        const MOST: f64 = 4.0;
+        self.0.resize(work.0.len(), 1.0);
+        let took = |band: &(Range<u32>, Duration)| band.1.as_secs_f64();
+        let (time, all) = (bands.iter().map(took).sum::<f64>(), work.0.iter().sum::<u64>() as f64);
+        for band in bands {
+            let pace = took(band) / time * all / work.of_rows(&band.0) as f64;
+            if pace.is_finite() {
+                for known in &mut self.0[slots(&band.0, work.0.len())] {
+                    *known = (*known + pace.clamp(1.0 / MOST, MOST)) / 2.0;
+                }
+            }
+        }
     }
 }
 
@@ -47,17 +90,45 @@ mod tests {
     fn bands_have_alike_much_to_do() {
         let mut work = Work::none(320);
         (0..320).for_each(|row| work.add(row, if row < 160 { 1 } else { 3 }));
-        assert_eq!(work.divided(1), [0]);
-        assert_eq!(work.divided(2), [0, 208], "160 and 48·3 of 640; 16 rows more or less are 48");
-        assert_eq!(work.divided(4).len(), 4);
+        let pace = Pace::default();
+        assert_eq!(work.divided(1, &pace), [0]);
+        assert_eq!(work.divided(2, &pace), [0, 208], "160 and 48·3 of 640; 16 rows more or less are 48");
+        assert_eq!(work.divided(4, &pace).len(), 4);
         work.add(-500, 7000);
-        assert_eq!(work.divided(2), [0, 16]);
+        assert_eq!(work.divided(2, &pace), [0, 16]);
+    }
+
+    #[test]
+    fn bands_come_to_take_alike_long() {
+        let (mut work, mut pace) = (Work::none(1600), Pace::default());
+        (0..1600).for_each(|row| work.add(row, 1000));
+        // What lies below takes three times as long as it is estimated to.
+        let took = |rows: &Range<u32>| rows.clone().map(|row| if row < 800 { 1 } else { 3 }).sum::<u64>();
+        let bands = |pace: &Pace| {
+            let starts = work.divided(2, pace);
+            [0..starts[1], starts[1]..1600].map(|rows| (rows.clone(), Duration::from_micros(took(&rows))))
+        };
+        let [above, below] = bands(&pace);
+        assert_eq!((above.1.as_micros(), below.1.as_micros()), (800, 2400));
+        for _ in 0..10 {
+            pace.learn(&work, &bands(&pace));
+        }
+        let [above, below] = bands(&pace);
+        let apart = above.1.as_secs_f64() / below.1.as_secs_f64();
+        assert!((0.9..1.1).contains(&apart), "{above:?} {below:?}");
+    }
+
+    #[test]
+    fn nothing_is_learned_from_no_work() {
+        let mut pace = Pace::default();
+        pace.learn(&Work::none(100), &[(0..48, Duration::ZERO), (48..u32::MAX, Duration::ZERO)]);
+        assert_eq!(pace.0, vec![1.0; 7]);
     }
 
     #[test]
     fn nothing_to_do_is_divided_too() {
-        assert_eq!(Work::none(0).divided(3), [0]);
-        let starts = Work::none(100).divided(3);
+        assert_eq!(Work::none(0).divided(3, &Pace::default()), [0]);
+        let starts = Work::none(100).divided(3, &Pace::default());
         assert!(starts[0] == 0 && starts.windows(2).all(|pair| pair[0] < pair[1]), "{starts:?}");
     }
 }

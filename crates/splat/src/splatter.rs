@@ -3,6 +3,7 @@
 mod on_card;
 
 use crate::balance::Balance;
+use crate::bands::Pace;
 use crate::draw::Pen;
 use crate::drawn::{Before, BlockList, Changes, Scene};
 use crate::lens_in_use::{LensInUse, Tolerance};
@@ -62,6 +63,8 @@ pub struct Splatter {
     marks: Vec<SumMarks>,
     /// What was drawn when all was summed last; room for what is.
     lists: Vec<BlockList>,
+    /// How long that took.
+    pace: Pace,
     /// Room for what changes.
     changes: Changes,
     /// What each pixel's sums are multiplied by.
@@ -144,6 +147,7 @@ impl Splatter {
             marks: chunks.map(|rows| sums.marks(rows)).collect(),
             sums,
             lists: Vec::new(),
+            pace: Pace::default(),
             changes: Changes::default(),
             shares: vec![Share::NONE; width * height],
             balance: Balance::none([width, height]),
@@ -310,7 +314,7 @@ impl Splatter {
         }
         let nodes = self.nodes.as_ref().ok_or(SplatError::Overflow)?;
         let scene = self.aperture.scene(nodes, &self.lens, paint, &self.salf.camera);
-        Ok(self.sums.set(&scene, &mut self.lists, progress)?)
+        Ok(self.sums.set(&scene, &mut self.lists, &mut self.pace, progress)?)
     }
 
     /// Moves the given samples, in any order, to where `focus` now sends them. Returns the rows and columns of the picture
@@ -353,7 +357,7 @@ impl Splatter {
         } else {
             let nodes = self.nodes.as_ref().ok_or(SplatError::Overflow)?;
             let pen = self.aperture.pen(nodes, &self.lens);
-            self.sums.change(&pen, &self.changes);
+            self.sums.change(&pen, &self.changes, &self.pace);
         }
         self.resolve(window, Wanted::Picture)
     }

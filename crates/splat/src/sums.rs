@@ -1,6 +1,6 @@
 //! All nodes of a light field, summed band by band of the picture.
 
-use crate::bands::Work;
+use crate::bands::{Pace, Work};
 use crate::canvas::{Accumulator, Word};
 use crate::draw::{Paper, Pen};
 use crate::drawn::{AHEAD, BlockList, Changes, Drawn, Scene, Spans};
@@ -15,6 +15,7 @@ use salf::tree::{BLOCK_PX, LEVELS};
 use std::convert::Infallible;
 use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::Instant;
 
 /// A picture has no more bands of rows than one for so many: what lies at their edges is drawn twice.
 const BAND_ROWS: u32 = 64;
@@ -157,11 +158,12 @@ impl Sums {
         SumMarks { free: self.free.marks(rows.clone()), sharing: self.sharing.marks(rows) }
     }
 
-    /// Sets them to what a scene sends: to what `lists` then say.
+    /// Sets them to what a scene sends: to what `lists` then say. `pace` learns how long it takes.
     pub fn set(
         &mut self,
         scene: &Scene,
         lists: &mut Vec<BlockList>,
+        pace: &mut Pace,
         progress: &dyn Progress,
     ) -> Result<(), Cancelled> {
         lists.resize_with(scene.pen.nodes.blocks.len(), BlockList::default);
@@ -174,11 +176,12 @@ impl Sums {
             let Some(first) = list.drawn.first() else { continue };
             work.add(scene.pen.nodes.row_of(first.index), list.cost);
         }
-        let bands = self.bands(&work, scene.size[1]);
+        let bands = self.bands(&work, pace, scene.size[1]);
         let reach = |band: &Band| lists.iter().filter(|list| meet(&list.rows, &band.rows)).count();
         let (count, done) = (bands.iter().map(reach).sum::<usize>(), AtomicUsize::new(0));
-        bands.into_par_iter().with_max_len(1).try_for_each(|mut band| {
+        let summed = bands.into_par_iter().with_max_len(1).map(|mut band| {
             progress.check()?;
+            let begun = Instant::now();
             band.free.clear();
             band.sharing.clear();
             let here = band.rows.clone();
@@ -189,19 +192,22 @@ impl Sums {
                     progress.report(done as f32 / count as f32);
                 }
                 progress.check()
-            })
-        })
+            })?;
+            Ok((here, begun.elapsed()))
+        });
+        pace.learn(&work, &summed.collect::<Result<Vec<_>, _>>()?);
+        Ok(())
     }
 
     /// Takes away what is no longer drawn, and adds what is now.
-    pub fn change(&mut self, pen: &Pen, changes: &Changes) {
+    pub fn change(&mut self, pen: &Pen, changes: &Changes, pace: &Pace) {
         let changed: Vec<_> = changes.0.iter().filter(|block| !block.is_empty()).collect();
         let mut work = Work::none(self.free.dim.levels[0].height as u32);
-        for block in &changed {
-            block.first().map(|first| work.add(pen.nodes.row_of(first), block.cost));
+        for (first, cost) in changed.iter().filter_map(|block| Some((block.first()?, block.cost))) {
+            work.add(pen.nodes.row_of(first), cost);
         }
         let rows = changes.rows();
-        let mut bands = self.bands(&work, rows.len() as u32);
+        let mut bands = self.bands(&work, pace, rows.len() as u32);
         bands.retain(|band| meet(&rows, &band.rows));
         bands.into_par_iter().with_max_len(1).for_each(|mut band| {
             let here = band.rows.clone();
@@ -214,9 +220,9 @@ impl Sums {
     }
 
     /// Bands for work in so many rows: one for each thread, but few if there are few rows.
-    fn bands(&mut self, work: &Work, rows: u32) -> Vec<Band<'_>> {
+    fn bands(&mut self, work: &Work, pace: &Pace, rows: u32) -> Vec<Band<'_>> {
         let count = rayon::current_num_threads().min(rows.div_ceil(BAND_ROWS) as usize).max(1);
-        let starts = work.divided(count);
+        let starts = work.divided(count, pace);
         let ends = starts.iter().skip(1).copied().chain([u32::MAX]);
         let rows = starts.iter().copied().zip(ends).map(|(start, end)| start..end);
         let both = self.free.bands(&starts).into_iter().zip(self.sharing.bands(&starts));
