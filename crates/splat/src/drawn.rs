@@ -158,9 +158,11 @@ impl Changes {
         self.0.par_iter_mut().zip(blocks).for_each_init(
             room,
             |(spans, [old, new]), (changes, (block, before))| {
-                scene.list(*block, scene.paint.of_block(*block), spans, new);
+                let now = scene.paint.of_block(*block);
+                scene.list(*block, now, spans, new);
                 match before {
                     Before::Drawn(list) => changes.find(list, new),
+                    Before::PaintedAs(paint) if *paint == now => changes.find(new, new),
                     Before::PaintedAs(paint) => {
                         scene.list(*block, *paint, spans, old);
                         changes.find(old, new);
