@@ -119,9 +119,10 @@ mod tests {
             point: CurvePoint { seconds: spp.into(), rmse: f64::from(spp).powf(-0.5) },
         });
         let at = |rmse| reached(&curve, rmse);
-        assert!((at(0.5).seconds - 4.0).abs() < 1e-9 && (at(0.125).seconds - 64.0).abs() < 1e-9);
+        for (rmse, seconds) in [(0.5, 4.0), (0.125, 64.0), (1.0 / 16.0, 256.0)] {
+            assert!((at(rmse).seconds - seconds).abs() < 1e-9 && !at(rmse).takes_longer, "{rmse}");
+        }
         assert_eq!(at(2.0), Reached { seconds: 1.0, takes_longer: false });
-        assert_eq!(at(1.0 / 16.0), Reached { seconds: 256.0, takes_longer: false });
         assert_eq!(at(0.01), Reached { seconds: 256.0, takes_longer: true });
         assert_eq!(at(0.0), Reached { seconds: 256.0, takes_longer: true });
         assert!(reached(&[], 0.1).seconds.is_nan());
