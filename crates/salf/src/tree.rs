@@ -26,8 +26,8 @@ pub const LEVELS: usize = BLOCK_PX.ilog2() as usize + 1;
 pub struct Tree {
     /// The blocks of the picture and its margin, row by row from the upper left one.
     pub blocks: Vec<Block>,
-    /// All nodes: block by block, those that stand on their own first, then all that are one below these, and so on. What
-    /// is drawn of a block, which is not far below the former, so lies together.
+    /// All nodes: block by block, its roots first, then the children of all of these, and so on. So what is drawn of a block,
+    /// nodes that are about as far below the roots, lies together.
     pub nodes: Vec<Node>,
     /// Visibility of the nodes (see [`Node::visibility`]).
     pub words: Vec<u64>,
@@ -65,7 +65,7 @@ pub struct Node {
     pub level: u8,
     /// What it sees of the aperture.
     pub visibility: NodeVisibility,
-    /// The nodes that it stands for; none if it is a sample.
+    /// The nodes that it stands for, fewer than 32; none if it is a sample.
     pub children: Range<u32>,
     /// The sample, if it is one.
     pub sample: Option<u32>,

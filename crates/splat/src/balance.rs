@@ -302,7 +302,7 @@ impl GainsOfRow {
                 for ((light, behind), (before, after)) in
                     pixels.as_flattened_mut().iter_mut().zip(behind).zip(gains)
                 {
-                    *light *= (1.0 - behind) * before + behind * after;
+                    *light *= between(*before, *after, *behind);
                 }
             }
         }
@@ -320,11 +320,17 @@ const BEHIND: [[f32; 3]; SPACING] = {
     weights
 };
 
+/// What a and b are where the second has the weight `behind`.
+#[inline(always)]
+fn between(a: f32, b: f32, behind: f32) -> f32 {
+    (1.0 - behind) * a + behind * b
+}
+
 #[inline(always)]
 fn mix(a: [f32; 4], b: [f32; 4], behind: f32) -> [f32; 4] {
     let mut mixed = [0.0; 4];
     for c in 0..4 {
-        mixed[c] = (1.0 - behind) * a[c] + behind * b[c];
+        mixed[c] = between(a[c], b[c], behind);
     }
     mixed
 }

@@ -265,7 +265,7 @@ fn convert(node: &Node, scale: Scale) -> Option<SplatNode> {
     let bits = if is_bright { scale.bright_bits } else { scale.dim_bits };
     let quanta = weight * 0.25f32.powi(level as i32) * (bits as f32).exp2();
     let [r, g, b] = node.radiance.to_array();
-    debug_assert!((node.level as usize) < LEVELS);
+    debug_assert!((node.level as usize) < LEVELS && node.children.len() <= usize::from(u8::MAX));
     Some(SplatNode {
         center: node.center.to_array().map(fixed),
         half_size: half_size.map(|half| half as u16),
