@@ -3,10 +3,11 @@
 use crate::band::{Band, psnr_of};
 use crate::engine::dab::Dabbed;
 use crate::engine::dense::dense_seconds;
+use crate::engine::frame_copy::{FrameCopy, Timing};
 use crate::engine::ray_tracer::{RayTracer, Traced};
 use crate::engine::{Check, EngineRecord, Measured};
 use crate::findings::CurvePoint;
-use crate::stopwatch::{median, timed};
+use crate::stopwatch::median;
 use lens::{Camera, FocusOffset, Picture};
 use salf::Salf;
 use scene::SurfaceField;
@@ -56,18 +57,18 @@ impl Field {
         steps: &dyn Steps,
         note: &dyn Fn(&str),
     ) -> Result<(), SessionError> {
+        let Measured { frame, records, checks } = measured;
         let mut keep = |record: EngineRecord| {
             note(&record.line());
-            measured.records.push(record);
+            records.push(record);
         };
-        let copy = measured.copy;
         for traced in self.truth.iter().flat_map(|truth| &truth.ray_tracer.curve) {
-            keep(self.traced(traced, copy));
+            keep(self.traced(traced, frame));
         }
         let start = Instant::now();
         let mut splatter = Splatter::new(self.salf.clone());
         let hierarchy_seconds = start.elapsed().as_secs_f64();
-        keep(self.record("hierarchy", copy, hierarchy_seconds, &splatter));
+        keep(self.record("hierarchy", frame.beside(hierarchy_seconds), &splatter));
         let mut converged: Option<Picture> = None;
         let mut errors = Vec::new();
         for share in SHARES {
@@ -77,14 +78,12 @@ impl Field {
             let start = Instant::now();
             splatter.render(camera, &*self.focus, &*progress)?;
             let first_seconds = hierarchy_seconds + start.elapsed().as_secs_f64();
-            // Another focus distance each time, or what is kept for a lens would be kept.
-            let mut nudges = (1..).map(|k| 1.0 + 1e-9 * f64::from(k));
-            let drawn = timed(|| {
-                let focus_distance = camera.focus_distance * nudges.next().unwrap_or(1.0);
-                Ok(splatter.refocus(&Camera { focus_distance, ..camera.clone() }, &*progress)?)
-            })?;
+            let mut lenses = other_lenses(camera);
+            let drawn = frame.in_turn(&mut [|| {
+                Ok(splatter.refocus(&lenses.next().expect("endless"), &*progress)?)
+            }])?;
             splatter.refocus(camera, &*progress)?;
-            let mut record = self.record("full_splat", copy, drawn.seconds, &splatter);
+            let mut record = self.record("full_splat", drawn[0], &splatter);
             record.tolerance = Some(share);
             match &converged {
                 None => converged = Some(splatter.picture().clone()),
@@ -101,26 +100,24 @@ impl Field {
                 record.truth = Some(ray_tracer.against(splatter.picture(), &self.band)?);
                 keep(EngineRecord {
                     what: self.named("bake and first picture"),
-                    ..record.clone().lasting(copy, bake_seconds + first_seconds)
+                    ..record.clone().lasting(frame.beside(bake_seconds + first_seconds))
                 });
             }
             keep(record);
         }
-        measured.checks.push(self.check("the error grows with the tolerance", is_growing(&errors)));
+        checks.push(self.check("the error grows with the tolerance", is_growing(&errors)));
         if self.with_dense {
-            let mut record = self.record("full_splat", copy, dense_seconds(&self.salf), &splatter);
+            let mut record = self.record("full_splat", frame.beside(dense_seconds(&self.salf)), &splatter);
             (record.renderer, record.bytes) = ("dense_scatter".into(), 0);
             keep(record);
         }
         if self.with_dab {
-            let (record, holds) = self.dab(&mut splatter, copy, steps)?;
+            let (record, holds) = self.dab(&mut splatter, frame, steps)?;
             keep(record);
-            measured
-                .checks
-                .push(self.check("a dab equals a render from scratch, bit for bit, and shows", holds));
+            checks.push(self.check("a dab equals a render from scratch, bit for bit, and shows", holds));
         }
         let holds = self.is_same_with_one_thread(&mut splatter, steps)?;
-        measured.checks.push(self.check("one thread draws the picture of many, bit for bit", holds));
+        checks.push(self.check("one thread draws the picture of many, bit for bit", holds));
         Ok(())
     }
 
@@ -133,9 +130,10 @@ impl Field {
         Check { scene: self.scene.clone(), what: self.named(what), holds }
     }
 
-    fn traced(&self, traced: &Traced, copy: f64) -> EngineRecord {
+    fn traced(&self, traced: &Traced, frame: &mut FrameCopy) -> EngineRecord {
         let CurvePoint { seconds, rmse } = traced.point;
-        let record = EngineRecord::of(&self.scene, &self.named("ray tracer"), &self.salf, copy, seconds);
+        let timing = frame.beside(seconds);
+        let record = EngineRecord::of(&self.scene, &self.named("ray tracer"), &self.salf, timing);
         EngineRecord {
             renderer: "truth".into(),
             coc_px: self.coc_px,
@@ -146,8 +144,8 @@ impl Field {
         }
     }
 
-    fn record(&self, what: &str, copy: f64, seconds: f64, splatter: &Splatter) -> EngineRecord {
-        let mut record = EngineRecord::of(&self.scene, &self.named(what), &self.salf, copy, seconds);
+    fn record(&self, what: &str, timing: Timing, splatter: &Splatter) -> EngineRecord {
+        let mut record = EngineRecord::of(&self.scene, &self.named(what), &self.salf, timing);
         record.coc_px = self.coc_px;
         record.bytes = splatter.bytes().iter().sum::<usize>() as u64;
         record
@@ -157,7 +155,7 @@ impl Field {
     fn dab(
         &self,
         splatter: &mut Splatter,
-        copy: f64,
+        frame: &mut FrameCopy,
         steps: &dyn Steps,
     ) -> Result<(EngineRecord, bool), SessionError> {
         let camera = &self.salf.camera;
@@ -174,7 +172,7 @@ impl Field {
             splatter.update(focus, &dabbed.samples)?;
             times.push(start.elapsed().as_secs_f64());
         }
-        let mut record = self.record("dab", copy, median(&mut times), splatter);
+        let mut record = self.record("dab", frame.beside(median(&mut times)), splatter);
         record.tolerance = Some(Tolerance::VIEWING.share_of_circle);
         let after = splatter.picture().clone();
         splatter.render(camera, &dabbed, &*progress)?;
@@ -197,6 +195,16 @@ impl Field {
         alone.install(|| splatter.refocus(camera, &*progress))?;
         Ok(&many == splatter.picture())
     }
+}
+
+/// Cameras focused elsewhere, by so little that pictures stay as they are, however many are asked for: what is kept for a lens
+/// is of no use to the next.
+pub fn other_lenses(camera: &Camera) -> impl Iterator<Item = Camera> + use<> {
+    let camera = camera.clone();
+    (1..).map(move |k| {
+        let focus_distance = 1.0 / (camera.focus_distance.recip() + 1e-9 * f64::from(k));
+        Camera { focus_distance, ..camera.clone() }
+    })
 }
 
 /// Whether pictures get no closer to the converged one, dB, from the first to the last.

@@ -1,24 +1,114 @@
-//! The unit of time: copying one frame.
+//! The unit of time: copying one frame, beside whatever is timed, for machines are slower at one moment than at another.
 
+use crate::stopwatch::median;
 use rayon::prelude::*;
+use session::SessionError;
 use std::time::Instant;
 
-/// The median time to copy one RGB float frame of `pixels` with all threads, s.
-pub fn copy_seconds(pixels: usize) -> f64 {
-    let threads = rayon::current_num_threads();
-    let source = vec![[0.5f32; 3]; pixels];
-    let mut target = vec![[0.0f32; 3]; pixels];
-    let rows = pixels.div_ceil(threads).max(1);
-    let mut times: Vec<f64> = (0..41)
-        .map(|_| {
-            let start = Instant::now();
-            target
-                .par_chunks_mut(rows)
-                .zip(source.par_chunks(rows))
-                .for_each(|(to, from)| to.copy_from_slice(from));
-            std::hint::black_box(&target);
-            start.elapsed().as_secs_f64()
-        })
-        .collect();
-    crate::stopwatch::median(&mut times)
+/// How long something took, and how long it took to copy one frame meanwhile.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Timing {
+    /// Median, s.
+    pub seconds: f64,
+    /// Median, s.
+    pub frame_copy: f64,
+}
+
+impl Timing {
+    /// So many frames could have been copied.
+    pub fn frame_copies(self) -> f64 {
+        self.seconds / self.frame_copy
+    }
+}
+
+/// Work is repeated until all of it took this long, s …
+const ENOUGH_SECONDS: f64 = 3.0;
+/// … or was done this often.
+const MOST_ROUNDS: usize = 11;
+/// Copies after each piece of work.
+const COPIES: usize = 3;
+
+/// Two RGB float frames, one of which is copied to the other with all threads.
+pub struct FrameCopy {
+    source: Vec<[f32; 3]>,
+    target: Vec<[f32; 3]>,
+    /// What each copy took, s.
+    times: Vec<f64>,
+}
+
+impl FrameCopy {
+    /// Frames of so many pixels.
+    pub fn new(pixels: usize) -> Self {
+        Self { source: vec![[0.5; 3]; pixels], target: vec![[0.0; 3]; pixels], times: Vec::new() }
+    }
+
+    /// The median of all copies, s.
+    pub fn seconds(&self) -> f64 {
+        median(&mut self.times.clone())
+    }
+
+    /// What took so many seconds just now.
+    pub fn beside(&mut self, seconds: f64) -> Timing {
+        let before = self.times.len();
+        (0..MOST_ROUNDS).for_each(|_| self.copy());
+        Timing { seconds, frame_copy: median(&mut self.times[before..].to_vec()) }
+    }
+
+    /// Times pieces of work in turn, frames copied between them: the longer it takes, the less often.
+    pub fn in_turn(
+        &mut self,
+        works: &mut [impl FnMut() -> Result<(), SessionError>],
+    ) -> Result<Vec<Timing>, SessionError> {
+        let before = self.times.len();
+        let mut times = vec![Vec::new(); works.len()];
+        let begun = Instant::now();
+        while times.iter().any(|times| times.len() < MOST_ROUNDS) {
+            for (work, times) in works.iter_mut().zip(&mut times) {
+                let start = Instant::now();
+                work()?;
+                times.push(start.elapsed().as_secs_f64());
+                (0..COPIES).for_each(|_| self.copy());
+            }
+            if begun.elapsed().as_secs_f64() >= ENOUGH_SECONDS * works.len() as f64 {
+                break;
+            }
+        }
+        let frame_copy = median(&mut self.times[before..].to_vec());
+        Ok(times.iter_mut().map(|times| Timing { seconds: median(times), frame_copy }).collect())
+    }
+
+    fn copy(&mut self) {
+        let rows = self.source.len().div_ceil(rayon::current_num_threads()).max(1);
+        let start = Instant::now();
+        let chunks = self.target.par_chunks_mut(rows).zip(self.source.par_chunks(rows));
+        chunks.for_each(|(to, from)| to.copy_from_slice(from));
+        std::hint::black_box(&self.target);
+        self.times.push(start.elapsed().as_secs_f64());
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn works_take_turns_with_copies_between() {
+        let mut frame = FrameCopy::new(64);
+        let order = std::cell::RefCell::new(Vec::new());
+        let mut works = ["a", "b"].map(|name| {
+            let order = &order;
+            move || {
+                order.borrow_mut().push(name);
+                Ok(())
+            }
+        });
+        let timings = frame.in_turn(&mut works).unwrap();
+        assert_eq!(order.borrow().len(), 2 * MOST_ROUNDS);
+        assert!(order.borrow().chunks(2).all(|turn| turn == ["a", "b"]));
+        assert_eq!(frame.times.len(), 2 * MOST_ROUNDS * COPIES);
+        assert!(timings.len() == 2 && timings.iter().all(|timing| timing.frame_copy == frame.seconds()));
+        let timing = Timing { seconds: 3.0, frame_copy: 0.5 };
+        assert_eq!(timing.frame_copies(), 6.0);
+        assert!(frame.in_turn(&mut [|| Err(SessionError::Cancelled)]).is_err());
+    }
 }

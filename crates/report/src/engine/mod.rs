@@ -23,7 +23,7 @@ use crate::machine::Machine;
 use crate::options::{ReportOptions, SceneRequest};
 use crate::subject::Subject;
 use field::{Field, Truth};
-use frame_copy::copy_seconds;
+use frame_copy::FrameCopy;
 use ray_tracer::RayTracer;
 use session::{RenderOptions, SessionError, Steps, bake};
 use std::path::{Path, PathBuf};
@@ -64,9 +64,8 @@ pub fn run_engine(
 ) -> Result<EngineReport, SessionError> {
     std::fs::create_dir_all(folder).map_err(|error| SessionError::io(folder, &error))?;
     let [width, height] = options.size.unwrap_or([1920, 1080]);
-    let copy = copy_seconds(width as usize * height as usize);
-    let mut measured = Measured { copy, records: Vec::new(), checks: Vec::new() };
-    note(&format!("copying one frame of {width} × {height} takes {:.2} ms", copy * 1e3));
+    let frame = FrameCopy::new(width as usize * height as usize);
+    let mut measured = Measured { frame, records: Vec::new(), checks: Vec::new() };
     for field in synthetic::fields([width, height]) {
         field.measure(&mut measured, steps, note)?;
     }
@@ -77,16 +76,16 @@ pub fn run_engine(
         let subject = Subject::open(request, &options, steps)?;
         measure_scene(&subject, options.reference_spp, &mut measured, steps, note)?;
     }
-    let Measured { records, checks, .. } = measured;
+    let Measured { records, checks, frame } = measured;
+    note(&format!("copying one frame of {width} × {height} takes {:.2} ms", frame.seconds() * 1e3));
     let mut report = EngineReport { records, checks, machine: Machine::here(), files: Vec::new() };
-    report.files = write::write(&report, copy, folder)?;
+    report.files = write::write(&report, frame.seconds(), folder)?;
     Ok(report)
 }
 
 /// What has been found so far.
 struct Measured {
-    /// Seconds to copy one frame.
-    copy: f64,
+    frame: FrameCopy,
     records: Vec<EngineRecord>,
     checks: Vec<Check>,
 }
@@ -104,7 +103,8 @@ fn measure_scene(
     let start = Instant::now();
     let salf = Arc::new(bake(&subject.tracer, &subject.camera, painted, tolerance_px, steps)?);
     let seconds = start.elapsed().as_secs_f64();
-    let mut record = EngineRecord::of(&subject.name, "bake", &salf, measured.copy, seconds);
+    let timing = measured.frame.beside(seconds);
+    let mut record = EngineRecord::of(&subject.name, "bake", &salf, timing);
     record.bytes = salf.statistics().bytes as u64;
     note(&record.line());
     measured.records.push(record);

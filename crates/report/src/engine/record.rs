@@ -1,5 +1,6 @@
 //! One measurement of the engine, as written to `report.json`.
 
+use crate::engine::frame_copy::Timing;
 use crate::engine::ray_tracer::AgainstTruth;
 use salf::Salf;
 use serde::Serialize;
@@ -30,7 +31,9 @@ pub struct EngineRecord {
     pub spp: Option<u32>,
     /// Median time, ms.
     pub ms_median: f64,
-    /// The same in times of copying one frame.
+    /// Median time to copy one frame meanwhile, ms.
+    pub frame_copy_ms: f64,
+    /// The one in times of the other.
     pub frame_copies: f64,
     /// Against the converged picture, or the ray tracer against the ground truth, dB.
     pub psnr: Option<f64>,
@@ -46,7 +49,7 @@ pub struct EngineRecord {
 
 impl EngineRecord {
     /// A time with nothing to compare it with.
-    pub(super) fn of(scene: &str, what: &str, salf: &Salf, copy: f64, seconds: f64) -> Self {
+    pub(super) fn of(scene: &str, what: &str, salf: &Salf, timing: Timing) -> Self {
         Self {
             scene: scene.into(),
             what: what.into(),
@@ -58,19 +61,27 @@ impl EngineRecord {
             coc_px: 0.0,
             tolerance: None,
             spp: None,
-            ms_median: seconds * 1e3,
-            frame_copies: seconds / copy,
+            ms_median: 0.0,
+            frame_copy_ms: 0.0,
+            frame_copies: 0.0,
             psnr: None,
             band_psnr: None,
             band_coverage_rms: None,
             truth: None,
             bytes: 0,
         }
+        .lasting(timing)
     }
 
     /// The same with another time.
-    pub(super) fn lasting(self, copy: f64, seconds: f64) -> Self {
-        Self { ms_median: seconds * 1e3, frame_copies: seconds / copy, ..self }
+    pub(super) fn lasting(self, timing: Timing) -> Self {
+        let Timing { seconds, frame_copy } = timing;
+        Self {
+            ms_median: seconds * 1e3,
+            frame_copy_ms: frame_copy * 1e3,
+            frame_copies: timing.frame_copies(),
+            ..self
+        }
     }
 
     /// How many times as fast as the ray tracer it comes to its error; at least so many, if that takes longer than known.

@@ -1,9 +1,8 @@
 //! Light fields that are made up: a case each, whose circles of confusion are known.
 
 use crate::band::Band;
-use crate::engine::field::Field;
+use crate::engine::field::{Field, other_lenses};
 use crate::engine::{EngineRecord, Measured};
-use crate::stopwatch::timed;
 use glam::{Vec2, Vec3};
 use lens::{Camera, FocusOffset};
 use salf::{Cell, Domain, Salf, Sample, Visibility};
@@ -142,46 +141,58 @@ pub fn sweep_circles(
     note: &dyn Fn(&str),
 ) -> Result<(), SessionError> {
     for diameter in [0.0, 1.0, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0, 24.0, 32.0, 48.0, 64.0, 100.0, 150.0] {
-        time_plane(size, diameter, "against circle", measured, steps, note)?;
+        time_planes(&[size], diameter, "against circle", measured, steps, note)?;
     }
     Ok(())
 }
 
-/// Cost against the number of samples, which is that of pixels.
+/// Cost against the number of samples, which is that of pixels: in turn, for it is compared.
 pub fn sweep_sizes(
     [width, height]: [u32; 2],
     measured: &mut Measured,
     steps: &dyn Steps,
     note: &dyn Fn(&str),
 ) -> Result<(), SessionError> {
-    for share in [0.25f64, 0.5, 0.75, 1.0] {
-        let size = [width, height].map(|side| (f64::from(side) * share.sqrt()).round() as u32);
-        time_plane(size, 10.0, "against size", measured, steps, note)?;
-    }
-    Ok(())
+    let of_share = |share: f64| [width, height].map(|side| (f64::from(side) * share.sqrt()).round() as u32);
+    time_planes(&[0.25, 0.5, 0.75, 1.0].map(of_share), 10.0, "against size", measured, steps, note)
 }
 
-fn time_plane(
-    size: [u32; 2],
+/// Times planes of one circle of confusion and several sizes, in turn.
+fn time_planes(
+    sizes: &[[u32; 2]],
     diameter: f64,
     what: &str,
     measured: &mut Measured,
     steps: &dyn Steps,
     note: &dyn Fn(&str),
 ) -> Result<(), SessionError> {
-    let salf = plane(size, diameter);
-    let mut splatter = Splatter::new(salf.clone());
-    splatter.set_tolerance(Tolerance::VIEWING);
     let progress = steps.begin("splatting");
-    splatter.render(&salf.camera, &Unpainted, &*progress)?;
-    let drawn = timed(|| Ok(splatter.refocus(&salf.camera, &*progress)?))?;
-    let mut record =
-        EngineRecord::of(&format!("plane, circle {diameter} px"), what, &salf, measured.copy, drawn.seconds);
-    record.coc_px = diameter;
-    record.tolerance = Some(Tolerance::VIEWING.share_of_circle);
-    record.bytes = splatter.bytes().iter().sum::<usize>() as u64;
-    note(&record.line());
-    measured.records.push(record);
+    let mut planes = Vec::new();
+    for &size in sizes {
+        let mut splatter = Splatter::new(plane(size, diameter));
+        splatter.set_tolerance(Tolerance::VIEWING);
+        let camera = splatter.salf().camera.clone();
+        splatter.render(&camera, &Unpainted, &*progress)?;
+        planes.push((splatter, camera));
+    }
+    let progress = &*progress;
+    let mut works: Vec<_> = planes
+        .iter_mut()
+        .map(|(splatter, camera)| {
+            let mut lenses = other_lenses(camera);
+            move || Ok(splatter.refocus(&lenses.next().expect("endless"), progress)?)
+        })
+        .collect();
+    let timings = measured.frame.in_turn(&mut works)?;
+    for ((splatter, _), timing) in planes.iter().zip(timings) {
+        let scene = format!("plane, circle {diameter} px");
+        let mut record = EngineRecord::of(&scene, what, splatter.salf(), timing);
+        record.coc_px = diameter;
+        record.tolerance = Some(Tolerance::VIEWING.share_of_circle);
+        record.bytes = splatter.bytes().iter().sum::<usize>() as u64;
+        note(&record.line());
+        measured.records.push(record);
+    }
     Ok(())
 }
 

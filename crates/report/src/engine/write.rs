@@ -27,7 +27,8 @@ const TITLE: &str = "The splat engine: speed and error";
 
 fn method(copy: f64) -> String {
     format!(
-        "F = {:.2} ms: copying one RGB float frame with all threads in the same run. PSNR against the converged splat of \
+        "F = {:.2} ms: copying one RGB float frame with all threads, the median of the run; \
+         a time is in copies that were made beside it. PSNR against the converged splat of \
          the same light field, on linear values clipped to [0, 1]; outlines: within 6 px of depth discontinuities. \
          Tolerance: the side of a node as a share of a circle of confusion of 16 px. Truth: against ray tracing with many \
          rays, exposure \"conserve\", the own error of which is part of it; the ray tracer itself: how many times as long it \
