@@ -23,7 +23,8 @@
 //! sum of a painted picture is off by some 0.05 %; but for live ones, a further gain for each colour of the light that shares
 //! makes it what it was ([`Gains::find_rest`]).
 
-use crate::partition::Share;
+use crate::partition::{Parts, Share};
+use crate::resolve::{BLACK, Light};
 use crate::widest::with_widest_instructions;
 use rayon::prelude::*;
 
@@ -43,17 +44,25 @@ pub enum Scaled {
 pub struct KnotSums(pub [[f32; 4]; 4]);
 
 impl KnotSums {
-    /// Those of one pixel of weight 1.
+    /// Those of one pixel of weight 1; without those of the picture unless `HAS_PICTURE`.
     #[inline(always)]
-    fn of(free: &[f32; 4], sharing: &[f32; 4], share: &Share) -> Self {
-        let shared = sharing.map(|light| share.partial * light);
-        let [before, after] = [sharing, &shared].map(|sharing| std::array::from_fn(|c| free[c] + sharing[c]));
-        Self([*sharing, shared, before, after.map(|light: f32| share.even * light)])
+    fn of<const HAS_PICTURE: bool>(free: &Light, sharing: &Light, share: &Share) -> Self {
+        let mut sums = [BLACK; 4];
+        for c in 0..4 {
+            let shared = share.partial * sharing[c];
+            (sums[0][c], sums[1][c]) = (sharing[c], shared);
+            if HAS_PICTURE {
+                (sums[2][c], sums[3][c]) = (free[c] + sharing[c], share.even * (free[c] + shared));
+            }
+        }
+        Self(sums)
     }
 
     #[inline(always)]
-    fn add(&mut self, weight: f32, other: &Self) {
-        for (sum, other) in self.0.as_flattened_mut().iter_mut().zip(other.0.as_flattened()) {
+    fn add<const HAS_PICTURE: bool>(&mut self, weight: f32, other: &Self) {
+        let count = if HAS_PICTURE { 16 } else { 8 };
+        let sums = self.0.as_flattened_mut()[..count].iter_mut();
+        for (sum, other) in sums.zip(&other.0.as_flattened()[..count]) {
             *sum += weight * other;
         }
     }
@@ -87,29 +96,20 @@ impl Knots {
         self.size[1].div_ceil(SPACING) + 1
     }
 
-    /// Sums a whole row of pixels, free and sharing: a sum for each column of knots.
-    pub fn sum_row(&self, [free, sharing]: [&[[f32; 4]]; 2], shares: &[Share], sums: &mut [KnotSums]) {
-        let spans = free.chunks(SPACING).zip(sharing.chunks(SPACING)).zip(shares.chunks(SPACING));
-        with_widest_instructions(
-            #[inline(always)]
-            || {
-                // Of the knot before the span, and of the one behind it.
-                let mut both = [KnotSums::default(); 2];
-                for (((free, sharing), shares), sum) in spans.zip(&mut *sums) {
-                    for (x, ((free, sharing), share)) in free.iter().zip(sharing).zip(shares).enumerate() {
-                        let of_pixel = KnotSums::of(free, sharing, share);
-                        let (_, behind) = place(x);
-                        both[0].add(1.0 - behind, &of_pixel);
-                        both[1].add(behind, &of_pixel);
-                    }
-                    *sum = both[0];
-                    both = [both[1], KnotSums::default()];
-                }
-                if let Some(last) = sums.last_mut() {
-                    *last = both[0];
-                }
-            },
-        );
+    /// Sums a whole row of pixels: a sum for each column of knots. Those of the picture, beside those of what shares, only if
+    /// asked for.
+    pub fn sum_row(&self, parts: Parts<'_>, shares: &[Share], sums: &mut [KnotSums], has_picture: bool) {
+        if has_picture {
+            with_widest_instructions(
+                #[inline(always)]
+                || sum_pixels::<true>(parts, shares, sums),
+            );
+        } else {
+            with_widest_instructions(
+                #[inline(always)]
+                || sum_pixels::<false>(parts, shares, sums),
+            );
+        }
     }
 
     /// The sums of knots from those of all rows of pixels.
@@ -120,12 +120,48 @@ impl Knots {
             let mut sum = KnotSums::default();
             for y in (row.max(1) - 1) * SPACING..((row + 1) * SPACING).min(self.size[1]) {
                 let (before, behind) = place(y);
-                sum.add(if before == row { 1.0 - behind } else { behind }, &rows[y * columns + column]);
+                sum.add::<true>(
+                    if before == row { 1.0 - behind } else { behind },
+                    &rows[y * columns + column],
+                );
             }
             sum
         };
         (0..columns * self.rows()).into_par_iter().map(sum).collect()
     }
+}
+
+/// Sums that take turns, a pixel each: none waits for the one before.
+const TURNS: usize = 2;
+
+#[inline(always)]
+fn sum_pixels<const HAS_PICTURE: bool>(parts: Parts<'_>, shares: &[Share], sums: &mut [KnotSums]) {
+    let lights = parts.free.chunks(SPACING).zip(parts.sharing.chunks(SPACING));
+    // Of the knot before the span, and of the one behind it.
+    let mut both = [[KnotSums::default(); TURNS]; 2];
+    for (((free, sharing), shares), sum) in lights.zip(shares.chunks(SPACING)).zip(&mut *sums) {
+        let turns = free.chunks(TURNS).zip(sharing.chunks(TURNS)).zip(shares.chunks(TURNS));
+        for (first, ((free, sharing), shares)) in (0..).step_by(TURNS).zip(turns) {
+            for turn in 0..TURNS.min(free.len()) {
+                let of_pixel = KnotSums::of::<HAS_PICTURE>(&free[turn], &sharing[turn], &shares[turn]);
+                let (_, behind) = place(first + turn);
+                both[0][turn].add::<HAS_PICTURE>(1.0 - behind, &of_pixel);
+                both[1][turn].add::<HAS_PICTURE>(behind, &of_pixel);
+            }
+        }
+        *sum = added(&both[0]);
+        both = [both[1], [KnotSums::default(); TURNS]];
+    }
+    if let Some(last) = sums.last_mut() {
+        *last = added(&both[0]);
+    }
+}
+
+#[inline(always)]
+fn added([even, odd]: &[KnotSums; TURNS]) -> KnotSums {
+    let mut sum = *even;
+    sum.add::<true>(1.0, odd);
+    sum
 }
 
 /// The gains of a picture, and room to find them.
@@ -368,7 +404,7 @@ mod tests {
         for ((pixels, shares), sums) in lines.zip(rows.chunks_mut(knots.columns())) {
             let [free, sharing] = [|p: &([f32; 4], [f32; 4])| p.0, |p: &([f32; 4], [f32; 4])| p.1]
                 .map(|of| pixels.iter().map(of).collect::<Vec<_>>());
-            knots.sum_row([&free, &sharing], shares, sums);
+            knots.sum_row(Parts { free: &free, sharing: &sharing }, shares, sums, true);
         }
         Gains::of(knots, &knots.sums(&rows))
     }

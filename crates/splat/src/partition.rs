@@ -18,11 +18,10 @@
 //!
 //! Light that either takes from a surface is given back nearby ([`crate::balance`]): none is made or lost.
 
-use crate::balance::{Gains, KnotSums, Knots, Scaled};
+use crate::balance::GainsOfRow;
 use crate::fixed::{floored, ratio};
-use crate::resolve::Lines;
+use crate::resolve::{BLACK, Light};
 use crate::widest::with_widest_instructions;
-use std::ops::Range;
 
 /// A pixel's factors.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -63,112 +62,104 @@ impl Share {
     }
 }
 
-/// What a pixel holds that nothing was thrown at.
-const BLACK: [f32; 4] = [0.0; 4];
-
-/// Where the pixels of lines lie among some whole rows of the picture.
-#[derive(Clone)]
-pub struct Strip {
-    /// Pixels a row of the picture.
-    pub width: usize,
-    /// The picture's row that is the first of the whole ones.
-    pub first: usize,
-    pub rows: Range<usize>,
-    pub columns: Range<usize>,
+/// Some pixels of a row of the sums: what is free, and what shares the rest.
+#[derive(Clone, Copy)]
+pub struct Parts<'a> {
+    pub free: &'a [Light],
+    pub sharing: &'a [Light],
 }
 
-impl Strip {
-    /// Calls `visit` with each row and its pixels of either part, free and sharing.
-    fn each_row(&self, parts: &[Option<Lines>; 2], mut visit: impl FnMut(usize, &[[f32; 4]], &[[f32; 4]])) {
-        let black = vec![BLACK; if parts.iter().all(Option::is_some) { 0 } else { self.columns.len() }];
-        let [mut free, mut sharing] = parts.each_ref().map(|lines| lines.as_ref().map(Lines::rows));
-        for row in self.rows.clone() {
-            let free = free.as_mut().and_then(Iterator::next).unwrap_or(&black);
-            let sharing = sharing.as_mut().and_then(Iterator::next).unwrap_or(&black);
-            visit(row, free, sharing);
-        }
-    }
-}
-
-/// Finds the factors of the pixels of whole rows from the lines of a standard picture, free and sharing.
-pub fn find_shares(parts: &[Option<Lines>; 2], strip: &Strip, shares: &mut [Share]) {
-    strip.each_row(parts, |row, free, sharing| {
-        let shares = &mut shares[row * strip.width..][..strip.width];
+impl Parts<'_> {
+    /// Finds the factors of the pixels of a standard picture.
+    pub fn find_shares(self, shares: &mut [Share]) {
         with_widest_instructions(
             #[inline(always)]
             || {
-                for (share, (free, sharing)) in shares.iter_mut().zip(free.iter().zip(sharing)) {
+                for (share, (free, sharing)) in shares.iter_mut().zip(self.free.iter().zip(self.sharing)) {
                     *share = Share::of(free[3], sharing[3]);
                 }
             },
         );
-    });
-}
+    }
 
-/// Finds what whole rows bring to each column of `knots`.
-pub fn sum_rows(
-    parts: &[Option<Lines>; 2],
-    strip: &Strip,
-    knots: &Knots,
-    shares: &[Share],
-    sums: &mut [KnotSums],
-) {
-    let columns = knots.columns();
-    strip.each_row(parts, |row, free, sharing| {
-        let shares = &shares[row * strip.width..][..strip.width];
-        knots.sum_row([free, sharing], shares, &mut sums[row * columns..][..columns]);
-    });
-}
-
-/// Joins lines, free and sharing, to pixels and their coverage, scaled by `gains` once these are known; evened out if asked
-/// for: only where nothing is painted.
-pub fn join(
-    parts: &[Option<Lines>; 2],
-    strip: &Strip,
-    shares: &[Share],
-    gains: Option<&Gains>,
-    is_evened: bool,
-    (radiance, coverage): (&mut [[f32; 3]], &mut [f32]),
-) {
-    strip.each_row(parts, |row, free, sharing| {
-        let here = row * strip.width + strip.columns.start..row * strip.width + strip.columns.end;
-        let mut row_of = RowToJoin {
-            free,
-            sharing,
-            shares: &shares[here.clone()],
-            radiance: &mut radiance[here.clone()],
-            coverage: &mut coverage[here],
-            is_evened,
-        };
-        let scaled = if is_evened { Scaled::All } else { Scaled::Sharing };
-        match gains.map(|gains| gains.of_row(strip.first + row, scaled)) {
-            Some(of_row) => with_widest_instructions(
+    /// Joins them to pixels, which `gains` scale if they are known; evened out if asked for: only where nothing is painted.
+    pub fn join(self, shares: &[Share], gains: Option<&GainsOfRow>, is_evened: bool, pixels: Pixels<'_>) {
+        let first = pixels.first;
+        let mut row = RowToJoin { parts: self, shares, pixels, is_evened };
+        match gains {
+            Some(gains) => with_widest_instructions(
                 #[inline(always)]
-                || row_of.join(|x| of_row.at(strip.columns.start + x)),
+                || row.join(|x| gains.at(first + x)),
             ),
             None => with_widest_instructions(
                 #[inline(always)]
-                || row_of.join(|_| [1.0; 4]),
+                || row.join(|_| [1.0; 4]),
             ),
         }
-    });
+    }
+
+    /// Sets pixels to what shares, before gains: a painted picture's are known when all of it is.
+    pub fn share(self, shares: &[Share], pixels: Pixels<'_>) {
+        with_widest_instructions(
+            #[inline(always)]
+            || {
+                for (((radiance, coverage), sharing), share) in pixels.each().zip(self.sharing).zip(shares) {
+                    let mut light = BLACK;
+                    for c in 0..4 {
+                        light[c] = share.partial * sharing[c];
+                    }
+                    (*radiance, *coverage) = ([light[0], light[1], light[2]], light[3]);
+                }
+            },
+        );
+    }
+
+    /// Joins what is free to pixels that were set to what shares.
+    pub fn join_shared(self, gains: &GainsOfRow, pixels: Pixels<'_>) {
+        with_widest_instructions(
+            #[inline(always)]
+            || {
+                let columns = pixels.first..;
+                for (x, ((radiance, coverage), free)) in columns.zip(pixels.each().zip(self.free)) {
+                    let gain = gains.at(x);
+                    for c in 0..3 {
+                        radiance[c] = free[c] + radiance[c] * gain[c];
+                    }
+                    *coverage = free[3] + *coverage * gain[3];
+                }
+            },
+        );
+    }
+}
+
+/// Some pixels of a row of a picture.
+pub struct Pixels<'a> {
+    /// The first one's column.
+    pub first: usize,
+    pub radiance: &'a mut [[f32; 3]],
+    pub coverage: &'a mut [f32],
+}
+
+impl<'a> Pixels<'a> {
+    #[inline(always)]
+    fn each(self) -> impl Iterator<Item = (&'a mut [f32; 3], &'a mut f32)> {
+        self.radiance.iter_mut().zip(self.coverage)
+    }
 }
 
 /// Some pixels of a row.
 struct RowToJoin<'a> {
-    free: &'a [[f32; 4]],
-    sharing: &'a [[f32; 4]],
+    parts: Parts<'a>,
     shares: &'a [Share],
-    radiance: &'a mut [[f32; 3]],
-    coverage: &'a mut [f32],
+    pixels: Pixels<'a>,
     is_evened: bool,
 }
 
 impl RowToJoin<'_> {
     #[inline(always)]
     fn join(&mut self, gain: impl Fn(usize) -> [f32; 4]) {
-        let lines = self.free.iter().zip(self.sharing).zip(self.shares);
-        let pixels = self.radiance.iter_mut().zip(&mut *self.coverage);
+        let lines = self.parts.free.iter().zip(self.parts.sharing).zip(self.shares);
+        let pixels = self.pixels.radiance.iter_mut().zip(&mut *self.pixels.coverage);
         for (x, (((free, sharing), share), (radiance, coverage))) in lines.zip(pixels).enumerate() {
             let gain = gain(x);
             let mut light = [0.0; 4];

@@ -33,82 +33,40 @@ impl Window {
     }
 }
 
-/// Sums of red, green, blue and coverage of a window's pixels, each 1 for a pixel of radiance 1, row by row.
-pub struct Lines {
+/// Red, green, blue and coverage, each 1 for a pixel of radiance 1.
+pub type Light = [f32; 4];
+
+/// What a pixel holds that nothing was thrown at.
+pub const BLACK: Light = [0.0; 4];
+
+/// The pixels of a window of a level, row by row.
+struct Lines {
     window: Window,
-    pixels: Vec<[f32; 4]>,
+    pixels: Vec<Light>,
+}
+
+impl Lines {
+    fn row(&self, row: i32) -> Option<&[Light]> {
+        let (rows, width) = (&self.window.rows, self.window.columns.len());
+        rows.contains(&row).then(|| &self.pixels[(row - rows.start) as usize * width..][..width])
+    }
 }
 
 /// Room for pixels, used again and again.
 #[derive(Default)]
-pub struct Room(Vec<Vec<[f32; 4]>>);
+pub struct Room(Vec<Vec<Light>>);
 
 impl Room {
-    fn take(&mut self) -> Vec<[f32; 4]> {
+    /// So many pixels, whatever they hold.
+    pub fn take(&mut self, count: usize) -> Vec<Light> {
         let mut pixels = self.0.pop().unwrap_or_default();
-        pixels.clear();
+        pixels.resize(count, BLACK);
         pixels
     }
 
-    /// Lines that nobody needs any more.
-    pub fn give_back(&mut self, lines: Lines) {
-        self.0.push(lines.pixels);
-    }
-}
-
-impl Lines {
-    fn black(window: Window, mut pixels: Vec<[f32; 4]>) -> Self {
-        pixels.resize(window.rows.len() * window.columns.len(), [0.0; 4]);
-        Self { window, pixels }
-    }
-
-    /// The rows.
-    pub fn rows(&self) -> impl Iterator<Item = &[[f32; 4]]> {
-        self.pixels.chunks_exact(self.window.columns.len().max(1))
-    }
-
-    fn row(&self, row: i32) -> Option<&[[f32; 4]]> {
-        let (rows, width) = (&self.window.rows, self.window.columns.len());
-        rows.contains(&row).then(|| &self.pixels[(row - rows.start) as usize * width..][..width])
-    }
-
-    /// Adds the first `CHANNELS` channels of a level's pixels. If marks are kept of it, columns outside of the window are
-    /// those of the last time.
-    pub fn add<W: Word, const CHANNELS: usize>(
-        &mut self,
-        level: &Level<W>,
-        quanta: Quanta,
-        mut kept: Option<&mut Marks<W>>,
-    ) -> Result<(), Overflow> {
-        let Window { rows, columns } = &self.window;
-        let in_memory = (columns.start + 1) as usize..(columns.end + 1) as usize;
-        let mut unkept = Marks::none(0..1, level.columns());
-        for (row, line) in rows.clone().zip(self.pixels.chunks_exact_mut(columns.len().max(1))) {
-            let (marks, spans) = match &mut kept {
-                Some(kept) => (kept.of_row(row), spans(&in_memory)),
-                None => {
-                    let marks = unkept.of_row(0);
-                    let all = 0..marks.len();
-                    (marks, all)
-                }
-            };
-            let Some(row) = level.row(row) else {
-                marks[spans].fill(Mark::default());
-                continue;
-            };
-            with_widest_instructions(
-                #[inline(always)]
-                || {
-                    let first_span = spans.start;
-                    integrate::<W, CHANNELS>(&row, quanta, &in_memory, line, &mut marks[spans], first_span)
-                },
-            )?;
-            let covered: i64 = marks.iter().fold(0, |sum, mark| sum.wrapping_add(mark.covered));
-            if covered != row.total {
-                return Err(Overflow);
-            }
-        }
-        Ok(())
+    /// Pixels that nobody needs any more.
+    pub fn give_back(&mut self, pixels: Vec<Light>) {
+        self.0.push(pixels);
     }
 }
 
@@ -129,42 +87,114 @@ impl Quanta {
     }
 }
 
-/// The pixels of a sum in a window of the picture; `None` if they are black. `marks` are those of its rows of the finest level.
-pub fn lines<W: Word>(
-    accumulator: &Accumulator<W>,
+/// The rows of a level's pixels, and of what is coarser, in some columns: each is made when it is read, while it is near.
+pub struct LevelRows<'a, W: Word> {
+    level: &'a Level<W>,
     quanta: Quanta,
-    window: &Window,
-    marks: &mut Marks<W>,
-    room: &mut Room,
-) -> Result<Option<Lines>, Overflow> {
-    let levels = || {
-        let levels = accumulator.levels.iter().enumerate();
-        levels.map(|(k, level)| (level, window.on_level(k).within(level)))
-    };
-    let is_touched =
-        |(level, mut window): (&Level<W>, Window)| window.rows.any(|row| level.row(row).is_some());
-    let Some(coarsest) = levels().rposition(is_touched) else {
-        window.rows.clone().for_each(|row| marks.of_row(row).fill(Mark::default()));
-        return Ok(None);
-    };
-    let mut above: Option<Lines> = None;
-    for (k, (level, window)) in levels().take(coarsest + 1).enumerate().rev() {
-        let mut here = match above.take() {
-            Some(coarse) => {
-                let pixels = room.take();
-                let here = with_widest_instructions(
-                    #[inline(always)]
-                    || upsampled(&coarse, window.clone(), pixels),
-                );
-                room.give_back(coarse);
-                here
+    columns: Columns,
+    /// What the coarser levels hold together; `None` if they are black.
+    coarser: Option<Lines>,
+    /// A row between two of the coarser ones.
+    mixed: Vec<Light>,
+}
+
+impl<'a, W: Word> LevelRows<'a, W> {
+    /// Those of a sum in a window of the picture.
+    pub fn of_sum(
+        accumulator: &'a Accumulator<W>,
+        quanta: Quanta,
+        window: &Window,
+        room: &mut Room,
+    ) -> Result<Self, Overflow> {
+        let mut coarser: Option<Lines> = None;
+        for (k, level) in accumulator.levels.iter().enumerate().skip(1).rev() {
+            let window = window.on_level(k).within(level);
+            if coarser.is_none() && window.rows.clone().all(|row| level.row(row).is_none()) {
+                continue;
             }
-            None => Lines::black(window, room.take()),
-        };
-        here.add::<W, 4>(level, quanta, (k == 0).then_some(&mut *marks))?;
-        above = Some(here);
+            let mut here = Self::new(level, quanta, Columns::unmarked(&window.columns, level), coarser, room);
+            let mut pixels = room.take(window.rows.len() * window.columns.len());
+            let mut unkept = Marks::none(0..1, level.columns());
+            for (row, line) in window.rows.clone().zip(pixels.chunks_exact_mut(window.columns.len().max(1))) {
+                here.read(row, unkept.of_row(0), line)?;
+            }
+            here.give_back(room);
+            coarser = Some(Lines { window, pixels });
+        }
+        Ok(Self::new(&accumulator.levels[0], quanta, Columns::marked(&window.columns), coarser, room))
     }
-    Ok(above)
+
+    fn new(
+        level: &'a Level<W>,
+        quanta: Quanta,
+        columns: Columns,
+        coarser: Option<Lines>,
+        room: &mut Room,
+    ) -> Self {
+        let mixed = room.take(coarser.as_ref().map_or(0, |coarser| coarser.window.columns.len()));
+        Self { level, quanta, columns, coarser, mixed }
+    }
+
+    /// What they needed room for.
+    pub fn give_back(self, room: &mut Room) {
+        room.give_back(self.mixed);
+        self.coarser.into_iter().for_each(|coarser| room.give_back(coarser.pixels));
+    }
+
+    /// Sets a line to the pixels of a row. `marks` are the row's.
+    pub fn read(&mut self, row: i32, marks: &mut [Mark<W>], line: &mut [Light]) -> Result<(), Overflow> {
+        match &self.coarser {
+            Some(coarser) => with_widest_instructions(
+                #[inline(always)]
+                || upsample(coarser, row, self.columns.in_memory.start as i32 - 1, &mut self.mixed, line),
+            ),
+            None => line.fill(BLACK),
+        }
+        add_row::<W, 4>(self.level, row, &self.columns, self.quanta, marks, line)
+    }
+}
+
+/// Columns of a level that are asked for.
+#[derive(Clone)]
+pub struct Columns {
+    /// Where they lie in memory, behind the border.
+    in_memory: Range<usize>,
+    /// The spans that are summed.
+    spans: Range<usize>,
+}
+
+impl Columns {
+    /// Of a level whose marks are kept: those outside of these columns are those of the last time.
+    pub fn marked(columns: &Range<i32>) -> Self {
+        let in_memory = (columns.start + 1) as usize..(columns.end + 1) as usize;
+        Self { spans: spans(&in_memory), in_memory }
+    }
+
+    /// Of a level that has no marks: rows are summed from their beginning to their end.
+    fn unmarked<W: Word>(columns: &Range<i32>, level: &Level<W>) -> Self {
+        Self { spans: 0..level.columns().div_ceil(SPAN), ..Self::marked(columns) }
+    }
+}
+
+/// Adds the first `CHANNELS` channels of a row of a level's pixels in some columns. `marks` are the row's.
+pub fn add_row<W: Word, const CHANNELS: usize>(
+    level: &Level<W>,
+    row: i32,
+    Columns { in_memory, spans }: &Columns,
+    quanta: Quanta,
+    marks: &mut [Mark<W>],
+    line: &mut [Light],
+) -> Result<(), Overflow> {
+    let Some(row) = level.row(row) else {
+        marks.fill(Mark::default());
+        return Ok(());
+    };
+    with_widest_instructions(
+        #[inline(always)]
+        || integrate::<W, CHANNELS>(&row, quanta, in_memory, line, &mut marks[spans.clone()], spans.start),
+    )?;
+    let covered: i64 = marks.iter().fold(0, |sum, mark| sum.wrapping_add(mark.covered));
+    if covered == row.total { Ok(()) } else { Err(Overflow) }
 }
 
 /// Adds the pixels of a row of a level in some columns in memory to a line, and sets the marks of the spans from `first_span`
@@ -174,7 +204,7 @@ fn integrate<W: Word, const CHANNELS: usize>(
     row: &Row<W>,
     quanta: Quanta,
     window: &Range<usize>,
-    line: &mut [[f32; 4]],
+    line: &mut [Light],
     marks: &mut [Mark<W>],
     first_span: usize,
 ) -> Result<(), Overflow> {
@@ -215,36 +245,46 @@ fn integrate<W: Word, const CHANNELS: usize>(
     if largest[3].wide() <= quanta.largest_coverage { Ok(()) } else { Err(Overflow) }
 }
 
-/// Bilinear: a fine pixel lies a quarter of a coarse one off its centre.
+/// A row of a finer level, from a column on. Bilinear: a fine pixel lies a quarter of a coarse one off its centre.
 #[inline(always)]
-fn upsampled(coarse: &Lines, window: Window, mut pixels: Vec<[f32; 4]>) -> Lines {
+fn upsample(coarse: &Lines, row: i32, first: i32, mixed: &mut [Light], line: &mut [Light]) {
     const NEAR: f32 = 0.75;
     const FAR: f32 = 0.25;
-    let mix = |a: &[f32; 4], b: &[f32; 4]| -> [f32; 4] { std::array::from_fn(|c| NEAR * a[c] + FAR * b[c]) };
-    let black = vec![[0f32; 4]; coarse.window.columns.len()];
-    let mut mixed = black.clone();
-    let (width, first) = (window.columns.len(), window.columns.start);
+    let mix = |a: &Light, b: &Light| {
+        let mut mixed = BLACK;
+        for c in 0..4 {
+            mixed[c] = NEAR * a[c] + FAR * b[c];
+        }
+        mixed
+    };
+    // A fine row's coarse one, and the neighbour it leans to.
+    let near = coarse.row(row >> 1);
+    let far = coarse.row((row >> 1) + if row & 1 == 0 { -1 } else { 1 });
+    match (near, far) {
+        (Some(near), Some(far)) => {
+            for ((out, near), far) in mixed.iter_mut().zip(near).zip(far) {
+                *out = mix(near, far);
+            }
+        }
+        (Some(near), None) => mixed.iter_mut().zip(near).for_each(|(out, near)| *out = mix(near, &BLACK)),
+        (None, Some(far)) => mixed.iter_mut().zip(far).for_each(|(out, far)| *out = mix(&BLACK, far)),
+        (None, None) => mixed.fill(BLACK),
+    }
     // Fine columns 2k − 1 and 2k lie between the coarse ones k − 1 and k.
     let between = ((first + 1) >> 1) - 1 - coarse.window.columns.start;
-    let half = usize::from(first & 1 == 0);
-    pixels.reserve(width * window.rows.len() + 2);
-    for row in window.rows.clone() {
-        // A fine row's coarse one, and the neighbour it leans to.
-        let rows = [row >> 1, (row >> 1) + if row & 1 == 0 { -1 } else { 1 }];
-        let [near, far] = rows.map(|row| coarse.row(row).unwrap_or(&black));
-        for ((out, near), far) in mixed.iter_mut().zip(near).zip(far) {
-            *out = mix(near, far);
-        }
-        let end = pixels.len() + width;
-        let mut pairs = mixed[between as usize..].windows(2);
-        if half == 1 {
-            pixels.extend(pairs.next().map(|pair| mix(&pair[1], &pair[0])));
-        }
-        let pairs = pairs.take((end - pixels.len()).div_ceil(2));
-        pixels.extend(pairs.flat_map(|pair| [mix(&pair[0], &pair[1]), mix(&pair[1], &pair[0])]));
-        pixels.truncate(end);
+    let mut pairs = mixed[between as usize..].windows(2);
+    let (odd, rest) = line.split_at_mut(usize::from(first & 1 == 0).min(line.len()));
+    for (pixel, pair) in odd.iter_mut().zip(&mut pairs) {
+        *pixel = mix(&pair[1], &pair[0]);
     }
-    Lines { window, pixels }
+    let mut twos = rest.chunks_exact_mut(2);
+    for (two, pair) in (&mut twos).zip(&mut pairs) {
+        two[0] = mix(&pair[0], &pair[1]);
+        two[1] = mix(&pair[1], &pair[0]);
+    }
+    for (pixel, pair) in twos.into_remainder().iter_mut().zip(pairs) {
+        *pixel = mix(&pair[0], &pair[1]);
+    }
 }
 
 #[cfg(test)]
@@ -254,20 +294,28 @@ mod tests {
 
     const FINE: Quanta = Quanta { quantum: 1.0 / 1024.0, largest_coverage: i64::MAX };
 
-    fn part(accumulator: &Accumulator<i32>, window: &Window) -> Vec<[f32; 4]> {
-        let black = vec![[0.0; 4]; window.columns.len() * window.rows.len()];
+    fn part(accumulator: &Accumulator<i32>, window: &Window) -> Vec<Light> {
         let level = &accumulator.levels[0];
         let mut marks = Marks::none(-1..level.height as i32 + 1, level.columns());
-        let whole = Window { rows: -1..level.height as i32 + 1, columns: -1..level.width as i32 + 1 };
         let mut room = Room::default();
-        lines(accumulator, FINE, &whole, &mut marks, &mut room).unwrap();
+        let mut read = |window: &Window, marks: &mut Marks<i32>| {
+            let mut rows = LevelRows::of_sum(accumulator, FINE, window, &mut room).unwrap();
+            let mut pixels = vec![[7.0; 4]; window.columns.len() * window.rows.len()];
+            for (row, line) in window.rows.clone().zip(pixels.chunks_mut(window.columns.len())) {
+                rows.read(row, marks.of_row(row), line).unwrap();
+            }
+            rows.give_back(&mut room);
+            pixels
+        };
+        let whole = Window { rows: -1..level.height as i32 + 1, columns: -1..level.width as i32 + 1 };
+        read(&whole, &mut marks);
         let marked = marks.clone();
-        let lines = lines(accumulator, FINE, window, &mut marks, &mut room).unwrap();
+        let pixels = read(window, &mut marks);
         assert_eq!(marks, marked);
-        lines.map_or(black, |lines| lines.rows().flatten().copied().collect())
+        pixels
     }
 
-    fn whole(accumulator: &Accumulator<i32>) -> Vec<[f32; 4]> {
+    fn whole(accumulator: &Accumulator<i32>) -> Vec<Light> {
         let level = &accumulator.levels[0];
         part(accumulator, &Window { rows: 0..level.height as i32, columns: 0..level.width as i32 })
     }
@@ -291,21 +339,24 @@ mod tests {
 
     #[test]
     fn parts_equal_the_whole_and_mass_is_kept() {
-        let mut accumulator = Accumulator::<i32>::new(64, 64, LEVELS);
+        let mut accumulator = Accumulator::<i32>::new(600, 64, LEVELS);
         let mut canvas = accumulator.canvas();
         canvas.levels[3].add_run(4, 16000, 20800, [1 << 20; 4], 1);
         canvas.levels[1].add_run(13, 48000, 68800, [1 << 20; 4], 1);
         canvas.levels[0].add_run(40, 48000, 68800, [1 << 20; 4], 1);
+        // Behind several marks, and on coarser levels, which have none.
+        canvas.levels[0].add_run(40, 2_000_000, 2_200_000, [1 << 10; 4], 1);
+        canvas.levels[1].add_run(13, 1_000_000, 1_200_000, [1 << 10; 4], 1);
         drop(canvas);
         let lines = whole(&accumulator);
         let mass: f64 = lines.iter().map(|pixel| pixel[3] as f64).sum();
-        let wanted = (300.0 * 64.0 + 1300.0 * 4.0 + 1300.0) / 256.0 * 1024.0;
+        let wanted = (300.0 * 64.0 + 1300.0 * 4.0 + 1300.0) / 256.0 * 1024.0 + 5.0 * 200_000.0 / 4096.0;
         assert!((mass / wanted - 1.0).abs() < 1e-4, "{mass} {wanted}");
         for rows in [0..64, 3..4, 30..41, 63..64] {
-            for columns in [0..64, 5..6, 10..31, 12..30, 63..64] {
+            for columns in [0..600, 5..6, 10..31, 12..30, 63..64, 120..130, 470..530] {
                 let window = Window { rows: rows.clone(), columns: columns.clone() };
                 let here = columns.start as usize..columns.end as usize;
-                let wanted = lines.chunks(64).map(|line| &line[here.clone()]);
+                let wanted = lines.chunks(600).map(|line| &line[here.clone()]);
                 let wanted = wanted.skip(rows.start as usize).take(rows.len()).flatten().copied();
                 assert_eq!(part(&accumulator, &window), wanted.collect::<Vec<_>>(), "{window:?}");
             }

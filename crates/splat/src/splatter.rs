@@ -2,15 +2,15 @@
 
 mod on_card;
 
-use crate::balance::Balance;
+use crate::balance::{Balance, Scaled};
 use crate::bands::Pace;
 use crate::draw::Pen;
 use crate::drawn::{Before, BlockList, Changes, Scene};
 use crate::lens_in_use::{LensInUse, Tolerance};
 use crate::nodes::{Nodes, Scale};
 use crate::paint::Paint;
-use crate::partition::{Share, Strip, find_shares, join, sum_rows};
-use crate::resolve::{Overflow, Room, Window};
+use crate::partition::{Parts, Pixels, Share};
+use crate::resolve::{BLACK, Overflow, Room, Window};
 use crate::seen::{Seen, seen};
 use crate::shape::Shape;
 use crate::stencil::Stencils;
@@ -59,8 +59,8 @@ pub struct Splatter {
     lens: LensInUse,
     paint: Paint,
     sums: Sums,
-    /// Of [`RESOLVE_ROWS`] rows each.
-    marks: Vec<SumMarks>,
+    /// Of [`RESOLVE_ROWS`] rows each, of what is free and of what shares the rest.
+    marks: Vec<[SumMarks; 2]>,
     /// What was drawn when all was summed last; room for what is.
     lists: Vec<BlockList>,
     /// How long that took.
@@ -211,7 +211,8 @@ impl Splatter {
     pub fn bytes(&self) -> [usize; 2] {
         let [nodes, sums] = self.card.bytes();
         let lists: usize = self.lists.iter().map(BlockList::bytes).sum();
-        let marks: usize = self.marks.iter().map(SumMarks::bytes).sum();
+        let marks: usize =
+            self.marks.iter().flatten().map(|(dim, bright)| dim.bytes() + bright.bytes()).sum();
         [
             nodes + self.nodes.as_ref().map_or(0, |nodes| nodes.bytes()),
             sums + self.sums.bytes() + self.balance.bytes() + lists + self.changes.bytes() + marks,
@@ -401,11 +402,13 @@ impl Splatter {
         }
         if !wanted.has_shares() {
             self.balance.gains.forget_rest();
-            if self.is_balanced() {
-                self.resolve_here(self.frame(), Wanted::Light)?;
-                self.balance.find_rest();
+            if !self.is_balanced() {
+                return self.resolve_here([rows, columns], wanted);
             }
-            return self.resolve_here([rows, columns], wanted);
+            // All of the picture: it is not live.
+            self.resolve_here(self.frame(), Wanted::Shared)?;
+            self.balance.find_rest();
+            return self.resolve_here(self.frame(), Wanted::PictureOverShared);
         }
         // What is evened out is only multiplied by the gains, once they are known.
         self.balance.forget();
@@ -429,9 +432,9 @@ impl Splatter {
         // The same chunks whatever rows are asked for.
         let chunks = rows.start as usize / RESOLVE_ROWS..(rows.end as usize).div_ceil(RESOLVE_ROWS);
         let (sums, knots) = (&self.sums, &self.balance.knots);
-        // With the shares they are still to be found.
-        let gains = (!wanted.has_shares()).then_some(&self.balance.gains);
+        let gains = &self.balance.gains;
         let is_evened = self.is_evened();
+        let scaled = if is_evened { Scaled::All } else { Scaled::Sharing };
         let radiance = self.picture.radiance.par_chunks_mut(RESOLVE_ROWS * width);
         let coverage = self.picture.coverage.par_chunks_mut(RESOLVE_ROWS * width);
         let shares = self.shares.par_chunks_mut(RESOLVE_ROWS * width);
@@ -445,26 +448,47 @@ impl Splatter {
                 let here = rows.start.max(first)..rows.end.min(first + (coverage.len() / width) as u32);
                 let signed = |range: &Range<u32>| range.start as i32..range.end as i32;
                 let window = Window { rows: signed(&here), columns: signed(&columns) };
-                let parts = match wanted {
-                    Wanted::Light => [None, sums.sharing_lines(nodes, &window, marks, room)?],
-                    _ => sums.lines(nodes, &window, marks, room)?,
-                };
-                let strip = Strip {
-                    width,
-                    first: first as usize,
-                    rows: (here.start - first) as usize..(here.end - first) as usize,
-                    columns: columns.start as usize..columns.end as usize,
-                };
-                if wanted.has_shares() {
-                    find_shares(&parts, &strip, shares);
+                let [free_marks, sharing_marks] = marks;
+                let [mut free, mut sharing] = [None, None];
+                if wanted.has_free() {
+                    free = Some(sums.free.rows(nodes, &window, free_marks, room)?);
                 }
-                if wanted.has_sums() {
-                    sum_rows(&parts, &strip, knots, shares, of_knots);
+                if wanted.has_sharing() {
+                    sharing = Some(sums.sharing.rows(nodes, &window, sharing_marks, room)?);
                 }
-                if wanted.has_picture() {
-                    join(&parts, &strip, shares, gains, is_evened, (radiance, coverage));
+                let mut lines = [room.take(columns.len()), room.take(columns.len())];
+                lines.iter_mut().for_each(|line| line.fill(BLACK));
+                for row in here {
+                    for (rows, line) in [&mut free, &mut sharing].into_iter().zip(&mut lines) {
+                        rows.as_mut().map_or(Ok(()), |rows| rows.read(row as i32, line))?;
+                    }
+                    let parts = Parts { free: &lines[0], sharing: &lines[1] };
+                    let at = (row - first) as usize;
+                    let here = at * width + columns.start as usize..at * width + columns.end as usize;
+                    let shares = &mut shares[here.clone()];
+                    if wanted.has_shares() {
+                        parts.find_shares(shares);
+                    }
+                    if wanted.has_sums() {
+                        let sums = &mut of_knots[at * knots.columns()..][..knots.columns()];
+                        knots.sum_row(parts, shares, sums, wanted.has_shares());
+                    }
+                    let pixels = Pixels {
+                        first: columns.start as usize,
+                        radiance: &mut radiance[here.clone()],
+                        coverage: &mut coverage[here],
+                    };
+                    let gains = || gains.of_row(row as usize, scaled);
+                    match wanted {
+                        Wanted::Shares => (),
+                        Wanted::SharesAndPicture => parts.join(shares, None, is_evened, pixels),
+                        Wanted::Picture => parts.join(shares, Some(&gains()), is_evened, pixels),
+                        Wanted::Shared => parts.share(shares, pixels),
+                        Wanted::PictureOverShared => parts.join_shared(&gains(), pixels),
+                    }
                 }
-                parts.into_iter().flatten().for_each(|lines| room.give_back(lines));
+                lines.into_iter().for_each(|line| room.give_back(line));
+                [free, sharing].into_iter().flatten().for_each(|rows| rows.give_back(room));
                 Ok(())
             },
         )
@@ -482,9 +506,12 @@ enum Wanted {
     /// What each pixel is multiplied by, from the sums of the standard picture.
     Shares,
     Picture,
+    /// Both, before the gains are known.
     SharesAndPicture,
-    /// How much light shares, before and after.
-    Light,
+    /// Only the light that shares, before its gains are known, in the place of the picture; and how much it is.
+    Shared,
+    /// The picture, in the place of the light that shares.
+    PictureOverShared,
 }
 
 impl Wanted {
@@ -492,12 +519,20 @@ impl Wanted {
         matches!(self, Self::Shares | Self::SharesAndPicture)
     }
 
-    fn has_sums(self) -> bool {
-        self != Self::Picture
-    }
-
     fn has_picture(self) -> bool {
         matches!(self, Self::Picture | Self::SharesAndPicture)
+    }
+
+    fn has_sums(self) -> bool {
+        self.has_shares() || self == Self::Shared
+    }
+
+    fn has_free(self) -> bool {
+        self != Self::Shared
+    }
+
+    fn has_sharing(self) -> bool {
+        self != Self::PictureOverShared
     }
 }
 

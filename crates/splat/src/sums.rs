@@ -1,13 +1,13 @@
 //! All nodes of a light field, summed band by band of the picture.
 
 use crate::bands::{Pace, Work};
-use crate::canvas::{Accumulator, Word};
+use crate::canvas::{Accumulator, Level, Word};
 use crate::draw::{Paper, Pen};
 use crate::drawn::{AHEAD, BlockList, Changes, Drawn, Scene, Spans};
 use crate::lens_in_use::Placed;
 use crate::marks::Marks;
 use crate::nodes::{Nodes, SplatNode};
-use crate::resolve::{Lines, Overflow, Quanta, Room, Window, lines};
+use crate::resolve::{Columns, LevelRows, Light, Overflow, Quanta, Room, Window, add_row};
 use crate::widest::{ask_for, with_widest_instructions};
 use progress::{Cancelled, Progress};
 use rayon::prelude::*;
@@ -43,18 +43,8 @@ pub struct Sums {
     pub sharing: Sum,
 }
 
-/// Marks of some rows of the sums: of ordinary samples, and of bright ones.
-pub struct SumMarks {
-    free: (Marks<i32>, Marks<i64>),
-    sharing: (Marks<i32>, Marks<i64>),
-}
-
-impl SumMarks {
-    /// Bytes in memory.
-    pub fn bytes(&self) -> usize {
-        [&self.free, &self.sharing].iter().map(|(dim, bright)| dim.bytes() + bright.bytes()).sum()
-    }
-}
+/// Marks of some rows of a sum: of ordinary samples, and of bright ones.
+pub type SumMarks = (Marks<i32>, Marks<i64>);
 
 /// Rows of a sum to draw on.
 struct SumCanvas<'a> {
@@ -79,7 +69,7 @@ impl Sum {
     }
 
     /// Marks of some of its rows, while they hold nothing.
-    fn marks(&self, rows: Range<i32>) -> (Marks<i32>, Marks<i64>) {
+    fn marks(&self, rows: Range<i32>) -> SumMarks {
         let columns = self.dim.levels[0].columns();
         let bright = if self.bright.is_some() { rows.clone() } else { 0..0 };
         (Marks::none(rows, columns), Marks::none(bright, columns))
@@ -89,22 +79,48 @@ impl Sum {
         self.dim.bytes() + self.bright.as_ref().map_or(0, Accumulator::bytes)
     }
 
-    /// Its pixels in a window; `None` if they are black.
-    fn lines(
-        &self,
+    /// The rows of its pixels in a window of the picture.
+    pub fn rows<'a>(
+        &'a self,
         nodes: &Nodes,
         window: &Window,
-        (dim_marks, bright_marks): &mut (Marks<i32>, Marks<i64>),
+        (dim_marks, bright_marks): &'a mut SumMarks,
         room: &mut Room,
-    ) -> Result<Option<Lines>, Overflow> {
+    ) -> Result<SumRows<'a>, Overflow> {
         let dim = Quanta::new(nodes.scale.dim_bits, 32, nodes.brightest.min(crate::nodes::BRIGHT as f64));
-        let mut found = lines(&self.dim, dim, window, dim_marks, room)?;
-        if let (Some(found), Some(bright)) = (&mut found, &self.bright) {
+        let bright = Quanta::new(nodes.scale.bright_bits, 64, nodes.brightest);
+        let of_bright = |sum: &'a Accumulator<i64>| (&sum.levels[0], bright, bright_marks);
+        Ok(SumRows {
+            columns: Columns::marked(&window.columns),
+            dim: LevelRows::of_sum(&self.dim, dim, window, room)?,
+            dim_marks,
+            bright: self.bright.as_ref().map(of_bright),
+        })
+    }
+}
+
+/// The rows of a sum's pixels in some columns, each made when it is read.
+pub struct SumRows<'a> {
+    columns: Columns,
+    dim: LevelRows<'a, i32>,
+    dim_marks: &'a mut Marks<i32>,
+    bright: Option<(&'a Level<i64>, Quanta, &'a mut Marks<i64>)>,
+}
+
+impl SumRows<'_> {
+    /// Sets a line to the pixels of a row.
+    pub fn read(&mut self, row: i32, line: &mut [Light]) -> Result<(), Overflow> {
+        self.dim.read(row, self.dim_marks.of_row(row), line)?;
+        if let Some((level, quanta, marks)) = &mut self.bright {
             // Their coverage is among the ordinary ones'.
-            let quanta = Quanta::new(nodes.scale.bright_bits, 64, nodes.brightest);
-            found.add::<i64, 3>(&bright.levels[0], quanta, Some(bright_marks))?;
+            add_row::<i64, 3>(level, row, &self.columns, *quanta, marks.of_row(row), line)?;
         }
-        Ok(found)
+        Ok(())
+    }
+
+    /// What they needed room for.
+    pub fn give_back(self, room: &mut Room) {
+        self.dim.give_back(room);
     }
 }
 
@@ -153,9 +169,9 @@ impl Sums {
         self.free.bytes() + self.sharing.bytes()
     }
 
-    /// Marks of some of their rows, while they hold nothing.
-    pub fn marks(&self, rows: Range<i32>) -> SumMarks {
-        SumMarks { free: self.free.marks(rows.clone()), sharing: self.sharing.marks(rows) }
+    /// Marks of some of their rows, free and sharing, while they hold nothing.
+    pub fn marks(&self, rows: Range<i32>) -> [SumMarks; 2] {
+        [self.free.marks(rows.clone()), self.sharing.marks(rows)]
     }
 
     /// Sets them to what a scene sends: to what `lists` then say. `pace` learns how long it takes.
@@ -227,29 +243,6 @@ impl Sums {
         let rows = starts.iter().copied().zip(ends).map(|(start, end)| start..end);
         let both = self.free.bands(&starts).into_iter().zip(self.sharing.bands(&starts));
         rows.zip(both).map(|(rows, (free, sharing))| Band { rows, free, sharing }).collect()
-    }
-
-    /// The pixels in a window: what is free, and what shares the rest.
-    pub fn lines(
-        &self,
-        nodes: &Nodes,
-        window: &Window,
-        marks: &mut SumMarks,
-        room: &mut Room,
-    ) -> Result<[Option<Lines>; 2], Overflow> {
-        let SumMarks { free, sharing } = marks;
-        Ok([self.free.lines(nodes, window, free, room)?, self.sharing.lines(nodes, window, sharing, room)?])
-    }
-
-    /// Of these what shares the rest.
-    pub fn sharing_lines(
-        &self,
-        nodes: &Nodes,
-        window: &Window,
-        marks: &mut SumMarks,
-        room: &mut Room,
-    ) -> Result<Option<Lines>, Overflow> {
-        self.sharing.lines(nodes, window, &mut marks.sharing, room)
     }
 }
 

@@ -79,9 +79,8 @@ impl Field {
             splatter.render(camera, &*self.focus, &*progress)?;
             let first_seconds = hierarchy_seconds + start.elapsed().as_secs_f64();
             let mut lenses = other_lenses(camera);
-            let drawn = frame.in_turn(&mut [|| {
-                Ok(splatter.refocus(&lenses.next().expect("endless"), &*progress)?)
-            }])?;
+            let drawn = frame
+                .in_turn(&mut [|| Ok(splatter.refocus(&lenses.next().expect("endless"), &*progress)?)])?;
             splatter.refocus(camera, &*progress)?;
             let mut record = self.record("full_splat", drawn[0], &splatter);
             record.tolerance = Some(share);

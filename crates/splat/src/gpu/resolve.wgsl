@@ -370,6 +370,8 @@ fn balance(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_in
     let knot = vec2<i32>(group.xy);
     let y = (knot.y - 1) * SPACING + i32(thread);
     var sums: array<vec4<f32>, 4>;
+    // Sums that take turns, a pixel each.
+    var turns: array<array<vec4<f32>, 4>, 2>;
     if y >= 0 && y < level.height {
         let end = min((knot.x + 1) * SPACING, frame.width);
         for (var x = max((knot.x - 1) * SPACING, 0); x < end; x += 1) {
@@ -380,14 +382,15 @@ fn balance(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_in
             let shared_light = exact_all(share.x * sharing);
             let evened = share.y * (free + shared_light);
             let weight = select(1.0 - behind(x), behind(x), x < knot.x * SPACING);
-            sums[0] += exact_all(weight * sharing);
-            sums[1] += exact_all(weight * shared_light);
-            sums[2] += exact_all(weight * (free + sharing));
-            sums[3] += exact_all(weight * evened);
+            let turn = x & 1;
+            turns[turn][0] += exact_all(weight * sharing);
+            turns[turn][1] += exact_all(weight * shared_light);
+            turns[turn][2] += exact_all(weight * (free + sharing));
+            turns[turn][3] += exact_all(weight * evened);
         }
         let weight = select(1.0 - behind(y), behind(y), y < knot.y * SPACING);
         for (var k = 0u; k < 4u; k += 1u) {
-            sums[k] = exact_all(weight * sums[k]);
+            sums[k] = exact_all(weight * (turns[0][k] + turns[1][k]));
         }
     }
     of_rows[thread] = sums;
