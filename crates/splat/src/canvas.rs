@@ -10,7 +10,6 @@
 
 use crate::widest::ask_for;
 use salf::tree::{BLOCK_PX, LEVELS};
-use std::ops::Range;
 
 /// Bits behind the point of positions: 1/4096 px.
 pub const POSITION_BITS: u32 = 12;
@@ -104,6 +103,9 @@ impl Word for i64 {
     }
 }
 
+/// Bytes that a processor fetches from memory at once.
+const LINE: usize = 64;
+
 /// Red, green, blue and coverage.
 pub type Pixel<W> = [W; 4];
 
@@ -119,29 +121,48 @@ pub struct Level<W> {
     touched: Vec<Touched>,
 }
 
-/// The columns in memory that were ever drawn on.
-#[derive(Clone, Copy, Debug)]
-struct Touched {
-    first: u32,
-    end: u32,
-}
+/// Where a row was ever drawn on: a bit for each patch of its columns in memory that the first tap of an end of a run lies in;
+/// the second may be the first column of the next patch.
+#[derive(Clone, Copy, Debug, Default)]
+struct Touched(u64);
 
 impl Touched {
-    const NONE: Self = Self { first: u32::MAX, end: 0 };
+    /// The bits of a patch's columns, so that as many bits are enough for a row of `columns`: at least 16.
+    fn patch_bits(columns: usize) -> u32 {
+        columns.div_ceil(u64::BITS as usize).next_power_of_two().ilog2().max(4)
+    }
 
-    fn columns(self) -> Option<Range<usize>> {
-        (self.first < self.end).then_some(self.first as usize..self.end as usize)
+    #[inline(always)]
+    fn touch(&mut self, column: usize, patch_bits: u32) {
+        self.0 |= 1 << (column >> patch_bits);
+    }
+
+    fn patches(self) -> u64 {
+        self.0 | self.0 << 1
     }
 }
 
 /// A row of a level that was drawn on.
 pub struct Row<'a, W> {
-    /// The columns in memory that were: all others are 0, and so is their running sum.
-    pub columns: Range<usize>,
-    /// Their differences.
+    /// The differences of its columns in memory.
     pub differences: &'a [Pixel<W>],
     /// The coverage thrown at the row.
     pub total: i64,
+    /// Which patches of columns may be drawn on: a bit each.
+    patches: u64,
+    patch_bits: u32,
+}
+
+impl<W> Row<'_, W> {
+    /// Whether there may be anything from a column on, and up to which one, at most `end`, that is so.
+    #[inline(always)]
+    pub fn stretch(&self, column: usize, end: usize) -> (bool, usize) {
+        let patch = column >> self.patch_bits;
+        let patches = self.patches >> patch;
+        let is_touched = patches & 1 == 1;
+        let count = if is_touched { patches.trailing_ones() } else { patches.trailing_zeros() };
+        (is_touched, ((patch + count as usize) << self.patch_bits).min(end))
+    }
 }
 
 /// Levels are equal if they hold the same sums; where they were drawn on does not matter.
@@ -170,14 +191,28 @@ impl<W: Word> Level<W> {
         self.width + 2
     }
 
-    /// A row, from −1 to its height; `None` if it was never drawn on.
+    /// A row, from −1 to its height; `None` if it was never drawn on, or there is none.
     pub fn row(&self, row: i32) -> Option<Row<'_, W>> {
         let place = (row + 1) as usize;
+        let patches = self.touched.get(place)?.patches();
         // What leaves the picture ends in a column behind the border.
-        let columns = self.touched[place].columns()?;
-        let columns = columns.start..columns.end.min(self.columns()).max(columns.start);
-        let line = &self.cells[place * self.stride()..(place + 1) * self.stride()];
-        Some(Row { differences: &line[columns.clone()], columns, total: self.totals[place] })
+        let differences = &self.cells[place * self.stride()..][..self.columns()];
+        let patch_bits = Touched::patch_bits(self.stride());
+        (patches != 0).then_some(Row { differences, total: self.totals[place], patches, patch_bits })
+    }
+}
+
+impl<W> Row<'_, W> {
+    /// Asks for the memory of what was drawn on: stretches are too short for a processor to foresee them.
+    pub fn ask_for_all(&self) {
+        let (mut patches, pixels) = (self.patches, self.differences);
+        while patches != 0 {
+            let first = (patches.trailing_zeros() as usize) << self.patch_bits;
+            for column in (first..first + (1 << self.patch_bits)).step_by(LINE / size_of::<Pixel<W>>()) {
+                ask_for(pixels.get(column));
+            }
+            patches &= patches - 1;
+        }
     }
 }
 
@@ -200,7 +235,7 @@ impl<W: Word> Accumulator<W> {
                 height,
                 cells,
                 totals: vec![0; height + 2],
-                touched: vec![Touched::NONE; height + 2],
+                touched: vec![Touched::default(); height + 2],
             }
         };
         Self { levels: (0..levels).map(level).collect() }
@@ -227,7 +262,9 @@ impl<W: Word> Accumulator<W> {
                 let (my_totals, rest_totals) = totals.split_at_mut(here);
                 let (my_touched, rest_touched) = touched.split_at_mut(here);
                 (cells, totals, touched) = (rest, rest_totals, rest_touched);
-                let rows = Rows { first, end, width, cells: mine, totals: my_totals, touched: my_touched };
+                let patch_bits = Touched::patch_bits(stride);
+                let (cells, totals, touched) = (mine, my_totals, my_touched);
+                let rows = Rows { first, end, width, patch_bits, cells, totals, touched };
                 canvas.levels.push(rows);
                 first = end;
             }
@@ -256,6 +293,7 @@ pub struct Rows<'a, W> {
     /// The row behind the last one.
     pub end: i32,
     width: usize,
+    patch_bits: u32,
     cells: &'a mut [Pixel<W>],
     totals: &'a mut [i64],
     touched: &'a mut [Touched],
@@ -266,10 +304,17 @@ impl<W: Word> Rows<'_, W> {
     pub fn clear(&mut self) {
         let stride = self.width + 3;
         for (place, touched) in self.touched.iter_mut().enumerate() {
-            let Some(columns) = touched.columns() else { continue };
-            self.cells[place * stride..][columns].fill([W::default(); 4]);
+            let row = &mut self.cells[place * stride..][..stride];
+            let mut patches = touched.patches();
+            while patches != 0 {
+                let patch = patches.trailing_zeros() as usize;
+                // There may be none behind the last.
+                let [first, end] = [patch, patch + 1].map(|patch| (patch << self.patch_bits).min(stride));
+                row[first..end].fill([W::default(); 4]);
+                patches &= patches - 1;
+            }
             self.totals[place] = 0;
-            *touched = Touched::NONE;
+            *touched = Touched::default();
         }
     }
 
@@ -315,9 +360,7 @@ impl<W: Word> Rows<'_, W> {
         let cells = &mut self.cells[place * (self.width + 3) + first..][..2];
         add(&mut cells[0], &whole, sign);
         add(&mut cells[1], &whole, -sign);
-        let touched = &mut self.touched[place];
-        touched.first = touched.first.min(first as u32);
-        touched.end = touched.end.max(first as u32 + 2);
+        self.touched[place].touch(first, self.patch_bits);
         let (total, thrown) = (&mut self.totals[place], whole[3].wide());
         *total = if sign < 0 { total.wrapping_sub(thrown) } else { total.wrapping_add(thrown) };
     }
@@ -337,7 +380,7 @@ impl<W: Word> Rows<'_, W> {
         }
         let (begun, ended) = (near::<W>(&bits, start), near::<W>(&bits, end));
         let last = stride - 1;
-        let touched = &mut self.touched[place];
+        let (touched, patch_bits) = (&mut self.touched[place], self.patch_bits);
         // Columns before the border are far beyond the last one too.
         let [first, second] = [from as u32 as usize, to as u32 as usize];
         let total = if first < last && second < last {
@@ -345,8 +388,8 @@ impl<W: Word> Rows<'_, W> {
             add(&mut line[first + 1], &rest(&whole, &begun), sign);
             add(&mut line[second], &ended, -sign);
             add(&mut line[second + 1], &rest(&whole, &ended), -sign);
-            touched.first = touched.first.min(first as u32);
-            touched.end = touched.end.max(second as u32 + 2);
+            touched.touch(first, patch_bits);
+            touched.touch(second, patch_bits);
             whole[3].wide() * (second as i64 - first as i64) + begun[3].wide() - ended[3].wide()
         } else {
             let mut throw = |at: i32, near: &Pixel<W>, sign: i32| {
@@ -354,8 +397,7 @@ impl<W: Word> Rows<'_, W> {
                 let [first, second] = [at, at + 1].map(|column| column.clamp(0, last as i32) as usize);
                 add(&mut line[first], near, sign);
                 add(&mut line[second], &far, sign);
-                touched.first = touched.first.min(first as u32);
-                touched.end = touched.end.max(second as u32 + 1);
+                touched.touch(first, patch_bits);
                 near[3].wide() * (last - first) as i64 + far[3].wide() * (last - second) as i64
             };
             throw(from, &begun, sign) - throw(to, &ended, -sign)
@@ -402,7 +444,7 @@ mod tests {
         let mut pixels = vec![[0; 4]; level.width + 2];
         let Some(row) = level.row(row) else { return Some(pixels) };
         let (mut sum, mut covered) = ([W::default(); 4], 0);
-        for (pixel, difference) in pixels[row.columns.start..].iter_mut().zip(row.differences) {
+        for (pixel, difference) in pixels.iter_mut().zip(row.differences) {
             add(&mut sum, difference, 1);
             *pixel = sum.map(W::wide);
             covered += pixel[3];

@@ -185,6 +185,9 @@ pub fn add_row<W: Word, const CHANNELS: usize>(
     marks: &mut [Mark<W>],
     line: &mut [Light],
 ) -> Result<(), Overflow> {
+    if let Some(next) = level.row(row + 1) {
+        next.ask_for_all();
+    }
     let Some(row) = level.row(row) else {
         marks.fill(Mark::default());
         return Ok(());
@@ -209,82 +212,134 @@ fn integrate<W: Word, const CHANNELS: usize>(
     first_span: usize,
 ) -> Result<(), Overflow> {
     let quantum = quanta.quantum as f32;
-    let mut sum = marks.first().map_or([W::default(); 4], |mark| mark.sum);
-    // Of all four, though only coverage is asked for: lanes of one register.
-    let mut largest = [W::default(); 4];
+    let mut running =
+        Running { sum: marks.first().map_or([W::default(); 4], |mark| mark.sum), ..Running::default() };
     for (span, mark) in (first_span..).zip(marks) {
-        let mut covered = [0i64; 4];
-        mark.sum = sum;
-        let mut pass = |difference: &Pixel<W>| {
-            for c in 0..4 {
-                sum[c] = sum[c].plus(difference[c]);
-                covered[c] = covered[c].wrapping_add(sum[c].wide());
-                largest[c] = largest[c].max(sum[c]);
+        (mark.sum, running.covered) = (running.sum, [0; 4]);
+        let (mut at, end) = (span * SPAN, ((span + 1) * SPAN).min(row.differences.len()));
+        while at < end {
+            let (is_touched, until) = row.stretch(at, end);
+            let [from, to] = [window.start, window.end].map(|column| column.clamp(at, until));
+            let [first, last] =
+                [from, to].map(|column| column.clamp(window.start, window.end) - window.start);
+            let line = &mut line[first..last];
+            if is_touched {
+                // In registers.
+                let mut here = running;
+                for difference in &row.differences[at..from] {
+                    here.pass(difference);
+                }
+                for (pixel, difference) in line.iter_mut().zip(&row.differences[from..to]) {
+                    here.pass(difference);
+                    for c in 0..CHANNELS {
+                        pixel[c] += here.sum[c].float() * quantum;
+                    }
+                }
+                for difference in &row.differences[to..until] {
+                    here.pass(difference);
+                }
+                running = here;
+            } else if running.sum != [W::default(); 4] {
+                running.stay(until - at);
+                for pixel in line {
+                    for c in 0..CHANNELS {
+                        pixel[c] += running.sum[c].float() * quantum;
+                    }
+                }
             }
-            sum
-        };
-        let [first, end] = [span * SPAN, (span + 1) * SPAN]
-            .map(|column| column.clamp(row.columns.start, row.columns.end) - row.columns.start);
-        let [from, to] = [window.start, window.end]
-            .map(|column| column.saturating_sub(row.columns.start).clamp(first, end));
-        row.differences[first..from].iter().for_each(|difference| {
-            pass(difference);
-        });
-        let line = line.iter_mut().skip((row.columns.start + from).saturating_sub(window.start));
-        for (pixel, difference) in line.zip(&row.differences[from..to]) {
-            let sum = pass(difference);
-            for c in 0..CHANNELS {
-                pixel[c] += sum[c].float() * quantum;
-            }
+            at = until;
         }
-        row.differences[to..end].iter().for_each(|difference| {
-            pass(difference);
-        });
-        mark.covered = covered[3];
+        mark.covered = running.covered[3];
     }
+    let largest = running.largest;
     if largest[3].wide() <= quanta.largest_coverage { Ok(()) } else { Err(Overflow) }
+}
+
+/// The running sum of a row. Of all four, though only coverage is asked for: lanes of one register.
+#[derive(Clone, Copy, Default)]
+struct Running<W> {
+    sum: Pixel<W>,
+    /// The sum of the sums.
+    covered: [i64; 4],
+    largest: Pixel<W>,
+}
+
+impl<W: Word> Running<W> {
+    /// Goes on to the next column.
+    #[inline(always)]
+    fn pass(&mut self, difference: &Pixel<W>) {
+        for c in 0..4 {
+            self.sum[c] = self.sum[c].plus(difference[c]);
+            self.covered[c] = self.covered[c].wrapping_add(self.sum[c].wide());
+            self.largest[c] = self.largest[c].max(self.sum[c]);
+        }
+    }
+
+    /// Goes on by so many columns without any difference.
+    fn stay(&mut self, columns: usize) {
+        for c in 0..4 {
+            let covered = self.sum[c].wide().wrapping_mul(columns as i64);
+            self.covered[c] = self.covered[c].wrapping_add(covered);
+        }
+    }
 }
 
 /// A row of a finer level, from a column on. Bilinear: a fine pixel lies a quarter of a coarse one off its centre.
 #[inline(always)]
 fn upsample(coarse: &Lines, row: i32, first: i32, mixed: &mut [Light], line: &mut [Light]) {
-    const NEAR: f32 = 0.75;
-    const FAR: f32 = 0.25;
-    let mix = |a: &Light, b: &Light| {
-        let mut mixed = BLACK;
-        for c in 0..4 {
-            mixed[c] = NEAR * a[c] + FAR * b[c];
-        }
-        mixed
-    };
     // A fine row's coarse one, and the neighbour it leans to.
     let near = coarse.row(row >> 1);
     let far = coarse.row((row >> 1) + if row & 1 == 0 { -1 } else { 1 });
-    match (near, far) {
+    let out = mixed.as_flattened_mut().iter_mut();
+    match (near.map(<[_]>::as_flattened), far.map(<[_]>::as_flattened)) {
         (Some(near), Some(far)) => {
-            for ((out, near), far) in mixed.iter_mut().zip(near).zip(far) {
-                *out = mix(near, far);
-            }
+            out.zip(near).zip(far).for_each(|((out, near), far)| *out = mix(*near, *far))
         }
-        (Some(near), None) => mixed.iter_mut().zip(near).for_each(|(out, near)| *out = mix(near, &BLACK)),
-        (None, Some(far)) => mixed.iter_mut().zip(far).for_each(|(out, far)| *out = mix(&BLACK, far)),
+        (Some(near), None) => out.zip(near).for_each(|(out, near)| *out = mix(*near, 0.0)),
+        (None, Some(far)) => out.zip(far).for_each(|(out, far)| *out = mix(0.0, *far)),
         (None, None) => mixed.fill(BLACK),
     }
     // Fine columns 2k − 1 and 2k lie between the coarse ones k − 1 and k.
     let between = ((first + 1) >> 1) - 1 - coarse.window.columns.start;
-    let mut pairs = mixed[between as usize..].windows(2);
-    let (odd, rest) = line.split_at_mut(usize::from(first & 1 == 0).min(line.len()));
-    for (pixel, pair) in odd.iter_mut().zip(&mut pairs) {
-        *pixel = mix(&pair[1], &pair[0]);
+    let mixed = &mixed[between as usize..];
+    let second = usize::from(first & 1 == 0).min(line.len());
+    let (before, line) = line.split_at_mut(second);
+    before.iter_mut().for_each(|pixel| [_, *pixel] = two_between([mixed[0]], [mixed[1]])[0]);
+    /// Coarse pixels whose colours fill whole registers.
+    const GROUP: usize = 4;
+    let mut groups = line.chunks_exact_mut(2 * GROUP);
+    let mut at = second;
+    for pixels in &mut groups {
+        let [a, b]: [[Light; GROUP]; 2] =
+            [at, at + 1].map(|at| mixed[at..at + GROUP].try_into().expect("a group"));
+        pixels.copy_from_slice(two_between(a, b).as_flattened());
+        at += GROUP;
     }
-    let mut twos = rest.chunks_exact_mut(2);
-    for (two, pair) in (&mut twos).zip(&mut pairs) {
-        two[0] = mix(&pair[0], &pair[1]);
-        two[1] = mix(&pair[1], &pair[0]);
+    for (pixels, pair) in groups.into_remainder().chunks_mut(2).zip(mixed[at..].windows(2)) {
+        let two = two_between([pair[0]], [pair[1]])[0];
+        pixels.copy_from_slice(&two[..pixels.len()]);
     }
-    for (pixel, pair) in twos.into_remainder().iter_mut().zip(pairs) {
-        *pixel = mix(&pair[0], &pair[1]);
+}
+
+/// The two fine pixels between each of some coarse ones and its neighbour.
+#[inline(always)]
+fn two_between<const COUNT: usize>(a: [Light; COUNT], b: [Light; COUNT]) -> [[Light; 2]; COUNT] {
+    let [mut near, mut far] = [[BLACK; COUNT]; 2];
+    let out = near.as_flattened_mut().iter_mut().zip(far.as_flattened_mut());
+    for ((near, far), (a, b)) in out.zip(a.as_flattened().iter().zip(b.as_flattened())) {
+        (*near, *far) = (mix(*a, *b), mix(*b, *a));
     }
+    let mut pairs = [[BLACK; 2]; COUNT];
+    for (pair, both) in pairs.iter_mut().zip(near.into_iter().zip(far)) {
+        *pair = [both.0, both.1];
+    }
+    pairs
+}
+
+/// What is a quarter of the way from `near` to `far`.
+#[inline(always)]
+fn mix(near: f32, far: f32) -> f32 {
+    0.75 * near + 0.25 * far
 }
 
 #[cfg(test)]
