@@ -131,6 +131,7 @@ mod tests {
             tolerance: Some(tolerance),
             spp: None,
             ms_median: 2.0,
+            frame_copy_ms: 1.0,
             frame_copies: 1.0,
             psnr: Some(psnr),
             band_psnr: None,
