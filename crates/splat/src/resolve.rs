@@ -231,8 +231,8 @@ fn integrate<W: Word, const CHANNELS: usize>(
                 }
                 for (pixel, difference) in line.iter_mut().zip(&row.differences[from..to]) {
                     here.pass(difference);
-                    for c in 0..CHANNELS {
-                        pixel[c] += here.sum[c].float() * quantum;
+                    for (light, sum) in pixel.iter_mut().zip(here.sum).take(CHANNELS) {
+                        *light += sum.float() * quantum;
                     }
                 }
                 for difference in &row.differences[to..until] {
@@ -242,8 +242,8 @@ fn integrate<W: Word, const CHANNELS: usize>(
             } else if running.sum != [W::default(); 4] {
                 running.stay(until - at);
                 for pixel in line {
-                    for c in 0..CHANNELS {
-                        pixel[c] += running.sum[c].float() * quantum;
+                    for (light, sum) in pixel.iter_mut().zip(running.sum).take(CHANNELS) {
+                        *light += sum.float() * quantum;
                     }
                 }
             }
@@ -268,8 +268,8 @@ impl<W: Word> Running<W> {
     /// Goes on to the next column.
     #[inline(always)]
     fn pass(&mut self, difference: &Pixel<W>) {
-        for c in 0..4 {
-            self.sum[c] = self.sum[c].plus(difference[c]);
+        for (c, difference) in difference.iter().enumerate() {
+            self.sum[c] = self.sum[c].plus(*difference);
             self.covered[c] = self.covered[c].wrapping_add(self.sum[c].wide());
             self.largest[c] = self.largest[c].max(self.sum[c]);
         }
