@@ -163,6 +163,18 @@ impl<W> Row<'_, W> {
         let count = if is_touched { patches.trailing_ones() } else { patches.trailing_zeros() };
         (is_touched, ((patch + count as usize) << self.patch_bits).min(end))
     }
+
+    /// Asks for the memory of what was drawn on: stretches are too short for a processor to foresee them.
+    pub fn ask_for_all(&self) {
+        let (mut patches, pixels) = (self.patches, self.differences);
+        while patches != 0 {
+            let first = (patches.trailing_zeros() as usize) << self.patch_bits;
+            for column in (first..first + (1 << self.patch_bits)).step_by(LINE / size_of::<Pixel<W>>()) {
+                ask_for(pixels.get(column));
+            }
+            patches &= patches - 1;
+        }
+    }
 }
 
 /// Levels are equal if they hold the same sums; where they were drawn on does not matter.
@@ -199,20 +211,6 @@ impl<W: Word> Level<W> {
         let differences = &self.cells[place * self.stride()..][..self.columns()];
         let patch_bits = Touched::patch_bits(self.stride());
         (patches != 0).then_some(Row { differences, total: self.totals[place], patches, patch_bits })
-    }
-}
-
-impl<W> Row<'_, W> {
-    /// Asks for the memory of what was drawn on: stretches are too short for a processor to foresee them.
-    pub fn ask_for_all(&self) {
-        let (mut patches, pixels) = (self.patches, self.differences);
-        while patches != 0 {
-            let first = (patches.trailing_zeros() as usize) << self.patch_bits;
-            for column in (first..first + (1 << self.patch_bits)).step_by(LINE / size_of::<Pixel<W>>()) {
-                ask_for(pixels.get(column));
-            }
-            patches &= patches - 1;
-        }
     }
 }
 
