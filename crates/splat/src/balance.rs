@@ -21,7 +21,7 @@
 //!
 //! Where a part of the scene is painted, the rest, which shares alone now, gets back what was taken while all shared. So the
 //! sum of a painted picture is off by some 0.05 %; but for live ones, a further gain for each colour of the light that shares
-//! makes it what it was ([`Gains::find_rest`]).
+//! makes it what it was ([`rest`]).
 
 use crate::partition::{Parts, Share};
 use crate::resolve::{BLACK, Light};
@@ -68,6 +68,28 @@ impl KnotSums {
     }
 }
 
+/// Red, green, blue and coverage of sharing samples before and after they share and are scaled by their gains.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SharedSums(pub [Light; 2]);
+
+impl SharedSums {
+    #[inline(always)]
+    pub fn add(&mut self, before: &Light, after: &Light) {
+        for c in 0..4 {
+            self.0[0][c] += before[c];
+            self.0[1][c] += after[c];
+        }
+    }
+
+    /// The sum of those of all turns.
+    #[inline(always)]
+    pub fn of_turns([mut sum, odd]: [Self; TURNS]) -> Self {
+        let [before, after] = &odd.0;
+        sum.add(before, after);
+        sum
+    }
+}
+
 /// The knots of a picture, row by row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Knots {
@@ -94,6 +116,11 @@ impl Knots {
     /// How many rows there are.
     pub fn rows(&self) -> usize {
         self.size[1].div_ceil(SPACING) + 1
+    }
+
+    /// How many spans of [`SPACING`] pixels a row of pixels has.
+    pub fn spans(&self) -> usize {
+        self.columns() - 1
     }
 
     /// Sums a whole row of pixels: a sum for each column of knots. Those of the picture, beside those of what shares, only if
@@ -129,10 +156,24 @@ impl Knots {
         };
         (0..columns * self.rows()).into_par_iter().map(sum).collect()
     }
+
+    /// The sums of cells of [`SPACING`] rows from those of the spans of all rows of pixels.
+    pub fn cells(&self, spans: &[SharedSums]) -> Vec<SharedSums> {
+        let of_rows = spans.chunks(SPACING * self.spans());
+        let cell = |rows: &[SharedSums], span: usize| {
+            let mut sum = SharedSums::default();
+            rows[span..]
+                .iter()
+                .step_by(self.spans())
+                .for_each(|SharedSums([before, after])| sum.add(before, after));
+            sum
+        };
+        of_rows.flat_map(|rows| (0..self.spans()).map(move |span| cell(rows, span))).collect()
+    }
 }
 
 /// Sums that take turns, a pixel each: none waits for the one before.
-const TURNS: usize = 2;
+pub const TURNS: usize = 2;
 
 #[inline(always)]
 fn sum_pixels<const HAS_PICTURE: bool>(parts: Parts<'_>, shares: &[Share], sums: &mut [KnotSums]) {
@@ -168,8 +209,12 @@ fn added([even, odd]: &[KnotSums; TURNS]) -> KnotSums {
 pub struct Balance {
     pub knots: Knots,
     pub gains: Gains,
+    /// What all light that shares is scaled by beside its gains.
+    pub rest: [f32; 3],
     /// What each row of pixels brings to each column of knots.
     pub rows: Vec<KnotSums>,
+    /// What shares in each span of each row of pixels.
+    pub shared: Vec<SharedSums>,
 }
 
 impl Balance {
@@ -177,7 +222,8 @@ impl Balance {
     pub fn none(size: [usize; 2]) -> Self {
         let knots = Knots::new(size);
         let rows = vec![KnotSums::default(); size[1] * knots.columns()];
-        Self { gains: Gains::none(knots), knots, rows }
+        let shared = vec![SharedSums::default(); size[1] * knots.spans()];
+        Self { gains: Gains::none(knots), knots, rest: NO_REST, rows, shared }
     }
 
     /// Forgets the gains.
@@ -190,14 +236,15 @@ impl Balance {
         self.gains = Gains::of(self.knots, &self.knots.sums(&self.rows));
     }
 
-    /// Finds what is left to give back in a painted picture, from its rows.
+    /// Finds what is left to give back in a painted picture, from its spans.
     pub fn find_rest(&mut self) {
-        self.gains.find_rest(&self.knots.sums(&self.rows));
+        self.rest = rest(&self.knots.cells(&self.shared));
     }
 
     /// Bytes in memory.
     pub fn bytes(&self) -> usize {
-        size_of_val(self.rows.as_slice()) + size_of_val(self.gains.of_knots.as_slice())
+        let rows = size_of_val(self.rows.as_slice()) + size_of_val(self.shared.as_slice());
+        rows + size_of_val(self.gains.of_knots.as_slice())
     }
 }
 
@@ -210,14 +257,12 @@ pub struct Gains {
     knots: Knots,
     /// Of each knot, by [`Scaled`].
     of_knots: Vec<[[f32; 3]; 2]>,
-    /// Of all that shares, beside them.
-    rest: [f32; 3],
 }
 
 impl Gains {
     /// Those of a picture of which nothing is known: 1.
     pub fn none(knots: Knots) -> Self {
-        Self { of_knots: vec![[[1.0; 3]; 2]; knots.columns() * knots.rows()], knots, rest: [1.0; 3] }
+        Self { of_knots: vec![[[1.0; 3]; 2]; knots.columns() * knots.rows()], knots }
     }
 
     /// Those that give back what the sums of all knots say was taken.
@@ -252,25 +297,7 @@ impl Gains {
                 knot[kind][c] = (gain * ratio(sums)) as f32;
             }
         }
-        Self { knots, of_knots, rest: [1.0; 3] }
-    }
-
-    /// Finds what is left to give back to the light that shares in a painted picture, whose sums those of the knots are:
-    /// within 5 % of it. Until then, and of a live picture, it is nothing.
-    pub fn find_rest(&mut self, sums: &[KnotSums]) {
-        self.rest = std::array::from_fn(|c| {
-            let both = |[before, after]: [f64; 2], (sums, gains): (&KnotSums, &[[f32; 3]; 2])| {
-                let [sharing, shared, ..] = sums.0.map(|sum| f64::from(sum[c]));
-                [before + sharing, after + f64::from(gains[Scaled::Sharing as usize][c]) * shared]
-            };
-            let [before, after] = sums.iter().zip(&self.of_knots).fold([0.0; 2], both);
-            within(LARGEST_RATIO, before / after) as f32
-        });
-    }
-
-    /// Forgets what was left to give back.
-    pub fn forget_rest(&mut self) {
-        self.rest = [1.0; 3];
+        Self { knots, of_knots }
     }
 
     /// Scales a picture that is evened out.
@@ -286,27 +313,30 @@ impl Gains {
     }
 
     /// Those of knots, row by row, by [`Scaled`].
-    pub fn of_knots(&self) -> impl Iterator<Item = [[f32; 3]; 2]> {
-        self.of_knots.iter().map(|[sharing, all]| [self.with_rest(sharing), *all])
-    }
-
-    fn with_rest(&self, sharing: &[f32; 3]) -> [f32; 3] {
-        std::array::from_fn(|c| sharing[c] * self.rest[c])
+    pub fn of_knots(&self) -> &[[[f32; 3]; 2]] {
+        &self.of_knots
     }
 
     /// Those of a row of pixels, at each column of knots.
     pub fn of_row(&self, y: usize, scaled: Scaled) -> GainsOfRow {
         let ((row, behind), columns) = (place(y), self.knots.columns());
         let of_knot = |knot: &[[f32; 3]; 2]| {
-            let [r, g, b] = match scaled {
-                Scaled::Sharing => self.with_rest(&knot[0]),
-                Scaled::All => knot[1],
-            };
+            let [r, g, b] = knot[scaled as usize];
             [r, g, b, 1.0]
         };
         let of_row = |row: usize| self.of_knots[row * columns..][..columns].iter().map(of_knot);
         GainsOfRow(of_row(row).zip(of_row(row + 1)).map(|(a, b)| mix(a, b, behind)).collect())
     }
+}
+
+/// Where nothing is left to give back.
+pub const NO_REST: [f32; 3] = [1.0; 3];
+
+/// What is left to give back to the light that shares in a painted picture, whose sums those of all cells are: within 5 % of
+/// none.
+pub fn rest(cells: &[SharedSums]) -> [f32; 3] {
+    let sum = |kind: usize, c: usize| cells.iter().map(|sums| f64::from(sums.0[kind][c])).sum::<f64>();
+    [0, 1, 2].map(|c| within(LARGEST_RATIO, sum(0, c) / sum(1, c)) as f32)
 }
 
 /// A gain, at most `largest` and at least as much less than 1; 1 where there is no light.

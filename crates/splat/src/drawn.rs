@@ -93,6 +93,24 @@ impl Scene<'_> {
             },
         );
     }
+
+    /// Makes `lists` what is drawn of every block, and `changes` what becomes of that once it is painted as `then` says, while
+    /// the block's nodes are near.
+    pub fn list_all(&self, then: Option<&Paint>, lists: &mut Vec<BlockList>, Changes(changes): &mut Changes) {
+        let count = self.pen.nodes.blocks.len();
+        lists.resize_with(count, BlockList::default);
+        changes.resize_with(count, BlockChanges::default);
+        let all = lists.par_iter_mut().zip(changes).enumerate();
+        all.for_each_init(<(Spans, BlockList)>::default, |(spans, painted), (block, (list, changes))| {
+            let paint = self.paint.of_block(block);
+            self.list(block, paint, spans, list);
+            changes.clear();
+            if let Some(then) = then.map(|then| then.of_block(block)).filter(|then| *then != paint) {
+                self.list(block, then, spans, painted);
+                changes.find(list, painted);
+            }
+        });
+    }
 }
 
 /// Nodes of a block that are yet to be looked at; room to work in.
@@ -139,34 +157,24 @@ impl BlockList {
     }
 }
 
-/// What was drawn of a block.
-pub enum Before<'a> {
-    Drawn(&'a BlockList),
-    /// What is with this paint.
-    PaintedAs(Option<&'a [NodeFocus]>),
-}
-
 /// What is no longer drawn, and what is now, block by block; room for others once they are made.
 #[derive(Clone, Debug, Default)]
 pub struct Changes(pub Vec<BlockChanges>);
 
 impl Changes {
-    /// Makes them those of some blocks.
-    pub fn find(&mut self, scene: &Scene, blocks: &[(usize, Before)]) {
+    /// Makes them those of some blocks that were painted otherwise before.
+    pub fn find(&mut self, scene: &Scene, blocks: &[(usize, Option<&[NodeFocus]>)]) {
         self.0.resize_with(blocks.len(), BlockChanges::default);
         let room = <(Spans, [BlockList; 2])>::default;
         self.0.par_iter_mut().zip(blocks).for_each_init(
             room,
             |(spans, [old, new]), (changes, (block, before))| {
                 let now = scene.paint.of_block(*block);
-                scene.list(*block, now, spans, new);
-                match before {
-                    Before::Drawn(list) => changes.find(list, new),
-                    Before::PaintedAs(paint) if *paint == now => changes.find(new, new),
-                    Before::PaintedAs(paint) => {
-                        scene.list(*block, *paint, spans, old);
-                        changes.find(old, new);
-                    }
+                changes.clear();
+                if *before != now {
+                    scene.list(*block, *before, spans, old);
+                    scene.list(*block, now, spans, new);
+                    changes.find(old, new);
                 }
             },
         );
@@ -203,11 +211,15 @@ pub struct BlockChanges {
 }
 
 impl BlockChanges {
-    /// Makes them what is in one list alone.
+    /// Nothing changes.
+    fn clear(&mut self) {
+        self.removed.clear();
+        self.added.clear();
+    }
+
+    /// Adds what is in one list alone; they are empty.
     fn find(&mut self, old: &BlockList, new: &BlockList) {
         let Self { removed, added, .. } = self;
-        removed.clear();
-        added.clear();
         let (mut was, mut is) = (old.drawn.as_slice(), new.drawn.as_slice());
         loop {
             let order = match (was.first(), is.first()) {

@@ -41,6 +41,12 @@ impl Paint {
         self.blocks.iter().all(Option::is_none)
     }
 
+    /// Whether less than half of the nodes lie in blocks that are painted.
+    pub fn is_of_less_than_half(&self, nodes: &Nodes) -> bool {
+        let painted = nodes.blocks.iter().zip(&self.blocks).filter(|(_, paint)| paint.is_some());
+        2 * painted.map(|(block, _)| block.len()).sum::<usize>() < nodes.nodes.len()
+    }
+
     /// Looks up again the focus of the samples at `leaves`, nodes in order. Returns the blocks they are in, and what was
     /// painted on each.
     pub fn update(

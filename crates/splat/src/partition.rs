@@ -18,7 +18,7 @@
 //!
 //! Light that either takes from a surface is given back nearby ([`crate::balance`]): none is made or lost.
 
-use crate::balance::GainsOfRow;
+use crate::balance::{GainsOfRow, SPACING, SharedSums, TURNS};
 use crate::fixed::{floored, ratio};
 use crate::resolve::{BLACK, Light};
 use crate::widest::with_widest_instructions;
@@ -98,38 +98,55 @@ impl Parts<'_> {
         }
     }
 
-    /// Sets pixels to what shares, before gains: a painted picture's are known when all of it is.
-    pub fn share(self, shares: &[Share], pixels: Pixels<'_>) {
+    /// Sets the pixels of a whole row to what shares, scaled by `gains`, and a sum for each span of [`SPACING`] pixels to what
+    /// they hold.
+    pub fn share(self, shares: &[Share], gains: &GainsOfRow, pixels: Pixels<'_>, sums: &mut [SharedSums]) {
+        let pixels = pixels.radiance.chunks_mut(SPACING).zip(pixels.coverage.chunks_mut(SPACING));
+        let lights = self.sharing.chunks(SPACING).zip(shares.chunks(SPACING));
         with_widest_instructions(
             #[inline(always)]
             || {
-                for (((radiance, coverage), sharing), share) in pixels.each().zip(self.sharing).zip(shares) {
-                    let mut light = BLACK;
-                    for c in 0..4 {
-                        light[c] = share.partial * sharing[c];
-                    }
-                    (*radiance, *coverage) = ([light[0], light[1], light[2]], light[3]);
+                for (span, ((pixels, lights), sums)) in pixels.zip(lights).zip(sums).enumerate() {
+                    *sums = share_span(lights, pixels, |x| gains.at(span * SPACING + x));
                 }
             },
         );
     }
 
-    /// Joins what is free to pixels that were set to what shares.
-    pub fn join_shared(self, gains: &GainsOfRow, pixels: Pixels<'_>) {
+    /// Joins what is free to pixels that were set to what shares, scaled by `rest` too.
+    pub fn join_shared(self, rest: [f32; 3], pixels: Pixels<'_>) {
         with_widest_instructions(
             #[inline(always)]
             || {
-                let columns = pixels.first..;
-                for (x, ((radiance, coverage), free)) in columns.zip(pixels.each().zip(self.free)) {
-                    let gain = gains.at(x);
+                for ((radiance, coverage), free) in pixels.each().zip(self.free) {
                     for c in 0..3 {
-                        radiance[c] = free[c] + radiance[c] * gain[c];
+                        radiance[c] = free[c] + radiance[c] * rest[c];
                     }
-                    *coverage = free[3] + *coverage * gain[3];
+                    *coverage += free[3];
                 }
             },
         );
     }
+}
+
+/// Sets some pixels to what shares, scaled. Returns their sums before and after that.
+#[inline(always)]
+fn share_span(
+    (sharing, shares): (&[Light], &[Share]),
+    (radiance, coverage): (&mut [[f32; 3]], &mut [f32]),
+    gain: impl Fn(usize) -> [f32; 4],
+) -> SharedSums {
+    let mut sums = [SharedSums::default(); TURNS];
+    let pixels = radiance.iter_mut().zip(coverage);
+    for (x, (((radiance, coverage), sharing), share)) in pixels.zip(sharing).zip(shares).enumerate() {
+        let (gain, mut scaled) = (gain(x), BLACK);
+        for c in 0..4 {
+            scaled[c] = share.partial * sharing[c] * gain[c];
+        }
+        sums[x % TURNS].add(sharing, &scaled);
+        (*radiance, *coverage) = ([scaled[0], scaled[1], scaled[2]], scaled[3]);
+    }
+    SharedSums::of_turns(sums)
 }
 
 /// Some pixels of a row of a picture.

@@ -5,7 +5,7 @@ mod on_card;
 use crate::balance::{Balance, Scaled};
 use crate::bands::Pace;
 use crate::draw::Pen;
-use crate::drawn::{Before, BlockList, Changes, Scene};
+use crate::drawn::{BlockList, Changes, Scene};
 use crate::lens_in_use::{LensInUse, Tolerance};
 use crate::nodes::{Nodes, Scale};
 use crate::paint::Paint;
@@ -61,7 +61,7 @@ pub struct Splatter {
     sums: Sums,
     /// Of [`RESOLVE_ROWS`] rows each, of what is free and of what shares the rest.
     marks: Vec<[SumMarks; 2]>,
-    /// What was drawn when all was summed last; room for what is.
+    /// What was drawn of each block when all was summed last; room for what is.
     lists: Vec<BlockList>,
     /// How long that took.
     pace: Pace,
@@ -71,8 +71,8 @@ pub struct Splatter {
     shares: Vec<Share>,
     /// What gives back the light that shares take.
     balance: Balance,
-    /// The lens whose standard picture they are those of.
-    shares_of: Option<LensInUse>,
+    /// The lens whose standard picture they are those of, and whether the gains that evening needs are among those found.
+    shares_of: Option<(LensInUse, bool)>,
     picture: Picture,
     card: Card,
 }
@@ -267,28 +267,37 @@ impl Splatter {
 
     fn sum_all(&mut self, progress: &dyn Progress) -> Result<(), SplatError> {
         let is_painted = !self.paint.is_standard();
-        let has_shares = self.shares_of.as_ref() == Some(&self.lens);
+        let has_shares = self.has_shares();
         let standard = Stage::new(progress, 0.0, if is_painted { 0.5 } else { 1.0 });
         let painted = Stage::new(progress, if has_shares { 0.0 } else { 0.5 }, 1.0);
         if !has_shares {
             self.shares_of = None;
             let wanted = if is_painted { Wanted::Shares } else { Wanted::SharesAndPicture };
+            // Where most is painted, summing all of it again is less work than painting over.
+            let nodes = self.nodes.as_ref().ok_or(SplatError::Overflow)?;
+            let is_painted_over = is_painted && self.paint.is_of_less_than_half(nodes);
+            let summed = if is_painted_over { Summed::ToPaintOver } else { Summed::Standard };
             self.in_finest_integers(|splatter| {
-                splatter.sum_nodes(&Paint::default(), &standard)?;
+                splatter.sum_nodes(summed, &standard)?;
                 splatter.resolve(splatter.frame(), wanted)
             })?;
-            self.shares_of = Some(self.lens.clone());
-            if !is_painted || self.paint_over()? {
+            self.shares_of = Some((self.lens.clone(), self.is_evened()));
+            if !is_painted || is_painted_over && self.paint_over()? {
                 return Ok(());
             }
         }
         self.in_finest_integers(|splatter| {
-            let paint = std::mem::take(&mut splatter.paint);
-            let summed = splatter.sum_nodes(&paint, &painted);
-            splatter.paint = paint;
-            summed?;
+            splatter.sum_nodes(Summed::Painted, &painted)?;
             splatter.resolve(splatter.frame(), Wanted::Picture)
         })
+    }
+
+    /// Whether the shares are those of the lens, and all gains that are needed are known.
+    fn has_shares(&self) -> bool {
+        let is_known = |(lens, has_gains_of_all): &(LensInUse, bool)| {
+            *lens == self.lens && (*has_gains_of_all || !self.is_evened())
+        };
+        self.shares_of.as_ref().is_some_and(is_known)
     }
 
     /// Does `work` with the finest integers that hold its sums.
@@ -309,13 +318,17 @@ impl Splatter {
         Err(SplatError::Overflow)
     }
 
-    fn sum_nodes(&mut self, paint: &Paint, progress: &dyn Progress) -> Result<(), SplatError> {
-        if let Some(summed) = self.sum_nodes_on_card(paint, progress) {
+    fn sum_nodes(&mut self, summed: Summed, progress: &dyn Progress) -> Result<(), SplatError> {
+        if let Some(summed) = self.sum_nodes_on_card(summed, progress) {
             return summed;
         }
         let nodes = self.nodes.as_ref().ok_or(SplatError::Overflow)?;
+        let standard = Paint::default();
+        let paint = if summed == Summed::Painted { &self.paint } else { &standard };
+        let then = (summed == Summed::ToPaintOver).then_some(&self.paint);
         let scene = self.aperture.scene(nodes, &self.lens, paint, &self.salf.camera);
-        Ok(self.sums.set(&scene, &mut self.lists, &mut self.pace, progress)?)
+        scene.list_all(then, &mut self.lists, &mut self.changes);
+        Ok(self.sums.set(&scene.pen, &self.lists, &mut self.pace, progress)?)
     }
 
     /// Moves the given samples, in any order, to where `focus` now sends them. Returns the rows and columns of the picture
@@ -334,10 +347,11 @@ impl Splatter {
         leaves.par_sort_unstable();
         let before = self.paint.update(nodes, &leaves, &self.salf.samples, focus);
         let scene = self.aperture.scene(nodes, &self.lens, &self.paint, &self.salf.camera);
-        let before = before.iter().map(|(block, paint)| (*block, Before::PaintedAs(paint.as_deref())));
+        let before = before.iter().map(|(block, paint)| (*block, paint.as_deref()));
         self.changes.find(&scene, &before.collect::<Vec<_>>());
         let mut window = self.changes.window(nodes, self.salf.camera.width);
-        if nodes.scale != Scale::FINEST {
+        // Once nothing is painted any more, the picture is evened.
+        if nodes.scale != Scale::FINEST || !self.has_shares() {
             return self.sum_again();
         }
         if !self.is_live {
@@ -363,23 +377,11 @@ impl Splatter {
         self.resolve(window, Wanted::Picture)
     }
 
-    /// Paints over the sums of the standard picture. Returns whether that is done: not where most is painted.
+    /// Paints over the sums of the standard picture. Returns whether that could be done.
     fn paint_over(&mut self) -> Result<bool, SplatError> {
-        let nodes = self.nodes.as_ref().ok_or(SplatError::Overflow)?;
-        let painted = |block: &usize| self.paint.of_block(*block).is_some();
-        let blocks: Vec<_> = (0..nodes.blocks.len()).filter(painted).collect();
-        let count: usize = blocks.iter().map(|&block| nodes.blocks[block].len()).sum();
-        if nodes.scale != Scale::FINEST || 2 * count > nodes.nodes.len() {
+        if self.nodes.as_ref().is_none_or(|nodes| nodes.scale != Scale::FINEST) {
             return Ok(false);
         }
-        let scene = self.aperture.scene(nodes, &self.lens, &self.paint, &self.salf.camera);
-        // The card keeps no list of what it drew.
-        let standard = |block: usize| match self.card.is_used() {
-            true => Before::PaintedAs(None),
-            false => Before::Drawn(&self.lists[block]),
-        };
-        let blocks: Vec<_> = blocks.into_iter().map(|block| (block, standard(block))).collect();
-        self.changes.find(&scene, &blocks);
         match self.change(self.frame()) {
             Err(SplatError::Overflow) => Ok(false),
             other => other.map(|()| true),
@@ -401,7 +403,6 @@ impl Splatter {
             return resolved;
         }
         if !wanted.has_shares() {
-            self.balance.gains.forget_rest();
             if !self.is_balanced() {
                 return self.resolve_here([rows, columns], wanted);
             }
@@ -432,18 +433,22 @@ impl Splatter {
         // The same chunks whatever rows are asked for.
         let chunks = rows.start as usize / RESOLVE_ROWS..(rows.end as usize).div_ceil(RESOLVE_ROWS);
         let (sums, knots) = (&self.sums, &self.balance.knots);
-        let gains = &self.balance.gains;
+        let (gains, rest) = (&self.balance.gains, self.balance.rest);
         let is_evened = self.is_evened();
+        // Shares need none; gains of all of the light do.
+        let wants_colour = wanted != Wanted::Shares || is_evened;
         let scaled = if is_evened { Scaled::All } else { Scaled::Sharing };
         let radiance = self.picture.radiance.par_chunks_mut(RESOLVE_ROWS * width);
         let coverage = self.picture.coverage.par_chunks_mut(RESOLVE_ROWS * width);
         let shares = self.shares.par_chunks_mut(RESOLVE_ROWS * width);
         let of_knots = self.balance.rows.par_chunks_mut(RESOLVE_ROWS * knots.columns());
-        let all = radiance.zip(coverage).zip(shares.zip(of_knots)).zip(&mut self.marks).enumerate();
+        let of_spans = self.balance.shared.par_chunks_mut(RESOLVE_ROWS * knots.spans());
+        let sums_of_rows = of_knots.zip(of_spans);
+        let all = radiance.zip(coverage).zip(shares.zip(sums_of_rows)).zip(&mut self.marks).enumerate();
         let chunks = all.skip(chunks.start).take(chunks.len());
         chunks.try_for_each_init(
             Room::default,
-            |room, (chunk, (((radiance, coverage), (shares, of_knots)), marks))| {
+            |room, (chunk, (((radiance, coverage), (shares, (of_knots, of_spans))), marks))| {
                 let first = (chunk * RESOLVE_ROWS) as u32;
                 let here = rows.start.max(first)..rows.end.min(first + (coverage.len() / width) as u32);
                 let signed = |range: &Range<u32>| range.start as i32..range.end as i32;
@@ -451,7 +456,8 @@ impl Splatter {
                 let [free_marks, sharing_marks] = marks;
                 let [mut free, mut sharing] = [None, None];
                 if wanted.has_free() {
-                    free = Some(sums.free.rows(nodes, &window, free_marks, room)?);
+                    let rows = sums.free.rows(nodes, &window, free_marks, room)?;
+                    free = Some(if wants_colour { rows } else { rows.of_coverage() });
                 }
                 if wanted.has_sharing() {
                     sharing = Some(sums.sharing.rows(nodes, &window, sharing_marks, room)?);
@@ -469,9 +475,9 @@ impl Splatter {
                     if wanted.has_shares() {
                         parts.find_shares(shares);
                     }
-                    if wanted.has_sums() {
+                    if wanted.has_shares() {
                         let sums = &mut of_knots[at * knots.columns()..][..knots.columns()];
-                        knots.sum_row(parts, shares, sums, wanted.has_shares());
+                        knots.sum_row(parts, shares, sums, is_evened);
                     }
                     let pixels = Pixels {
                         first: columns.start as usize,
@@ -483,8 +489,11 @@ impl Splatter {
                         Wanted::Shares => (),
                         Wanted::SharesAndPicture => parts.join(shares, None, is_evened, pixels),
                         Wanted::Picture => parts.join(shares, Some(&gains()), is_evened, pixels),
-                        Wanted::Shared => parts.share(shares, pixels),
-                        Wanted::PictureOverShared => parts.join_shared(&gains(), pixels),
+                        Wanted::Shared => {
+                            let sums = &mut of_spans[at * knots.spans()..][..knots.spans()];
+                            parts.share(shares, &gains(), pixels, sums);
+                        }
+                        Wanted::PictureOverShared => parts.join_shared(rest, pixels),
                     }
                 }
                 lines.into_iter().for_each(|line| room.give_back(line));
@@ -500,6 +509,17 @@ impl Splatter {
     }
 }
 
+/// What is summed.
+#[derive(Clone, Copy, PartialEq)]
+enum Summed {
+    /// All, with nothing painted.
+    Standard,
+    /// The same; and the changes that make it all as it is painted are found.
+    ToPaintOver,
+    /// All as it is painted.
+    Painted,
+}
+
 /// What is made of the sums.
 #[derive(Clone, Copy, PartialEq)]
 enum Wanted {
@@ -508,7 +528,7 @@ enum Wanted {
     Picture,
     /// Both, before the gains are known.
     SharesAndPicture,
-    /// Only the light that shares, before its gains are known, in the place of the picture; and how much it is.
+    /// Only the light that shares, in the place of the picture; and how much it is.
     Shared,
     /// The picture, in the place of the light that shares.
     PictureOverShared,
@@ -521,10 +541,6 @@ impl Wanted {
 
     fn has_picture(self) -> bool {
         matches!(self, Self::Picture | Self::SharesAndPicture)
-    }
-
-    fn has_sums(self) -> bool {
-        self.has_shares() || self == Self::Shared
     }
 
     fn has_free(self) -> bool {

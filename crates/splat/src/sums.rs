@@ -3,7 +3,7 @@
 use crate::bands::{Pace, Work};
 use crate::canvas::{Accumulator, Level, Word};
 use crate::draw::{Paper, Pen};
-use crate::drawn::{AHEAD, BlockList, Changes, Drawn, Scene, Spans};
+use crate::drawn::{AHEAD, BlockList, Changes, Drawn};
 use crate::lens_in_use::Placed;
 use crate::marks::Marks;
 use crate::nodes::{Nodes, SplatNode};
@@ -118,6 +118,11 @@ impl SumRows<'_> {
         Ok(())
     }
 
+    /// Of coverage alone: it is all among the ordinary samples'. Colours are what they may.
+    pub fn of_coverage(self) -> Self {
+        Self { bright: None, ..self }
+    }
+
     /// What they needed room for.
     pub fn give_back(self, room: &mut Room) {
         self.dim.give_back(room);
@@ -174,25 +179,21 @@ impl Sums {
         [self.free.marks(rows.clone()), self.sharing.marks(rows)]
     }
 
-    /// Sets them to what a scene sends: to what `lists` then say. `pace` learns how long it takes.
+    /// Sets them to what the lists of all blocks say. `pace` learns how long it takes.
     pub fn set(
         &mut self,
-        scene: &Scene,
-        lists: &mut Vec<BlockList>,
+        pen: &Pen,
+        lists: &[BlockList],
         pace: &mut Pace,
         progress: &dyn Progress,
     ) -> Result<(), Cancelled> {
-        lists.resize_with(scene.pen.nodes.blocks.len(), BlockList::default);
-        lists.par_iter_mut().enumerate().for_each_init(Spans::default, |spans, (block, list)| {
-            scene.list(block, scene.paint.of_block(block), spans, list);
-        });
-        let lists = &*lists;
-        let mut work = Work::none(scene.size[1]);
+        let height = self.height();
+        let mut work = Work::none(height);
         for list in lists {
             let Some(first) = list.drawn.first() else { continue };
-            work.add(scene.pen.nodes.row_of(first.index), list.cost);
+            work.add(pen.nodes.row_of(first.index), list.cost);
         }
-        let bands = self.bands(&work, pace, scene.size[1]);
+        let bands = self.bands(&work, pace, height);
         let reach = |band: &Band| lists.iter().filter(|list| meet(&list.rows, &band.rows)).count();
         let (count, done) = (bands.iter().map(reach).sum::<usize>(), AtomicUsize::new(0));
         let summed = bands.into_par_iter().with_max_len(1).map(|mut band| {
@@ -202,7 +203,7 @@ impl Sums {
             band.sharing.clear();
             let here = band.rows.clone();
             let lists = lists.iter().filter(|list| meet(&list.rows, &here)).map(|list| list.drawn.as_slice());
-            band.draw_each(&scene.pen, lists, 1, || {
+            band.draw_each(pen, lists, 1, || {
                 let done = done.fetch_add(1, Ordering::Relaxed) + 1;
                 if done % REPORTED == 0 {
                     progress.report(done as f32 / count as f32);
@@ -218,7 +219,7 @@ impl Sums {
     /// Takes away what is no longer drawn, and adds what is now.
     pub fn change(&mut self, pen: &Pen, changes: &Changes, pace: &Pace) {
         let changed: Vec<_> = changes.0.iter().filter(|block| !block.is_empty()).collect();
-        let mut work = Work::none(self.free.dim.levels[0].height as u32);
+        let mut work = Work::none(self.height());
         for (first, cost) in changed.iter().filter_map(|block| Some((block.first()?, block.cost))) {
             work.add(pen.nodes.row_of(first), cost);
         }
@@ -233,6 +234,11 @@ impl Sums {
                 let Ok(()) = band.draw_each(pen, blocks().map(|block| &*block.added), 1, unwatched);
             }
         });
+    }
+
+    /// Pixel rows of the picture.
+    fn height(&self) -> u32 {
+        self.free.dim.levels[0].height as u32
     }
 
     /// Bands for work in so many rows: one for each thread, but few if there are few rows.

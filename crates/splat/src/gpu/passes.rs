@@ -20,6 +20,7 @@ pub struct Passes {
     pub integrate_layout: BindGroupLayout,
     pub finish: Pass,
     pub balance: Pass,
+    pub share: Pass,
     pub finish_layout: BindGroupLayout,
 }
 
@@ -113,6 +114,7 @@ impl Passes {
             integrate_layout: integrate_layout.clone(),
             finish: Pass::new(&resolve, &finish_layout, "finish", &[]),
             balance: Pass::new(&resolve, &finish_layout, "balance", &[]),
+            share: Pass::new(&resolve, &finish_layout, "share", &[]),
             finish_layout: finish_layout.clone(),
         }
     }

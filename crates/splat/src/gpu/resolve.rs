@@ -1,6 +1,6 @@
 //! Accumulators to a picture, on the card.
 
-use crate::balance::{Gains, KnotSums, Knots};
+use crate::balance::{Gains, KnotSums, Knots, SharedSums};
 use crate::gpu::Gpu;
 use crate::gpu::device::Lost;
 use crate::gpu::passes::Pass;
@@ -31,7 +31,7 @@ pub struct Resolve {
 /// Words of `Level` and of `Frame` in resolve.wgsl.
 const LEVEL_WORDS: usize = 12;
 const FRAME_WORDS: usize = 12;
-/// Words of a knot's sums, and of its gains.
+/// Words of a knot's sums, and of its gains; four of the rest follow all of these.
 const KNOT_WORDS: usize = 16;
 const GAIN_WORDS: usize = 8;
 
@@ -58,7 +58,7 @@ impl Resolve {
             lines: [lines()?, lines()?],
             shares: gpu.buffer("shares", 2 * pixels, storage)?,
             knots: gpu.buffer("knots", KNOT_WORDS * knot_count, storage)?,
-            gains: gpu.buffer("gains", GAIN_WORDS * knot_count, storage)?,
+            gains: gpu.buffer("gains", GAIN_WORDS * knot_count + 4, storage)?,
             picture: gpu.buffer("picture", 4 * pixels, storage)?,
             overflow: gpu.buffer("overflow", 1, storage)?,
         };
@@ -141,22 +141,35 @@ impl Resolve {
     /// What lines and shares bring to each knot.
     pub fn knot_sums(&self, gpu: &Gpu) -> Result<Vec<KnotSums>, Lost> {
         let knots = Knots::new(self.size);
-        let groups = [knots.columns() as u32, knots.rows() as u32];
-        dispatch(gpu, &gpu.passes().balance, &self.finish_bound(gpu), groups);
-        let words = gpu.read(&self.knots, 0..self.knots.size())?;
-        let sums = |words: &[u32]| {
-            let mut sums = KnotSums::default();
-            for (sum, &word) in sums.0.as_flattened_mut().iter_mut().zip(words) {
-                *sum = f32::from_bits(word);
-            }
-            sums
-        };
-        Ok(words.chunks_exact(KNOT_WORDS).map(sums).collect())
+        let sums = self.sums(gpu, &gpu.passes().balance, [knots.columns(), knots.rows()])?;
+        Ok(sums.into_iter().map(KnotSums).collect())
+    }
+
+    /// What lines, shares and gains bring to each cell.
+    pub fn shared_sums(&self, gpu: &Gpu) -> Result<Vec<SharedSums>, Lost> {
+        let knots = Knots::new(self.size);
+        let sums = self.sums(gpu, &gpu.passes().share, [knots.columns() - 1, knots.rows() - 1])?;
+        Ok(sums.into_iter().map(SharedSums).collect())
+    }
+
+    /// The sums that a pass makes, `COUNT` a workgroup.
+    fn sums<const COUNT: usize>(
+        &self,
+        gpu: &Gpu,
+        pass: &Pass,
+        groups: [usize; 2],
+    ) -> Result<Vec<[[f32; 4]; COUNT]>, Lost> {
+        dispatch(gpu, pass, &self.finish_bound(gpu), groups.map(|groups| groups as u32));
+        let bytes = groups[0] * groups[1] * size_of::<[[f32; 4]; COUNT]>();
+        let words = gpu.read(&self.knots, 0..bytes as u64)?;
+        let floats: Vec<f32> = words.into_iter().map(f32::from_bits).collect();
+        Ok(floats.as_chunks().0.as_chunks().0.to_vec())
     }
 
     /// Brings the gains to the card.
-    pub fn set_gains(&self, gpu: &Gpu, gains: &Gains) {
-        let words = gains.of_knots().flatten().flat_map(|[r, g, b]| [r, g, b, 1.0].map(f32::to_bits));
+    pub fn set_gains(&self, gpu: &Gpu, gains: &Gains, rest: [f32; 3]) {
+        let all = gains.of_knots().as_flattened().iter().chain([&rest]);
+        let words = all.flat_map(|[r, g, b]| [*r, *g, *b, 1.0].map(f32::to_bits));
         gpu.write(&self.gains, &words.collect::<Vec<_>>());
     }
 

@@ -315,10 +315,10 @@ fn finish(@builtin(global_invocation_id) id: vec3<u32>) {
     let shared_light = exact_all(share.x * sharing);
     if frame.is_evened != 0u {
         let light = share.y * (free + shared_light);
-        picture[at] = vec4<f32>(light.xyz * gain_of(x, y, ALL), light.w);
+        picture[at] = light * gain_of(x, y, ALL);
     } else {
-        let scaled = shared_light.xyz * gain_of(x, y, SHARING);
-        picture[at] = free + vec4<f32>(exact(scaled.x), exact(scaled.y), exact(scaled.z), shared_light.w);
+        let scaled = vec4<f32>(exact_all(shared_light * gain_of(x, y, SHARING)) * rest());
+        picture[at] = free + exact_all(scaled);
     }
 }
 
@@ -327,7 +327,7 @@ fn finish(@builtin(global_invocation_id) id: vec3<u32>) {
 // Of every knot: red, green, blue and coverage of sharing samples before and after they share, of all before and after it
 // is evened out.
 @group(0) @binding(9) var<storage, read_write> knots: array<vec4<f32>>;
-// Of every knot: of sharing samples, of all.
+// Of every knot: of sharing samples, of all. The last is the rest.
 @group(0) @binding(10) var<storage, read> gains: array<vec4<f32>>;
 
 const SPACING: i32 = 32;
@@ -351,12 +351,17 @@ fn knot_columns() -> i32 {
     return (frame.width + SPACING - 1) / SPACING + 1;
 }
 
-fn gain_of(x: i32, y: i32, kind: i32) -> vec3<f32> {
+fn gain_of(x: i32, y: i32, kind: i32) -> vec4<f32> {
     let columns = knot_columns();
     let at = 2 * ((y / SPACING) * columns + x / SPACING) + kind;
     let left = mix_of_gains(gains[at], gains[at + 2 * columns], behind(y));
     let right = mix_of_gains(gains[at + 2], gains[at + 2 * columns + 2], behind(y));
-    return mix_of_gains(left, right, behind(x)).xyz;
+    return mix_of_gains(left, right, behind(x));
+}
+
+// What all that shares is scaled by beside its gains.
+fn rest() -> vec4<f32> {
+    return gains[arrayLength(&gains) - 1u];
 }
 
 // Rows that a knot's tent reaches.
@@ -401,5 +406,33 @@ fn balance(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_in
             total += of_rows[row][thread];
         }
         knots[4u * (group.y * u32(knot_columns()) + group.x) + thread] = total;
+    }
+}
+
+// The sums of a cell of a painted picture, a thread for each row: of sharing samples before and after they share and are
+// scaled by their gains.
+@compute @workgroup_size(SPACING)
+fn share(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) thread: u32) {
+    let y = i32(group.y) * SPACING + i32(thread);
+    var turns: array<array<vec4<f32>, 2>, 2>;
+    if y < level.height {
+        let first = i32(group.x) * SPACING;
+        for (var x = first; x < min(first + SPACING, frame.width); x += 1) {
+            let sharing = sharing_lines[level.lines + u32((y + 1) * (level.width + 2) + x + 1)];
+            let shared_light = exact_all(shares[u32(y * frame.width + x)].x * sharing);
+            turns[x & 1][0] += sharing;
+            turns[x & 1][1] += exact_all(shared_light * gain_of(x, y, SHARING));
+        }
+    }
+    for (var k = 0u; k < 2u; k += 1u) {
+        of_rows[thread][k] = turns[0][k] + turns[1][k];
+    }
+    workgroupBarrier();
+    if thread < 2u {
+        var total = vec4<f32>();
+        for (var row = 0u; row < u32(SPACING); row += 1u) {
+            total += of_rows[row][thread];
+        }
+        knots[2u * (group.y * u32(knot_columns() - 1) + group.x) + thread] = total;
     }
 }

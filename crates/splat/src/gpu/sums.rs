@@ -1,6 +1,6 @@
 //! The sums on the card: accumulators, and what is drawn onto them.
 
-use crate::balance::{Gains, KnotSums, Knots};
+use crate::balance::{Gains, KnotSums, Knots, NO_REST, SharedSums};
 use crate::draw::Pen;
 use crate::drawn::{BlockChanges, Changes, Scene};
 use crate::gpu::Gpu;
@@ -281,13 +281,25 @@ impl GpuSums {
     }
 
     /// What all rows bring to each knot, once they are integrated.
-    pub fn knot_sums(&self) -> Result<Vec<KnotSums>, GpuError> {
+    fn knot_sums(&self) -> Result<Vec<KnotSums>, GpuError> {
         Ok(self.resolve.knot_sums(&self.gpu)?)
     }
 
+    /// What shares in each cell of a picture, once all rows are integrated.
+    pub fn shared_sums(&self, gains: &Gains) -> Result<Vec<SharedSums>, GpuError> {
+        self.resolve.set_gains(&self.gpu, gains, NO_REST);
+        Ok(self.resolve.shared_sums(&self.gpu)?)
+    }
+
     /// Makes pixel rows of a picture, which were integrated last.
-    pub fn picture(&self, gains: &Gains, rows: Range<u32>, picture: &mut Picture) -> Result<(), GpuError> {
-        self.resolve.set_gains(&self.gpu, gains);
+    pub fn picture(
+        &self,
+        gains: &Gains,
+        rest: [f32; 3],
+        rows: Range<u32>,
+        picture: &mut Picture,
+    ) -> Result<(), GpuError> {
+        self.resolve.set_gains(&self.gpu, gains, rest);
         self.resolve.finish(&self.gpu, &rows);
         let width = self.resolve.size[0];
         let pixels = self.resolve.read(&self.gpu, rows.clone())?;

@@ -1,6 +1,7 @@
 //! Sums on a graphics card, and on the processor again once the card is lost.
 
-use super::{SplatError, Splatter, Wanted};
+use super::{SplatError, Splatter, Summed, Wanted};
+use crate::balance::{NO_REST, rest};
 use crate::gpu::{Gpu, GpuError, GpuSums};
 use crate::paint::Paint;
 use progress::Progress;
@@ -16,11 +17,6 @@ pub struct Card {
 }
 
 impl Card {
-    /// Whether the sums are on one.
-    pub fn is_used(&self) -> bool {
-        self.sums.is_some()
-    }
-
     /// The next picture is of another aperture.
     pub fn forget_aperture(&mut self) {
         if let Some(sums) = &mut self.sums {
@@ -83,12 +79,19 @@ impl Splatter {
     /// See [`Splatter::sum_nodes`].
     pub(super) fn sum_nodes_on_card(
         &mut self,
-        paint: &Paint,
+        summed: Summed,
         progress: &dyn Progress,
     ) -> Option<Result<(), SplatError>> {
         let (nodes, sums) = (self.nodes.as_ref()?, self.card.sums.as_mut()?);
-        let scene = self.aperture.scene(nodes, &self.lens, paint, &self.salf.camera);
-        let set = sums.set(&scene, progress);
+        let scene_as = |paint| self.aperture.scene(nodes, &self.lens, paint, &self.salf.camera);
+        let standard = Paint::default();
+        let set =
+            sums.set(&scene_as(if summed == Summed::Painted { &self.paint } else { &standard }), progress);
+        if summed == Summed::ToPaintOver {
+            let painted = self.paint.blocks.iter().enumerate().filter(|(_, paint)| paint.is_some());
+            let blocks: Vec<_> = painted.map(|(block, _)| (block, None)).collect();
+            self.changes.find(&scene_as(&self.paint), &blocks);
+        }
         Some(self.card.came_of(set))
     }
 
@@ -114,11 +117,8 @@ impl Splatter {
         }
         if wanted.has_picture() {
             sums.integrate(nodes, &rows, is_evened)?;
-            gains.forget_rest();
-            if is_balanced {
-                gains.find_rest(&sums.knot_sums()?);
-            }
-            sums.picture(gains, rows, &mut self.picture)?;
+            let rest = if is_balanced { rest(&sums.shared_sums(gains)?) } else { NO_REST };
+            sums.picture(gains, rest, rows, &mut self.picture)?;
         }
         Ok(())
     }

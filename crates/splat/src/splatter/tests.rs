@@ -79,6 +79,17 @@ fn an_update_equals_a_render_bit_for_bit() {
 }
 
 #[test]
+fn what_is_painted_at_first_and_then_no_more_leaves_no_trace() {
+    let mut focus = standard();
+    let painted: Vec<u32> = (500..900).collect();
+    painted.iter().for_each(|&index| focus.0[index as usize] = FocusOffset::new(0.5, 0.0));
+    let mut splatter = rendered(&focus);
+    splatter.update(&standard(), &painted).unwrap();
+    // Evened again, with gains that a painted picture does without.
+    assert_eq!(splatter.picture(), rendered(&standard()).picture());
+}
+
+#[test]
 fn the_first_dab_on_a_live_picture_changes_what_it_moves_and_nothing_else() {
     let live = || {
         let mut splatter = Splatter::new(light_field());
