@@ -24,8 +24,9 @@
 //! makes it what it was ([`rest`]).
 
 use crate::partition::{Parts, Share};
-use crate::resolve::{BLACK, Light};
+use crate::resolve::Light;
 use crate::widest::with_widest_instructions;
+use glam::Vec4;
 use rayon::prelude::*;
 
 /// How far knots lie apart, px. What is taken from a surface is given back within that of it.
@@ -44,25 +45,8 @@ pub enum Scaled {
 pub struct KnotSums(pub [[f32; 4]; 4]);
 
 impl KnotSums {
-    /// Those of one pixel of weight 1; without those of the picture unless `HAS_PICTURE`.
-    #[inline(always)]
-    fn of<const HAS_PICTURE: bool>(free: &Light, sharing: &Light, share: &Share) -> Self {
-        let mut sums = [BLACK; 4];
-        for c in 0..4 {
-            let shared = share.partial * sharing[c];
-            (sums[0][c], sums[1][c]) = (sharing[c], shared);
-            if HAS_PICTURE {
-                (sums[2][c], sums[3][c]) = (free[c] + sharing[c], share.even * (free[c] + shared));
-            }
-        }
-        Self(sums)
-    }
-
-    #[inline(always)]
-    fn add<const HAS_PICTURE: bool>(&mut self, weight: f32, other: &Self) {
-        let count = if HAS_PICTURE { 16 } else { 8 };
-        let sums = self.0.as_flattened_mut()[..count].iter_mut();
-        for (sum, other) in sums.zip(&other.0.as_flattened()[..count]) {
+    fn add(&mut self, weight: f32, other: &Self) {
+        for (sum, other) in self.0.as_flattened_mut().iter_mut().zip(other.0.as_flattened()) {
             *sum += weight * other;
         }
     }
@@ -147,10 +131,7 @@ impl Knots {
             let mut sum = KnotSums::default();
             for y in (row.max(1) - 1) * SPACING..((row + 1) * SPACING).min(self.size[1]) {
                 let (before, behind) = place(y);
-                sum.add::<true>(
-                    if before == row { 1.0 - behind } else { behind },
-                    &rows[y * columns + column],
-                );
+                sum.add(if before == row { 1.0 - behind } else { behind }, &rows[y * columns + column]);
             }
             sum
         };
@@ -175,34 +156,54 @@ impl Knots {
 /// Sums that take turns, a pixel each: none waits for the one before.
 pub const TURNS: usize = 2;
 
-#[inline(always)]
-fn sum_pixels<const HAS_PICTURE: bool>(parts: Parts<'_>, shares: &[Share], sums: &mut [KnotSums]) {
-    let lights = parts.free.chunks(SPACING).zip(parts.sharing.chunks(SPACING));
-    // Of the knot before the span, and of the one behind it.
-    let mut both = [[KnotSums::default(); TURNS]; 2];
-    for (((free, sharing), shares), sum) in lights.zip(shares.chunks(SPACING)).zip(&mut *sums) {
-        let turns = free.chunks(TURNS).zip(sharing.chunks(TURNS)).zip(shares.chunks(TURNS));
-        for (first, ((free, sharing), shares)) in (0..).step_by(TURNS).zip(turns) {
-            for turn in 0..TURNS.min(free.len()) {
-                let of_pixel = KnotSums::of::<HAS_PICTURE>(&free[turn], &sharing[turn], &shares[turn]);
-                let (_, behind) = place(first + turn);
-                both[0][turn].add::<HAS_PICTURE>(1.0 - behind, &of_pixel);
-                both[1][turn].add::<HAS_PICTURE>(behind, &of_pixel);
-            }
-        }
-        *sum = added(&both[0]);
-        both = [both[1], [KnotSums::default(); TURNS]];
+/// Some light of the pixels of a span.
+#[derive(Clone, Copy, Default)]
+struct SpanSum {
+    sum: Vec4,
+    /// The sum of all sums so far: a pixel is in it as often as there are pixels from it to the span's end.
+    ramp: Vec4,
+}
+
+impl SpanSum {
+    #[inline(always)]
+    fn add(&mut self, light: Vec4) {
+        self.sum += light;
+        self.ramp += self.sum;
     }
-    if let Some(last) = sums.last_mut() {
-        *last = added(&both[0]);
+
+    /// Weighted by the tents of the knot before the span and of the one behind it, if that many pixels were added.
+    fn of_ends(mut self, count: usize) -> [Vec4; 2] {
+        (count..SPACING).for_each(|_| self.add(Vec4::ZERO));
+        let before = (self.ramp - 0.5 * self.sum) / SPACING as f32;
+        [before, self.sum - before]
     }
 }
 
 #[inline(always)]
-fn added([even, odd]: &[KnotSums; TURNS]) -> KnotSums {
-    let mut sum = *even;
-    sum.add::<true>(1.0, odd);
-    sum
+fn sum_pixels<const HAS_PICTURE: bool>(parts: Parts<'_>, shares: &[Share], sums: &mut [KnotSums]) {
+    let lights = parts.free.chunks(SPACING).zip(parts.sharing.chunks(SPACING));
+    let mut of_knot = [Vec4::ZERO; 4];
+    for (((free, sharing), shares), sum) in lights.zip(shares.chunks(SPACING)).zip(&mut *sums) {
+        let [mut before, mut after, mut picture, mut evened] = [SpanSum::default(); 4];
+        for ((free, sharing), share) in free.iter().zip(sharing).zip(shares) {
+            let (free, sharing) = (Vec4::from_array(*free), Vec4::from_array(*sharing));
+            let shared = share.partial * sharing;
+            before.add(sharing);
+            after.add(shared);
+            if HAS_PICTURE {
+                picture.add(free + sharing);
+                evened.add(share.even * (free + shared));
+            }
+        }
+        let ends = [before, after, picture, evened].map(|sum| sum.of_ends(free.len()));
+        for ((sum, of_knot), [before, behind]) in sum.0.iter_mut().zip(&mut of_knot).zip(ends) {
+            *sum = (*of_knot + before).to_array();
+            *of_knot = behind;
+        }
+    }
+    if let Some(last) = sums.last_mut() {
+        last.0 = of_knot.map(|sum| sum.to_array());
+    }
 }
 
 /// The gains of a picture, and room to find them.
@@ -360,8 +361,9 @@ impl GainsOfRow {
     fn scale(&self, row: &mut [[f32; 3]]) {
         /// Colours of so many pixels fill whole registers.
         const GROUP: usize = 8;
+        let group = |[r, g, b, _]: [f32; 4]| [[r, g, b]; GROUP];
         for (knot, span) in row.chunks_mut(SPACING).enumerate() {
-            let [before, after] = [self.0[knot], self.0[knot + 1]].map(|[r, g, b, _]| [[r, g, b]; GROUP]);
+            let (before, after) = (group(self.0[knot]), group(self.0[knot + 1]));
             for (pixels, behind) in span.chunks_mut(GROUP).zip(BEHIND.chunks(GROUP)) {
                 let gains = before.as_flattened().iter().zip(after.as_flattened());
                 let behind = behind.as_flattened();
@@ -466,6 +468,28 @@ mod tests {
             for [before, after, without] in sums(&picture, &shares, &gains, c) {
                 assert!((after / before - 1.0).abs() < 1e-6, "{c}: {before} {after}");
                 assert!(c > 0 || (without / before - 1.0).abs() > 5e-4, "the control: {before} {without}");
+            }
+        }
+    }
+
+    /// A highlight anywhere in a row, at a knot or between two, at the row's end too, is weighted as if it were alone.
+    #[test]
+    fn rows_are_weighted_by_tents() {
+        const WIDTH: usize = 75;
+        let knots = Knots::new([WIDTH, 1]);
+        let share = Share { partial: 0.5, even: 0.25 };
+        for highlight in 0..WIDTH {
+            let light = |x: usize| if x == highlight { [1e6; 4] } else { [1e-3; 4] };
+            let lights: Vec<_> = (0..WIDTH).map(light).collect();
+            let mut sums = vec![KnotSums::default(); knots.columns()];
+            knots.sum_row(Parts { free: &lights, sharing: &lights }, &[share; WIDTH], &mut sums, true);
+            for (knot, sums) in sums.iter().enumerate() {
+                let tent = |x: usize| 1.0 - (knot as f64 - (x as f64 + 0.5) / SPACING as f64).abs();
+                let sum = (0..WIDTH).map(|x| tent(x).max(0.0) * f64::from(light(x)[0])).sum::<f64>();
+                for (of_kind, factor) in sums.0.iter().zip([1.0, 0.5, 2.0, 0.375]) {
+                    let ratio = f64::from(of_kind[0]) / (factor * sum);
+                    assert!((ratio - 1.0).abs() < 1e-5, "{highlight} {knot}: {ratio}");
+                }
             }
         }
     }

@@ -375,27 +375,36 @@ fn balance(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_in
     let knot = vec2<i32>(group.xy);
     let y = (knot.y - 1) * SPACING + i32(thread);
     var sums: array<vec4<f32>, 4>;
-    // Sums that take turns, a pixel each.
-    var turns: array<array<vec4<f32>, 4>, 2>;
     if y >= 0 && y < level.height {
-        let end = min((knot.x + 1) * SPACING, frame.width);
-        for (var x = max((knot.x - 1) * SPACING, 0); x < end; x += 1) {
-            let from_line = level.lines + u32((y + 1) * (level.width + 2) + x + 1);
-            let free = free_lines[from_line];
-            let sharing = sharing_lines[from_line];
-            let share = shares[u32(y * frame.width + x)];
-            let shared_light = exact_all(share.x * sharing);
-            let evened = share.y * (free + shared_light);
-            let weight = select(1.0 - behind(x), behind(x), x < knot.x * SPACING);
-            let turn = x & 1;
-            turns[turn][0] += exact_all(weight * sharing);
-            turns[turn][1] += exact_all(weight * shared_light);
-            turns[turn][2] += exact_all(weight * (free + sharing));
-            turns[turn][3] += exact_all(weight * evened);
+        // Of the span before the knot and of the one behind it.
+        for (var span = knot.x - 1; span <= knot.x; span += 1) {
+            var of_span: array<vec4<f32>, 4>;
+            // The sums of all sums so far: a pixel is in them as often as there are pixels from it to the span's end.
+            var ramps: array<vec4<f32>, 4>;
+            for (var x = span * SPACING; x < (span + 1) * SPACING; x += 1) {
+                if x >= 0 && x < frame.width {
+                    let from_line = level.lines + u32((y + 1) * (level.width + 2) + x + 1);
+                    let free = free_lines[from_line];
+                    let sharing = sharing_lines[from_line];
+                    let share = shares[u32(y * frame.width + x)];
+                    let shared_light = exact_all(share.x * sharing);
+                    of_span[0] += sharing;
+                    of_span[1] += shared_light;
+                    of_span[2] += free + sharing;
+                    of_span[3] += exact_all(share.y * (free + shared_light));
+                }
+                for (var k = 0u; k < 4u; k += 1u) {
+                    ramps[k] += of_span[k];
+                }
+            }
+            for (var k = 0u; k < 4u; k += 1u) {
+                let before = (ramps[k] - 0.5 * of_span[k]) * 0.03125;
+                sums[k] += select(before, of_span[k] - before, span < knot.x);
+            }
         }
         let weight = select(1.0 - behind(y), behind(y), y < knot.y * SPACING);
         for (var k = 0u; k < 4u; k += 1u) {
-            sums[k] = exact_all(weight * (turns[0][k] + turns[1][k]));
+            sums[k] = exact_all(weight * sums[k]);
         }
     }
     of_rows[thread] = sums;
