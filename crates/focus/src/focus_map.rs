@@ -2,7 +2,7 @@
 
 use crate::tile_grid::TileGrid;
 use crate::{Canvas, Selection};
-use glam::DVec2;
+use glam::{DVec2, UVec2};
 use lens::FocusOffset;
 use std::sync::Arc;
 
@@ -148,15 +148,12 @@ impl FocusMap {
     /// (i + ½, j + ½)), bilinear; outside the map its border goes on. Between equal texels it is exactly
     /// their value.
     pub fn sample(&self, position: DVec2) -> FocusOffset {
-        let p = position - DVec2::splat(0.5);
-        let low = p.floor();
-        let f = p - low;
-        let [width, height] = self.size();
-        let clamp = |i: f64, count: u32| i.clamp(0.0, (count - 1) as f64) as u32;
-        let [x0, x1] = [low.x, low.x + 1.0].map(|x| clamp(x, width));
-        let [y0, y1] = [low.y, low.y + 1.0].map(|y| clamp(y, height));
-        let corners = [self.texel(x0, y0), self.texel(x1, y0), self.texel(x0, y1), self.texel(x1, y1)];
-        bilinear(corners, f)
+        let last = UVec2::from(self.size()) - UVec2::ONE;
+        let p = (position - DVec2::splat(0.5)).clamp(DVec2::ZERO, last.as_dvec2());
+        let low = p.as_uvec2();
+        let high = (low + UVec2::ONE).min(last);
+        let corners = [[low.x, low.y], [high.x, low.y], [low.x, high.y], [high.x, high.y]];
+        bilinear(corners.map(|[x, y]| self.texel(x, y)), p - low.as_dvec2())
     }
 
     /// The least and the greatest t and anchor of the texels of a box, the first and the last column and row;

@@ -53,7 +53,7 @@ impl SmallBoxes {
     /// Draws them, their half sides' squares smaller by `less`; none are left.
     #[inline(always)]
     pub fn draw<W: Word>(&mut self, rows: &mut Rows<W>, less: u32, sign: i32) {
-        let [across, down] = self.legs.each_ref().map(|legs| sizes(legs, less));
+        let (across, down) = (sizes(&self.legs[0], less), sizes(&self.legs[1], less));
         for at in 0..self.len {
             let sized = SizedBox {
                 center: self.center[at],
