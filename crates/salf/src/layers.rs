@@ -70,12 +70,13 @@ pub fn trace_cell(tracer: &Tracer, view: &View, placement: &Placement, cell: Cel
     });
     let rays = pixels.map(|pixel| view.chief_ray(pixel));
     let most = if hidden { DEEPEST_LAYER } else { 1 };
-    let met: Vec<(usize, Hit)> = if hidden {
-        tracer.all_hits(&beam, &rays, most)
+    let mut met: Vec<(usize, Hit)> = Vec::with_capacity(Cell::RAYS);
+    if hidden {
+        met = tracer.all_hits(&beam, &rays, most);
     } else {
         let first = tracer.first_hits(&beam, &rays).into_iter().enumerate();
-        first.filter_map(|(sub_cell, hit)| Some((sub_cell, hit?))).collect()
-    };
+        met.extend(first.filter_map(|(sub_cell, hit)| Some((sub_cell, hit?))));
+    }
     for sub_cell in Cell::sub_cells() {
         let (pixel, mut nearest) = (pixels[sub_cell], 0.0);
         let [start, end] = [sub_cell, sub_cell + 1].map(|next| met.partition_point(|(of, _)| *of < next));
@@ -130,7 +131,9 @@ impl Layers {
                 slope = DVec2::new(-tilt.x, tilt.y) / parallax_px;
             }
         }
-        self.groups.push(Group { members: vec![member], is_nearest, is_just_behind, part, tilt, slope });
+        let mut members = Vec::with_capacity(Cell::RAYS);
+        members.push(member);
+        self.groups.push(Group { members, is_nearest, is_just_behind, part, tilt, slope });
     }
 
     /// What they tell of the depths around their cell.

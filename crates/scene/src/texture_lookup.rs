@@ -40,21 +40,21 @@ impl Wrap {
 
 impl Image {
     /// Linear RGBA of the texel in column `x` of row `y`, both within the image.
-    #[inline]
+    #[inline(always)]
     pub fn texel(&self, x: u32, y: u32) -> Vec4 {
         let at = 4 * (y as usize * self.width as usize + x as usize);
         match &self.texels {
             ImageLevel::Bits8(data) => {
                 let t = &data[at..at + 4];
                 let lut = &*LINEAR_FROM_8;
-                let [r, g, b] = [t[0], t[1], t[2]].map(|v| lut[v as usize]);
-                Vec4::new(r, g, b, f32::from(t[3]) * (1.0 / 255.0))
+                let of = |k: usize| lut[t[k] as usize];
+                Vec4::new(of(0), of(1), of(2), f32::from(t[3]) * (1.0 / 255.0))
             }
             ImageLevel::Bits16(data) => {
                 let t = &data[at..at + 4];
                 let lut = &*LINEAR_FROM_16;
-                let [r, g, b] = [t[0], t[1], t[2]].map(|v| lut[v as usize]);
-                Vec4::new(r, g, b, f32::from(t[3]) * (1.0 / 65535.0))
+                let of = |k: usize| lut[t[k] as usize];
+                Vec4::new(of(0), of(1), of(2), f32::from(t[3]) * (1.0 / 65535.0))
             }
         }
     }

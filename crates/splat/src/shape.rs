@@ -2,7 +2,7 @@
 
 use crate::fixed::mul_shift;
 use crate::nodes::ONE;
-use glam::DVec2;
+use glam::{DVec2, DVec4};
 use lens::{Aperture, ApertureShape, Run};
 
 /// Rows of a shape with an outline.
@@ -11,7 +11,9 @@ const FINE_ROWS: usize = 512;
 /// An aperture of radius 1, v up.
 pub struct Shape {
     rows: Vec<Vec<Run>>,
-    /// The same in integers, one row after another.
+    /// Of what lies below each row, and below the end of the last: light as a share of all, and that times u, u² and v.
+    moments_below: Vec<DVec4>,
+    /// The rows in integers, one after another.
     pub runs: Vec<ShapeRun>,
     /// Where each row's begin, and the end of the last.
     pub firsts: Vec<u32>,
@@ -51,12 +53,19 @@ impl Shape {
         let rows: Vec<Vec<Run>> = cut.rows.into_iter().map(|row| row.runs).collect();
         let (mut mean, mut square) = (DVec2::ZERO, DVec2::ZERO);
         let height = 2.0 / rows.len() as f64;
-        for (v, run) in with_middle(&rows) {
-            let width = run.end - run.start;
-            let share = width * height * run.transmission / open_area;
-            let middle = DVec2::new((run.start + run.end) / 2.0, v);
-            mean += share * middle;
-            square += share * (middle * middle + DVec2::new(width, height).powf(2.0) / 12.0);
+        let mut moments_below = vec![DVec4::ZERO];
+        for (row, v) in rows.iter().zip(middles(rows.len())) {
+            let mut below = moments_below[moments_below.len() - 1];
+            for run in row {
+                let width = run.end - run.start;
+                let share = width * height * run.transmission / open_area;
+                let middle = DVec2::new((run.start + run.end) / 2.0, v);
+                let squared = middle * middle + DVec2::new(width, height).powf(2.0) / 12.0;
+                mean += share * middle;
+                square += share * squared;
+                below += share * DVec4::new(1.0, middle.x, squared.x, v);
+            }
+            moments_below.push(below);
         }
         let is_picture = matches!(aperture.shape, ApertureShape::Mask(_));
         let runs = rows.iter().flatten().map(ShapeRun::new).collect();
@@ -65,7 +74,8 @@ impl Shape {
             Some(*next)
         });
         let firsts = std::iter::once(0).chain(starts).collect();
-        Self { rows, runs, firsts, is_picture, open_area, mean, variance: square - mean * mean }
+        let variance = square - mean * mean;
+        Self { rows, moments_below, runs, firsts, is_picture, open_area, mean, variance }
     }
 
     /// Its parts in a grid of `side` × `side` cells of [−1, 1]², those without light left out.
@@ -87,9 +97,33 @@ impl Shape {
         parts.into_iter().filter(|part| part.share > 0.0).map(Part::about_its_mean).collect()
     }
 
-    /// Its rows from v = −1 up, of equal height.
-    pub fn rows(&self) -> &[Vec<Run>] {
-        &self.rows
+    /// Of what lies between two v: its light as a share of all, and that times u, u² and v.
+    pub fn moments(&self, [low, high]: [f64; 2]) -> DVec4 {
+        let below = |v: f64| {
+            let at = self.row_of(v);
+            let row = (at as usize).min(self.rows.len() - 1);
+            self.moments_below[row].lerp(self.moments_below[row + 1], at - row as f64)
+        };
+        below(high) - below(low)
+    }
+
+    /// The runs between two v, each with how much of its light that is, as a share of all.
+    pub fn runs_between(&self, between: [f64; 2]) -> impl Iterator<Item = (&Run, f64)> {
+        let [low, high] = between.map(|v| self.row_of(v));
+        let first = low as usize;
+        let rows = (first..).zip(&self.rows[first..(high.ceil() as usize).max(first)]);
+        rows.flat_map(move |(row, runs)| {
+            let height = high.min((row + 1) as f64) - low.max(row as f64);
+            let area = 2.0 / self.rows.len() as f64 * height;
+            runs.iter()
+                .map(move |run| (run, area * (run.end - run.start) * run.transmission / self.open_area))
+        })
+    }
+
+    /// In rows from v = −1; the first or the last edge beyond them.
+    fn row_of(&self, v: f64) -> f64 {
+        let count = self.rows.len() as f64;
+        ((v + 1.0) / 2.0 * count).clamp(0.0, count)
     }
 
     /// The runs of the row that v (times 16384) lies in.
@@ -150,11 +184,12 @@ impl Part {
 
 /// All runs with the v of the middle of their row.
 fn with_middle(rows: &[Vec<Run>]) -> impl Iterator<Item = (f64, &Run)> {
-    let height = 2.0 / rows.len() as f64;
-    rows.iter().enumerate().flat_map(move |(k, row)| {
-        let v = -1.0 + height * (k as f64 + 0.5);
-        row.iter().map(move |run| (v, run))
-    })
+    rows.iter().zip(middles(rows.len())).flat_map(|(row, v)| row.iter().map(move |run| (v, run)))
+}
+
+/// The middles of so many rows.
+fn middles(count: usize) -> impl Iterator<Item = f64> {
+    (0..count).map(move |row| -1.0 + (2 * row + 1) as f64 / count as f64)
 }
 
 #[cfg(test)]

@@ -6,6 +6,7 @@
 
 use crate::canvas::{PIXEL, POSITION_BITS};
 use crate::shape::{Part, Shape};
+use glam::DVec4;
 use lens::Run;
 use progress::Progress;
 use rayon::prelude::*;
@@ -183,40 +184,24 @@ impl Stencils {
     fn cut(&self, radius_px: f64, phase: f64) -> Stencil {
         let area_px = (self.shape.open_area * radius_px * radius_px).max(1.0);
         let height_bits = HEIGHT_BITS + area_px.log2() as u32;
-        let rows = self.shape.rows();
         let size = radius_px.abs();
-        let height_px = 2.0 * size / rows.len() as f64;
-        let first = (phase - size).floor() as i64;
-        let mut cut: Vec<Vec<WeightedRun>> = vec![Vec::new(); (2.0 * size).ceil() as usize + 2];
-        for (k, runs) in rows.iter().enumerate() {
-            // The height of the row's lower edge on the picture; v goes up, pixel rows go down.
-            let v = -1.0 + 2.0 * (k as f64 + 0.5) / rows.len() as f64;
-            let top = phase - v * radius_px - height_px / 2.0;
-            let mut row = top.floor();
-            while row < top + height_px {
-                let overlap = (top + height_px).min(row + 1.0) - top.max(row);
-                // A share of the area of the whole splat; at radius 0 all of it is in one pixel row.
-                let share = if height_px > 0.0 { overlap / height_px } else { 1.0 };
-                if share > 0.0 {
-                    let light = share * 2.0 / rows.len() as f64 / self.shape.open_area;
-                    let place = (row as i64 - first) as usize;
-                    cut[place].extend(runs.iter().map(|run| WeightedRun::new(run, radius_px, light, v)));
-                }
-                row += 1.0;
+        let mut runs = Vec::new();
+        for row in (phase - size).floor() as i32..=(phase + size).floor() as i32 {
+            // The heights of its edges in the aperture; v goes up, pixel rows go down.
+            let v_at = |y: f64| if size > 0.0 { (phase - y) / radius_px } else { (phase - y).signum() };
+            let [a, b] = [v_at(row.into()), v_at((row + 1).into())];
+            let between = [a.min(b), a.max(b)];
+            let Some(whole) = WeightedRun::of(self.shape.moments(between), radius_px) else { continue };
+            let mut add = |run: &WeightedRun| runs.extend(run.quantised(row, height_bits));
+            if self.shape.is_picture {
+                let parts = self.shape.runs_between(between);
+                let parts: Vec<_> = parts.map(|(run, light)| whole.part(run, radius_px, light)).collect();
+                whole.binned(&parts, size).iter().for_each(add);
+            } else {
+                add(&whole);
             }
         }
-        let mut stencil = Vec::new();
-        for (place, runs) in cut.into_iter().enumerate() {
-            let runs = if self.shape.is_picture {
-                WeightedRun::binned(&runs, size)
-            } else {
-                WeightedRun::mean(&runs).into_iter().collect()
-            };
-            stencil.extend(
-                runs.iter().filter_map(|run| run.quantised((place as i64 + first) as i32, height_bits)),
-            );
-        }
-        Stencil { runs: stencil.into(), height_bits }
+        Stencil { runs: runs.into(), height_bits }
     }
 }
 
@@ -233,34 +218,29 @@ struct WeightedRun {
 const NARROWEST_PX: f64 = 1.0 / 16.0;
 
 impl WeightedRun {
-    fn new(run: &Run, radius_px: f64, light: f64, v: f64) -> Self {
-        let [a, b] = [run.start * radius_px, run.end * radius_px];
-        let light = light * (run.end - run.start) * run.transmission;
-        Self { start: a.min(b), end: a.max(b), light, v }
-    }
-
-    /// One run with the light, mean and variance of all.
-    fn mean(runs: &[Self]) -> Option<Self> {
-        let light: f64 = runs.iter().map(|run| run.light).sum();
+    /// One run with the light, mean and variance of these moments (see [`Shape::moments`]). `None` without light.
+    fn of(moments: DVec4, radius_px: f64) -> Option<Self> {
+        let [light, u, u_squared, v] = moments.to_array();
         if light <= 0.0 {
             return None;
         }
-        let average =
-            |f: &dyn Fn(&Self) -> f64| runs.iter().map(|run| run.light * f(run)).sum::<f64>() / light;
-        let middle = average(&|run| (run.start + run.end) / 2.0);
-        let square = average(&|run| {
-            ((run.start + run.end) / 2.0 - middle).powi(2) + (run.end - run.start).powi(2) / 12.0
-        });
-        let half = (3.0 * square).sqrt();
-        Some(Self { start: middle - half, end: middle + half, light, v: average(&|run| run.v) })
+        let mean = u / light;
+        let half = (3.0 * (u_squared / light - mean * mean)).max(0.0).sqrt() * radius_px.abs();
+        let middle = mean * radius_px;
+        Some(Self { start: middle - half, end: middle + half, light, v: v / light })
     }
 
-    /// The light of `runs`, which lie within `size` of the centre, in runs that do not overlap: bins of half a pixel, like
-    /// neighbours joined, moved so that the mean is that of `runs`.
-    fn binned(runs: &[Self], size: f64) -> Vec<Self> {
+    /// One of the runs that it is the mean of.
+    fn part(&self, run: &Run, radius_px: f64, light: f64) -> Self {
+        let [a, b] = [run.start * radius_px, run.end * radius_px];
+        Self { start: a.min(b), end: a.max(b), light, v: self.v }
+    }
+
+    /// The light of `runs`, whose mean it is and which lie within `size` of the centre, in runs that do not overlap: bins of
+    /// half a pixel, like neighbours joined, moved so that they have that mean.
+    fn binned(&self, runs: &[Self], size: f64) -> Vec<Self> {
         const BINS_A_PX: f64 = 2.0;
         const ALIKE: f64 = 1e-3;
-        let Some(whole) = Self::mean(runs) else { return Vec::new() };
         let mut bins = vec![0.0; (2.0 * size * BINS_A_PX).ceil() as usize + 1];
         for run in runs {
             let [start, end] = [run.start, run.end].map(|x| (x + size) * BINS_A_PX);
@@ -282,13 +262,13 @@ impl WeightedRun {
             let count = alike.count();
             if bins[bin] > 0.0 {
                 let light = bins[bin..bin + count].iter().sum();
-                binned.push(Self { start: x_of(bin), end: x_of(bin + count), light, v: whole.v });
+                binned.push(Self { start: x_of(bin), end: x_of(bin + count), light, v: self.v });
             }
             bin += count;
         }
         let middle = |run: &Self| (run.start + run.end) / 2.0;
-        let found: f64 = binned.iter().map(|run| run.light * middle(run)).sum::<f64>() / whole.light;
-        let shift = middle(&whole) - found;
+        let found: f64 = binned.iter().map(|run| run.light * middle(run)).sum::<f64>() / self.light;
+        let shift = middle(self) - found;
         binned.into_iter().map(|run| Self { start: run.start + shift, end: run.end + shift, ..run }).collect()
     }
 
@@ -352,6 +332,34 @@ mod tests {
             let wanted = [(50.5 / 32.0 - 1.0) * radius, -(1.0 - 5.5 / 32.0) * radius];
             assert!((mean[0] / light - wanted[0]).abs() < 0.02, "{radius}: {mean:?}");
             assert!((mean[1] / light - wanted[1]).abs() <= 0.51, "{radius}: {mean:?}");
+        }
+    }
+
+    /// Every pixel row of a disc's stencil has the light of its strip of the disc, however small the disc is.
+    #[test]
+    fn rows_have_the_light_of_their_strips() {
+        let stencils = Stencils::new(Shape::new(&ApertureShape::Disc.into()));
+        let below = |v: f64| {
+            let v = v.clamp(-1.0, 1.0);
+            0.5 + (v * (1.0 - v * v).sqrt() + v.asin()) / std::f64::consts::PI
+        };
+        for (radius, phase) in [(0.0, 0.0), (0.0, 0.75), (0.2, 0.0), (0.7, 0.5), (-4.2, 0.25), (37.3, 0.5)] {
+            let stencil = stencils.cut(radius, phase);
+            let mut sum = 0.0;
+            for run in &stencil.runs {
+                let edges = [run.row, run.row + 1].map(f64::from);
+                let wanted = if radius == 0.0 {
+                    f64::from(run.row == 0)
+                } else {
+                    let [a, b] = edges.map(|y| below((phase - y) / radius));
+                    (a - b).abs()
+                };
+                let quanta = f64::from(run.end - run.start) / f64::from(PIXEL) * f64::from(run.height);
+                let light = quanta / (1u64 << stencil.height_bits) as f64;
+                assert!((light - wanted).abs() < 1e-4, "{radius} {phase} {run:?}: {light} {wanted}");
+                sum += light;
+            }
+            assert!((sum - 1.0).abs() < 1e-5, "{radius} {phase}: {sum}");
         }
     }
 
