@@ -135,12 +135,12 @@ impl Samples {
 
     /// Every sample, in order.
     pub fn iter(&self) -> impl Iterator<Item = Sample> {
-        self.runs().flat_map(|run| run.samples())
+        self.runs().flat_map(|run| run.iter())
     }
 
     /// Every sample, not packed.
     pub fn to_vec(&self) -> Vec<Sample> {
-        (0..self.run_count()).into_par_iter().flat_map_iter(|run| self.run(run).samples()).collect()
+        (0..self.run_count()).into_par_iter().flat_map_iter(|run| self.run(run).iter()).collect()
     }
 
     /// The samples with `change` made to each of them; they are not packed then.

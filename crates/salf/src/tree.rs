@@ -21,27 +21,17 @@ pub const BLOCK_PX: i32 = crate::domain::Domain::BLOCK;
 /// Levels of the hierarchy: cells of 1, 2, 4, 8 and 16 px.
 pub const LEVELS: usize = BLOCK_PX.ilog2() as usize + 1;
 
-/// Samples and nodes above them.
-#[derive(Clone, Debug, Default)]
-pub struct Tree {
-    /// The blocks of the picture and its margin, row by row from the upper left one.
-    pub blocks: Vec<Block>,
-    /// All nodes: block by block, its roots first, then the children of all of these, and so on. So what is drawn of a block,
-    /// nodes that are about as far below the roots, lies together.
-    pub nodes: Vec<Node>,
-    /// Visibility of the nodes (see [`Node::visibility`]).
-    pub words: Vec<u64>,
-    /// The node of each sample.
-    pub node_of_sample: Vec<u32>,
-}
-
-/// A square of [`BLOCK_PX`] pixels.
+/// The hierarchy over the samples of a square of [`BLOCK_PX`] pixels; a light field is a row of them after the other, from the
+/// upper left one. Places are counted from the block's beginning.
 #[derive(Clone, Debug, Default)]
 pub struct Block {
-    /// Its nodes.
-    pub nodes: Range<u32>,
-    /// Those of them that no other stands for: the first ones.
-    pub roots: Range<u32>,
+    /// The roots, then the children of all of these, and so on. So what is drawn of a block, nodes that are about as far below
+    /// the roots, lies together.
+    pub nodes: Vec<Node>,
+    /// How many of them no other stands for.
+    pub roots: u32,
+    /// What nodes see of the aperture: 16 × 16 cells, four rows a word (see [`crate::Visibility::Cells`]).
+    pub cells: Vec<[u64; 4]>,
 }
 
 /// One sample, or several as one.
@@ -63,28 +53,15 @@ pub struct Node {
     pub radiance: Vec3,
     /// Its cell has a side of 2 to this, px.
     pub level: u8,
-    /// What it sees of the aperture.
-    pub visibility: NodeVisibility,
+    /// Where in [`Block::cells`] it stands what it sees of the aperture; `None` if it sees all.
+    pub cells: Option<u32>,
     /// The nodes that it stands for, fewer than 32; none if it is a sample.
     pub children: Range<u32>,
-    /// The sample, if it is one.
+    /// The number of the sample in the light field, if it is one.
     pub sample: Option<u32>,
 }
 
-/// Where a node's visibility is kept.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum NodeVisibility {
-    /// It sees the whole aperture.
-    Open,
-    /// 8 × 8 cells: one word, at this place of [`Tree::words`].
-    Cells8(u32),
-    /// 16 × 16 cells: four words.
-    Cells16(u32),
-}
-
-impl Tree {
-    /// Builds the hierarchy over a light field. Samples brighter than `highlight` stay alone.
-    pub fn new(salf: &Salf, highlight: f32) -> Self {
-        build::build(salf, highlight)
-    }
+/// Builds the hierarchy over a light field and makes something of every block. Samples brighter than `highlight` stay alone.
+pub fn each_block<T: Send>(salf: &Salf, highlight: f32, make: impl Fn(Block) -> T + Sync) -> Vec<T> {
+    build::each_block(salf, highlight, make)
 }

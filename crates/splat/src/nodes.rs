@@ -3,8 +3,8 @@
 use crate::canvas::{PIXEL, POSITION_BITS};
 use crate::lens_in_use::Placed;
 use rayon::prelude::*;
-use salf::tree::{LEVELS, Node, NodeVisibility, Tree};
-use salf::{Salf, Visibility};
+use salf::Salf;
+use salf::tree::{Block, LEVELS, Node, each_block};
 use std::ops::Range;
 
 /// Brighter samples stay alone in the hierarchy.
@@ -97,6 +97,12 @@ impl SplatNode {
         self.first_child..self.first_child + u32::from(self.child_count)
     }
 
+    /// Where so many nodes and cells lie before those of its block.
+    fn moved_by(self, nodes: u32, cells: u32) -> Self {
+        let cells = if self.is_open() { OPEN } else { self.cells + cells };
+        Self { first_child: self.first_child + nodes, cells, ..self }
+    }
+
     /// The columns (`axis` 0) or rows (1) of a picture of `side` of them that its light may reach.
     #[inline(always)]
     pub fn reach(&self, axis: usize, placed: Placed, side: u32) -> Range<u32> {
@@ -149,35 +155,54 @@ pub const ONE: i32 = 1 << 14;
 impl Nodes {
     /// Reads a light field. `None` if a sample is too bright to be summed.
     pub fn new(salf: &Salf, scale: Scale) -> Option<Self> {
-        let tree = Tree::new(salf, HIGHLIGHT);
-        let nodes: Option<Vec<_>> = tree.nodes.par_iter().map(|node| convert(node, scale)).collect();
-        let mut nodes = nodes?;
-        let mut cells = Vec::new();
-        for (splat, node) in nodes.iter_mut().zip(&tree.nodes) {
-            if let Some(found) = cells_of(node.visibility, &tree.words) {
-                splat.cells = cells.len() as u32;
-                cells.push(found);
+        let parts = each_block(salf, HIGHLIGHT, |block| Part::new(block, scale));
+        let parts = parts.into_iter().collect::<Option<Vec<_>>>()?;
+        let following = |next: &mut u32, count: usize| {
+            let start = *next;
+            *next += count as u32;
+            Some(start..*next)
+        };
+        let counts = parts.iter().map(|part| part.nodes.len());
+        let blocks: Vec<_> = counts.scan(0, following).collect();
+        let counts = parts.iter().map(|part| part.cells.len());
+        let cells_of_block: Vec<_> = counts.scan(0, following).collect();
+        let mut block_of_node = vec![0; blocks.last().map_or(0, |block| block.end as usize)];
+        for (index, block) in blocks.iter().enumerate() {
+            block_of_node[block.start as usize..block.end as usize].fill(index as u32);
+        }
+        let in_part = |(at, &block): (usize, &u32)| {
+            let block = block as usize;
+            (&parts[block], block, at - blocks[block].start as usize)
+        };
+        let nodes: Vec<_> = block_of_node
+            .par_iter()
+            .enumerate()
+            .map(in_part)
+            .map(|(part, block, at)| {
+                part.nodes[at].moved_by(blocks[block].start, cells_of_block[block].start)
+            })
+            .collect();
+        let all = block_of_node.par_iter().enumerate().map(in_part);
+        let sample_of_node: Vec<_> = all.map(|(part, _, at)| part.samples[at]).collect();
+        let mut node_of_sample = vec![0; salf.samples.len()];
+        for (node, &sample) in sample_of_node.iter().enumerate() {
+            if let Some(place) = node_of_sample.get_mut(sample as usize) {
+                *place = node as u32;
             }
         }
-        let mut block_of_node = vec![0; nodes.len()];
-        for (index, block) in tree.blocks.iter().enumerate() {
-            let range = block.nodes.start as usize..block.nodes.end as usize;
-            block_of_node[range].fill(index as u32);
-        }
-        let leaves = tree.nodes.par_iter().filter(|node| node.sample.is_some());
-        let brightest = leaves.map(|node| node.radiance.max_element()).reduce(|| 1.0, f32::max);
+        let root = |(part, block): (&Part, &Range<u32>)| block.start..block.start + part.roots;
         Some(Self {
-            roots: tree.blocks.iter().map(|block| block.roots.clone()).collect(),
-            blocks: tree.blocks.into_iter().map(|block| block.nodes).collect(),
-            has_bright: nodes.iter().any(|node| node.is_bright),
+            roots: parts.iter().zip(&blocks).map(root).collect(),
+            blocks,
+            has_bright: parts.iter().any(|part| part.has_bright),
+            brightest: parts.iter().map(|part| part.brightest).fold(1.0, f32::max).into(),
             nodes,
-            cells,
-            sample_of_node: tree.nodes.iter().map(|node| node.sample.unwrap_or(u32::MAX)).collect(),
-            node_of_sample: tree.node_of_sample,
+            cells: parts.into_iter().flat_map(|part| part.cells).collect(),
+            sample_of_node,
+            node_of_sample,
             block_of_node,
             scale,
             middle: [salf.camera.width, salf.camera.height].map(|side| side as i32 * (PIXEL / 2)),
-            brightest: brightest.into(),
         })
     }
 
@@ -227,19 +252,32 @@ impl Nodes {
     }
 }
 
-/// What a node sees, as 16 rows of 16 cells; `None` if all.
-fn cells_of(visibility: NodeVisibility, words: &[u64]) -> Option<Cells> {
-    match visibility {
-        NodeVisibility::Open => None,
-        NodeVisibility::Cells8(at) => {
-            let words = &words[at as usize..][..1];
-            let doubled = |bits: u64| (0..8).map(|k| ((bits >> k & 1) as u16 * 3) << (2 * k)).sum();
-            Some(std::array::from_fn(|row| doubled(Visibility::row(words, row / 2))))
-        }
-        NodeVisibility::Cells16(at) => {
-            let words = &words[at as usize..][..4];
-            Some(std::array::from_fn(|row| Visibility::row(words, row) as u16))
-        }
+/// A block in integers: places are counted from its beginning.
+struct Part {
+    nodes: Vec<SplatNode>,
+    roots: u32,
+    cells: Vec<Cells>,
+    /// The sample of each node that is one.
+    samples: Vec<u32>,
+    /// The largest radiance of a sample.
+    brightest: f32,
+    has_bright: bool,
+}
+
+impl Part {
+    /// `None` if a node is too bright.
+    fn new(block: Block, scale: Scale) -> Option<Self> {
+        let nodes = block.nodes.iter().map(|node| convert(node, scale)).collect::<Option<Vec<_>>>()?;
+        let leaves = block.nodes.iter().filter(|node| node.sample.is_some());
+        let rows = |words: &[u64; 4]| std::array::from_fn(|row| (words[row / 4] >> (row % 4 * 16)) as u16);
+        Some(Self {
+            roots: block.roots,
+            cells: block.cells.iter().map(rows).collect(),
+            samples: block.nodes.iter().map(|node| node.sample.unwrap_or(u32::MAX)).collect(),
+            brightest: leaves.map(|node| node.radiance.max_element()).fold(0.0, f32::max),
+            has_bright: nodes.iter().any(|node| node.is_bright),
+            nodes,
+        })
     }
 }
 
@@ -272,7 +310,7 @@ fn convert(node: &Node, scale: Scale) -> Option<SplatNode> {
         level,
         is_bright,
         is_highlight: node.radiance.max_element() > HIGHLIGHT,
-        cells: OPEN,
+        cells: node.cells.unwrap_or(OPEN),
         inverse_depth: node.inverse_depth,
         inverse_depth_spread: node.inverse_depth_spread,
         // Nodes of no weight at all have no mean to speak of, and no light.
@@ -300,7 +338,7 @@ mod tests {
             tilt: Vec2::ZERO,
             radiance: Vec3::NAN,
             level: 1,
-            visibility: NodeVisibility::Open,
+            cells: None,
             children: 0..0,
             sample: None,
         };

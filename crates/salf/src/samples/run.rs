@@ -63,11 +63,6 @@ impl<'a> Run<'a> {
         self.chunk.map(|chunk| self.samples.chunks[chunk].corner)
     }
 
-    /// Its samples, in order.
-    pub fn samples(&self) -> Vec<Sample> {
-        self.iter().collect()
-    }
-
     /// Where its samples are, in order; what they see is not decoded.
     pub fn spots(&self) -> impl Iterator<Item = Spot> + use<'a> {
         let mut decoder = self.chunk.map(|chunk| Decoder::new(self.samples, chunk));
@@ -99,7 +94,8 @@ impl<'a> Run<'a> {
         Some(decoder.spot(from_here.first()?))
     }
 
-    fn iter(&self) -> impl Iterator<Item = Sample> + use<'a> {
+    /// Its samples, in order, decoded one by one.
+    pub fn iter(&self) -> impl Iterator<Item = Sample> + use<'a> {
         let mut decoder =
             self.chunk.map(|chunk| (Decoder::new(self.samples, chunk), self.samples.masks(chunk)));
         let packed = self.records().iter().filter_map(move |record| {

@@ -1,10 +1,11 @@
 //! Building the hierarchy, block by block.
 
 use crate::sample::{Salf, Sample, Visibility};
-use crate::tree::grid::Grid;
-use crate::tree::{BLOCK_PX, Block, LEVELS, Node, NodeVisibility, Tree};
+use crate::tree::grid::{Content, Grid};
+use crate::tree::{BLOCK_PX, Block, LEVELS, Node};
 use glam::{IVec2, Vec2, Vec3};
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// Nodes are joined whose standard circles of confusion differ by at most this share of the joint cell's side.
 const SMOOTH: f32 = 0.5;
@@ -21,68 +22,30 @@ const ALIKE_WEIGHTS: f32 = 0.5;
 /// What a partly occluded node would send is scaled to what its children do by at most this factor.
 const MOST_SCALED: f32 = 1.5;
 
-pub fn build(salf: &Salf, highlight: f32) -> Tree {
+pub fn each_block<T: Send>(salf: &Salf, highlight: f32, make: impl Fn(Block) -> T + Sync) -> Vec<T> {
     let grid = Grid::new(salf);
     let contents = grid.contents(&salf.samples);
     let parallax_px = salf.camera.optics().splat_radius_px(1.0) as f32;
-    let parts: Vec<Part> = contents
-        .par_iter()
-        .enumerate()
-        .map(|(index, content)| {
-            let mut builder = Builder { grid: &grid, highlight, parallax_px, arena: Vec::new() };
-            builder.build(grid.corner(index), content.samples(&salf.samples))
-        })
-        .collect();
-    assemble(&parts, salf.samples.len())
-}
-
-/// Joins the blocks' parts.
-fn assemble(parts: &[Part], samples: usize) -> Tree {
-    let mut tree = Tree { node_of_sample: vec![0; samples], ..Tree::default() };
-    tree.nodes.reserve_exact(parts.iter().map(|part| part.nodes.len()).sum());
-    tree.words.reserve_exact(parts.iter().map(|part| part.words.len()).sum());
-    for Part { nodes, roots, words } in parts {
-        let (first, first_word) = (tree.nodes.len() as u32, tree.words.len() as u32);
-        for node in nodes {
-            if let Some(sample) = node.sample {
-                tree.node_of_sample[sample as usize] = tree.nodes.len() as u32;
-            }
-            let visibility = match node.visibility {
-                NodeVisibility::Open => NodeVisibility::Open,
-                NodeVisibility::Cells8(at) => NodeVisibility::Cells8(first_word + at),
-                NodeVisibility::Cells16(at) => NodeVisibility::Cells16(first_word + at),
-            };
-            let children = first + node.children.start..first + node.children.end;
-            tree.nodes.push(Node { visibility, children, ..node.clone() });
-        }
-        tree.words.extend(words);
-        tree.blocks.push(Block { nodes: first..tree.nodes.len() as u32, roots: first..first + roots });
-    }
-    tree
-}
-
-/// A block on its own: places are counted from its beginning.
-struct Part {
-    nodes: Vec<Node>,
-    /// How many of them no other stands for.
-    roots: u32,
-    words: Vec<u64>,
+    let builder = || Builder { grid: &grid, highlight, parallax_px, arena: Vec::new(), children: Vec::new() };
+    let blocks = contents.par_iter().enumerate();
+    let build = |builder: &mut Builder, (index, content): (usize, &Content)| {
+        make(builder.build(grid.corner(index), content.samples(&salf.samples)))
+    };
+    blocks.map_init(builder, build).collect()
 }
 
 /// A node while its block is being built.
 struct Growing {
     node: Node,
+    /// What it sees; all if `None`.
     cells: Option<Cells>,
-    children: Vec<usize>,
+    /// Where they stand in [`Builder::children`].
+    children: Range<usize>,
 }
 
-/// Visibility of a growing node: 16 × 16 cells.
+/// What a node sees: 16 × 16 cells.
 #[derive(Clone, Copy)]
-struct Cells {
-    words: [u64; 4],
-    /// Whether eight cells a side say it all.
-    is_coarse: bool,
-}
+struct Cells([u64; 4]);
 
 impl Growing {
     /// See [`Cells::sent`].
@@ -91,18 +54,25 @@ impl Growing {
     }
 }
 
+/// A node that may still be joined with others: a pixel of its cell, from the block's corner, and its place in the arena.
+type OpenEnded = (IVec2, usize);
+
+/// Builds one block after another.
 struct Builder<'a> {
     grid: &'a Grid,
     highlight: f32,
     parallax_px: f32,
+    /// The nodes of the block.
     arena: Vec<Growing>,
+    /// Places of their children.
+    children: Vec<usize>,
 }
 
 impl Builder<'_> {
-    fn build(&mut self, corner: IVec2, samples: impl Iterator<Item = (u32, Sample)>) -> Part {
-        let mut alone = Vec::new();
-        // Nodes that may still be joined, with the corner of their cell in the block.
-        let mut open_ended: Vec<(IVec2, usize)> = Vec::new();
+    fn build(&mut self, corner: IVec2, samples: impl Iterator<Item = (u32, Sample)>) -> Block {
+        self.arena.clear();
+        self.children.clear();
+        let (mut alone, mut open_ended) = (Vec::new(), Vec::new());
         for (index, sample) in samples {
             let pixel = self.grid.pixel(sample.center);
             let growing = leaf(&sample, index, self.grid.cell_level(pixel));
@@ -113,8 +83,9 @@ impl Builder<'_> {
             }
             self.arena.push(growing);
         }
+        let mut groups = Vec::new();
         for level in 0..LEVELS as u8 {
-            open_ended = self.join(level, open_ended);
+            open_ended = self.join(level, open_ended, &mut groups);
         }
         let roots: Vec<_> = open_ended.into_iter().map(|(_, index)| index).chain(alone).collect();
         self.emit(roots)
@@ -133,33 +104,37 @@ impl Builder<'_> {
         is_of_cell || node.level < level && node.radiance.max_element() <= self.highlight
     }
 
-    /// Joins the nodes of each cell of `level`.
-    fn join(&mut self, level: u8, nodes: Vec<(IVec2, usize)>) -> Vec<(IVec2, usize)> {
-        let cells_a_row = (BLOCK_PX >> level) as usize;
-        let mut of_cell = vec![Vec::new(); cells_a_row * cells_a_row];
-        for (pixel, index) in nodes {
-            let cell = pixel >> level as i32;
-            of_cell[cell.y as usize * cells_a_row + cell.x as usize].push((pixel, index));
-        }
-        let mut joined = Vec::new();
-        for members in of_cell {
-            let mut groups: Vec<(IVec2, Vec<usize>)> = Vec::new();
-            for (pixel, index) in members {
+    /// Joins the nodes of each cell of `level`, with `groups` as room to work in.
+    fn join(
+        &mut self,
+        level: u8,
+        mut nodes: Vec<OpenEnded>,
+        groups: &mut Vec<Vec<OpenEnded>>,
+    ) -> Vec<OpenEnded> {
+        let cell_of = |(pixel, _): &OpenEnded| (pixel.y >> level, pixel.x >> level);
+        nodes.sort_by_key(cell_of);
+        let mut joined = Vec::with_capacity(nodes.len());
+        for members in nodes.chunk_by(|a, b| cell_of(a) == cell_of(b)) {
+            let mut count = 0;
+            for &member in members {
                 // A cell that was sampled more coarsely waits for its level.
-                let fits = self.may_join(level, &self.arena[index].node);
-                let group = groups.iter_mut().find(|(_, group)| {
-                    fits && group.len() < MOST_MEMBERS && self.belongs(level, index, group[0])
-                });
-                match group {
-                    Some((_, group)) => group.push(index),
-                    None => groups.push((pixel, vec![index])),
+                let fits = self.may_join(level, &self.arena[member.1].node);
+                let belongs = |group: &Vec<OpenEnded>| {
+                    fits && group.len() < MOST_MEMBERS && self.belongs(level, member.1, group[0].1)
+                };
+                let place = groups[..count].iter().position(belongs).unwrap_or(count);
+                if place == groups.len() {
+                    groups.push(Vec::new());
                 }
+                groups[place].push(member);
+                count = count.max(place + 1);
             }
-            for (pixel, group) in groups {
-                match self.parent(level, &group) {
-                    Some(parent) => joined.push((pixel, parent)),
-                    None => joined.extend(group.into_iter().map(|index| (pixel, index))),
+            for group in &mut groups[..count] {
+                match self.parent(level, group) {
+                    Some(parent) => joined.push((group[0].0, parent)),
+                    None => joined.extend_from_slice(group),
                 }
+                group.clear();
             }
         }
         joined
@@ -179,39 +154,50 @@ impl Builder<'_> {
     }
 
     /// The node that stands for `children`; `None` for a single one, and if it would send another light than they do.
-    fn parent(&mut self, level: u8, children: &[usize]) -> Option<usize> {
+    fn parent(&mut self, level: u8, children: &[OpenEnded]) -> Option<usize> {
         if children.len() == 1 {
             return None;
         }
-        let members: Vec<&Growing> = children.iter().map(|&index| &self.arena[index]).collect();
-        let mut node = mean(level, &members);
-        let cells = members[0].cells.is_some().then(|| most(&members));
+        let members = || children.iter().map(|&(_, index)| &self.arena[index]);
+        let mut node = mean(level, || members().map(|member| &member.node));
+        let is_partial = self.arena[children[0].1].cells.is_some();
+        let cells = is_partial.then(|| most(|| members().filter_map(|member| member.cells.as_ref())));
         if let Some(cells) = &cells {
             // What most see is not what all see together; and weights of edge-on nodes are cut off where they would be
             // negative, so that sums of them are not quite linear.
-            let sent: f32 = members.iter().map(|member| member.sent()).sum();
+            let sent: f32 = members().map(Growing::sent).sum();
             let sends = cells.sent(&node);
             let is_close = sent <= MOST_SCALED * sends && sends <= MOST_SCALED * sent && sent > 0.0;
             let scale = is_close.then(|| sent / sends)?;
             node.weight *= scale;
             node.tilt *= scale;
         }
-        self.arena.push(Growing { node, cells, children: children.to_vec() });
+        let first = self.children.len();
+        self.children.extend(children.iter().map(|&(_, index)| index));
+        self.arena.push(Growing { node, cells, children: first..self.children.len() });
         Some(self.arena.len() - 1)
     }
 
     /// The block's nodes, level by level below its `roots`.
-    fn emit(&self, roots: Vec<usize>) -> Part {
-        let (mut nodes, mut words) = (Vec::with_capacity(self.arena.len()), Vec::new());
-        let (count, mut order) = (roots.len() as u32, roots);
-        while let Some(&index) = order.get(nodes.len()) {
+    fn emit(&self, roots: Vec<usize>) -> Block {
+        let mut block = Block {
+            nodes: Vec::with_capacity(self.arena.len()),
+            roots: roots.len() as u32,
+            cells: Vec::new(),
+        };
+        let mut order = roots;
+        order.reserve_exact(self.arena.len() - order.len());
+        while let Some(&index) = order.get(block.nodes.len()) {
             let growing = &self.arena[index];
-            let visibility = growing.cells.map_or(NodeVisibility::Open, |cells| cells.store(&mut words));
+            let cells = growing.cells.map(|Cells(words)| {
+                block.cells.push(words);
+                block.cells.len() as u32 - 1
+            });
             let first = order.len() as u32;
-            order.extend(&growing.children);
-            nodes.push(Node { visibility, children: first..order.len() as u32, ..growing.node.clone() });
+            order.extend_from_slice(&self.children[growing.children.clone()]);
+            block.nodes.push(Node { cells, children: first..order.len() as u32, ..growing.node.clone() });
         }
-        Part { nodes, roots: count, words }
+        block
     }
 }
 
@@ -248,16 +234,15 @@ fn leaf(sample: &Sample, index: u32, level: u8) -> Growing {
         tilt: sample.tilt,
         radiance: sample.radiance,
         level,
-        visibility: NodeVisibility::Open,
+        cells: None,
         children: 0..0,
         sample: Some(index),
     };
-    Growing { node, cells, children: Vec::new() }
+    Growing { node, cells, children: 0..0 }
 }
 
-/// The node that stands for `members`.
-fn mean(level: u8, members: &[&Growing]) -> Node {
-    let nodes = || members.iter().map(|growing| &growing.node);
+/// The node that stands for `nodes`.
+fn mean<'a, I: Iterator<Item = &'a Node>>(level: u8, nodes: impl Fn() -> I) -> Node {
     let total: f32 = nodes().map(largest_weight).sum();
     let center = nodes().map(|node| largest_weight(node) * node.center).sum::<Vec2>() / total;
     let variance = |node: &Node| node.half_size * node.half_size / 3.0 + (node.center - center).powf(2.0);
@@ -275,30 +260,28 @@ fn mean(level: u8, members: &[&Growing]) -> Node {
         tilt: nodes().map(|node| node.tilt).sum(),
         radiance: nodes().map(|node| largest_weight(node) * node.radiance).sum::<Vec3>() / total,
         level,
-        visibility: NodeVisibility::Open,
+        cells: None,
         children: 0..0,
         sample: None,
     }
 }
 
-/// What most of `members` see; where they are even, every other cell.
-fn most(members: &[&Growing]) -> Cells {
+/// What most of those see whose cells `seen` are; where they are even, every other cell.
+fn most<'a, I: Iterator<Item = &'a Cells>>(seen: impl Fn() -> I) -> Cells {
     const CHECKERS: u64 = 0x5555_AAAA_5555_AAAA;
-    let seen: Vec<_> = members.iter().filter_map(|growing| growing.cells.as_ref()).collect();
-    let words = std::array::from_fn(|word| {
+    let number = seen().count();
+    Cells(std::array::from_fn(|word| {
         // Counts of 64 cells at once: bit k of the count of each in `count[k]`.
         let mut count = [0u64; COUNTER_BITS];
-        for cells in &seen {
-            let mut carry = cells.words[word];
+        for Cells(words) in seen() {
+            let mut carry = words[word];
             for bit in &mut count {
                 (*bit, carry) = (*bit ^ carry, *bit & carry);
             }
         }
-        let (more, even) = compare(&count, seen.len() / 2);
-        more | if seen.len() % 2 == 0 { even & CHECKERS } else { 0 }
-    });
-    let is_coarse = seen.iter().all(|cells| cells.is_coarse) && finer(coarser(words)) == words;
-    Cells { words, is_coarse }
+        let (more, even) = compare(&count, number / 2);
+        more | if number.is_multiple_of(2) { even & CHECKERS } else { 0 }
+    }))
 }
 
 /// Bits of the counts of [`most`].
@@ -324,8 +307,8 @@ fn compare(count: &[u64; COUNTER_BITS], number: usize) -> (u64, u64) {
 impl Cells {
     fn of(words: &[u64]) -> Self {
         match *words {
-            [word] => Self { words: finer(word), is_coarse: true },
-            [a, b, c, d] => Self { words: [a, b, c, d], is_coarse: false },
+            [word] => Self(finer(word)),
+            [a, b, c, d] => Self([a, b, c, d]),
             _ => unreachable!("a visibility has one word or four"),
         }
     }
@@ -333,29 +316,18 @@ impl Cells {
     /// The sum over the cells of the weight that a node has toward them; unless it is edge-on, toward the centre.
     fn sent(&self, node: &Node) -> f32 {
         if !is_edge_on(node) {
-            let seen: u32 = self.words.iter().map(|word| word.count_ones()).sum();
+            let seen: u32 = self.0.iter().map(|word| word.count_ones()).sum();
             return node.weight * seen as f32;
         }
         let cell = |k: usize| Vec2::new((k % 16) as f32 + 0.5, (k / 16) as f32 + 0.5) / 8.0 - 1.0;
-        let is_seen = |k: &usize| self.words[k / 64] >> (k % 64) & 1 == 1;
+        let is_seen = |k: &usize| self.0[k / 64] >> (k % 64) & 1 == 1;
         (0..256).filter(is_seen).map(|k| (node.weight + node.tilt.dot(cell(k))).max(0.0)).sum()
     }
 
     /// The share of cells that differ.
     fn distance(&self, other: &Self) -> f32 {
-        let differing: u32 = self.words.iter().zip(other.words).map(|(a, b)| (a ^ b).count_ones()).sum();
+        let differing: u32 = self.0.iter().zip(other.0).map(|(a, b)| (a ^ b).count_ones()).sum();
         differing as f32 / 256.0
-    }
-
-    fn store(&self, words: &mut Vec<u64>) -> NodeVisibility {
-        let at = words.len() as u32;
-        if self.is_coarse {
-            words.push(coarser(self.words));
-            NodeVisibility::Cells8(at)
-        } else {
-            words.extend(self.words);
-            NodeVisibility::Cells16(at)
-        }
     }
 }
 
@@ -370,11 +342,6 @@ fn finer(word: u64) -> [u64; 4] {
     words
 }
 
-/// The inverse of [`finer`].
-fn coarser(words: [u64; 4]) -> u64 {
-    (0..64).map(|k| (words[k / 8 * 2 / 4] >> (k / 8 * 2 % 4 * 16 + k % 8 * 2) & 1) << k).sum()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -383,24 +350,21 @@ mod tests {
     use scene::SurfacePoint;
 
     #[test]
-    fn coarse_cells_survive() {
+    fn coarse_cells_become_four_each() {
+        assert_eq!(
+            finer(1 | 1 << 15 | 1 << 63),
+            [3 | 3 << 16 | (3 << 14) << 32 | (3 << 14) << 48, 0, 0, 0xC000_C000 << 32]
+        );
         for word in [0, u64::MAX, 0x0123_4567_89AB_CDEF] {
-            assert_eq!(coarser(finer(word)), word);
             assert_eq!(finer(word).iter().map(|w| w.count_ones()).sum::<u32>(), 4 * word.count_ones());
         }
     }
 
     #[test]
     fn most_is_a_majority() {
-        let growing = |word: u64| Growing {
-            node: leaf(&plane(|_, _| 1.0).samples.get(0), 0, 0).node,
-            cells: Some(Cells { words: [word, 0, u64::MAX, 0], is_coarse: false }),
-            children: Vec::new(),
-        };
-        let members: Vec<_> = [0b1110, 0b1100, 0b1010].map(growing).into_iter().collect();
-        let members: Vec<_> = members.iter().collect();
-        assert_eq!(most(&members).words, [0b1110, 0, u64::MAX, 0]);
-        assert_eq!(most(&members[..2]).words[0], 0b1100 | 0b0010 & 0x5555_AAAA_5555_AAAA);
+        let seen = [0b1110, 0b1100, 0b1010].map(|word| Cells([word, 0, u64::MAX, 0]));
+        assert_eq!(most(|| seen.iter()).0, [0b1110, 0, u64::MAX, 0]);
+        assert_eq!(most(|| seen[..2].iter()).0[0], 0b1100 | 0b0010 & 0x5555_AAAA_5555_AAAA);
     }
 
     fn plane(depth_of: impl Fn(u32, u32) -> f32) -> Salf {
@@ -421,44 +385,44 @@ mod tests {
         Salf { samples: (0..40 * 24).map(sample).collect(), camera, margin_px: 0 }
     }
 
+    fn blocks(salf: &Salf) -> Vec<Block> {
+        each_block(salf, 4.0, |block| block)
+    }
+
     #[test]
     fn a_plane_becomes_a_pyramid_and_keeps_its_sums() {
         let salf = plane(|_, _| 0.5);
-        let tree = Tree::new(&salf, 4.0);
-        let leaves = tree.nodes.iter().filter(|node| node.sample.is_some()).count();
-        assert_eq!(leaves, salf.samples.len());
-        for (index, &node) in tree.node_of_sample.iter().enumerate() {
-            assert_eq!(tree.nodes[node as usize].sample, Some(index as u32));
-        }
-        let block = &tree.nodes[tree.blocks[1].nodes.start as usize];
+        let blocks = blocks(&salf);
+        let nodes = || blocks.iter().flat_map(|block| &block.nodes);
+        let mut samples: Vec<_> = nodes().filter_map(|node| node.sample).collect();
+        samples.sort();
+        assert!(samples.iter().copied().eq(0..salf.samples.len() as u32));
+        let block = &blocks[1].nodes[0];
         assert_eq!((block.level, block.weight, block.center), (4, 256.0, Vec2::new(24.0, 8.0)));
         assert!((block.half_size - 8.0).abs().max_element() < 1e-3);
         assert!((block.radiance.x - 0.235).abs() < 1e-5);
-        let highlight = &tree.nodes[tree.node_of_sample[3 * 40 + 3] as usize];
+        let highlight = nodes().find(|node| node.sample == Some(3 * 40 + 3)).expect("it is there");
         assert_eq!((highlight.radiance.x, highlight.level), (100.0, 0));
         // The sum of each tree is that of its leaves.
-        let roots = tree.blocks.iter().flat_map(|block| block.roots.clone());
-        let weight: f32 = roots.map(|root| tree.nodes[root as usize].weight).sum();
+        let roots = blocks.iter().flat_map(|block| &block.nodes[..block.roots as usize]);
+        let weight: f32 = roots.map(|root| root.weight).sum();
         assert_eq!(weight, 40.0 * 24.0);
     }
 
     #[test]
     fn every_node_is_a_root_or_below_one_node_that_comes_before_it() {
-        let tree = Tree::new(&plane(|x, y| if (x * 7 + y * 3) % 11 < 4 { 0.5 } else { 3.0 }), 4.0);
-        let mut found = vec![0; tree.nodes.len()];
-        for block in &tree.blocks {
-            assert_eq!(block.roots.start, block.nodes.start);
-            block.roots.clone().for_each(|root| found[root as usize] += 1);
-            let mut next = block.roots.end;
-            for at in block.nodes.clone() {
-                let Node { children, sample, .. } = &tree.nodes[at as usize];
+        for block in blocks(&plane(|x, y| if (x * 7 + y * 3) % 11 < 4 { 0.5 } else { 3.0 })) {
+            let mut found = vec![0; block.nodes.len()];
+            found[..block.roots as usize].fill(1);
+            let mut next = block.roots;
+            for (at, Node { children, sample, .. }) in block.nodes.iter().enumerate() {
                 assert_eq!((children.start, children.is_empty()), (next, sample.is_some()), "{at}");
                 children.clone().for_each(|child| found[child as usize] += 1);
                 next = children.end;
             }
-            assert_eq!(next, block.nodes.end);
+            assert_eq!(next as usize, block.nodes.len());
+            assert!(found.iter().all(|&times| times == 1));
         }
-        assert!(found.iter().all(|&times| times == 1));
     }
 
     #[test]
@@ -474,13 +438,14 @@ mod tests {
             (sample.weight, sample.tilt) = (-0.2 + 0.01 * (index % 9) as f32, Vec2::new(1.0, 0.1));
             index += 1;
         });
-        let tree = Tree::new(&salf, 4.0);
+        let blocks = blocks(&salf);
         let mut joined = 0;
-        for node in tree.nodes.iter().filter(|node| node.sample.is_none()) {
+        let nodes = blocks.iter().flat_map(|block| block.nodes.iter().map(move |node| (block, node)));
+        for (block, node) in nodes.filter(|(_, node)| node.sample.is_none()) {
             let mut below: Vec<_> = node.children.clone().collect();
             let mut most = 0.0;
             while let Some(at) = below.pop() {
-                let node = &tree.nodes[at as usize];
+                let node = &block.nodes[at as usize];
                 below.extend(node.children.clone());
                 most += if node.sample.is_some() { largest_weight(node) } else { 0.0 };
             }
@@ -493,8 +458,9 @@ mod tests {
     #[test]
     fn a_step_of_depth_is_not_joined() {
         let salf = plane(|x, _| if x < 21 { 0.5 } else { 3.0 });
-        let tree = Tree::new(&salf, 4.0);
-        assert!(tree.nodes.iter().all(|node| node.inverse_depth == 0.5 || node.inverse_depth == 3.0));
-        assert!(tree.nodes.iter().any(|node| node.level == 4));
+        let blocks = blocks(&salf);
+        let nodes = || blocks.iter().flat_map(|block| &block.nodes);
+        assert!(nodes().all(|node| node.inverse_depth == 0.5 || node.inverse_depth == 3.0));
+        assert!(nodes().any(|node| node.level == 4));
     }
 }

@@ -27,7 +27,7 @@ impl Content {
     pub fn samples<'a>(&'a self, samples: &'a Samples) -> impl Iterator<Item = (u32, Sample)> {
         let in_runs = self.runs.iter().flat_map(|&run| {
             let run = samples.run(run);
-            run.indices.clone().zip(run.samples())
+            run.indices.clone().zip(run.iter())
         });
         in_runs.chain(self.singles.iter().map(|&index| (index, samples.get(index))))
     }
