@@ -70,13 +70,14 @@ pub fn trace_cell(tracer: &Tracer, view: &View, placement: &Placement, cell: Cel
     });
     let rays = pixels.map(|pixel| view.chief_ray(pixel));
     let most = if hidden { DEEPEST_LAYER } else { 1 };
-    let mut met: Vec<(usize, Hit)> = Vec::with_capacity(Cell::RAYS);
-    if hidden {
-        met = tracer.all_hits(&beam, &rays, most);
+    let met: Vec<(usize, Hit)> = if hidden {
+        tracer.all_hits(&beam, &rays, most)
     } else {
         let first = tracer.first_hits(&beam, &rays).into_iter().enumerate();
+        let mut met = Vec::with_capacity(Cell::RAYS);
         met.extend(first.filter_map(|(sub_cell, hit)| Some((sub_cell, hit?))));
-    }
+        met
+    };
     for sub_cell in Cell::sub_cells() {
         let (pixel, mut nearest) = (pixels[sub_cell], 0.0);
         let [start, end] = [sub_cell, sub_cell + 1].map(|next| met.partition_point(|(of, _)| *of < next));

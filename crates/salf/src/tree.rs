@@ -21,8 +21,7 @@ pub const BLOCK_PX: i32 = crate::domain::Domain::BLOCK;
 /// Levels of the hierarchy: cells of 1, 2, 4, 8 and 16 px.
 pub const LEVELS: usize = BLOCK_PX.ilog2() as usize + 1;
 
-/// The hierarchy over the samples of a square of [`BLOCK_PX`] pixels; a light field is a row of them after the other, from the
-/// upper left one. Places are counted from the block's beginning.
+/// The hierarchy over the samples of a square of [`BLOCK_PX`] pixels. Places are counted from the block's beginning.
 #[derive(Clone, Debug, Default)]
 pub struct Block {
     /// The roots, then the children of all of these, and so on. So what is drawn of a block, nodes that are about as far below
@@ -61,7 +60,8 @@ pub struct Node {
     pub sample: Option<u32>,
 }
 
-/// Builds the hierarchy over a light field and makes something of every block. Samples brighter than `highlight` stay alone.
+/// Builds the hierarchy over a light field and makes something of every block, in parallel: of those of the picture and its
+/// margin, row by row from the upper left one. Samples brighter than `highlight` stay alone.
 pub fn each_block<T: Send>(salf: &Salf, highlight: f32, make: impl Fn(Block) -> T + Sync) -> Vec<T> {
     build::each_block(salf, highlight, make)
 }

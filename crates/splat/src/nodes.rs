@@ -157,33 +157,23 @@ impl Nodes {
     pub fn new(salf: &Salf, scale: Scale) -> Option<Self> {
         let parts = each_block(salf, HIGHLIGHT, |block| Part::new(block, scale));
         let parts = parts.into_iter().collect::<Option<Vec<_>>>()?;
-        let following = |next: &mut u32, count: usize| {
-            let start = *next;
-            *next += count as u32;
-            Some(start..*next)
-        };
-        let counts = parts.iter().map(|part| part.nodes.len());
-        let blocks: Vec<_> = counts.scan(0, following).collect();
-        let counts = parts.iter().map(|part| part.cells.len());
-        let cells_of_block: Vec<_> = counts.scan(0, following).collect();
+        let blocks = places(parts.iter().map(|part| part.nodes.len()));
+        let cells_of_block = places(parts.iter().map(|part| part.cells.len()));
         let mut block_of_node = vec![0; blocks.last().map_or(0, |block| block.end as usize)];
         for (index, block) in blocks.iter().enumerate() {
             block_of_node[block.start as usize..block.end as usize].fill(index as u32);
         }
-        let in_part = |(at, &block): (usize, &u32)| {
-            let block = block as usize;
-            (&parts[block], block, at - blocks[block].start as usize)
-        };
-        let nodes: Vec<_> = block_of_node
-            .par_iter()
-            .enumerate()
-            .map(in_part)
-            .map(|(part, block, at)| {
-                part.nodes[at].moved_by(blocks[block].start, cells_of_block[block].start)
+        let all = || {
+            block_of_node.par_iter().enumerate().map(|(at, &block)| {
+                let block = block as usize;
+                (block, at - blocks[block].start as usize)
             })
-            .collect();
-        let all = block_of_node.par_iter().enumerate().map(in_part);
-        let sample_of_node: Vec<_> = all.map(|(part, _, at)| part.samples[at]).collect();
+        };
+        let node = |(block, at): (usize, usize)| {
+            parts[block].nodes[at].moved_by(blocks[block].start, cells_of_block[block].start)
+        };
+        let nodes: Vec<_> = all().map(node).collect();
+        let sample_of_node: Vec<_> = all().map(|(block, at)| parts[block].samples[at]).collect();
         let mut node_of_sample = vec![0; salf.samples.len()];
         for (node, &sample) in sample_of_node.iter().enumerate() {
             if let Some(place) = node_of_sample.get_mut(sample as usize) {
@@ -250,6 +240,16 @@ impl Nodes {
     pub fn cells(&self, node: &SplatNode) -> Option<&Cells> {
         self.cells.get(node.cells as usize)
     }
+}
+
+/// The places of things that stand one group after the other, so many in each.
+fn places(counts: impl Iterator<Item = usize>) -> Vec<Range<u32>> {
+    let following = |next: &mut u32, count: usize| {
+        let start = *next;
+        *next += count as u32;
+        Some(start..*next)
+    };
+    counts.scan(0, following).collect()
 }
 
 /// A block in integers: places are counted from its beginning.
