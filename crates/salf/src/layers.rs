@@ -2,7 +2,7 @@
 
 use crate::bake::BakeOptions;
 use crate::domain::{Cell, CellPart};
-use crate::jitter::jitter;
+use crate::jitter::Net;
 use crate::occluders::{Depths, Occluders};
 use crate::placement::Placement;
 use crate::sample::{Sample, Visibility};
@@ -64,9 +64,10 @@ pub fn trace_cell(tracer: &Tracer, view: &View, placement: &Placement, cell: Cel
     let mut layers = Layers { groups: Vec::new(), depth_range: [0.0, f32::INFINITY], has_gap: false };
     let beam = view.beam(cell);
     let seed = cell.corner.as_uvec2();
+    let net = Net::new(Cell::SUBDIVISION.ilog2(), seed.to_array());
     let pixels: [_; Cell::RAYS] = std::array::from_fn(|sub_cell| {
-        let [jx, jy, _] = jitter(seed.x, seed.y, sub_cell as u32);
-        cell.sub_corner(sub_cell) + DVec2::new(jx, jy) * cell.sub_side()
+        let [row, column] = [sub_cell / Cell::SUBDIVISION as usize, sub_cell % Cell::SUBDIVISION as usize];
+        cell.sub_corner(sub_cell) + DVec2::from_array(net.place(row, column)) * cell.sub_side()
     });
     let rays = pixels.map(|pixel| view.chief_ray(pixel));
     let most = if hidden { DEEPEST_LAYER } else { 1 };

@@ -1,6 +1,6 @@
 //! What of the aperture a patch of surface sees: a shadow ray a cell of the aperture, all of them at once.
 
-use crate::jitter::jitter;
+use crate::jitter::{Net, jitter};
 use crate::layers::Member;
 use crate::sample::Visibility;
 use crate::view::View;
@@ -32,11 +32,12 @@ impl Patterns {
     }
 
     fn pattern(side: usize, number: u32) -> Vec<Places> {
+        let net = Net::new(side.ilog2(), [number, side as u32]);
         let of_point = |point: usize| {
             let place = |k: usize| {
                 let (row, column) = cell_of(side, point, k);
-                let [jx, jy, _] = jitter(number, side as u32, (row * side + column) as u32);
-                DVec2::new(column as f64 + jx, row as f64 + jy) * (2.0 / side as f64) - 1.0
+                let [u, v] = net.place(row, column);
+                DVec2::new(column as f64 + u, row as f64 + v) * (2.0 / side as f64) - 1.0
             };
             Places::new(&(0..CELLS_A_POINT).map(place).collect::<Vec<_>>())
         };
