@@ -26,16 +26,22 @@ impl Cell {
         })
     }
 
+    /// The row and the column of sub-cell `k`.
+    pub fn row_and_column(k: usize) -> [usize; 2] {
+        [k / Self::SUBDIVISION as usize, k % Self::SUBDIVISION as usize]
+    }
+
     /// The corner of sub-cell `k`, px.
     pub fn sub_corner(&self, k: usize) -> DVec2 {
-        let (row, column) = (k as i32 / Self::SUBDIVISION, k as i32 % Self::SUBDIVISION);
-        self.corner.as_dvec2() + IVec2::new(column, row).as_dvec2() * self.sub_side()
+        let [row, column] = Self::row_and_column(k);
+        self.corner.as_dvec2() + DVec2::new(column as f64, row as f64) * self.sub_side()
     }
 
     /// The quadrant that sub-cell `k` lies in.
     pub fn quadrant(k: usize) -> usize {
         const HALF: usize = Cell::SUBDIVISION as usize / 2;
-        k / Cell::RAYS.isqrt() / HALF * 2 + k % Cell::RAYS.isqrt() / HALF
+        let [row, column] = Self::row_and_column(k);
+        row / HALF * 2 + column / HALF
     }
 
     /// The part of it that the sub-cells of `rays`, a bit each, make up; they must not be none.

@@ -66,7 +66,7 @@ pub fn trace_cell(tracer: &Tracer, view: &View, placement: &Placement, cell: Cel
     let seed = cell.corner.as_uvec2();
     let net = Net::new(Cell::SUBDIVISION.ilog2(), seed.to_array());
     let pixels: [_; Cell::RAYS] = std::array::from_fn(|sub_cell| {
-        let [row, column] = [sub_cell / Cell::SUBDIVISION as usize, sub_cell % Cell::SUBDIVISION as usize];
+        let [row, column] = Cell::row_and_column(sub_cell);
         cell.sub_corner(sub_cell) + DVec2::from_array(net.place(row, column)) * cell.sub_side()
     });
     let rays = pixels.map(|pixel| view.chief_ray(pixel));

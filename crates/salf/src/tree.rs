@@ -11,9 +11,10 @@
 mod build;
 mod grid;
 
-use crate::sample::Salf;
 use glam::{Vec2, Vec3};
 use std::ops::Range;
+
+pub use build::each_block;
 
 /// Side of a block, px: no node is larger.
 pub const BLOCK_PX: i32 = crate::domain::Domain::BLOCK;
@@ -58,10 +59,4 @@ pub struct Node {
     pub children: Range<u32>,
     /// The number of the sample in the light field, if it is one.
     pub sample: Option<u32>,
-}
-
-/// Builds the hierarchy over a light field and makes something of every block, in parallel: of those of the picture and its
-/// margin, row by row from the upper left one. Samples brighter than `highlight` stay alone.
-pub fn each_block<T: Send>(salf: &Salf, highlight: f32, make: impl Fn(Block) -> T + Sync) -> Vec<T> {
-    build::each_block(salf, highlight, make)
 }

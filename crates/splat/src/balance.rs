@@ -57,6 +57,9 @@ impl KnotSums {
 pub struct SharedSums(pub [Light; 2]);
 
 impl SharedSums {
+    /// Sums that take turns, a pixel each: none waits for the one before.
+    pub const TURNS: usize = 2;
+
     #[inline(always)]
     pub fn add(&mut self, before: &Light, after: &Light) {
         for c in 0..4 {
@@ -67,7 +70,7 @@ impl SharedSums {
 
     /// The sum of those of all turns.
     #[inline(always)]
-    pub fn of_turns([mut sum, odd]: [Self; TURNS]) -> Self {
+    pub fn of_turns([mut sum, odd]: [Self; Self::TURNS]) -> Self {
         let [before, after] = &odd.0;
         sum.add(before, after);
         sum
@@ -152,9 +155,6 @@ impl Knots {
         of_rows.flat_map(|rows| (0..self.spans()).map(move |span| cell(rows, span))).collect()
     }
 }
-
-/// Sums that take turns, a pixel each: none waits for the one before.
-pub const TURNS: usize = 2;
 
 /// Some light of the pixels of a span.
 #[derive(Clone, Copy, Default)]

@@ -13,6 +13,9 @@ pub struct Paint {
     pub blocks: Vec<Option<Box<[NodeFocus]>>>,
 }
 
+/// Nothing is painted.
+pub static STANDARD: Paint = Paint { blocks: Vec::new() };
+
 impl Paint {
     /// Looks up the focus of every sample.
     pub fn look_up(nodes: &Nodes, samples: &Samples, focus: &dyn SurfaceField<FocusOffset>) -> Self {

@@ -18,7 +18,7 @@
 //!
 //! Light that either takes from a surface is given back nearby ([`crate::balance`]): none is made or lost.
 
-use crate::balance::{GainsOfRow, SPACING, SharedSums, TURNS};
+use crate::balance::{GainsOfRow, SPACING, SharedSums};
 use crate::fixed::{floored, ratio};
 use crate::resolve::{BLACK, Light};
 use crate::widest::with_widest_instructions;
@@ -136,14 +136,14 @@ fn share_span(
     (radiance, coverage): (&mut [[f32; 3]], &mut [f32]),
     gain: impl Fn(usize) -> [f32; 4],
 ) -> SharedSums {
-    let mut sums = [SharedSums::default(); TURNS];
+    let mut sums = [SharedSums::default(); SharedSums::TURNS];
     let pixels = radiance.iter_mut().zip(coverage);
     for (x, (((radiance, coverage), sharing), share)) in pixels.zip(sharing).zip(shares).enumerate() {
         let (gain, mut scaled) = (gain(x), BLACK);
         for c in 0..4 {
             scaled[c] = share.partial * sharing[c] * gain[c];
         }
-        sums[x % TURNS].add(sharing, &scaled);
+        sums[x % SharedSums::TURNS].add(sharing, &scaled);
         (*radiance, *coverage) = ([scaled[0], scaled[1], scaled[2]], scaled[3]);
     }
     SharedSums::of_turns(sums)

@@ -8,7 +8,7 @@ use crate::draw::Pen;
 use crate::drawn::{BlockList, Changes, Scene};
 use crate::lens_in_use::{LensInUse, Tolerance};
 use crate::nodes::{Nodes, Scale};
-use crate::paint::Paint;
+use crate::paint::{Paint, STANDARD};
 use crate::partition::{Parts, Pixels, Share};
 use crate::resolve::{BLACK, Overflow, Room, Window};
 use crate::seen::{Seen, seen};
@@ -323,8 +323,7 @@ impl Splatter {
             return summed;
         }
         let nodes = self.nodes.as_ref().ok_or(SplatError::Overflow)?;
-        let standard = Paint::default();
-        let paint = if summed == Summed::Painted { &self.paint } else { &standard };
+        let paint = summed.paint(&self.paint);
         let then = (summed == Summed::ToPaintOver).then_some(&self.paint);
         let scene = self.aperture.scene(nodes, &self.lens, paint, &self.salf.camera);
         scene.list_all(then, &mut self.lists, &mut self.changes);
@@ -474,8 +473,6 @@ impl Splatter {
                     let shares = &mut shares[here.clone()];
                     if wanted.has_shares() {
                         parts.find_shares(shares);
-                    }
-                    if wanted.has_shares() {
                         let sums = &mut of_knots[at * knots.columns()..][..knots.columns()];
                         knots.sum_row(parts, shares, sums, is_evened);
                     }
@@ -518,6 +515,13 @@ enum Summed {
     ToPaintOver,
     /// All as it is painted.
     Painted,
+}
+
+impl Summed {
+    /// What the nodes are painted with while they are summed, of what they are to be painted with.
+    fn paint(self, paint: &Paint) -> &Paint {
+        if self == Self::Painted { paint } else { &STANDARD }
+    }
 }
 
 /// What is made of the sums.

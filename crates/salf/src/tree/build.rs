@@ -22,6 +22,8 @@ const ALIKE_WEIGHTS: f32 = 0.5;
 /// What a partly occluded node would send is scaled to what its children do by at most this factor.
 const MOST_SCALED: f32 = 1.5;
 
+/// Builds the hierarchy over a light field and makes something of every block, in parallel: of those of the picture and its
+/// margin, row by row from the upper left one. Samples brighter than `highlight` stay alone.
 pub fn each_block<T: Send>(salf: &Salf, highlight: f32, make: impl Fn(Block) -> T + Sync) -> Vec<T> {
     let grid = Grid::new(salf);
     let contents = grid.contents(&salf.samples);

@@ -317,7 +317,7 @@ fn finish(@builtin(global_invocation_id) id: vec3<u32>) {
         let light = share.y * (free + shared_light);
         picture[at] = light * gain_of(x, y, ALL);
     } else {
-        let scaled = vec4<f32>(exact_all(shared_light * gain_of(x, y, SHARING)) * rest());
+        let scaled = exact_all(shared_light * gain_of(x, y, SHARING)) * rest();
         picture[at] = free + exact_all(scaled);
     }
 }

@@ -3,7 +3,6 @@
 use super::{SplatError, Splatter, Summed, Wanted};
 use crate::balance::{NO_REST, rest};
 use crate::gpu::{Gpu, GpuError, GpuSums};
-use crate::paint::Paint;
 use progress::Progress;
 use std::ops::Range;
 
@@ -84,9 +83,7 @@ impl Splatter {
     ) -> Option<Result<(), SplatError>> {
         let (nodes, sums) = (self.nodes.as_ref()?, self.card.sums.as_mut()?);
         let scene_as = |paint| self.aperture.scene(nodes, &self.lens, paint, &self.salf.camera);
-        let standard = Paint::default();
-        let set =
-            sums.set(&scene_as(if summed == Summed::Painted { &self.paint } else { &standard }), progress);
+        let set = sums.set(&scene_as(summed.paint(&self.paint)), progress);
         if summed == Summed::ToPaintOver {
             let painted = self.paint.blocks.iter().enumerate().filter(|(_, paint)| paint.is_some());
             let blocks: Vec<_> = painted.map(|(block, _)| (block, None)).collect();
