@@ -51,6 +51,9 @@ pub struct Node {
     pub tilt: Vec2,
     /// Mean radiance.
     pub radiance: Vec3,
+    /// How far from `center` the light of the samples below it lies: of the colour of which that is most, the length of the
+    /// mean of its radiance times its distance, px. 0 for a sample.
+    pub dipole: f32,
     /// Its cell has a side of 2 to this, px.
     pub level: u8,
     /// Where in [`Block::cells`] it stands what it sees of the aperture; `None` if it sees all.

@@ -18,7 +18,7 @@ pub use paper::Paper;
 
 use crate::canvas::{PIXEL, POSITION_BITS, Word};
 use crate::fixed::mul_shift;
-use crate::lens_in_use::Placed;
+use crate::lens_in_use::{Detail, Placed};
 use crate::nodes::{Cells, Nodes, ONE, SplatNode};
 use crate::seen::Seen;
 use crate::stencil::Stencils;
@@ -96,18 +96,17 @@ impl<'a> Pen<'a> {
         stencils: &'a Stencils,
         seen: &'a [Seen],
         stop: f64,
-        is_exact: bool,
+        detail: Detail,
     ) -> Self {
         let shape = &stencils.shape;
         let variance = (shape.variance.x + shape.variance.y) / 2.0;
         let fixed = |x: f64| (x * ONE as f64).round() as i32;
         let half = |variance: f64| ((3.0 * variance).sqrt() * 65536.0).round() as u32;
-        // On level ℓ the picture gets the variance σ²r'² + (4^ℓ/3 − 1/4) px² and should get σ²r² + footprint + 1/12.
+        // On level ℓ the picture gets the variance σ²r'² + 4^ℓ/12 px² and should get σ²r² + footprint + 1/12.
         let too_blurred = std::array::from_fn(|level| {
-            let side_squared = 4f64.powi(level as i32);
-            ((1.0 / 3.0 - 1.0 / (3.0 * side_squared)) / variance * (PIXEL as f64).powi(2)).round() as i64
+            ((1.0 - 0.25f64.powi(level as i32)) / 12.0 / variance * (PIXEL as f64).powi(2)).round() as i64
         });
-        let parts = stencils.parts[usize::from(is_exact)].iter().map(|part| BoxPart {
+        let parts = stencils.parts[usize::from(detail == Detail::Exact)].iter().map(|part| BoxPart {
             share: (part.share * WHOLE as f64).round() as u32,
             mean: part.mean.to_array().map(fixed),
             variance: part.variance.to_array().map(fixed),
@@ -117,9 +116,15 @@ impl<'a> Pen<'a> {
             |factor: f64| (factor * BOX_DEVIATION_PX / variance.sqrt() * PIXEL as f64).ceil() as u32;
         let stop = fixed(stop);
         // To look at, one box will do until the stencils take over.
-        let [stencil_radius, one_box_radius] =
-            if is_exact { [deviations(2.0), deviations(0.5)] } else { [deviations(0.3), u32::MAX] };
-        let [even_tilt, even_seen_tilt] = if is_exact { [ONE / 40, 0] } else { [ONE / 20, ONE / 20] };
+        let [stencil_radius, one_box_radius] = match detail {
+            Detail::Exact => [deviations(0.5), deviations(0.5)],
+            Detail::Fine | Detail::Sketch => [deviations(0.3), u32::MAX],
+        };
+        let [even_tilt, even_seen_tilt] = match detail {
+            Detail::Exact => [ONE / 40, 0],
+            Detail::Fine | Detail::Sketch => [ONE / 20, ONE / 20],
+        };
+        let box_radius = deviations(if detail == Detail::Sketch { 2.0 } else { 1.0 });
         Self {
             nodes,
             stencils,
@@ -132,10 +137,10 @@ impl<'a> Pen<'a> {
             too_blurred,
             per_variance: (ONE as f64 / variance).round() as i64,
             parts: parts.collect(),
-            is_exact,
+            is_exact: detail == Detail::Exact,
             stencil_radius,
             per_stencil_radius: u32::MAX / stencil_radius,
-            box_radius: deviations(if is_exact { 1.0 } else { 2.0 }),
+            box_radius,
             one_box_radius,
             even_tilt,
             even_seen_tilt,

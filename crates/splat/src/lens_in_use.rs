@@ -1,7 +1,7 @@
 //! The lens that a picture is summed with, and what it makes of each node.
 
 use crate::canvas::POSITION_BITS;
-use crate::nodes::{ONE, SplatNode};
+use crate::nodes::{CONTRASTS, ONE, SplatNode, finer_by_contrast};
 use crate::shape::Shape;
 use lens::{FocusOffset, Optics};
 use salf::tree::LEVELS;
@@ -92,10 +92,33 @@ pub struct LensInUse {
     pub optics: Optics,
     /// The signed radius of the aperture's image, 1/4096 px, for κ = 1.
     radius_per_kappa: f64,
-    /// Whether what is drawn is drawn as exactly as it can be.
-    pub is_exact: bool,
+    /// How exactly what is drawn is drawn.
+    pub detail: Detail,
     /// From which |radius| on, 1/4096 px, nodes may be drawn on each level: by [`Fineness`].
     smallest_radius: [[f64; LEVELS]; 4],
+    /// From which on one may stand for those below it: by its contrast.
+    smallest_joint_radius: [[[f64; LEVELS]; 4]; CONTRASTS],
+}
+
+/// How exactly nodes are drawn: as coarse as the nodes are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Detail {
+    /// As exactly as can be.
+    Exact,
+    /// Small images of open nodes in fewer parts.
+    Fine,
+    /// Small images of partly occluded ones as boxes, too.
+    Sketch,
+}
+
+impl Detail {
+    fn of(Tolerance { share_of_circle }: Tolerance) -> Self {
+        match share_of_circle {
+            share if share < 0.1 => Self::Exact,
+            share if share < 0.3 => Self::Fine,
+            _ => Self::Sketch,
+        }
+    }
 }
 
 /// How fine a node is drawn.
@@ -111,7 +134,7 @@ enum Fineness {
 
 impl Fineness {
     /// How much finer than open nodes.
-    const FINER: [f64; 4] = [1.0, 1.5, 4.0, f64::INFINITY];
+    const FINER: [f64; 4] = [1.0, 1.25, 4.0, f64::INFINITY];
 
     #[inline(always)]
     fn of(node: &SplatNode) -> Self {
@@ -133,9 +156,6 @@ const ALIKE: f64 = 0.125;
 /// Aperture images of at most this radius, 1/4096 px, leave the samples of a pixel within it: one stands for them all.
 const SHARP: f64 = 16.0;
 
-/// From this share of a circle of confusion on small images are drawn in fewer parts: as coarse as the nodes.
-const COARSE: f64 = 0.1;
-
 impl LensInUse {
     pub fn new(optics: Optics, shape: &Shape, tolerance: Tolerance) -> Self {
         let deviation = (shape.variance.min_element()).sqrt();
@@ -146,12 +166,14 @@ impl LensInUse {
                 circle / (4.0 * deviation) * (1 << POSITION_BITS) as f64
             })
         };
-        let is_exact = tolerance.share_of_circle < COARSE;
         Self {
             optics,
             radius_per_kappa: optics.splat_radius_px(1.0) * (1 << POSITION_BITS) as f64,
-            is_exact,
+            detail: Detail::of(tolerance),
             smallest_radius: Fineness::FINER.map(smallest),
+            smallest_joint_radius: std::array::from_fn(|contrast| {
+                Fineness::FINER.map(|finer| smallest(finer * finer_by_contrast(contrast as u8)))
+            }),
         }
     }
 
@@ -195,7 +217,9 @@ impl LensInUse {
     #[inline(always)]
     pub fn may_merge(&self, node: &SplatNode, focus: &NodeFocus, placed: Placed) -> bool {
         let is_sharp = node.level == 0 && f64::from(placed.radius).abs() <= SHARP;
-        if !is_sharp && !self.is_far_out(Fineness::of(node), node.level, placed.radius) {
+        let of_contrast = &self.smallest_joint_radius[node.contrast as usize];
+        let smallest = of_contrast[Fineness::of(node) as usize][node.level as usize];
+        if !is_sharp && f64::from(placed.radius).abs() < smallest {
             return false;
         }
         let optics = &self.optics;

@@ -52,6 +52,8 @@ pub struct SplatNode {
     pub level: u8,
     /// Whether it is summed in wide integers.
     pub is_bright: bool,
+    /// Below [`CONTRASTS`]: how much of its light lies to a side that is not that of the rest. See [`finer_by_contrast`].
+    pub contrast: u8,
     /// Whether its image is to be seen as such: of more than [`HIGHLIGHT`].
     pub is_highlight: bool,
     /// Where it stands what it sees of the aperture; [`OPEN`] if all.
@@ -70,6 +72,29 @@ pub struct SplatNode {
     first_child: u32,
     /// How many these are; none if it is a sample.
     child_count: u8,
+}
+
+/// How many contrasts are told apart.
+pub const CONTRASTS: usize = 9;
+
+/// By what factor a node of this contrast must be finer than one of a single colour to stand for those below it.
+pub fn finer_by_contrast(contrast: u8) -> f64 {
+    (f64::from(contrast) / CONTRASTS_AN_OCTAVE).exp2()
+}
+
+const CONTRASTS_AN_OCTAVE: f64 = 4.0;
+
+/// The contrast of a node.
+///
+/// Light with a dipole m to its centre, thrown as an aperture image of radius r, is wrong by about m/r² along the image's
+/// rim. For this to be alike everywhere, the node's side must fall with the root of the dipole for each side.
+fn contrast(node: &Node) -> u8 {
+    // Those that are less are not told from a single colour.
+    const LEAST: f32 = 0.02;
+    let side = (1 << node.level) as f32;
+    let share = node.dipole / (side * node.radiance.max_element().max(1.0));
+    let octaves = (share / LEAST).log2() / 2.0;
+    (octaves * CONTRASTS_AN_OCTAVE as f32).round().clamp(0.0, (CONTRASTS - 1) as f32) as u8
 }
 
 /// What a node sees of the aperture: rows of 16 cells, row 0 at v = −1, column 0 (u = −1) the lowest bit.
@@ -110,7 +135,7 @@ impl SplatNode {
         let center = self.center[axis] >> POSITION_BITS;
         let reach = (placed.radius.abs() >> POSITION_BITS) * 65 / 64
             + (self.half_size[axis] as i32 >> (POSITION_BITS - 1))
-            + (3 << placed.level);
+            + (5 << placed.level);
         let within = |place: i32| place.clamp(0, side as i32) as u32;
         within(center - reach)..within(center + reach + 1)
     }
@@ -309,6 +334,7 @@ fn convert(node: &Node, scale: Scale) -> Option<SplatNode> {
         half_size: half_size.map(|half| half as u16),
         level,
         is_bright,
+        contrast: contrast(node),
         is_highlight: node.radiance.max_element() > HIGHLIGHT,
         cells: node.cells.unwrap_or(OPEN),
         inverse_depth: node.inverse_depth,
@@ -337,6 +363,7 @@ mod tests {
             weight: 0.0,
             tilt: Vec2::ZERO,
             radiance: Vec3::NAN,
+            dipole: f32::NAN,
             level: 1,
             cells: None,
             children: 0..0,

@@ -97,7 +97,7 @@ impl ApertureInUse {
 impl ApertureInUse {
     /// What nodes are drawn with.
     fn pen<'a>(&'a self, nodes: &'a Nodes, lens: &LensInUse) -> Pen<'a> {
-        Pen::new(nodes, &self.stencils, &self.seen, self.stop, lens.is_exact)
+        Pen::new(nodes, &self.stencils, &self.seen, self.stop, lens.detail)
     }
 
     /// What is summed of `camera`'s picture.

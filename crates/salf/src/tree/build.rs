@@ -39,6 +39,8 @@ pub fn each_block<T: Send>(salf: &Salf, highlight: f32, make: impl Fn(Block) -> 
 /// A node while its block is being built.
 struct Growing {
     node: Node,
+    /// The mean of its radiance times the distance from its centre along x and y, px.
+    moments: [Vec3; 2],
     /// What it sees; all if `None`.
     cells: Option<Cells>,
     /// Where they stand in [`Builder::children`].
@@ -162,6 +164,9 @@ impl Builder<'_> {
         }
         let members = || children.iter().map(|&(_, index)| &self.arena[index]);
         let mut node = mean(level, || members().map(|member| &member.node));
+        let moments = moments(&node, members);
+        let [x, y] = moments;
+        node.dipole = (x * x + y * y).max_element().sqrt();
         let is_partial = self.arena[children[0].1].cells.is_some();
         let cells = is_partial.then(|| most(|| members().filter_map(|member| member.cells.as_ref())));
         if let Some(cells) = &cells {
@@ -176,7 +181,7 @@ impl Builder<'_> {
         }
         let first = self.children.len();
         self.children.extend(children.iter().map(|&(_, index)| index));
-        self.arena.push(Growing { node, cells, children: first..self.children.len() });
+        self.arena.push(Growing { node, moments, cells, children: first..self.children.len() });
         Some(self.arena.len() - 1)
     }
 
@@ -235,12 +240,13 @@ fn leaf(sample: &Sample, index: u32, level: u8) -> Growing {
         weight: sample.weight,
         tilt: sample.tilt,
         radiance: sample.radiance,
+        dipole: 0.0,
         level,
         cells: None,
         children: 0..0,
         sample: Some(index),
     };
-    Growing { node, cells, children: 0..0 }
+    Growing { node, moments: [Vec3::ZERO; 2], cells, children: 0..0 }
 }
 
 /// The node that stands for `nodes`.
@@ -261,11 +267,25 @@ fn mean<'a, I: Iterator<Item = &'a Node>>(level: u8, nodes: impl Fn() -> I) -> N
         weight: nodes().map(|node| node.weight).sum(),
         tilt: nodes().map(|node| node.tilt).sum(),
         radiance: nodes().map(|node| largest_weight(node) * node.radiance).sum::<Vec3>() / total,
+        dipole: 0.0,
         level,
         cells: None,
         children: 0..0,
         sample: None,
     }
+}
+
+/// See [`Growing::moments`]: those of the `members` that a node stands for, about its centre.
+fn moments<'a, I: Iterator<Item = &'a Growing>>(node: &Node, members: impl Fn() -> I) -> [Vec3; 2] {
+    let weight = |member: &Growing| largest_weight(&member.node);
+    let total: f32 = members().map(weight).sum();
+    [0, 1].map(|axis| {
+        let of = |member: &Growing| {
+            let apart = member.node.center[axis] - node.center[axis];
+            weight(member) * (member.moments[axis] + apart * member.node.radiance)
+        };
+        members().map(of).sum::<Vec3>() / total
+    })
 }
 
 /// What most of those see whose cells `seen` are; where they are even, every other cell.

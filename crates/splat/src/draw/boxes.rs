@@ -103,12 +103,12 @@ impl Image<'_> {
     }
 }
 
-/// What a level blurs too much, as the square of half a box's side, (1/4096 px of the level)²: upsampled, a pixel of level ℓ
-/// has a variance that is larger by (4^ℓ − 1)/3 px² than it should be.
+/// What a level blurs too much, as the square of half a box's side, (1/4096 px of the level)²: a pixel of level ℓ has a
+/// variance that is larger by (4^ℓ − 1)/12 px² than it should be.
 #[inline(always)]
 pub const fn too_blurred(level: u8) -> u32 {
-    const PIXEL_SQUARED: u32 = (PIXEL * PIXEL) as u32;
-    PIXEL_SQUARED - (PIXEL_SQUARED >> (2 * level))
+    const HALF_SQUARED: u32 = ((PIXEL / 2) * (PIXEL / 2)) as u32;
+    HALF_SQUARED - (HALF_SQUARED >> (2 * level))
 }
 
 /// The box of an image. Half its side along each axis is √(a² + b²), a the footprint's part and b the aperture's, less what

@@ -244,8 +244,8 @@ fn value_of(image: ptr<function, Image>, height: u32, share: u32, shift: u32, ro
 // Boxes
 
 fn too_blurred(level: u32) -> u32 {
-    let pixel = u32(PIXEL) * u32(PIXEL);
-    return pixel - (pixel >> (2u * level));
+    let half = u32(PIXEL / 2) * u32(PIXEL / 2);
+    return half - (half >> (2u * level));
 }
 
 fn draw_box(image: ptr<function, Image>, half_size: vec2<u32>, of_aperture: vec2<u32>) {

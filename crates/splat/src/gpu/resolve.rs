@@ -6,7 +6,7 @@ use crate::gpu::device::Lost;
 use crate::gpu::passes::Pass;
 use crate::gpu::sums::{Layout, Level};
 use crate::nodes::{BRIGHT, Nodes};
-use crate::resolve::{Overflow, Quanta};
+use crate::resolve::{MARGIN, Overflow, Quanta};
 use std::ops::Range;
 use std::sync::mpsc;
 use wgpu::{BindGroup, BindGroupLayout, Buffer, BufferUsages};
@@ -101,11 +101,11 @@ impl Resolve {
         let passes = gpu.passes();
         for (k, level) in self.levels.iter().enumerate().rev() {
             let bound = self.bound(gpu, sums, kind, &self.uniforms[k]);
-            // The rows asked for, and one more to either side.
+            // The rows asked for, and what they are made of.
             let [first, end] = if k == 0 {
                 [rows.start as i32, rows.end as i32]
             } else {
-                [(rows.start as i32 >> k) - 1, ((rows.end as i32 - 1) >> k) + 2]
+                [(rows.start as i32 >> k) - MARGIN, ((rows.end as i32 - 1) >> k) + MARGIN + 1]
             };
             let count = end.min(level.height as i32 + 1) - first.max(-1);
             dispatch(gpu, &passes.integrate, &bound, [count.max(0) as u32, 1]);

@@ -88,18 +88,29 @@ fn wide_float(x: vec2<u32>) -> f32 {
     return select(float, -float, is_negative);
 }
 
-// Bilinear: a fine pixel lies a quarter of a coarse one off its centre.
+// Cubic: a fine pixel lies a quarter of a coarse one off its centre. What lies beyond a level's border is as it is there.
+
+const MARGIN: i32 = 4;
 
 fn coarse(x: i32, y: i32) -> vec4<f32> {
-    if x < -1 || y < -1 || x > level.coarse_width || y > level.coarse_height {
-        return vec4<f32>();
-    }
-    return lines[level.coarse_lines + u32((y + 1) * (level.coarse_width + 2) + x + 1)];
+    let column = clamp(x, -1, level.coarse_width) + 1;
+    let row = clamp(y, -1, level.coarse_height) + 1;
+    return lines[level.coarse_lines + u32(row * (level.coarse_width + 2) + column)];
 }
 
-fn mix_of(near: vec4<f32>, far: vec4<f32>) -> vec4<f32> {
-    let a = 0.75 * near;
-    return vec4<f32>(exact(a.x), exact(a.y), exact(a.z), exact(a.w)) + 0.25 * far;
+fn weighted(weight: f32, light: vec4<f32>) -> vec4<f32> {
+    let product = weight * light;
+    return vec4<f32>(exact(product.x), exact(product.y), exact(product.z), exact(product.w));
+}
+
+fn cubic(behind: vec4<f32>, near: vec4<f32>, far: vec4<f32>, beyond: vec4<f32>) -> vec4<f32> {
+    let sum = weighted(-7.0 / 128.0, behind) + weighted(105.0 / 128.0, near) + weighted(35.0 / 128.0, far);
+    return sum + weighted(-5.0 / 128.0, beyond);
+}
+
+// Between four rows of a coarse column.
+fn mixed(x: i32, near: i32, toward: i32) -> vec4<f32> {
+    return cubic(coarse(x, near - toward), coarse(x, near), coarse(x, near + toward), coarse(x, near + 2 * toward));
 }
 
 fn upsampled(x: i32, y: i32) -> vec4<f32> {
@@ -107,17 +118,20 @@ fn upsampled(x: i32, y: i32) -> vec4<f32> {
         return vec4<f32>();
     }
     let near = vec2<i32>(x, y) >> vec2<u32>(1u);
-    let far = near + select(vec2<i32>(1), vec2<i32>(-1), (vec2<i32>(x, y) & vec2<i32>(1)) == vec2<i32>(0));
-    let left = mix_of(coarse(near.x, near.y), coarse(near.x, far.y));
-    let right = mix_of(coarse(far.x, near.y), coarse(far.x, far.y));
-    return mix_of(left, right);
+    let toward = select(vec2<i32>(1), vec2<i32>(-1), (vec2<i32>(x, y) & vec2<i32>(1)) == vec2<i32>(0));
+    return cubic(
+        mixed(near.x - toward.x, near.y, toward.y),
+        mixed(near.x, near.y, toward.y),
+        mixed(near.x + toward.x, near.y, toward.y),
+        mixed(near.x + 2 * toward.x, near.y, toward.y),
+    );
 }
 
 // The row of this level that a workgroup integrates.
 fn row_of(group: u32) -> i32 {
     var first = frame.first;
     if level.level > 0u {
-        first = (frame.first >> level.level) - 1;
+        first = (frame.first >> level.level) - MARGIN;
     }
     return max(first, -1) + i32(group);
 }
@@ -125,7 +139,7 @@ fn row_of(group: u32) -> i32 {
 fn end_of_rows() -> i32 {
     var end = frame.end;
     if level.level > 0u {
-        end = ((frame.end - 1) >> level.level) + 2;
+        end = ((frame.end - 1) >> level.level) + MARGIN + 1;
     }
     return min(end, level.height + 1);
 }
