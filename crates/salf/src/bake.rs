@@ -8,7 +8,7 @@
 //!
 //! The samples of each block are packed as soon as they are all found ([`crate::samples`]).
 
-use crate::domain::{Cell, Domain};
+use crate::domain::{Cell, Density, Domain};
 use crate::layers::{Group, Layers, trace_cell};
 use crate::margin::{painted_margin_px, standard_margin_px};
 use crate::occluders::{Depths, Footprint, Occluders};
@@ -74,6 +74,7 @@ struct Candidate {
 /// What the first look at a cell found.
 struct FirstLook {
     cell: Cell,
+    density: Density,
     depths: Depths,
     has_gap: bool,
     candidates: Vec<Candidate>,
@@ -122,7 +123,7 @@ pub fn bake(
         }
         let corner = block_corner(looks[0].cell.corner);
         let patches = patches_of_block.get(&corner).into_iter().flatten();
-        found.extend(patches.map(|patch| Found { sample: patch.clone(), rays: None }));
+        found.extend(patches.map(|patch| Found { sample: patch.clone(), part_of: None }));
         together(corner, found, options.packs)
     })?;
     // What lies beside the domain has no block.
@@ -175,12 +176,17 @@ struct Baker<'a> {
 }
 
 impl Baker<'_> {
-    fn layers(&self, cell: Cell, hidden: bool) -> Layers {
-        trace_cell(self.tracer, self.view, self.placement, cell, hidden)
+    fn layers(&self, cell: Cell, density: Density, hidden: bool) -> Layers {
+        trace_cell(self.tracer, self.view, self.placement, cell, density, hidden)
     }
 
     fn first_look(&self, cell: Cell) -> FirstLook {
-        let layers = self.layers(cell, false);
+        let mut density = Density::Coarse;
+        let mut layers = self.layers(cell, density, false);
+        if layers.has_outline() {
+            density = Density::Fine;
+            layers = self.layers(cell, density, false);
+        }
         let candidate = |group: &Group| Candidate {
             samples: group.samples(self.radiance, self.view, cell),
             center: group.center(cell),
@@ -189,7 +195,7 @@ impl Baker<'_> {
             has_nearer: layers.has_nearer(group, self.view.radius_per_kappa_px),
         };
         let candidates = layers.groups.iter().map(candidate).collect();
-        FirstLook { cell, depths: layers.depths(cell), has_gap: layers.has_gap, candidates }
+        FirstLook { cell, density, depths: layers.depths(cell), has_gap: layers.has_gap, candidates }
     }
 
     fn second_look(&self, occluders: &Occluders, look: &FirstLook, samples: &mut Vec<Found>) {
@@ -210,7 +216,7 @@ impl Baker<'_> {
                 return;
             }
         }
-        let layers = self.layers(cell, hidden);
+        let layers = self.layers(cell, look.density, hidden);
         for (index, group) in layers.groups.iter().enumerate() {
             let is_open = group.is_nearest
                 && !layers.has_nearer(group, self.view.radius_per_kappa_px)
@@ -234,6 +240,7 @@ impl Baker<'_> {
         let corner = cell.corner.as_uvec2();
         let seed = [corner.x, corner.y.wrapping_add(index << 16)];
         let side = visibility::cells_a_side(view, group.mean_inverse_depth());
-        visibility::visibility(tracer, view, patterns, &group.members, side, seed, |_| true)
+        let from = group.viewpoint(view, cell);
+        visibility::visibility(tracer, view, patterns, from, side, seed, |_| true)
     }
 }

@@ -1,6 +1,6 @@
 //! Where the pinhole picture is sampled: pixels of the frame, and ever larger cells outside it.
 
-use glam::{DVec2, IVec2};
+use glam::{DVec2, IVec2, UVec2};
 
 /// A square of the pinhole picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -11,71 +11,102 @@ pub struct Cell {
     pub side: i32,
 }
 
-impl Cell {
-    /// Sub-cells a side: a ray is traced in each.
-    pub const SUBDIVISION: i32 = 4;
-    /// Rays a cell.
-    pub const RAYS: usize = (Self::SUBDIVISION * Self::SUBDIVISION) as usize;
+/// How densely the rays through a cell lie.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Density {
+    /// 4 × 4 rays, which stand for four sub-cells each.
+    Coarse,
+    /// 8 × 8 rays: one in each sub-cell.
+    Fine,
+}
 
-    /// The sub-cells, quadrant by quadrant: every fourth of them lies in another one.
-    pub fn sub_cells() -> impl Iterator<Item = usize> {
-        let bit = |k: usize, index: usize| k >> index & 1;
-        (0..Self::RAYS).map(move |k| {
-            let (row, column) = (2 * bit(k, 3) + bit(k, 1), 2 * bit(k, 2) + bit(k, 0));
-            row * Self::SUBDIVISION as usize + column
-        })
-    }
-
-    /// The row and the column of sub-cell `k`.
-    pub fn row_and_column(k: usize) -> [usize; 2] {
-        [k / Self::SUBDIVISION as usize, k % Self::SUBDIVISION as usize]
-    }
-
-    /// The corner of sub-cell `k`, px.
-    pub fn sub_corner(&self, k: usize) -> DVec2 {
-        let [row, column] = Self::row_and_column(k);
-        self.corner.as_dvec2() + DVec2::new(column as f64, row as f64) * self.sub_side()
-    }
-
-    /// The quadrant that sub-cell `k` lies in.
-    pub fn quadrant(k: usize) -> usize {
-        const HALF: usize = Cell::SUBDIVISION as usize / 2;
-        let [row, column] = Self::row_and_column(k);
-        row / HALF * 2 + column / HALF
-    }
-
-    /// The part of it that the sub-cells of `rays`, a bit each, make up; they must not be none.
-    pub fn part(&self, rays: u16) -> CellPart {
-        let (cell_side, side) = (self.side as f64, self.sub_side());
-        if rays == u16::MAX {
-            let half_size = DVec2::splat(cell_side / 2.0);
-            let center = self.corner.as_dvec2() + half_size;
-            return CellPart { center, half_size, weight: cell_side * cell_side };
+impl Density {
+    /// Rays a side of a cell.
+    pub fn rays_a_side(self) -> usize {
+        match self {
+            Self::Coarse => Cell::SUBDIVISION / 2,
+            Self::Fine => Cell::SUBDIVISION,
         }
-        let count = f64::from(rays.count_ones());
-        let corners = || (0..Self::RAYS).filter(|k| rays >> k & 1 == 1).map(|k| self.sub_corner(k));
-        let center = corners().sum::<DVec2>() / count + side / 2.0;
-        let variance =
-            corners().map(|corner| (corner + side / 2.0 - center).powf(2.0)).sum::<DVec2>() / count;
-        // A box of half side h has the variance h²/3.
-        let low = self.corner.as_dvec2();
-        let room = (center - low).min(low + cell_side - center);
-        let half_size = (3.0 * variance + side * side / 4.0).map(f64::sqrt).min(room);
-        CellPart { center, half_size, weight: side * side * count }
     }
 
-    /// The side of a sub-cell, px.
-    pub fn sub_side(&self) -> f64 {
-        self.side as f64 / Self::SUBDIVISION as f64
+    /// Rays of a cell, in the order of its sub-cells.
+    pub fn rays(self) -> usize {
+        self.rays_a_side() * self.rays_a_side()
+    }
+
+    /// The sub-cells that a ray stands for, a bit each.
+    pub fn sub_cells(self, ray: usize) -> u64 {
+        let each = Cell::SUB_CELLS / self.rays();
+        (u64::MAX >> (Cell::SUB_CELLS - each)) << (ray * each)
     }
 }
 
-/// Some or all rays of a cell.
+impl Cell {
+    /// Sub-cells a side.
+    const SUBDIVISION: usize = 8;
+    /// Sub-cells of a cell; they are numbered along Morton's curve: quadrant by quadrant, and so on within each.
+    pub const SUB_CELLS: usize = Self::SUBDIVISION * Self::SUBDIVISION;
+
+    /// Row and column of place `k` along Morton's curve.
+    pub fn row_and_column(k: usize) -> [usize; 2] {
+        let every_second = |k: usize| k & 1 | (k >> 1) & 2 | (k >> 2) & 4;
+        [every_second(k >> 1), every_second(k)]
+    }
+
+    /// The first of the quadrants that some sub-cells, a bit each, lie in.
+    pub fn quadrant(sub_cells: u64) -> u32 {
+        sub_cells.trailing_zeros() / 16
+    }
+
+    /// The quadrant that all of some sub-cells lie in and which of its sixteen they are; `None` if they lie in several.
+    pub fn within_quadrant(sub_cells: u64) -> Option<(u32, u16)> {
+        let quadrant = Self::quadrant(sub_cells);
+        let within = u16::try_from(sub_cells >> (16 * quadrant)).ok()?;
+        Some((quadrant, within))
+    }
+
+    /// The part of it that some sub-cells, a bit each, make up; they must not be none.
+    pub fn part(&self, sub_cells: u64) -> CellPart {
+        let (corner, cell_side) = (self.corner.as_dvec2(), self.side as f64);
+        if sub_cells == u64::MAX {
+            let half_size = DVec2::splat(cell_side / 2.0);
+            return CellPart { center: corner + half_size, half_size, weight: cell_side * cell_side };
+        }
+        let (side, count) = (cell_side / Self::SUBDIVISION as f64, f64::from(sub_cells.count_ones()));
+        let [sum, squares] = moments(sub_cells).map(|moment| moment.as_dvec2());
+        let mean = sum / count;
+        let center = corner + (mean + 0.5) * side;
+        let variance = (squares / count - mean * mean) * side * side;
+        // A box of half side h has the variance h²/3.
+        let room = (center - corner).min(corner + cell_side - center);
+        let half_size = (3.0 * variance + side * side / 4.0).map(f64::sqrt).min(room);
+        CellPart { center, half_size, weight: side * side * count }
+    }
+}
+
+/// The sums of the columns and rows of sub-cells, a bit each, and of their squares.
+fn moments(sub_cells: u64) -> [UVec2; 2] {
+    // Which sub-cells have the k-th binary digit of their column, or row.
+    const COLUMN_DIGITS: [u64; 3] = [0xAAAA_AAAA_AAAA_AAAA, 0xF0F0_F0F0_F0F0_F0F0, 0xFFFF_0000_FFFF_0000];
+    const ROW_DIGITS: [u64; 3] = [0xCCCC_CCCC_CCCC_CCCC, 0xFF00_FF00_FF00_FF00, 0xFFFF_FFFF_0000_0000];
+    let of_axis = |digits: [u64; 3]| {
+        let having = |mask: u64| (sub_cells & mask).count_ones();
+        let [a, b, c] = digits;
+        let [of_a, of_b, of_c] = digits.map(having);
+        let squares =
+            of_a + 4 * of_b + 16 * of_c + 4 * having(a & b) + 8 * having(a & c) + 16 * having(b & c);
+        [of_a + 2 * of_b + 4 * of_c, squares]
+    };
+    let ([x, xx], [y, yy]) = (of_axis(COLUMN_DIGITS), of_axis(ROW_DIGITS));
+    [UVec2::new(x, y), UVec2::new(xx, yy)]
+}
+
+/// Some or all sub-cells of a cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CellPart {
-    /// The centre of their sub-cells, px.
+    /// Their centre, px.
     pub center: DVec2,
-    /// Half the sides of a box with the spread of the sub-cells, within the cell, px.
+    /// Half the sides of a box with their spread, within the cell, px.
     pub half_size: DVec2,
     /// Their area, px².
     pub weight: f64,
@@ -168,13 +199,42 @@ mod tests {
     use super::*;
 
     #[test]
-    fn sub_cells_come_by_quadrants() {
-        let cell = Cell { corner: IVec2::ZERO, side: 4 };
-        let corners: Vec<_> = Cell::sub_cells().map(|k| cell.sub_corner(k)).collect();
-        for (four, quadrant) in corners.chunks(4).zip([(0.0, 0.0), (2.0, 0.0), (0.0, 2.0), (2.0, 2.0)]) {
-            let low = DVec2::from(quadrant);
-            let wanted = [DVec2::ZERO, DVec2::X, DVec2::Y, DVec2::ONE].map(|step| low + step);
-            assert_eq!(four, wanted);
+    fn rays_stand_for_sub_cells_around_them() {
+        for density in [Density::Coarse, Density::Fine] {
+            let sub_cells = (0..density.rays()).map(|ray| density.sub_cells(ray));
+            assert_eq!(sub_cells.clone().fold(0, |all, some| all ^ some), u64::MAX);
+            let side = 8 / density.rays_a_side();
+            for (ray, sub_cells) in sub_cells.enumerate() {
+                let [row, column] = Cell::row_and_column(ray);
+                for k in (0..Cell::SUB_CELLS).filter(|k| sub_cells >> k & 1 == 1) {
+                    assert_eq!(Cell::row_and_column(k).map(|at| at / side), [row, column]);
+                    assert_eq!(Cell::quadrant(sub_cells), (2 * (row * side / 4) + column * side / 4) as u32);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_part_of_a_cell_is_as_large_as_its_sub_cells() {
+        let cell = Cell { corner: IVec2::new(-5, 3), side: 2 };
+        for k in 0..500u64 {
+            let some = 1 << (k % 64) | (k + 1).wrapping_mul(0x9E37_79B9_7F4A_7C15) >> (k % 63);
+            let centers: Vec<_> = (0..Cell::SUB_CELLS)
+                .filter(|k| some >> k & 1 == 1)
+                .map(|k| Cell::row_and_column(k).map(|at| at as f64 + 0.5))
+                .map(|[row, column]| DVec2::new(column, row) / 4.0 + cell.corner.as_dvec2())
+                .collect();
+            let (part, count) = (cell.part(some), centers.len() as f64);
+            let center = centers.iter().sum::<DVec2>() / count;
+            let variance =
+                centers.iter().map(|at| (at - center).powf(2.0)).sum::<DVec2>() / count + 1.0 / 192.0;
+            let room = (center - cell.corner.as_dvec2()).min(cell.corner.as_dvec2() + 2.0 - center);
+            assert!((part.center - center).length() < 1e-12, "{part:?}");
+            assert!(
+                (part.half_size - (3.0 * variance).map(f64::sqrt).min(room)).length() < 1e-12,
+                "{part:?}"
+            );
+            assert_eq!(part.weight, count / 16.0);
         }
     }
 

@@ -4,16 +4,16 @@
 //!
 //! ```text
 //! magic        8 bytes   "FBSALF\r\n"
-//! version      u32       3
+//! version      u32       4
 //! source       text      the scene or project it was baked from, as a path
 //! triangles    u32       of that scene: what surface addresses count in
 //! camera       see `write_camera`
 //! margin       u32       px sampled outside the frame
-//! counts       7 × u64   of blocks, records, planes, rays, patches, codes, loose samples
-//! blocks       each: corner 2 × i32 (px), where its records, planes, rays, patches and codes begin, 5 × u32
+//! counts       7 × u64   of blocks, records, planes, sub-cells, patches, codes, loose samples
+//! blocks       each: corner 2 × i32 (px), where its records, planes, sub-cells, patches and codes begin, 5 × u32
 //! records      16 bytes each: place, plane, barycentric 2 × u16, inverse depth (3 bytes), radiance (5 bytes)
 //! planes       10 bytes each: triangle u32, weights 3 × f16
-//! rays         u16 each
+//! sub-cells    u16 each
 //! patches      10 bytes each: place in the pixel (3 bytes), half size 2 × u16, largest weight (3 bytes)
 //! codes        bytes
 //! loose samples, one after the other:
@@ -39,7 +39,7 @@ use std::io::{self, Read, Write};
 use std::sync::Arc;
 
 const MAGIC: &[u8; 8] = b"FBSALF\r\n";
-const VERSION: u32 = 3;
+const VERSION: u32 = 4;
 /// More than any path takes.
 const LONGEST_TEXT: u32 = 1 << 16;
 /// Room made for samples before they are read: a wrong count must not take the memory.

@@ -1,7 +1,7 @@
 //! The pinhole picture, one cell at a time: which surfaces lie along its chief rays.
 
 use crate::bake::BakeOptions;
-use crate::domain::{Cell, CellPart};
+use crate::domain::{Cell, CellPart, Density};
 use crate::jitter::Net;
 use crate::occluders::{Depths, Occluders};
 use crate::placement::Placement;
@@ -11,7 +11,7 @@ use crate::view::View;
 use glam::{DVec2, Vec3};
 use scene::SurfacePoint;
 use std::ops::Range;
-use trace::{Hit, Radiance, Tracer};
+use trace::{Beam, Hit, Radiance, Tracer, Viewpoint};
 
 /// Surfaces along one chief ray beyond which nothing is looked for.
 const DEEPEST_LAYER: usize = 12;
@@ -23,8 +23,8 @@ const JUST_BEHIND_PX: f64 = 1.0;
 /// Where a chief ray of a cell meets a surface, or goes to infinity.
 #[derive(Clone, Copy, Debug)]
 pub struct Member {
-    /// Its sub-cell.
-    pub sub_cell: usize,
+    /// The sub-cells that it stands for, a bit each.
+    pub sub_cells: u64,
     /// Where it is in the pinhole picture, px.
     pub pixel: DVec2,
     /// The surface; `None` for the background.
@@ -36,7 +36,7 @@ pub struct Member {
 /// Members of one cell that lie on one smooth surface.
 #[derive(Clone, Debug)]
 pub struct Group {
-    /// At most one a sub-cell, in the order of [`Cell::sub_cells`].
+    /// At most one a ray, in the order of their sub-cells.
     pub members: Vec<Member>,
     /// Whether the surface is the nearest along every member's ray.
     pub is_nearest: bool,
@@ -60,53 +60,79 @@ pub struct Layers {
 }
 
 /// Traces the chief rays of a cell: to the nearest surface, or, if `hidden`, through all of them.
-pub fn trace_cell(tracer: &Tracer, view: &View, placement: &Placement, cell: Cell, hidden: bool) -> Layers {
+pub fn trace_cell(
+    tracer: &Tracer,
+    view: &View,
+    placement: &Placement,
+    cell: Cell,
+    density: Density,
+    hidden: bool,
+) -> Layers {
     let mut layers = Layers { groups: Vec::new(), depth_range: [0.0, f32::INFINITY], has_gap: false };
-    let beam = view.beam(cell);
-    let seed = cell.corner.as_uvec2();
-    let net = Net::new(Cell::SUBDIVISION.ilog2(), seed.to_array());
-    let pixels: [_; Cell::RAYS] = std::array::from_fn(|sub_cell| {
-        let [row, column] = Cell::row_and_column(sub_cell);
-        cell.sub_corner(sub_cell) + DVec2::from_array(net.place(row, column)) * cell.sub_side()
-    });
-    let rays = pixels.map(|pixel| view.chief_ray(pixel));
-    let most = if hidden { DEEPEST_LAYER } else { 1 };
-    let met: Vec<(usize, Hit)> = if hidden {
-        tracer.all_hits(&beam, &rays, most)
-    } else {
-        let first = tracer.first_hits(&beam, &rays).into_iter().enumerate();
-        let mut met = Vec::with_capacity(Cell::RAYS);
-        met.extend(first.filter_map(|(sub_cell, hit)| Some((sub_cell, hit?))));
-        met
+    let net = Net::new(density.rays_a_side().ilog2(), cell.corner.as_uvec2().to_array());
+    let ray_side = cell.side as f64 / density.rays_a_side() as f64;
+    let corner_of = |ray: usize| {
+        let [row, column] = Cell::row_and_column(ray);
+        cell.corner.as_dvec2() + DVec2::new(column as f64, row as f64) * ray_side
     };
-    for sub_cell in Cell::sub_cells() {
-        let (pixel, mut nearest) = (pixels[sub_cell], 0.0);
-        let [start, end] = [sub_cell, sub_cell + 1].map(|next| met.partition_point(|(of, _)| *of < next));
-        let mine = &met[start..end];
-        // Behind the last surface lies the background.
-        let hits = mine.iter().map(|(_, hit)| Some(*hit)).chain([None]).take(most);
-        for (layer, hit) in hits.enumerate() {
-            let inverse_depth = hit.map_or(0.0, |hit| 1.0 / hit.t);
-            let point = hit.map(|hit| hit.point);
-            if layer == 0 {
-                nearest = inverse_depth;
-                let [near, far] = &mut layers.depth_range;
-                *near = near.max(inverse_depth as f32);
-                *far = far.min(inverse_depth as f32);
-            }
-            let member = Member { sub_cell, pixel, point, inverse_depth };
-            let is_sampled_here = point.is_none_or(|point| !placement.is_on_surface(point.triangle));
-            if is_sampled_here {
-                layers.add(tracer, view, member, layer == 0, nearest);
-            } else if layer == 0 {
-                layers.has_gap = true;
-            }
+    // Rays that lie together: all, or those of a quadrant.
+    for first in (0..density.rays()).step_by(Beam::MOST_RAYS) {
+        let pixels: [_; Beam::MOST_RAYS] = std::array::from_fn(|k| {
+            let [row, column] = Cell::row_and_column(first + k);
+            corner_of(first + k) + DVec2::from_array(net.place(row, column)) * ray_side
+        });
+        let beam = view.beam(corner_of(first), ray_side * Beam::MOST_RAYS.isqrt() as f64);
+        let rays = pixels.map(|pixel| view.chief_ray(pixel));
+        let most = if hidden { DEEPEST_LAYER } else { 1 };
+        let met: Vec<(usize, Hit)> = if hidden {
+            tracer.all_hits(&beam, &rays, most)
+        } else {
+            let first = tracer.first_hits(&beam, &rays).into_iter().enumerate();
+            let mut met = Vec::with_capacity(Beam::MOST_RAYS);
+            met.extend(first.filter_map(|(ray, hit)| Some((ray, hit?))));
+            met
+        };
+        for (ray, pixel) in pixels.into_iter().enumerate() {
+            let [start, end] = [ray, ray + 1].map(|next| met.partition_point(|(of, _)| *of < next));
+            // Behind the last surface lies the background.
+            let hits = met[start..end].iter().map(|(_, hit)| Some(*hit)).chain([None]).take(most);
+            layers.add_all(tracer, view, placement, density.sub_cells(first + ray), pixel, hits);
         }
     }
     layers
 }
 
 impl Layers {
+    /// Adds what a ray through `pixel` meets, one surface behind the other.
+    fn add_all(
+        &mut self,
+        tracer: &Tracer,
+        view: &View,
+        placement: &Placement,
+        sub_cells: u64,
+        pixel: DVec2,
+        hits: impl Iterator<Item = Option<Hit>>,
+    ) {
+        let mut nearest = 0.0;
+        for (layer, hit) in hits.enumerate() {
+            let inverse_depth = hit.map_or(0.0, |hit| 1.0 / hit.t);
+            let point = hit.map(|hit| hit.point);
+            if layer == 0 {
+                nearest = inverse_depth;
+                let [near, far] = &mut self.depth_range;
+                *near = near.max(inverse_depth as f32);
+                *far = far.min(inverse_depth as f32);
+            }
+            let member = Member { sub_cells, pixel, point, inverse_depth };
+            let is_sampled_here = point.is_none_or(|point| !placement.is_on_surface(point.triangle));
+            if is_sampled_here {
+                self.add(tracer, view, member, layer == 0, nearest);
+            } else if layer == 0 {
+                self.has_gap = true;
+            }
+        }
+    }
+
     /// Adds a member; `nearest` is 1/z of the nearest surface along its ray.
     fn add(&mut self, tracer: &Tracer, view: &View, member: Member, is_nearest: bool, nearest: f64) {
         let parallax_px = view.radius_per_kappa_px;
@@ -118,7 +144,7 @@ impl Layers {
             group.part == part
                 && group.is_just_behind == is_just_behind
                 && (member.inverse_depth - expected).abs() * parallax_px <= Occluders::SAME_SURFACE_PX
-                && group.members.last().is_none_or(|last| last.sub_cell != member.sub_cell)
+                && group.members.last().is_none_or(|last| last.sub_cells != member.sub_cells)
         };
         if let Some(group) = self.groups.iter_mut().find(belongs) {
             group.members.push(member);
@@ -133,7 +159,7 @@ impl Layers {
                 slope = DVec2::new(-tilt.x, tilt.y) / parallax_px;
             }
         }
-        let mut members = Vec::with_capacity(Cell::RAYS);
+        let mut members = Vec::with_capacity(Beam::MOST_RAYS);
         members.push(member);
         self.groups.push(Group { members, is_nearest, is_just_behind, part, tilt, slope });
     }
@@ -144,6 +170,11 @@ impl Layers {
         let slants = self.groups.iter().map(|group| group.slope.abs().element_sum());
         let steepest = if self.has_gap { f64::INFINITY } else { slants.fold(0.0, f64::max) };
         Depths { nearest, farthest, relief: (steepest * cell.side as f64) as f32 }
+    }
+
+    /// Whether an outline passes through the cell.
+    pub fn has_outline(&self) -> bool {
+        self.groups.len() > 1 || self.has_gap && !self.groups.is_empty()
     }
 
     /// Whether another surface of this cell lies noticeably in front of `group`.
@@ -162,7 +193,17 @@ impl Group {
 
     /// The centre of its sub-cells, px.
     pub fn center(&self, cell: Cell) -> DVec2 {
-        cell.part(rays_of(&self.members)).center
+        cell.part(sub_cells_of(&self.members)).center
+    }
+
+    /// From where to ask what it sees of the aperture: its member nearest to its centre. Asked from elsewhere in the cell, the
+    /// image of an occluder in focus would not be where the occluder is; its very centre may lie beyond an edge of it.
+    pub fn viewpoint(&self, view: &View, cell: Cell) -> Viewpoint {
+        let member = nearest(&self.members, self.center(cell));
+        match member.point {
+            Some(point) => Viewpoint::Surface(point),
+            None => Viewpoint::Infinity(view.chief_ray(member.pixel).direction),
+        }
     }
 
     /// Its samples, as if each saw the whole aperture: one with its mean radiance over its share of the cell; where that
@@ -183,7 +224,7 @@ impl Group {
 
     /// The members of each quadrant that has any.
     fn quadrants(&self) -> Vec<Range<usize>> {
-        let quadrant = |member: &Member| Cell::quadrant(member.sub_cell);
+        let quadrant = |member: &Member| Cell::quadrant(member.sub_cells);
         let parts = self.members.chunk_by(|a, b| quadrant(a) == quadrant(b));
         let following = |end: &mut usize, part: &[Member]| {
             let start = *end;
@@ -196,12 +237,8 @@ impl Group {
     /// The sample that some of its members make.
     fn sample(&self, cell: Cell, members: Range<usize>, radiance: Vec3) -> Found {
         let members = &self.members[members];
-        let rays = rays_of(members);
-        let CellPart { center, half_size, weight } = cell.part(rays);
-        let middle = members
-            .iter()
-            .min_by(|a, b| a.pixel.distance_squared(center).total_cmp(&b.pixel.distance_squared(center)))
-            .expect("a group has members");
+        let sub_cells = sub_cells_of(members);
+        let CellPart { center, half_size, weight } = cell.part(sub_cells);
         let sample = Sample {
             center: center.as_vec2(),
             half_size: half_size.as_vec2(),
@@ -209,16 +246,22 @@ impl Group {
             weight: weight as f32,
             tilt: (self.tilt * weight).as_vec2(),
             radiance,
-            surface: middle.point,
+            surface: nearest(members, center).point,
             visibility: Visibility::Open,
         };
-        Found { sample, rays: Some((cell, rays)) }
+        Found { sample, part_of: Some((cell, sub_cells)) }
     }
 }
 
-/// The sub-cells of members, a bit each.
-fn rays_of(members: &[Member]) -> u16 {
-    members.iter().fold(0, |rays, member| rays | 1 << member.sub_cell)
+/// Of some members, at least one, the nearest to a place in the picture.
+fn nearest(members: &[Member], pixel: DVec2) -> &Member {
+    let distance = |member: &&Member| member.pixel.distance_squared(pixel);
+    members.iter().min_by(|a, b| distance(a).total_cmp(&distance(b))).expect("a group has members")
+}
+
+/// The sub-cells that members stand for, a bit each.
+fn sub_cells_of(members: &[Member]) -> u64 {
+    members.iter().fold(0, |all, member| all | member.sub_cells)
 }
 
 /// Mean of 1/z.
@@ -258,11 +301,12 @@ mod tests {
         // Half a pixel further right, the middle is that of a cell of one pixel.
         let shift = if side == 1 { 0.5 } else { 0.0 };
         let cell = Cell { corner: IVec2::new(32 - side / 2, 8), side };
-        let member = |sub_cell: usize| {
-            let pixel = cell.sub_corner(sub_cell) + cell.sub_side() / 2.0 - DVec2::new(shift, 0.0);
-            Member { sub_cell, pixel, point: None, inverse_depth: 0.0 }
+        let member = |ray: usize| {
+            let sub_cells = Density::Coarse.sub_cells(ray);
+            let pixel = cell.part(sub_cells).center - DVec2::new(shift, 0.0);
+            Member { sub_cells, pixel, point: None, inverse_depth: 0.0 }
         };
-        let members = Cell::sub_cells().map(member).collect();
+        let members = (0..Density::Coarse.rays()).map(member).collect();
         let (tilt, slope) = (DVec2::ZERO, DVec2::ZERO);
         let group = Group { members, is_nearest: true, is_just_behind: false, part: None, tilt, slope };
         group.samples(&Halves(light), &view, cell)
@@ -283,8 +327,8 @@ mod tests {
             let sent: f32 = found.iter().map(|found| found.sample.weight * found.sample.radiance.x).sum();
             assert_eq!(weight, (side * side) as f32);
             assert!((sent / weight - (light[0] + light[1]) / 2.0).abs() < 1e-6, "{found:?}");
-            let rays = found.iter().fold(0, |all, found| all | found.rays.expect("they are of a cell").1);
-            assert_eq!(rays, u16::MAX);
+            let parts = found.iter().map(|found| found.part_of.expect("they are of a cell").1);
+            assert_eq!(parts.fold(0, |all, part| all | part), u64::MAX);
         }
     }
 }

@@ -1,14 +1,14 @@
 //! The samples of a light field, packed to what tells them apart.
 //!
-//! A [`Sample`] takes a hundred bytes and more. Packed, a group of rays of a cell of the picture takes 16 bytes: which cell
+//! A [`Sample`] takes a hundred bytes and more. Packed, a cell of the picture, or a part of one, takes 16 bytes: which cell
 //! of which block, the plane it lies on (a number among those of its block), its surface address, depth and radiance. Where
-//! its footprint is and what it weighs follows from the cell and the rays ([`crate::Cell::part`]), how its weight changes over the
+//! its footprint is and what it weighs follows from the cell and its sub-cells ([`crate::Cell::part`]), how its weight changes over the
 //! aperture from the plane. A patch of surface takes 10 bytes more, a partly visible aperture about 4 ([`masks`]). What does
 //! not fit such a form, like a radiance of 2⁶⁴, is kept as it is.
 //!
 //! What is lost: depths are exact to 2⁻¹⁷ of themselves, radiances to 2⁻¹⁰ of their largest channel, addresses to 1/65535 of
 //! their triangle, weights over the aperture to 2⁻¹¹ beside its centre; places of patches to 1/4096 px. Footprints and
-//! weights of groups of rays, and visibility, are exact.
+//! weights of cells, and visibility, are exact.
 
 mod masks;
 mod numbers;
@@ -34,8 +34,8 @@ pub struct Samples {
     pub(crate) chunks: Vec<Chunk>,
     pub(crate) records: Vec<Record>,
     pub(crate) planes: Vec<Plane>,
-    /// Which rays of a cell a group of some is.
-    pub(crate) rays: Vec<u16>,
+    /// Which sub-cells of a cell, or of a quadrant of one, a part of it is: a word a quadrant.
+    pub(crate) sub_cells: Vec<u16>,
     pub(crate) patches: Vec<Patch>,
     /// Visibility of the partly occluded ones.
     pub(crate) codes: Vec<u8>,
@@ -57,7 +57,7 @@ pub(crate) struct Chunk {
 pub(crate) struct Starts {
     pub records: u32,
     pub planes: u32,
-    pub rays: u32,
+    pub sub_cells: u32,
     pub patches: u32,
     pub codes: u32,
 }
@@ -67,7 +67,7 @@ pub(crate) struct Starts {
 #[repr(C, packed(2))]
 pub(crate) struct Plane {
     pub triangle: u32,
-    /// Toward the aperture's centre, and its change with u and v, as half floats: for groups of rays as a share of their
+    /// Toward the aperture's centre, and its change with u and v, as half floats: for cells as a share of their
     /// weight, for patches of their largest.
     pub weights: [u16; 3],
 }
@@ -176,7 +176,7 @@ impl Samples {
         let loose_partial: usize = self.loose.iter().filter(partial).map(loose_bytes).sum();
         let shared = size_of_val(&*self.chunks)
             + size_of_val(&*self.planes)
-            + size_of_val(&*self.rays)
+            + size_of_val(&*self.sub_cells)
             + size_of_val(&*self.patches);
         let records = self.records.len();
         let partial = self.records.iter().filter(|record| record.is_partial()).count();
@@ -202,7 +202,7 @@ impl Samples {
         all.chunks.reserve_exact(sum(|part| part.chunks.len()));
         all.records.reserve_exact(sum(|part| part.records.len()));
         all.planes.reserve_exact(sum(|part| part.planes.len()));
-        all.rays.reserve_exact(sum(|part| part.rays.len()));
+        all.sub_cells.reserve_exact(sum(|part| part.sub_cells.len()));
         all.patches.reserve_exact(sum(|part| part.patches.len()));
         all.codes.reserve_exact(sum(|part| part.codes.len()));
         all.loose.reserve_exact(sum(|part| part.loose.len()));
@@ -211,7 +211,7 @@ impl Samples {
             all.chunks.extend(part.chunks.iter().map(|chunk| chunk.after(before)));
             all.records.extend(part.records);
             all.planes.extend(part.planes);
-            all.rays.extend(part.rays);
+            all.sub_cells.extend(part.sub_cells);
             all.patches.extend(part.patches);
             all.codes.extend(part.codes);
             all.loose.extend(part.loose);
@@ -246,7 +246,7 @@ impl Samples {
         let parts = [
             (start.records, end.records, all.records),
             (start.planes, end.planes, all.planes),
-            (start.rays, end.rays, all.rays),
+            (start.sub_cells, end.sub_cells, all.sub_cells),
             (start.patches, end.patches, all.patches),
             (start.codes, end.codes, all.codes),
         ];
@@ -256,23 +256,23 @@ impl Samples {
         let corner = self.chunks[chunk].corner;
         let is_far =
             corner.cmplt(IVec2::splat(-FARTHEST)).any() || corner.cmpgt(IVec2::splat(FARTHEST)).any();
-        let (mut rays, mut patches) = (0, 0);
+        let mut patches = 0;
+        let mut sub_cells = &self.sub_cells[start.sub_cells as usize..end.sub_cells as usize];
         for record in &self.records[start.records as usize..end.records as usize] {
             let of_plane = u32::from(record.plane) < end.planes - start.planes;
             let is_background = record.plane == Record::BACKGROUND;
-            match record.kind().shape {
-                Shape::Patch if is_background => return Err(wrong()),
-                Shape::Patch => patches += 1,
-                Shape::PartOfCell => rays += 1,
-                Shape::WholeCell => {}
-            }
-            if !(of_plane || is_background) {
+            let shape = record.kind().shape;
+            let is_patch = shape == Shape::Patch;
+            patches += u32::from(is_patch);
+            let (words, others) = sub_cells.split_at_checked(shape.words()).ok_or_else(wrong)?;
+            sub_cells = others;
+            let is_empty = shape.words() > 0 && words.iter().all(|&word| word == 0);
+            if !(of_plane || is_background && !is_patch) || is_empty {
                 return Err(wrong());
             }
         }
-        let is_whole = rays == end.rays - start.rays && patches == end.patches - start.patches;
-        let has_empty = self.rays[start.rays as usize..end.rays as usize].contains(&0);
-        if is_far || !is_whole || has_empty { Err(wrong()) } else { Ok(()) }
+        let is_whole = sub_cells.is_empty() && patches == end.patches - start.patches;
+        if is_far || !is_whole { Err(wrong()) } else { Ok(()) }
     }
 
     /// Where the parts of a chunk start, or behind the last one end.
@@ -285,7 +285,7 @@ impl Samples {
         Starts {
             records: place(self.records.len()),
             planes: place(self.planes.len()),
-            rays: place(self.rays.len()),
+            sub_cells: place(self.sub_cells.len()),
             patches: place(self.patches.len()),
             codes: place(self.codes.len()),
         }
@@ -325,11 +325,11 @@ impl From<Vec<Sample>> for Samples {
 
 impl Chunk {
     fn after(&self, before: Starts) -> Self {
-        let Starts { records, planes, rays, patches, codes } = self.starts;
+        let Starts { records, planes, sub_cells, patches, codes } = self.starts;
         let starts = Starts {
             records: before.records + records,
             planes: before.planes + planes,
-            rays: before.rays + rays,
+            sub_cells: before.sub_cells + sub_cells,
             patches: before.patches + patches,
             codes: before.codes + codes,
         };

@@ -7,13 +7,12 @@
 
 use crate::domain::Domain;
 use crate::jitter::jitter;
-use crate::layers::Member;
 use crate::sample::Sample;
 use crate::view::View;
 use crate::visibility::{self, Patterns};
 use glam::{DVec2, DVec3};
 use scene::SurfacePoint;
-use trace::{Radiance, Tracer};
+use trace::{Radiance, Tracer, Viewpoint};
 
 /// More pieces than this are not made of one triangle: the largest is then split no further.
 const MOST_PATCHES: usize = 20_000;
@@ -49,12 +48,6 @@ impl Piece {
         let largest = (normal.dot(position).abs() + rim) * view.density(position.z);
         let kappa = view.optics.standard_kappa(1.0 / position.z);
         largest * brightness / view.optics.circle_of_confusion_px(kappa).powi(2).max(1.0)
-    }
-
-    /// The centroids of its four quarters, as barycentrics of the triangle.
-    fn quarters(&self) -> [DVec2; 4] {
-        let [a, b, c] = self.barycentric;
-        [a * 4.0 + b + c, a + b * 4.0 + c, a + b + c * 4.0, (a + b + c) * 2.0].map(|sum| sum / 6.0)
     }
 
     /// Half the sides of its box in the pinhole picture, px; as large as its largest weight, px², where it is edge-on.
@@ -122,14 +115,11 @@ fn patch(
     }
     let pixel = view.camera.pixel_from_q(optics.chief(position));
     let inverse_depth = 1.0 / position.z;
-    let members = piece.quarters().map(|barycentric| {
-        let point = SurfacePoint { barycentric, ..point };
-        Member { sub_cell: 0, pixel, point: Some(point), inverse_depth }
-    });
     let cells = visibility::cells_a_side(view, inverse_depth);
     let seed = [point.triangle, (jitter(point.barycentric.x.to_bits() as u32, 0, 0)[0] * 1e9) as u32];
     let is_on_side = |u: DVec2| weight + tilt.dot(u) > 0.0;
-    let visibility = visibility::visibility(tracer, view, patterns, &members, cells, seed, is_on_side)?;
+    let from = Viewpoint::Surface(point);
+    let visibility = visibility::visibility(tracer, view, patterns, from, cells, seed, is_on_side)?;
     let rim = view.aperture_point(tilt.signum());
     Some(Sample {
         center: pixel.as_vec2(),

@@ -1,8 +1,7 @@
 //! The baked camera, ready for rays: pixels to chief rays, aperture points to the world.
 
 use crate::bake::BakeOptions;
-use crate::domain::Cell;
-use glam::{DVec2, DVec3, IVec2};
+use glam::{DVec2, DVec3};
 use lens::{Camera, Optics};
 use scene::Scene;
 use trace::{Beam, Ray, Square};
@@ -42,10 +41,10 @@ impl<'a> View<'a> {
         Ray { origin: self.eye, direction, t_min: 0.0, t_max: f64::INFINITY, skip: None }
     }
 
-    /// The chief rays of a cell.
-    pub fn beam(&self, cell: Cell) -> Beam {
-        let edges = [IVec2::ZERO, IVec2::X, IVec2::ONE, IVec2::Y]
-            .map(|step| self.chief_ray((cell.corner + step * cell.side).as_dvec2()).direction);
+    /// The chief rays of a square of the picture: its upper left corner and its side, px.
+    pub fn beam(&self, corner: DVec2, side: f64) -> Beam {
+        let edges = [DVec2::ZERO, DVec2::X, DVec2::ONE, DVec2::Y]
+            .map(|step| self.chief_ray(corner + step * side).direction);
         Beam { origin: self.eye, axis: self.camera.world_direction(DVec3::Z), edges }
     }
 

@@ -1,7 +1,6 @@
-//! What of the aperture a patch of surface sees: a shadow ray a cell of the aperture, all of them at once.
+//! What of the aperture a point of a surface sees: a shadow ray a cell of the aperture, all of them at once.
 
 use crate::jitter::{Net, jitter};
-use crate::layers::Member;
 use crate::sample::Visibility;
 use crate::view::View;
 use glam::DVec2;
@@ -13,12 +12,12 @@ pub fn cells_a_side(view: &View, inverse_depth: f64) -> usize {
     if view.optics.circle_of_confusion_px(kappa) <= 2.0 * view.tolerance_px { 8 } else { 16 }
 }
 
-/// Cells that a point of a patch is asked for: what the one walk of the hierarchy tells that a point takes.
-const CELLS_A_POINT: usize = 64;
+/// Cells that one walk of the hierarchy tells of.
+const CELLS_A_WALK: usize = 64;
 
 /// Where in each cell of the aperture its ray goes through: several patterns, so that neighbours do not share their errors.
 pub struct Patterns {
-    /// For 8 and for 16 cells a side; by pattern, then by the point that is asked.
+    /// For 8 and for 16 cells a side; by pattern, then by walk.
     of_side: [Vec<Vec<Places>>; 2],
 }
 
@@ -33,15 +32,15 @@ impl Patterns {
 
     fn pattern(side: usize, number: u32) -> Vec<Places> {
         let net = Net::new(side.ilog2(), [number, side as u32]);
-        let of_point = |point: usize| {
+        let of_walk = |walk: usize| {
             let place = |k: usize| {
-                let (row, column) = cell_of(side, point, k);
+                let (row, column) = cell_of(side, walk, k);
                 let [u, v] = net.place(row, column);
                 DVec2::new(column as f64 + u, row as f64 + v) * (2.0 / side as f64) - 1.0
             };
-            Places::new(&(0..CELLS_A_POINT).map(place).collect::<Vec<_>>())
+            Places::new(&(0..CELLS_A_WALK).map(place).collect::<Vec<_>>())
         };
-        (0..side * side / CELLS_A_POINT).map(of_point).collect()
+        (0..side * side / CELLS_A_WALK).map(of_walk).collect()
     }
 
     fn of(&self, side: usize, number: usize) -> &[Places] {
@@ -49,42 +48,35 @@ impl Patterns {
     }
 }
 
-/// Row and column of the cell of a point's k-th place: of 16 cells a side each of four points has every second cell of every
-/// second row, of 8 one point has all.
-fn cell_of(side: usize, point: usize, k: usize) -> (usize, usize) {
-    let a_row = CELLS_A_POINT.isqrt();
+/// Row and column of the cell of a walk's k-th place: of 16 cells a side each of four walks has every second cell of every
+/// second row, of 8 one has all.
+fn cell_of(side: usize, walk: usize, k: usize) -> (usize, usize) {
+    let a_row = CELLS_A_WALK.isqrt();
     let step = side / a_row;
-    (step * (k / a_row) + point / step, step * (k % a_row) + point % step)
+    (step * (k / a_row) + walk / step, step * (k % a_row) + walk % step)
 }
 
-/// The cells of the aperture that a patch sees: one jittered ray each, from one of its members or four in turn. `None` if it
-/// sees none.
+/// The cells of the aperture that a point sees: one jittered ray each. `None` if it sees none.
 ///
 /// `is_on_side` tells which aperture points lie on the side of the surface that the patch stands for.
 pub fn visibility(
     tracer: &Tracer,
     view: &View,
     patterns: &Patterns,
-    members: &[Member],
+    from: Viewpoint,
     side: usize,
     seed: [u32; 2],
     is_on_side: impl Fn(DVec2) -> bool,
 ) -> Option<Visibility> {
     let square = view.aperture_square();
-    let picks = jitter(seed[0], seed[1], 0);
-    let pattern = patterns.of(side, (picks[2] * Patterns::COUNT as f64) as usize);
+    let [pick, ..] = jitter(seed[0], seed[1], 0);
+    let pattern = patterns.of(side, (pick * Patterns::COUNT as f64) as usize);
     let mut words = vec![0u64; side * side / 64];
     let mut occluders = RecentOccluders::default();
-    for (point, places) in pattern.iter().enumerate() {
-        let pick = (point as f64 + picks[point % 2]) / pattern.len() as f64;
-        let member = &members[(pick * members.len() as f64) as usize];
-        let viewpoint = match member.point {
-            Some(point) => Viewpoint::Surface(point),
-            None => Viewpoint::Infinity(view.chief_ray(member.pixel).direction),
-        };
-        let hidden = tracer.hidden_places(viewpoint, &square, places, &mut occluders);
+    for (walk, places) in pattern.iter().enumerate() {
+        let hidden = tracer.hidden_places(from, &square, places, &mut occluders);
         for k in (0..places.len()).filter(|&k| hidden >> k & 1 == 0 && is_on_side(places.at(k))) {
-            let (row, column) = cell_of(side, point, k);
+            let (row, column) = cell_of(side, walk, k);
             let cell = row * side + column;
             words[cell / 64] |= 1 << (cell % 64);
         }

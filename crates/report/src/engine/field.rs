@@ -17,8 +17,8 @@ use std::sync::Arc;
 use std::time::Instant;
 
 /// Shares of a circle of confusion of 16 px that a node's side may have, from the converged picture on.
-pub const SHARES: [f64; 9] =
-    [0.0, 1.0 / 8.0, 3.0 / 16.0, 1.0 / 4.0, 5.0 / 16.0, 3.0 / 8.0, 7.0 / 16.0, 5.0 / 8.0, 1.0];
+pub const SHARES: [f64; 10] =
+    [0.0, 1.0 / 8.0, 3.0 / 16.0, 1.0 / 4.0, 5.0 / 16.0, 3.0 / 8.0, 7.0 / 16.0, 5.0 / 8.0, 3.0 / 4.0, 1.0];
 
 /// How often a dab is painted and taken back.
 const DABS: usize = 21;

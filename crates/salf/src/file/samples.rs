@@ -10,18 +10,20 @@ use std::io::{self, Read, Write};
 const BACKGROUND: u32 = u32::MAX;
 
 pub fn write_samples(to: &mut impl Write, samples: &Samples) -> io::Result<()> {
-    let Samples { chunks, records, planes, rays, patches, codes, loose } = samples;
+    let Samples { chunks, records, planes, sub_cells, patches, codes, loose } = samples;
     let counts =
-        [chunks.len(), records.len(), planes.len(), rays.len(), patches.len(), codes.len(), loose.len()];
+        [chunks.len(), records.len(), planes.len(), sub_cells.len(), patches.len(), codes.len(), loose.len()];
     counts.iter().try_for_each(|&count| to.write_all(&(count as u64).to_le_bytes()))?;
     for Chunk { corner, starts } in chunks {
         corner.to_array().iter().try_for_each(|px| to.write_all(&px.to_le_bytes()))?;
-        let Starts { records, planes, rays, patches, codes } = starts;
-        [records, planes, rays, patches, codes].iter().try_for_each(|at| to.write_all(&at.to_le_bytes()))?;
+        let Starts { records, planes, sub_cells, patches, codes } = starts;
+        [records, planes, sub_cells, patches, codes]
+            .iter()
+            .try_for_each(|at| to.write_all(&at.to_le_bytes()))?;
     }
     records.iter().try_for_each(|record| to.write_all(&record.to_bytes()))?;
     planes.iter().try_for_each(|plane| to.write_all(&plane.to_bytes()))?;
-    rays.iter().try_for_each(|rays| to.write_all(&rays.to_le_bytes()))?;
+    sub_cells.iter().try_for_each(|some| to.write_all(&some.to_le_bytes()))?;
     patches.iter().try_for_each(|patch| to.write_all(&patch.to_bytes()))?;
     to.write_all(codes)?;
     loose.iter().try_for_each(|sample| write_sample(to, sample))
@@ -33,7 +35,7 @@ pub fn read_samples(from: &mut impl Read, triangles: u32) -> Result<Samples, Sal
     for count in &mut counts {
         *count = u64::from_le_bytes(bytes(from)?);
     }
-    let [chunks, records, planes, rays, patches, codes, loose] = counts;
+    let [chunks, records, planes, sub_cells, patches, codes, loose] = counts;
     if counts.iter().any(|&count| count > u64::from(u32::MAX)) {
         return Err(SalfFileError::Damaged(format!("{records} samples")));
     }
@@ -41,7 +43,7 @@ pub fn read_samples(from: &mut impl Read, triangles: u32) -> Result<Samples, Sal
         chunks: many(from, chunks, read_chunk)?,
         records: many(from, records, |from| Ok(Record::from_bytes(bytes(from)?)))?,
         planes: many(from, planes, |from| Ok(Plane::from_bytes(bytes(from)?)))?,
-        rays: many(from, rays, |from| Ok(u16::from_le_bytes(bytes(from)?)))?,
+        sub_cells: many(from, sub_cells, |from| Ok(u16::from_le_bytes(bytes(from)?)))?,
         patches: many(from, patches, |from| Ok(Patch::from_bytes(bytes(from)?)))?,
         codes: read_codes(from, codes)?,
         loose: many(from, loose, read_sample)?,
@@ -75,8 +77,8 @@ fn read_chunk(from: &mut impl Read) -> Result<Chunk, SalfFileError> {
     for at in &mut at {
         *at = u32::from_le_bytes(bytes(from)?);
     }
-    let [records, planes, rays, patches, codes] = at;
-    Ok(Chunk { corner: IVec2::new(x, y), starts: Starts { records, planes, rays, patches, codes } })
+    let [records, planes, sub_cells, patches, codes] = at;
+    Ok(Chunk { corner: IVec2::new(x, y), starts: Starts { records, planes, sub_cells, patches, codes } })
 }
 
 fn write_sample(to: &mut impl Write, sample: &Sample) -> io::Result<()> {

@@ -15,8 +15,8 @@ use std::collections::HashMap;
 #[derive(Clone, Debug)]
 pub struct Found {
     pub sample: Sample,
-    /// The cell that it is a group of rays of, and which (a bit each); none for a patch of surface.
-    pub rays: Option<(Cell, u16)>,
+    /// The cell that it is a part of, and which sub-cells (a bit each); none for a patch of surface.
+    pub part_of: Option<(Cell, u64)>,
 }
 
 /// Packs the samples of one block.
@@ -72,15 +72,19 @@ impl Packer {
 
     /// `None` if what it is made of is beyond what packed samples can tell.
     fn pack(&mut self, found: &Found) -> Option<()> {
-        let Found { sample, rays } = found;
-        let (pixel, level) = match rays {
+        let Found { sample, part_of } = found;
+        let (pixel, level) = match part_of {
             Some((cell, _)) => (cell.corner, cell.side.ilog2() as u8),
             None => (sample.center.floor().as_ivec2(), 0),
         };
         let pixel = pixel - self.corner;
         let is_inside = pixel.cmpge(IVec2::ZERO).all() && pixel.cmplt(IVec2::splat(Domain::BLOCK)).all();
-        let shape = match rays {
-            Some((_, u16::MAX)) => Shape::WholeCell,
+        let shape = match part_of {
+            Some((_, u64::MAX)) => Shape::WholeCell,
+            Some((Cell { side: 1, .. }, sub_cells)) => match Cell::within_quadrant(*sub_cells) {
+                Some((quadrant, _)) => Shape::PartOfQuadrant(quadrant as u8),
+                None => Shape::PartOfCell,
+            },
             Some(_) => Shape::PartOfCell,
             None => Shape::Patch,
         };
@@ -99,7 +103,7 @@ impl Packer {
                 let fraction = sample.center - sample.center.floor();
                 Some(Patch::new(fraction, sample.half_size, Float24::new(largest)?)?)
             }
-            Shape::WholeCell | Shape::PartOfCell => None,
+            Shape::WholeCell | Shape::PartOfCell | Shape::PartOfQuadrant(_) => None,
         };
         let scale = if patch.is_some() { largest } else { sample.weight };
         let plane = match sample.surface {
@@ -111,8 +115,13 @@ impl Packer {
         // Nothing fails from here on.
         self.part.records.push(Record::new(kind, plane, barycentric, inverse_depth, radiance));
         self.part.patches.extend(patch);
-        if let (Shape::PartOfCell, Some((_, rays))) = (shape, rays) {
-            self.part.rays.push(*rays);
+        if let Some((_, sub_cells)) = part_of {
+            let words = std::array::from_fn::<_, 4, _>(|quadrant| (sub_cells >> (16 * quadrant)) as u16);
+            self.part.sub_cells.extend(match shape {
+                Shape::WholeCell | Shape::Patch => &[],
+                Shape::PartOfCell => &words[..],
+                Shape::PartOfQuadrant(quadrant) => &words[quadrant as usize..][..1],
+            });
         }
         if let Visibility::Cells { words } = &sample.visibility {
             self.masks.write(words);

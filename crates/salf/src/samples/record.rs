@@ -23,12 +23,25 @@ pub struct Record {
 /// Which part of the block a sample is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shape {
-    /// All rays of a cell.
+    /// A whole cell.
     WholeCell,
-    /// Some rays of a cell: which they are is told beside the record.
+    /// Some sub-cells of a cell: which they are is told beside the record, in four words.
     PartOfCell,
+    /// Some sub-cells of this quadrant of a cell of one pixel: which they are is told beside the record, in a word.
+    PartOfQuadrant(u8),
     /// A patch of surface: its size is told beside the record, as a [`Patch`].
     Patch,
+}
+
+impl Shape {
+    /// How many words beside the record tell which sub-cells it is.
+    pub fn words(self) -> usize {
+        match self {
+            Self::WholeCell | Self::Patch => 0,
+            Self::PartOfCell => 4,
+            Self::PartOfQuadrant(_) => 1,
+        }
+    }
 }
 
 /// What a record's place says.
@@ -44,29 +57,31 @@ pub struct Kind {
 }
 
 impl Kind {
-    /// In 16 bits: x and y 4 each, level 3, shape 2, visibility 2.
+    /// In 16 bits: x and y 4 each, level or quadrant 3, shape 2, visibility 3.
     fn place(self) -> u16 {
-        let shape = match self.shape {
-            Shape::WholeCell => 0,
-            Shape::PartOfCell => 1,
-            Shape::Patch => 2,
+        let (shape, level) = match self.shape {
+            Shape::WholeCell => (0, self.level),
+            Shape::PartOfCell => (1, self.level),
+            Shape::Patch => (2, self.level),
+            Shape::PartOfQuadrant(quadrant) => (3, quadrant),
         };
         let cells = match self.cells {
             None => 0,
             Some(8) => 1,
             Some(_) => 2,
         };
-        (self.pixel.x | self.pixel.y << 4 | i32::from(self.level) << 8 | shape << 11 | cells << 13) as u16
+        (self.pixel.x | self.pixel.y << 4 | i32::from(level) << 8 | shape << 11 | cells << 13) as u16
     }
 
     /// `None` if it makes no sense.
     fn of(place: u16) -> Option<Self> {
         let bits = |at: u32, count: u32| i32::from(place >> at & ((1 << count) - 1));
-        let shape = match bits(11, 2) {
-            0 => Shape::WholeCell,
-            1 => Shape::PartOfCell,
-            2 => Shape::Patch,
-            _ => return None,
+        let level = bits(8, 3) as u8;
+        let (shape, level, most) = match bits(11, 2) {
+            0 => (Shape::WholeCell, level, 4),
+            1 => (Shape::PartOfCell, level, 4),
+            2 => (Shape::Patch, level, 4),
+            _ => (Shape::PartOfQuadrant(level), 0, 3),
         };
         let cells = match bits(13, 3) {
             0 => None,
@@ -74,8 +89,12 @@ impl Kind {
             2 => Some(16),
             _ => return None,
         };
-        let level = bits(8, 3) as u8;
-        (level <= 4).then_some(Self { pixel: IVec2::new(bits(0, 4), bits(4, 4)), level, shape, cells })
+        (bits(8, 3) <= most).then_some(Self {
+            pixel: IVec2::new(bits(0, 4), bits(4, 4)),
+            level,
+            shape,
+            cells,
+        })
     }
 
     /// The cell that it is all or part of, in a block at `corner`.
@@ -193,9 +212,10 @@ mod tests {
     #[test]
     fn records_and_patches_keep_to_their_bytes() {
         assert_eq!((Record::BYTES, Patch::BYTES), (16, 10));
-        for shape in [Shape::WholeCell, Shape::PartOfCell, Shape::Patch] {
+        for shape in [Shape::WholeCell, Shape::PartOfCell, Shape::Patch, Shape::PartOfQuadrant(2)] {
             for cells in [None, Some(8), Some(16)] {
-                for level in 0..5 {
+                let levels = if shape == Shape::PartOfQuadrant(2) { 0..1 } else { 0..5 };
+                for level in levels {
                     let kind = Kind { pixel: IVec2::new(3, 14), level, shape, cells };
                     let depth = Float24::new(0.3).unwrap();
                     let radiance = Rgb40::new(Vec3::new(0.1, 2.0, 0.7), [0.5; 3]).unwrap();
@@ -219,6 +239,6 @@ mod tests {
     #[test]
     fn places_that_make_no_sense_are_told() {
         let sound = (0..=u16::MAX).filter(|&place| Kind::of(place).is_some());
-        assert_eq!(sound.count(), 256 * 5 * 3 * 3);
+        assert_eq!(sound.count(), 256 * (5 * 3 + 4) * 3);
     }
 }

@@ -139,23 +139,21 @@ struct Decoder<'a> {
     samples: &'a Samples,
     chunk: usize,
     /// Where the next record finds what is told beside it.
-    rays: usize,
+    sub_cells: usize,
     patches: usize,
 }
 
 impl<'a> Decoder<'a> {
     fn new(samples: &'a Samples, chunk: usize) -> Self {
-        let Starts { rays, patches, .. } = samples.chunks[chunk].starts;
-        Self { samples, chunk, rays: rays as usize, patches: patches as usize }
+        let Starts { sub_cells, patches, .. } = samples.chunks[chunk].starts;
+        Self { samples, chunk, sub_cells: sub_cells as usize, patches: patches as usize }
     }
 
     /// Goes on behind a record.
     fn pass(&mut self, record: &Record) {
-        match record.kind().shape {
-            Shape::WholeCell => {}
-            Shape::PartOfCell => self.rays += 1,
-            Shape::Patch => self.patches += 1,
-        }
+        let shape = record.kind().shape;
+        self.sub_cells += shape.words();
+        self.patches += usize::from(shape == Shape::Patch);
     }
 
     fn corner(&self) -> IVec2 {
@@ -164,13 +162,15 @@ impl<'a> Decoder<'a> {
 
     /// Centre and half the sides of the footprint, and the scale of the weights.
     fn footprint(&self, kind: Kind) -> [Vec2; 3] {
-        let of_cell = |rays: u16| {
-            let part = kind.cell(self.corner()).part(rays);
+        let of_cell = |sub_cells: u64| {
+            let part = kind.cell(self.corner()).part(sub_cells);
             [part.center, part.half_size, DVec2::splat(part.weight)].map(|value| value.as_vec2())
         };
+        let word = |k: usize| u64::from(self.samples.sub_cells[self.sub_cells + k]);
         match kind.shape {
-            Shape::WholeCell => of_cell(u16::MAX),
-            Shape::PartOfCell => of_cell(self.samples.rays[self.rays]),
+            Shape::WholeCell => of_cell(u64::MAX),
+            Shape::PartOfCell => of_cell((0..4).fold(0, |all, k| all | word(k) << (16 * k))),
+            Shape::PartOfQuadrant(quadrant) => of_cell(word(0) << (16 * quadrant)),
             Shape::Patch => {
                 let patch = &self.samples.patches[self.patches];
                 let center = (self.corner() + kind.pixel).as_vec2() + patch.fraction();

@@ -3,7 +3,7 @@ use crate::domain::Cell;
 use crate::jitter::jitter;
 use glam::{DVec2, Vec2, Vec3};
 
-/// Groups of rays of cells of all sizes, patches of surface and the background, in one block.
+/// Cells of all sizes and parts of them, patches of surface and the background, in one block.
 fn found(count: u32) -> Vec<Found> {
     (0..count)
         .map(|k| {
@@ -11,9 +11,14 @@ fn found(count: u32) -> Vec<Found> {
             let side = 1 << (k % 5);
             let corner = IVec2::new(32, -16) + IVec2::new(k as i32, k as i32 / 3) % (16 / side) * side;
             let cell = Cell { corner, side };
-            let rays = if k % 3 == 0 { u16::MAX } else { 1 | (k * 0x9E37) as u16 };
+            let some = 1 | (u64::from(k) + 1).wrapping_mul(0x9E37_79B9_7F4A_7C15);
+            let sub_cells = match k % 3 {
+                0 => u64::MAX,
+                1 => some,
+                _ => (some % (1 << 16)) << (16 * (k / 3 % 4)),
+            };
             let (is_patch, is_background) = (k % 7 == 6, k % 11 == 5);
-            let part = cell.part(rays);
+            let part = cell.part(sub_cells);
             let point = SurfacePoint { triangle: k / 4, barycentric: DVec2::new(a.into(), (1.0 - a).into()) };
             let word = u64::from(k).wrapping_mul(0x9E37_79B9_7F4A_7C15);
             let visibility = match k % 4 {
@@ -38,7 +43,7 @@ fn found(count: u32) -> Vec<Found> {
             } else if is_background {
                 (sample.surface, sample.tilt, sample.inverse_depth) = (None, Vec2::ZERO, 0.0);
             }
-            Found { sample, rays: (!is_patch).then_some((cell, rays)) }
+            Found { sample, part_of: (!is_patch).then_some((cell, sub_cells)) }
         })
         .collect()
 }
@@ -76,7 +81,7 @@ fn packed_samples_are_what_they_were() {
     let mut addresses = samples.addresses();
     for (index, (sample, wanted)) in samples.iter().zip(&found).enumerate() {
         assert_alike(&sample, &wanted.sample);
-        if wanted.rays.is_some() {
+        if wanted.part_of.is_some() {
             let exact = |s: &Sample| (s.center, s.half_size, s.weight);
             assert_eq!(exact(&sample), exact(&wanted.sample));
         }
@@ -96,9 +101,9 @@ fn what_cannot_be_packed_stays_as_it_is() {
     odd[0].sample.radiance.y = 1e30;
     odd[1].sample.inverse_depth = -1.0;
     odd[2].sample.tilt.x = 1e9;
-    odd[3].rays = None;
+    odd[3].part_of = None;
     odd[3].sample.half_size.x = 40.0;
-    odd[4].rays = Some((Cell { corner: IVec2::ZERO, side: 1 }, 1));
+    odd[4].part_of = Some((Cell { corner: IVec2::ZERO, side: 1 }, 1));
     let samples = packed(&odd);
     assert_eq!((samples.records.len(), samples.loose.len()), (1, 5));
     let kept: Vec<Sample> = samples.iter().skip(1).collect();
@@ -139,8 +144,8 @@ fn what_refers_to_nothing_is_told() {
     assert!(spoilt(|s| s.chunks.push(Chunk { corner: IVec2::ZERO, starts: s.ends() })).is_ok());
     assert!(spoilt(|s| s.chunks.insert(0, Chunk { starts: s.ends(), ..s.chunks[0] })).is_err());
     assert!(spoilt(|s| s.records[3].plane = 40_000).is_err());
-    assert!(spoilt(|s| s.rays[0] = 0).is_err());
-    assert!(spoilt(|s| s.rays.truncate(3)).is_err());
+    assert!(spoilt(|s| s.sub_cells.fill(0)).is_err());
+    assert!(spoilt(|s| s.sub_cells.truncate(3)).is_err());
     assert!(spoilt(|s| s.patches.truncate(3)).is_err());
     assert!(spoilt(|s| s.planes[5].weights[1] = f16::NAN.to_bits()).is_err());
     assert!(spoilt(|s| s.codes.truncate(3)).is_ok(), "it is read as other visibility");
