@@ -1,7 +1,7 @@
 //! Scene and camera to light field.
 //!
-//! 1. The pinhole picture is sampled, cell by cell ([`crate::layers`]): the nearest surfaces, a sample each or, where their
-//!    radiance varies, one a quadrant.
+//! 1. The pinhole picture is sampled, cell by cell ([`crate::layers`]), with four times the rays where an outline passes
+//!    through: the nearest surfaces, a sample each or, where their radiance varies, one a quadrant.
 //! 2. Their depths tell which of them may be partly occluded, and where hidden ones may show ([`crate::occluders`]).
 //! 3. Surfaces edge-on to the aperture, and small bright ones, are sampled on the surface ([`crate::surface_patches`]).
 //! 4. What may be partly occluded, and only that, is asked what of the aperture it sees ([`crate::visibility`]).
