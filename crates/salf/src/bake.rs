@@ -25,7 +25,7 @@ use rayon::prelude::*;
 use scene::SurfaceField;
 use std::collections::{HashMap, HashSet};
 use std::sync::atomic::{AtomicUsize, Ordering};
-use trace::{Radiance, Tracer};
+use trace::{Radiance, Tracer, Viewpoint};
 
 /// How the light field is sampled.
 #[derive(Clone, Copy, Debug)]
@@ -61,14 +61,15 @@ impl BakeOptions {
     }
 }
 
-/// A nearest surface of a cell, before it is known whether anything occludes it.
+/// A surface of a cell, before it is known what it sees of the aperture.
 struct Candidate {
-    samples: Vec<Found>,
     center: DVec2,
     inverse_depth: f64,
     slope: DVec2,
-    /// Whether another surface of its own cell is in front of it.
-    has_nearer: bool,
+    /// From where it is asked what it sees.
+    viewpoint: Viewpoint,
+    /// Whether no other surface of its own cell is in front of it.
+    is_in_front: bool,
 }
 
 /// What the first look at a cell found.
@@ -77,7 +78,8 @@ struct FirstLook {
     density: Density,
     depths: Depths,
     has_gap: bool,
-    candidates: Vec<Candidate>,
+    /// Its nearest surfaces, each with its samples as if they saw all.
+    nearest: Vec<(Candidate, Vec<Found>)>,
 }
 
 /// Bakes the light field that `camera`'s square aperture sees. `camera` must be valid.
@@ -187,60 +189,68 @@ impl Baker<'_> {
             density = Density::Fine;
             layers = self.layers(cell, density, false);
         }
-        let candidate = |group: &Group| Candidate {
-            samples: group.samples(self.radiance, self.view, cell),
+        let nearest = layers.groups.iter().map(|group| {
+            (self.candidate(cell, &layers, group), group.samples(self.radiance, self.view, cell))
+        });
+        let nearest = nearest.collect();
+        FirstLook { cell, density, depths: layers.depths(cell), has_gap: layers.has_gap, nearest }
+    }
+
+    fn candidate(&self, cell: Cell, layers: &Layers, group: &Group) -> Candidate {
+        Candidate {
             center: group.center(cell),
             inverse_depth: group.mean_inverse_depth(),
             slope: group.slope,
-            has_nearer: layers.has_nearer(group, self.view.radius_per_kappa_px),
-        };
-        let candidates = layers.groups.iter().map(candidate).collect();
-        FirstLook { cell, density, depths: layers.depths(cell), has_gap: layers.has_gap, candidates }
+            viewpoint: group.viewpoint(self.view, cell),
+            is_in_front: group.is_nearest && !layers.has_nearer(group, self.view.radius_per_kappa_px),
+        }
     }
 
     fn second_look(&self, occluders: &Occluders, look: &FirstLook, samples: &mut Vec<Found>) {
-        let cell = look.cell;
-        let may_occlude = |center: DVec2, inverse_depth: f64, slope: DVec2| {
-            occluders.may_occlude(&Footprint { center, cell, inverse_depth, slope })
+        let FirstLook { cell, density, .. } = *look;
+        // The quadrants of a cell see about the same: they are not asked one by one.
+        let mut push = |seeing: Visibility, found: Vec<Found>| {
+            samples.extend(found.into_iter().map(|found| {
+                let sample = Sample { visibility: seeing.clone(), ..found.sample };
+                Found { sample, ..found }
+            }));
         };
         let is_pinhole = self.view.optics.aperture_radius == 0.0;
-        let hidden = look.has_gap || occluders.may_reveal(cell, look.depths.nearest);
-        if is_pinhole || !hidden {
-            let is_open = |candidate: &Candidate| {
-                let Candidate { center, inverse_depth, slope, has_nearer, .. } = *candidate;
-                !has_nearer && !may_occlude(center, inverse_depth, slope)
-            };
-            if is_pinhole || look.candidates.iter().all(is_open) {
-                samples
-                    .extend(look.candidates.iter().flat_map(|candidate| candidate.samples.iter().cloned()));
-                return;
+        if is_pinhole || !look.has_gap && !occluders.may_reveal(cell, look.depths.nearest) {
+            for (index, (candidate, found)) in look.nearest.iter().enumerate() {
+                if let Some(seeing) = self.visibility(occluders, cell, candidate, index) {
+                    push(seeing, found.clone());
+                }
             }
+            return;
         }
-        let layers = self.layers(cell, look.density, hidden);
+        let layers = self.layers(cell, density, true);
         for (index, group) in layers.groups.iter().enumerate() {
-            let is_open = group.is_nearest
-                && !layers.has_nearer(group, self.view.radius_per_kappa_px)
-                && !may_occlude(group.center(cell), group.mean_inverse_depth(), group.slope);
-            let visibility = if is_open {
-                Some(Visibility::Open)
-            } else {
-                self.partial_visibility(cell, group, index as u32)
-            };
-            // The quadrants of a cell see about the same: they are not asked one by one.
-            let Some(visibility) = visibility else { continue };
-            samples.extend(group.samples(self.radiance, self.view, cell).into_iter().map(|mut found| {
-                found.sample.visibility = visibility.clone();
-                found
-            }));
+            let candidate = self.candidate(cell, &layers, group);
+            if let Some(seeing) = self.visibility(occluders, cell, &candidate, index) {
+                push(seeing, group.samples(self.radiance, self.view, cell));
+            }
         }
     }
 
-    fn partial_visibility(&self, cell: Cell, group: &Group, index: u32) -> Option<Visibility> {
+    /// What a cell's `index`-th surface sees; `None` if nothing.
+    fn visibility(
+        &self,
+        occluders: &Occluders,
+        cell: Cell,
+        candidate: &Candidate,
+        index: usize,
+    ) -> Option<Visibility> {
         let Self { tracer, view, patterns, .. } = self;
+        let Candidate { center, inverse_depth, slope, viewpoint, is_in_front } = *candidate;
+        let is_open =
+            || is_in_front && !occluders.may_occlude(&Footprint { center, cell, inverse_depth, slope });
+        if view.optics.aperture_radius == 0.0 || is_open() {
+            return Some(Visibility::Open);
+        }
         let corner = cell.corner.as_uvec2();
-        let seed = [corner.x, corner.y.wrapping_add(index << 16)];
-        let side = visibility::cells_a_side(view, group.mean_inverse_depth());
-        let from = group.viewpoint(view, cell);
-        visibility::visibility(tracer, view, patterns, from, side, seed, |_| true)
+        let seed = [corner.x, corner.y.wrapping_add((index as u32) << 16)];
+        let side = visibility::cells_a_side(view, inverse_depth);
+        visibility::visibility(tracer, view, patterns, viewpoint, side, seed, |_| true)
     }
 }
