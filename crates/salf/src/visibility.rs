@@ -4,7 +4,7 @@ use crate::jitter::{Net, jitter};
 use crate::sample::Visibility;
 use crate::view::View;
 use glam::DVec2;
-use trace::{Places, RecentOccluders, Tracer, Viewpoint};
+use trace::{PlaceSet, Places, Tracer, Viewpoint};
 
 /// Cells a side for a point of inverse depth `inverse_depth`.
 pub fn cells_a_side(view: &View, inverse_depth: f64) -> usize {
@@ -12,13 +12,10 @@ pub fn cells_a_side(view: &View, inverse_depth: f64) -> usize {
     if view.optics.circle_of_confusion_px(kappa) <= 2.0 * view.tolerance_px { 8 } else { 16 }
 }
 
-/// Cells that one walk of the hierarchy tells of.
-const CELLS_A_WALK: usize = 64;
-
 /// Where in each cell of the aperture its ray goes through: several patterns, so that neighbours do not share their errors.
 pub struct Patterns {
-    /// For 8 and for 16 cells a side; by pattern, then by walk.
-    of_side: [Vec<Vec<Places>>; 2],
+    /// For 8 and for 16 cells a side, row by row.
+    of_side: [Vec<Places>; 2],
 }
 
 impl Patterns {
@@ -30,30 +27,19 @@ impl Patterns {
         Self { of_side: [of_side(8), of_side(16)] }
     }
 
-    fn pattern(side: usize, number: u32) -> Vec<Places> {
+    fn pattern(side: usize, number: u32) -> Places {
         let net = Net::new(side.ilog2(), [number, side as u32]);
-        let of_walk = |walk: usize| {
-            let place = |k: usize| {
-                let (row, column) = cell_of(side, walk, k);
-                let [u, v] = net.place(row, column);
-                DVec2::new(column as f64 + u, row as f64 + v) * (2.0 / side as f64) - 1.0
-            };
-            Places::new(&(0..CELLS_A_WALK).map(place).collect::<Vec<_>>())
+        let place = |cell: usize| {
+            let (row, column) = (cell / side, cell % side);
+            let [u, v] = net.place(row, column);
+            DVec2::new(column as f64 + u, row as f64 + v) * (2.0 / side as f64) - 1.0
         };
-        (0..side * side / CELLS_A_WALK).map(of_walk).collect()
+        Places::new(&(0..side * side).map(place).collect::<Vec<_>>())
     }
 
-    fn of(&self, side: usize, number: usize) -> &[Places] {
+    fn of(&self, side: usize, number: usize) -> &Places {
         &self.of_side[usize::from(side == 16)][number % Self::COUNT]
     }
-}
-
-/// Row and column of the cell of a walk's k-th place: of 16 cells a side each of four walks has every second cell of every
-/// second row, of 8 one has all.
-fn cell_of(side: usize, walk: usize, k: usize) -> (usize, usize) {
-    let a_row = CELLS_A_WALK.isqrt();
-    let step = side / a_row;
-    (step * (k / a_row) + walk / step, step * (k % a_row) + walk % step)
 }
 
 /// The cells of the aperture that a point sees: one jittered ray each. `None` if it sees none.
@@ -68,19 +54,12 @@ pub fn visibility(
     seed: [u32; 2],
     is_on_side: impl Fn(DVec2) -> bool,
 ) -> Option<Visibility> {
-    let square = view.aperture_square();
     let [pick, ..] = jitter(seed[0], seed[1], 0);
-    let pattern = patterns.of(side, (pick * Patterns::COUNT as f64) as usize);
-    let mut words = vec![0u64; side * side / 64];
-    let mut occluders = RecentOccluders::default();
-    for (walk, places) in pattern.iter().enumerate() {
-        let hidden = tracer.hidden_places(from, &square, places, &mut occluders);
-        for k in (0..places.len()).filter(|&k| hidden >> k & 1 == 0 && is_on_side(places.at(k))) {
-            let (row, column) = cell_of(side, walk, k);
-            let cell = row * side + column;
-            words[cell / 64] |= 1 << (cell % 64);
-        }
-    }
+    let places = patterns.of(side, (pick * Patterns::COUNT as f64) as usize);
+    let hidden = tracer.hidden_places(from, &view.aperture_square(), places);
+    let seen = (places.all() - hidden).iter().filter(|&cell| is_on_side(places.at(cell)));
+    let seen: PlaceSet = seen.collect();
+    let words = &seen.words()[..side * side / 64];
     if words.iter().all(|&word| word == 0) {
         return None;
     }

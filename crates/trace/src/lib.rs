@@ -21,7 +21,7 @@ mod watertight;
 
 pub use beam::Beam;
 pub use ray::{Hit, Ray};
-pub use sight::{Places, RecentOccluders, Square, Viewpoint};
+pub use sight::{PlaceSet, Places, Square, Viewpoint};
 pub use tracer::Tracer;
 
 use glam::{DVec3, Vec3};

@@ -11,6 +11,7 @@
 //! once and tried on all places with two multiplications each. Two triangles that share an edge have exactly opposite
 //! functions there, so that no ray passes between them. Toward a point at infinity the same holds with its direction.
 
+mod place_set;
 mod places;
 mod projection;
 
@@ -19,6 +20,7 @@ use crate::hierarchy::Halfspaces;
 use crate::local_space::LocalSpace;
 use crate::watertight::in_plane;
 use glam::{DVec2, DVec3, Vec4};
+pub use place_set::PlaceSet;
 pub use places::Places;
 pub(crate) use projection::Outline;
 use projection::Projection;
@@ -58,11 +60,6 @@ pub enum Viewpoint {
     /// Infinitely far in this direction from the square.
     Infinity(DVec3),
 }
-
-/// What hid something from the last viewpoint: likely to hide much from the next one nearby. What is seen does not depend
-/// on it, only how fast that is known.
-#[derive(Clone, Debug, Default)]
-pub struct RecentOccluders(pub(crate) Vec<u32>);
 
 /// A linear function of u and v.
 #[derive(Clone, Copy)]
@@ -187,9 +184,9 @@ impl<'a> Looking<'a> {
 
     /// Those of the places that a triangle may hide, and some that it does not.
     #[inline(always)]
-    pub fn may_hide(&self, outline: &Outline) -> u64 {
+    pub fn may_hide(&self, outline: &Outline) -> PlaceSet {
         match self.projection.bounds(outline) {
-            Some(bounds) if bounds.is_outside() => 0,
+            Some(bounds) if bounds.is_outside() => PlaceSet::default(),
             Some(bounds) => self.places.near(&bounds),
             None => self.places.all(),
         }
@@ -197,14 +194,14 @@ impl<'a> Looking<'a> {
 
     /// Those of the places `near` it that a triangle hides.
     #[inline(always)]
-    pub fn newly_hidden(&self, corners: &[DVec3; 3], near: u64) -> u64 {
-        let Some(shadow) = self.shadow(corners) else { return 0 };
-        let bits = self.places.behind(&shadow, near);
+    pub fn newly_hidden(&self, corners: &[DVec3; 3], near: PlaceSet) -> PlaceSet {
+        let Some(shadow) = self.shadow(corners) else { return PlaceSet::default() };
+        let behind = self.places.behind(&shadow, near);
         // A line that starts in a plane does not meet it again.
         let starts_there = match self.eye {
-            Eye::At(point) => bits != 0 && in_plane(corners, point),
+            Eye::At(point) => !behind.is_empty() && in_plane(corners, point),
             Eye::Toward(_) => false,
         };
-        if starts_there { 0 } else { bits }
+        if starts_there { PlaceSet::default() } else { behind }
     }
 }

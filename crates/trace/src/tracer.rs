@@ -5,10 +5,10 @@ mod beams;
 use crate::hierarchy::Hierarchy;
 use crate::local_space::LocalSpace;
 use crate::presence::is_there;
-use crate::sight::{Eye, Looking, Outline, Places, RecentOccluders, Square, Viewpoint};
+use crate::sight::{Eye, Looking, Outline, PlaceSet, Places, Square, Viewpoint};
 use crate::watertight::{ShearedRay, has_area, in_plane};
 use crate::{Hit, Ray};
-use glam::{DVec2, DVec3};
+use glam::DVec3;
 use scene::{Scene, SurfacePoint};
 use std::sync::Arc;
 
@@ -138,63 +138,49 @@ impl Tracer {
         self.any(ray, |_| true)
     }
 
-    /// Which of the `places` of a square something hides from a viewpoint, a bit each: of each what [`Self::occluded`] (or, from
-    /// infinity, [`Self::any_hit`]) says of the ray to it, to the precision of f32 in u and v, for the cost of a few.
-    ///
-    /// `occluders` remembers what was in the way: it is tried first, and holds what was met afterwards.
-    pub fn hidden_places(
-        &self,
-        from: Viewpoint,
-        square: &Square,
-        places: &Places,
-        occluders: &mut RecentOccluders,
-    ) -> u64 {
+    /// The `places` of a square that something hides from a viewpoint: of each what [`Self::occluded`] (or, from infinity,
+    /// [`Self::any_hit`]) says of the ray to it, to the precision of f32 in u and v, for the cost of a few.
+    pub fn hidden_places(&self, from: Viewpoint, square: &Square, places: &Places) -> PlaceSet {
         let (eye, skip) = match from {
             Viewpoint::Surface(point) => (Eye::At(point.position(&self.scene)), Some(point.triangle)),
             Viewpoint::Infinity(direction) => (Eye::Toward(direction.normalize_or_zero()), None),
         };
         let looking = Looking::new(eye, square, places, &self.space);
-        let mut hidden = 0;
-        let hide = |hidden: &mut u64, place: usize| {
-            let near = looking.may_hide(&self.outlines[place]) & !*hidden;
-            let triangle = &self.triangles[place];
-            if near == 0 || skip == Some(triangle.index) {
-                return false;
+        let (all, mut hidden) = (places.all(), PlaceSet::default());
+        self.hierarchy.walk_within(&looking.shaft(&self.space), f32::INFINITY, |leaf| {
+            for place in leaf {
+                let near = looking.may_hide(&self.outlines[place]) - hidden;
+                let triangle = &self.triangles[place];
+                if near.is_empty() || skip == Some(triangle.index) {
+                    continue;
+                }
+                let new = looking.newly_hidden(&triangle.corners, near);
+                let is_cut = triangle.may_be_transparent && !new.is_empty();
+                hidden |= if is_cut { self.opaque_of(triangle, &looking, places, new) } else { new };
             }
-            let mut new = looking.newly_hidden(&triangle.corners, near);
-            if new != 0 && triangle.may_be_transparent {
-                new = self.opaque_of(triangle, &looking, places.of_bits(new));
-            }
-            *hidden |= new;
-            new != 0
-        };
-        occluders.0.retain(|&place| hide(&mut hidden, place as usize));
-        if hidden != places.all() {
-            self.hierarchy.walk_within(&looking.shaft(&self.space), f32::INFINITY, |leaf| {
-                occluders.0.extend(leaf.filter(|&place| hide(&mut hidden, place)).map(|place| place as u32));
-                if hidden == places.all() { f32::NEG_INFINITY } else { f32::INFINITY }
-            });
-        }
+            if hidden == all { f32::NEG_INFINITY } else { f32::INFINITY }
+        });
         hidden
     }
 
-    /// Those places whose rays a triangle is there for.
+    /// Those of some places whose rays a triangle is there for.
     #[cold]
     fn opaque_of(
         &self,
         triangle: &LeafTriangle,
         looking: &Looking,
-        places: impl Iterator<Item = (usize, DVec2)>,
-    ) -> u64 {
-        let is_opaque = |&(_, place): &(usize, DVec2)| {
-            let ray = looking.ray(place);
+        places: &Places,
+        some: PlaceSet,
+    ) -> PlaceSet {
+        let is_opaque = |&place: &usize| {
+            let ray = looking.ray(places.at(place));
             let crossing = ShearedRay::new(ray.origin, ray.direction).cross(&triangle.corners);
             crossing.is_some_and(|crossing| {
                 let point = SurfacePoint { triangle: triangle.index, barycentric: crossing.barycentric };
                 is_there(&self.scene, point, &ray)
             })
         };
-        places.filter(is_opaque).map(|(index, _)| 1 << index).sum()
+        some.iter().filter(is_opaque).collect()
     }
 
     /// Whether a ray meets any triangle that `counts`.

@@ -1,0 +1,99 @@
+//! Some of the places on a square.
+
+use std::ops::{BitAnd, BitOrAssign, Sub};
+
+/// Some of up to 256 places, a bit each.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct PlaceSet([u64; 4]);
+
+impl PlaceSet {
+    /// How many places there can be.
+    pub const MOST: usize = 256;
+
+    /// The bits of 64 places after another.
+    #[inline(always)]
+    pub fn words(&self) -> &[u64; 4] {
+        &self.0
+    }
+
+    #[inline(always)]
+    pub(super) fn words_mut(&mut self) -> &mut [u64; 4] {
+        &mut self.0
+    }
+
+    /// Whether it has none.
+    #[inline(always)]
+    pub fn is_empty(&self) -> bool {
+        self.0 == [0; 4]
+    }
+
+    /// Whether it has a place.
+    pub fn contains(&self, place: usize) -> bool {
+        self.0[place / 64] >> (place % 64) & 1 == 1
+    }
+
+    /// Those that it has, in order.
+    pub fn iter(self) -> impl Iterator<Item = usize> {
+        self.0.into_iter().enumerate().flat_map(|(word, mut left)| {
+            std::iter::from_fn(move || {
+                let place = (left != 0).then(|| 64 * word + left.trailing_zeros() as usize)?;
+                left &= left - 1;
+                Some(place)
+            })
+        })
+    }
+}
+
+impl FromIterator<usize> for PlaceSet {
+    fn from_iter<I: IntoIterator<Item = usize>>(places: I) -> Self {
+        let mut set = Self::default();
+        places.into_iter().for_each(|place| set.0[place / 64] |= 1 << (place % 64));
+        set
+    }
+}
+
+impl BitAnd for PlaceSet {
+    type Output = Self;
+
+    #[inline(always)]
+    fn bitand(self, other: Self) -> Self {
+        Self(std::array::from_fn(|k| self.0[k] & other.0[k]))
+    }
+}
+
+impl BitOrAssign for PlaceSet {
+    #[inline(always)]
+    fn bitor_assign(&mut self, other: Self) {
+        (0..4).for_each(|k| self.0[k] |= other.0[k]);
+    }
+}
+
+impl Sub for PlaceSet {
+    type Output = Self;
+
+    /// Those that `other` lacks.
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        Self(std::array::from_fn(|k| self.0[k] & !other.0[k]))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sets_hold_what_was_put_in() {
+        let some = [0usize, 3, 63, 64, 130, 255];
+        let set: PlaceSet = some.into_iter().collect();
+        assert_eq!(set.iter().collect::<Vec<_>>(), some);
+        assert!(some.into_iter().all(|place| set.contains(place)) && !set.contains(129));
+        let low: PlaceSet = (0..64).collect();
+        assert_eq!((set & low).iter().collect::<Vec<_>>(), [0, 3, 63]);
+        assert_eq!((set - low).iter().collect::<Vec<_>>(), [64, 130, 255]);
+        let mut both = set - low;
+        both |= set & low;
+        assert_eq!(both, set);
+        assert!((low - low).is_empty() && !low.is_empty());
+    }
+}
