@@ -58,11 +58,10 @@ impl Cell {
         sub_cells.trailing_zeros() / 16
     }
 
-    /// The quadrant that all of some sub-cells lie in and which of its sixteen they are; `None` if they lie in several.
-    pub fn within_quadrant(sub_cells: u64) -> Option<(u32, u16)> {
+    /// The quadrant that all of some sub-cells, a bit each, lie in; `None` if they lie in several.
+    pub fn only_quadrant(sub_cells: u64) -> Option<u32> {
         let quadrant = Self::quadrant(sub_cells);
-        let within = u16::try_from(sub_cells >> (16 * quadrant)).ok()?;
-        Some((quadrant, within))
+        (sub_cells >> (16 * quadrant) <= u64::from(u16::MAX)).then_some(quadrant)
     }
 
     /// The part of it that some sub-cells, a bit each, make up; they must not be none.

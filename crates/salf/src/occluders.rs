@@ -241,12 +241,7 @@ mod tests {
 
     fn wall(x: i32) -> Footprint {
         let cell = Cell { corner: IVec2::new(x, 9), side: 1 };
-        Footprint {
-            center: cell.corner.as_dvec2() + cell.side as f64 / 2.0,
-            cell,
-            inverse_depth: 0.2,
-            slope: DVec2::ZERO,
-        }
+        Footprint { center: cell.part(u64::MAX).center, cell, inverse_depth: 0.2, slope: DVec2::ZERO }
     }
 
     #[test]
@@ -270,12 +265,8 @@ mod tests {
         let occluders = Occluders::new(domain, 10.0, cells.into_iter());
         let cell = Cell { corner: IVec2::new(10, 9), side: 1 };
         let slope = DVec2::new(0.05, 0.0);
-        let footprint = Footprint {
-            center: cell.corner.as_dvec2() + cell.side as f64 / 2.0,
-            cell,
-            inverse_depth: depth(10) as f64,
-            slope,
-        };
+        let footprint =
+            Footprint { center: cell.part(u64::MAX).center, cell, inverse_depth: depth(10) as f64, slope };
         assert!(!occluders.may_occlude(&footprint));
         assert!(!occluders.may_reveal(cell, depth(10)), "nor does it hide anything");
     }

@@ -44,7 +44,7 @@ impl Patterns {
 
 /// The cells of the aperture that a point sees: one jittered ray each. `None` if it sees none.
 ///
-/// `is_on_side` tells which aperture points lie on the side of the surface that the patch stands for.
+/// `is_on_side` tells which aperture points lie on the side of the surface that the point stands for.
 pub fn visibility(
     tracer: &Tracer,
     view: &View,

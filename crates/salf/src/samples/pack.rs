@@ -81,8 +81,8 @@ impl Packer {
         let is_inside = pixel.cmpge(IVec2::ZERO).all() && pixel.cmplt(IVec2::splat(Domain::BLOCK)).all();
         let shape = match part_of {
             Some((_, u64::MAX)) => Shape::WholeCell,
-            Some((Cell { side: 1, .. }, sub_cells)) => match Cell::within_quadrant(*sub_cells) {
-                Some((quadrant, _)) => Shape::PartOfQuadrant(quadrant as u8),
+            Some((Cell { side: 1, .. }, sub_cells)) => match Cell::only_quadrant(*sub_cells) {
+                Some(quadrant) => Shape::PartOfQuadrant(quadrant as u8),
                 None => Shape::PartOfCell,
             },
             Some(_) => Shape::PartOfCell,

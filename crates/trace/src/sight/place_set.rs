@@ -4,27 +4,28 @@ use std::ops::{BitAnd, BitOrAssign, Sub};
 
 /// Some of up to 256 places, a bit each.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct PlaceSet([u64; 4]);
+pub struct PlaceSet([u64; Self::WORDS]);
 
 impl PlaceSet {
+    const WORDS: usize = 4;
     /// How many places there can be.
-    pub const MOST: usize = 256;
+    pub const MOST: usize = 64 * Self::WORDS;
 
     /// The bits of 64 places after another.
     #[inline(always)]
-    pub fn words(&self) -> &[u64; 4] {
+    pub fn words(&self) -> &[u64; Self::WORDS] {
         &self.0
     }
 
     #[inline(always)]
-    pub(super) fn words_mut(&mut self) -> &mut [u64; 4] {
+    pub(super) fn words_mut(&mut self) -> &mut [u64; Self::WORDS] {
         &mut self.0
     }
 
     /// Whether it has none.
     #[inline(always)]
     pub fn is_empty(&self) -> bool {
-        self.0 == [0; 4]
+        self.0 == [0; Self::WORDS]
     }
 
     /// Whether it has a place.
@@ -64,7 +65,7 @@ impl BitAnd for PlaceSet {
 impl BitOrAssign for PlaceSet {
     #[inline(always)]
     fn bitor_assign(&mut self, other: Self) {
-        (0..4).for_each(|k| self.0[k] |= other.0[k]);
+        (0..Self::WORDS).for_each(|k| self.0[k] |= other.0[k]);
     }
 }
 
