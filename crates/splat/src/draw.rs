@@ -13,7 +13,8 @@ mod seen_runs;
 mod small;
 mod stencilled;
 
-pub use image::WHOLE;
+pub use image::{Image, WHOLE};
+pub use large::Large;
 pub use paper::Paper;
 
 use crate::canvas::{PIXEL, POSITION_BITS, Word};
@@ -23,10 +24,13 @@ use crate::nodes::{Cells, Nodes, ONE, SplatNode};
 use crate::seen::Seen;
 use crate::stencil::Stencils;
 use boxes::BoxPart;
-use image::{Image, Light, seed};
+use image::{Light, seed};
 
 /// Aperture images of a smaller standard deviation, px, are boxes.
 const BOX_DEVIATION_PX: f64 = 0.75;
+
+/// Shapes of less variance are taken as of this share of it: so that products of it fit into 62 bits.
+const LARGEST_PER_VARIANCE: f64 = (1 << 28) as f64;
 
 /// x / 2^`times`, toward zero.
 #[inline(always)]
@@ -49,19 +53,19 @@ pub struct Pen<'a> {
     pub tilt_shift: [i32; 2],
     pub mean: [i32; 2],
     /// What levels blur too much, as squares of a stencil's radius: by level, (1/4096 px of the level)².
-    too_blurred: [i64; salf::tree::LEVELS],
+    pub too_blurred: [i64; salf::tree::LEVELS],
     /// 16384 over the mean variance.
-    per_variance: i64,
+    pub per_variance: i64,
     /// Images of partly occluded nodes of a smaller radius, 1/4096 px of their level, are boxes.
-    box_radius: u32,
+    pub box_radius: u32,
     /// Smaller changes of an open node's weight over the aperture, as a share of it in 1/16384, only move its image.
-    even_tilt: i32,
+    pub even_tilt: i32,
     /// Changes of a partly occluded node's weight that are not larger do not count.
     pub even_seen_tilt: i32,
     /// Parts of the aperture whose images are boxes.
     pub parts: Vec<BoxPart>,
     /// Even images of a smaller radius, 1/4096 px, are one box; others one a part of the aperture.
-    one_box_radius: u32,
+    pub one_box_radius: u32,
     /// Whether what is drawn is drawn as exactly as it can be.
     pub is_exact: bool,
     /// From which |radius| on, 1/4096 px, stencils follow boxes; at twice that they are alone.
@@ -135,7 +139,7 @@ impl<'a> Pen<'a> {
             tilt_shift: (shape.variance * stop as f64 / ONE as f64).to_array().map(fixed),
             mean: shape.mean.to_array().map(fixed),
             too_blurred,
-            per_variance: (ONE as f64 / variance).round() as i64,
+            per_variance: (ONE as f64 / variance).round().min(LARGEST_PER_VARIANCE) as i64,
             parts: parts.collect(),
             is_exact: detail == Detail::Exact,
             stencil_radius,

@@ -51,7 +51,7 @@ pub struct NodeFocus {
     pub t: f32,
     /// See `t`.
     pub anchor: f32,
-    /// The largest differences; infinite where painted and unpainted samples mix.
+    /// The largest differences; [`LARGEST_OFFSET`] where painted and unpainted samples mix.
     pub t_apart: f32,
     /// See `t_apart`.
     pub anchor_apart: f32,
@@ -62,7 +62,8 @@ impl NodeFocus {
     pub const STANDARD: Self = Self { t: 1.0, anchor: 0.0, t_apart: 0.0, anchor_apart: 0.0 };
 
     pub fn of(offset: FocusOffset) -> Self {
-        Self { t: offset.t as f32, anchor: offset.anchor as f32, ..Self::STANDARD }
+        let t = (offset.t as f32).clamp(-LARGEST_OFFSET, LARGEST_OFFSET);
+        Self { t, anchor: offset.anchor as f32, ..Self::STANDARD }
     }
 }
 
@@ -81,23 +82,34 @@ pub struct Placed {
 }
 
 /// Larger aperture images, 1/4096 px, are taken as this large: next to none of their light is in the picture.
-const LARGEST_RADIUS: f64 = (1u32 << 29) as f64;
+pub const LARGEST_RADIUS: f32 = (1u32 << 29) as f32;
 
 /// Defocus that changes faster with depth than the unpainted, by this factor (times 16384), is drawn as if it did not.
-const LARGEST_DEPTH_SHARE: f32 = ((1u32 << 17) - 1) as f32;
+pub const LARGEST_DEPTH_SHARE: f32 = ((1u32 << 17) - 1) as f32;
+
+/// Larger offsets, and what lies further apart, are taken as this large, so that no float of 32 bits overflows.
+pub const LARGEST_OFFSET: f32 = 1e9;
+
+/// Radii per κ and per depth, 1/4096 px, are taken as this large at most, for the same reason.
+const LARGEST_RATE: f64 = 1e15;
 
 /// A lens.
-#[derive(Clone, PartialEq)]
+///
+/// It places nodes in floats of 32 bits, a product rounded before it is added to, so that a graphics card does it to the bit.
+#[derive(Clone, Debug, PartialEq)]
 pub struct LensInUse {
-    pub optics: Optics,
-    /// The signed radius of the aperture's image, 1/4096 px, for κ = 1.
-    radius_per_kappa: f64,
+    /// The signed radius of the aperture's image, 1/4096 px: of what is infinitely far, …
+    pub radius_at_infinity: f32,
+    /// … what it loses for each unit of 1/z, which is that for κ = 1, …
+    pub radius_per_kappa: f32,
+    /// … and for κ = 1/d, which t = 2 brings at the focus distance.
+    pub radius_per_offset: f32,
     /// How exactly what is drawn is drawn.
     pub detail: Detail,
     /// From which |radius| on, 1/4096 px, nodes may be drawn on each level: by [`Fineness`].
-    smallest_radius: [[f64; LEVELS]; 4],
+    pub smallest_radius: [[u32; LEVELS]; 4],
     /// From which on one may stand for those below it: by its contrast.
-    smallest_joint_radius: [[[f64; LEVELS]; 4]; CONTRASTS],
+    pub smallest_joint_radius: [[[u32; LEVELS]; 4]; CONTRASTS],
 }
 
 /// How exactly nodes are drawn: as coarse as the nodes are.
@@ -148,13 +160,13 @@ impl Fineness {
 }
 
 /// The aperture images below a drawn node may differ in radius by this share of its side.
-const FLAT: f64 = 0.3;
+pub const FLAT: f32 = 0.3;
 
 /// Or by this share of their radius, where that is more: a soft rim of paint is as steep as it is blurred.
-const ALIKE: f64 = 0.125;
+pub const ALIKE: f32 = 0.125;
 
 /// Aperture images of at most this radius, 1/4096 px, leave the samples of a pixel within it: one stands for them all.
-const SHARP: f64 = 16.0;
+pub const SHARP: u32 = 16;
 
 impl LensInUse {
     pub fn new(optics: Optics, shape: &Shape, tolerance: Tolerance) -> Self {
@@ -163,12 +175,17 @@ impl LensInUse {
             std::array::from_fn(|level| {
                 let circle = tolerance.smallest_circle_px(finer * (1 << level) as f64);
                 // A disc as wide as the shape: its standard deviation is a quarter of its diameter.
-                circle / (4.0 * deviation) * (1 << POSITION_BITS) as f64
+                (circle / (4.0 * deviation) * (1 << POSITION_BITS) as f64).ceil() as u32
             })
         };
+        let rate = |kappa: f64| {
+            let radius = optics.splat_radius_px(kappa) * (1 << POSITION_BITS) as f64;
+            radius.clamp(-LARGEST_RATE, LARGEST_RATE) as f32
+        };
         Self {
-            optics,
-            radius_per_kappa: optics.splat_radius_px(1.0) * (1 << POSITION_BITS) as f64,
+            radius_at_infinity: rate(optics.standard_kappa(0.0)),
+            radius_per_kappa: rate(1.0),
+            radius_per_offset: rate(1.0 / optics.image_distance),
             detail: Detail::of(tolerance),
             smallest_radius: Fineness::FINER.map(smallest),
             smallest_joint_radius: std::array::from_fn(|contrast| {
@@ -182,18 +199,20 @@ impl LensInUse {
         if baked_radius > 0.0 { (optics.aperture_radius / baked_radius).min(1.0) } else { 1.0 }
     }
 
-    /// Where `focus` sends a node.
+    /// The radius of an unpainted node's image.
+    #[inline(always)]
+    fn standard_radius(&self, node: &SplatNode) -> f32 {
+        self.radius_at_infinity - self.radius_per_kappa * node.inverse_depth
+    }
+
+    /// Where `focus` sends a node: κ = (t − 1)/d + t·(1 − a)·(1/s − 1/z), as the radius of its image.
     #[inline(always)]
     pub fn place(&self, node: &SplatNode, focus: &NodeFocus) -> Placed {
-        let (inverse_depth, is_standard) = (node.inverse_depth as f64, (focus.t, focus.anchor) == (1.0, 0.0));
-        let kappa = if is_standard {
-            self.optics.standard_kappa(inverse_depth)
-        } else {
-            self.optics.kappa(inverse_depth, FocusOffset::new(focus.t as f64, focus.anchor as f64))
-        };
-        let radius = kappa * self.radius_per_kappa;
+        let is_standard = (focus.t, focus.anchor) == (1.0, 0.0);
+        let of_depth = focus.t * (1.0 - focus.anchor);
+        let radius = self.radius_per_offset * (focus.t - 1.0) + of_depth * self.standard_radius(node);
         let radius = radius.clamp(-LARGEST_RADIUS, LARGEST_RADIUS).round_ties_even() as i32;
-        let depth_share = focus.t * (1.0 - focus.anchor) * ONE as f32;
+        let depth_share = of_depth * ONE as f32;
         let mut level = 0;
         let fineness = Fineness::of(node);
         while level + 1 < LEVELS as u8 && self.is_far_out(fineness, level + 1, radius) {
@@ -210,30 +229,30 @@ impl LensInUse {
     /// Whether an aperture image of this radius, 1/4096 px, is large enough for a level.
     #[inline(always)]
     fn is_far_out(&self, fineness: Fineness, level: u8, radius: i32) -> bool {
-        radius.abs() as f64 >= self.smallest_radius[fineness as usize][level as usize]
+        radius.unsigned_abs() >= self.smallest_radius[fineness as usize][level as usize]
     }
 
     /// Whether a node that was `placed` may stand for all below it.
     #[inline(always)]
     pub fn may_merge(&self, node: &SplatNode, focus: &NodeFocus, placed: Placed) -> bool {
-        let is_sharp = node.level == 0 && f64::from(placed.radius).abs() <= SHARP;
+        let size = placed.radius.unsigned_abs();
+        let is_sharp = node.level == 0 && size <= SHARP;
         let of_contrast = &self.smallest_joint_radius[node.contrast as usize];
         let smallest = of_contrast[Fineness::of(node) as usize][node.level as usize];
-        if !is_sharp && f64::from(placed.radius).abs() < smallest {
+        if !is_sharp && size < smallest {
             return false;
         }
-        let optics = &self.optics;
-        let (t, a) = (focus.t as f64, focus.anchor as f64);
-        let defocus = optics.standard_kappa(node.inverse_depth as f64);
-        let mut apart = (t * (1.0 - a)).abs() * node.inverse_depth_spread as f64;
+        let of_depth = focus.t * (1.0 - focus.anchor);
+        let mut apart = of_depth.abs() * (self.radius_per_kappa * node.inverse_depth_spread);
         if focus.t_apart > 0.0 || focus.anchor_apart > 0.0 {
-            // The partial derivatives of κ.
-            apart += (1.0 / optics.image_distance + (1.0 - a) * defocus).abs() * focus.t_apart as f64
-                + (t * defocus).abs() * focus.anchor_apart as f64;
+            // The partial derivatives of the radius.
+            let standard = self.standard_radius(node);
+            let by_t = (self.radius_per_offset + (1.0 - focus.anchor) * standard).abs();
+            let by_anchor = (focus.t * standard).abs();
+            apart += by_t * focus.t_apart + by_anchor * focus.anchor_apart;
         }
-        let side = (1 << node.level << POSITION_BITS) as f64;
-        let most = (FLAT * side).max(ALIKE * f64::from(placed.radius).abs());
-        (apart * self.radius_per_kappa).abs() <= if is_sharp { SHARP } else { most }
+        let side = (1 << node.level << POSITION_BITS) as f32;
+        apart <= if is_sharp { SHARP as f32 } else { (FLAT * side).max(ALIKE * size as f32) }
     }
 }
 

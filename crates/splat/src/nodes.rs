@@ -309,6 +309,9 @@ impl Part {
 /// A node in integers. `None` if it is too bright.
 fn convert(node: &Node, scale: Scale) -> Option<SplatNode> {
     const NARROWEST: f32 = PIXEL as f32 / 32.0;
+    // What is nearer is that near, so that no product overflows; nodes of no weight are at no depth.
+    const NEAREST: f32 = 1e12;
+    let nearness = |x: f32| if x.is_nan() { 0.0 } else { x.clamp(0.0, NEAREST) };
     let fixed = |px: f32| (px * PIXEL as f32).round() as i32;
     let half_size =
         node.half_size.to_array().map(|half| (half * PIXEL as f32).round().clamp(NARROWEST, 65535.0));
@@ -337,8 +340,8 @@ fn convert(node: &Node, scale: Scale) -> Option<SplatNode> {
         contrast: contrast(node),
         is_highlight: node.radiance.max_element() > HIGHLIGHT,
         cells: node.cells.unwrap_or(OPEN),
-        inverse_depth: node.inverse_depth,
-        inverse_depth_spread: node.inverse_depth_spread,
+        inverse_depth: nearness(node.inverse_depth),
+        inverse_depth_spread: nearness(node.inverse_depth_spread),
         // Nodes of no weight at all have no mean to speak of, and no light.
         light: [r, g, b, 1.0].map(|value| value * quanta).map(|value| if value > 0.0 { value } else { 0.0 }),
         base: if is_edge_on { share(node.weight) } else { ONE as i16 },

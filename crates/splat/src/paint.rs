@@ -1,6 +1,6 @@
 //! What is painted on the nodes.
 
-use crate::lens_in_use::NodeFocus;
+use crate::lens_in_use::{LARGEST_OFFSET, NodeFocus};
 use crate::nodes::{Nodes, ONE};
 use lens::FocusOffset;
 use rayon::prelude::*;
@@ -129,6 +129,8 @@ fn take_up(nodes: &Nodes, block: usize, painted: &mut [NodeFocus], index: usize)
         anchor += share * painted[child].anchor as f64;
         weight += share;
     }
+    // Where nothing has weight, whatever is drawn has no light.
+    let weight = weight.max(f64::MIN_POSITIVE);
     let mut mean =
         NodeFocus { t: (t / weight) as f32, anchor: (anchor / weight) as f32, ..NodeFocus::STANDARD };
     for child in children() {
@@ -138,7 +140,7 @@ fn take_up(nodes: &Nodes, block: usize, painted: &mut [NodeFocus], index: usize)
             mean.anchor_apart.max(2.0 * ((below.anchor - mean.anchor).abs() + below.anchor_apart / 2.0));
     }
     if standard > 0 {
-        mean.t_apart = f32::INFINITY;
+        mean.t_apart = LARGEST_OFFSET;
     }
     painted[index] = mean;
 }

@@ -202,7 +202,7 @@ impl Field {
 pub fn other_lenses(camera: &Camera) -> impl Iterator<Item = Camera> + use<> {
     let camera = camera.clone();
     (1..).map(move |k| {
-        let focus_distance = 1.0 / (camera.focus_distance.recip() + 1e-9 * f64::from(k));
+        let focus_distance = 1.0 / (camera.focus_distance.recip() + 1e-6 * f64::from(k));
         Camera { focus_distance, ..camera.clone() }
     })
 }
