@@ -255,6 +255,6 @@ impl BlockChanges {
 }
 
 /// The range from the first start to the last end.
-fn hull(ranges: impl Iterator<Item = Range<u32>>) -> Range<u32> {
+pub fn hull(ranges: impl Iterator<Item = Range<u32>>) -> Range<u32> {
     ranges.reduce(|a, b| a.start.min(b.start)..a.end.max(b.end)).unwrap_or(0..0)
 }

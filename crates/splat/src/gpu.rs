@@ -1,17 +1,20 @@
 //! The sum on a graphics card: the same bits as on the processor.
 //!
-//! Nodes are uploaded once a bake ([`scene`]), stencils as they are needed ([`shapes`]). For each picture the processor
-//! lists which nodes are drawn ([`records`]); the card draws them onto accumulators of its own ([`sums`]), integrates
-//! these, and keeps the picture, which may be shown without coming back. What is painted is taken away and added there too.
+//! Nodes are uploaded once a bake ([`scene`]), stencils as they are needed ([`shapes`]). For each picture the card finds which
+//! nodes are drawn ([`listing`]), draws them onto accumulators of its own ([`sums`]), integrates these, and keeps the
+//! picture, which may be shown without coming back. What a stroke changes is listed by the processor ([`records`]), and
+//! taken away and added there too.
 //! Portable WGSL without optional features: 64 bits are pairs of words, adders of 64 bits carry by atomics.
 
 mod adapter;
 mod device;
+mod listing;
 mod passes;
 mod records;
 mod resolve;
 mod scene;
 mod shapes;
+mod stopwatch;
 mod sums;
 #[cfg(test)]
 mod tests;

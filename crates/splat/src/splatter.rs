@@ -201,7 +201,7 @@ impl Splatter {
         &self.salf
     }
 
-    /// The picture as it now is.
+    /// The picture as it now is, or was when it was [fetched](Self::fetch) last.
     pub fn picture(&self) -> &Picture {
         &self.picture
     }
@@ -232,6 +232,7 @@ impl Splatter {
         self.take_up(camera);
         let nodes = self.nodes.as_ref().ok_or(SplatError::Overflow)?;
         self.paint = Paint::look_up(nodes, &self.salf.samples, focus);
+        self.card.forget_paint();
         self.sum(progress)
     }
 
@@ -273,9 +274,10 @@ impl Splatter {
         if !has_shares {
             self.shares_of = None;
             let wanted = if is_painted { Wanted::Shares } else { Wanted::SharesAndPicture };
-            // Where most is painted, summing all of it again is less work than painting over.
+            // Where most is painted, summing all of it again is less work than painting over, and so it is on a card.
             let nodes = self.nodes.as_ref().ok_or(SplatError::Overflow)?;
-            let is_painted_over = is_painted && self.paint.is_of_less_than_half(nodes);
+            let is_painted_over =
+                is_painted && !self.card.has_sums() && self.paint.is_of_less_than_half(nodes);
             let summed = if is_painted_over { Summed::ToPaintOver } else { Summed::Standard };
             self.in_finest_integers(|splatter| {
                 splatter.sum_nodes(summed, &standard)?;
@@ -345,6 +347,7 @@ impl Splatter {
             samples.iter().map(|&sample| nodes.node_of_sample[sample as usize]).collect();
         leaves.par_sort_unstable();
         let before = self.paint.update(nodes, &leaves, &self.salf.samples, focus);
+        self.card.forget_paint();
         let scene = self.aperture.scene(nodes, &self.lens, &self.paint, &self.salf.camera);
         let before = before.iter().map(|(block, paint)| (*block, paint.as_deref()));
         self.changes.find(&scene, &before.collect::<Vec<_>>());

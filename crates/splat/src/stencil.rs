@@ -70,6 +70,12 @@ impl Place {
         Self { index: half + index, phase_bits: PHASE_BITS - coarser - coarsest }
     }
 
+    /// One of the table's [`Stencils::PLACES`].
+    pub fn at(index: usize) -> Self {
+        let half = if index < Stencils::PLACES / 2 { 0 } else { Stencils::PLACES / 2 };
+        Self::of(index - half, half)
+    }
+
     /// The height of a stencil of the place, and the pixel row, of a centre at `y` (1/4096 px).
     #[inline(always)]
     fn phase(self, y: i32) -> (usize, i32) {
@@ -123,7 +129,7 @@ const fn index_of(square: u32) -> usize {
 }
 
 /// From these places on, 8 and 24 px, stencils are cut at half as many heights each.
-const COARSER: [usize; 2] =
+pub const COARSER: [usize; 2] =
     [index_of((8 * 8) << (2 * RADIUS_BITS)), index_of((24 * 24) << (2 * RADIUS_BITS))];
 
 /// The radius, px, that a place of the table stands for.
@@ -147,8 +153,7 @@ impl Stencils {
     /// Cuts the stencils of all places now, unless they are no longer wanted.
     pub fn cut_all(&self, progress: &dyn Progress) {
         (0..Self::PLACES).into_par_iter().filter(|_| !progress.cancelled()).for_each(|index| {
-            let first = if index < Self::PLACES / 2 { 0 } else { Self::PLACES / 2 };
-            self.at_place(Place::of(index - first, first));
+            self.at_place(Place::at(index));
         });
     }
 

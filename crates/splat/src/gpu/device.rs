@@ -3,7 +3,7 @@
 use crate::gpu::passes::Passes;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use wgpu::{Adapter, Device, Limits, Queue};
+use wgpu::{Adapter, Device, Features, Limits, Queue};
 
 /// The card is gone, or refuses to work on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -33,20 +33,37 @@ impl Gpu {
     /// # Errors
     /// What the driver said.
     pub(super) fn new(adapter: &Adapter) -> Result<Self, String> {
-        let most = adapter.limits();
-        let limits = Limits {
-            // Large pictures where the card holds them; portable limits otherwise.
-            max_storage_buffer_binding_size: most.max_storage_buffer_binding_size,
-            max_buffer_size: most.max_buffer_size,
-            ..Limits::default()
-        };
         let descriptor = wgpu::DeviceDescriptor {
             label: Some("splat"),
-            required_limits: limits,
+            required_limits: Self::limits(&adapter.limits()),
+            required_features: Self::features(adapter.features()),
             ..wgpu::DeviceDescriptor::default()
         };
         let requested = pollster::block_on(adapter.request_device(&descriptor));
         let (device, queue) = requested.map_err(|error| error.to_string())?;
+        Self::of(device, queue, adapter.get_info().name)
+    }
+
+    /// What a device must hold that sums, of what its adapter does: portable limits, but large pictures where it holds them.
+    pub fn limits(most: &Limits) -> Limits {
+        Limits {
+            max_storage_buffer_binding_size: most.max_storage_buffer_binding_size,
+            max_buffer_size: most.max_buffer_size,
+            ..Limits::default()
+        }
+    }
+
+    /// What such a device may be asked for of what its adapter has: a clock. Nothing depends on it.
+    pub fn features(there: Features) -> Features {
+        there & Features::TIMESTAMP_QUERY
+    }
+
+    /// Takes a device into use that others use, too, as one that shows pictures does: they need not come back to be shown. Its
+    /// errors are taken as its loss from then on.
+    ///
+    /// # Errors
+    /// What the driver said.
+    pub fn of(device: Device, queue: Queue, name: String) -> Result<Self, String> {
         let is_lost = Arc::new(AtomicBool::new(false));
         let (by_loss, by_error) = (is_lost.clone(), is_lost.clone());
         device.set_device_lost_callback(move |_, _| by_loss.store(true, Ordering::SeqCst));
@@ -57,7 +74,6 @@ impl Gpu {
         if let Some(error) = pollster::block_on(scope.pop()) {
             return Err(error.to_string());
         }
-        let name = adapter.get_info().name;
         Ok(Self(Arc::new(Card { device, queue, name, is_lost, passes })))
     }
 
@@ -92,6 +108,12 @@ impl Gpu {
     pub(super) fn largest_binding(&self) -> u64 {
         let limits = self.0.device.limits();
         limits.max_storage_buffer_binding_size.min(limits.max_buffer_size)
+    }
+
+    /// Waits until all that was asked for is done.
+    pub(super) fn wait(&self) -> Result<(), Lost> {
+        self.device().poll(wgpu::PollType::wait_indefinitely()).map_err(|_| Lost)?;
+        self.check()
     }
 
     /// An error if it is lost.

@@ -1,55 +1,15 @@
 // Drawing placed nodes onto the accumulators: the twin of ../draw.rs and of what lies in ../draw, term by term.
-// A thread draws one record. Accumulators are added to atomically; integers make the order irrelevant.
+// Read after pen.wgsl. A thread draws one record. Accumulators are added to atomically; integers make the order irrelevant.
 
-struct Level {
-    width: i32,
-    height: i32,
-    // Words of the accumulator before its pixels, and before its totals.
-    pixels: u32,
-    totals: u32,
-}
-
-struct Part {
-    share: u32,
-    mean: vec2<i32>,
-    variance: vec2<i32>,
-    half: vec2<u32>,
-}
-
-struct Pen {
-    middle: vec2<i32>,
-    stop: i32,
-    per_stop: u32,
-    half: vec2<u32>,
-    tilt_shift: vec2<i32>,
-    mean: vec2<i32>,
-    stencil_radius: u32,
-    per_stencil_radius: u32,
-    // Rows of the shape, and where its runs begin.
-    shape_rows: u32,
-    shape_runs: u32,
-    // What the light's exponent gains in the ordinary sum: that of ordinary nodes, and of the coverage of bright ones.
-    dim_exponent: i32,
-    coverage_exponent: i32,
-    part_count: u32,
-    even_seen_tilt: i32,
-    is_exact: u32,
-    levels: array<Level, 5>,
-    // Share, mean, variance, half.
-    parts: array<Part, 16>,
-}
-
-// The nodes of a chunk, ten words each: see `words_of_node` in scene.rs.
-@group(0) @binding(0) var<storage, read> nodes: array<u32>;
 // What partly occluded nodes see, eleven words each: 16 rows of cells, share, mean, half.
 @group(0) @binding(1) var<storage, read> cells: array<u32>;
-// Pen, the aperture's rows, and stencils; see `Shapes` in shapes.rs.
-@group(0) @binding(2) var<storage, read> pen: Pen;
+// The aperture's rows, and stencils; see `Shapes` in shapes.rs.
 @group(0) @binding(3) var<storage, read> shape: array<u32>;
 @group(0) @binding(4) var<storage, read> stencils: array<u32>;
 @group(0) @binding(5) var<storage, read> records: array<u32>;
 @group(0) @binding(6) var<storage, read_write> free: array<atomic<u32>>;
 @group(0) @binding(7) var<storage, read_write> sharing: array<atomic<u32>>;
+// How many records, and how many of the buffer's come before them.
 @group(0) @binding(8) var<uniform> batch: vec4<u32>;
 
 // Whether the accumulators hold 64 bits.
@@ -57,10 +17,6 @@ override IS_WIDE: bool = false;
 // Which records are drawn: boxes, images, images through cells, large images.
 override KIND: u32 = 0u;
 
-const POSITION_BITS: u32 = 12u;
-const PIXEL: i32 = 4096;
-const ONE: i32 = 16384;
-const WHOLE: u32 = 16777216u;
 const HEIGHT_BITS: u32 = 24u;
 const LARGEST_HALF: u32 = 40960u;
 const SMALLEST_HALF: u32 = 128u;
@@ -70,27 +26,6 @@ const SMALLEST_REACH: u32 = 256u;
 const LARGEST_REACH: u32 = 1073741824u;
 const OPEN: u32 = 0xFFFFFFFFu;
 const SLOTS: u32 = 8u;
-
-const FORM_BOX: u32 = 0u;
-const FORM_PARTS: u32 = 1u;
-const FORM_IMAGE: u32 = 2u;
-const FORM_TILTED: u32 = 3u;
-const FORM_SEEN_BOX: u32 = 4u;
-const FORM_SEEN: u32 = 5u;
-
-const KIND_BOXES: u32 = 0u;
-const KIND_IMAGES: u32 = 1u;
-const KIND_SEEN: u32 = 2u;
-const KIND_LARGE: u32 = 3u;
-
-struct Node {
-    center: vec2<i32>,
-    half_size: vec2<u32>,
-    level: u32,
-    base: i32,
-    tilt: vec2<i32>,
-    cells: u32,
-}
 
 struct Image {
     node: Node,
@@ -105,14 +40,6 @@ struct Image {
     is_sharing: bool,
     is_removed: bool,
     slot: u32,
-}
-
-fn low_half(word: u32) -> i32 {
-    return (bitcast<i32>(word) << 16u) >> 16u;
-}
-
-fn high_half(word: u32) -> i32 {
-    return bitcast<i32>(word) >> 16u;
 }
 
 // Accumulators
@@ -201,12 +128,6 @@ fn clamped(image: ptr<function, Image>, x: i32) -> i32 {
 }
 
 // Images
-
-fn seed(node: Node, level: u32) -> u32 {
-    let x = bitcast<u32>(node.center.x - pen.middle.x);
-    let y = bitcast<u32>(node.center.y - pen.middle.y);
-    return ((x * 0x9E3779B1u) ^ (y * 0x85EBCA77u) ^ level) * 0xC2B2AE3Du;
-}
 
 fn shift_to(image: ptr<function, Image>, mean: vec2<i32>) {
     let x = signed_mul_shift((*image).radius, mean.x, 14u);
@@ -309,25 +230,6 @@ fn draw_parts(image: ptr<function, Image>, depth_share: i32) {
     }
 }
 
-fn part_drawn_as_stencil(radius: u32, dither: u32) -> u32 {
-    let part = part_of_stencil(radius);
-    if pen.is_exact != 0u || part % 65536u == 0u {
-        return part;
-    }
-    return select(0u, 65536u, (dither >> 16u) < part);
-}
-
-fn part_of_stencil(radius: u32) -> u32 {
-    if radius <= pen.stencil_radius {
-        return 0u;
-    }
-    if radius - pen.stencil_radius >= pen.stencil_radius {
-        return 65536u;
-    }
-    let part = mul_shift(radius - pen.stencil_radius, pen.per_stencil_radius, 16u);
-    return mul_shift(mul_shift(part, part, 16u), 3u * 65536u - 2u * part, 16u);
-}
-
 // Stencils: a table of (first run, runs, bits of the heights), then runs of four words.
 
 fn draw_image(image: ptr<function, Image>, place: u32, cells: u32, share: u32) {
@@ -426,30 +328,16 @@ fn draw(@builtin(global_invocation_id) id: vec3<u32>, @builtin(workgroup_id) gro
         return;
     }
     let words = select(4u, 8u, KIND == KIND_LARGE);
-    let record = words * id.x;
-    let at = 10u * records[record];
+    let record = words * (batch.y + id.x);
+    let at = NODE_WORDS * records[record];
     let flags = records[record + 3u];
     let form = flags & 7u;
-    let is_bright = (nodes[at + 3u] & 0x80u) != 0u;
 
     var image: Image;
-    image.node.center = vec2<i32>(bitcast<i32>(nodes[at]), bitcast<i32>(nodes[at + 1u]));
-    image.node.half_size = vec2<u32>(nodes[at + 2u] & 0xFFFFu, nodes[at + 2u] >> 16u);
-    image.node.level = nodes[at + 3u] & 7u;
-    image.node.base = high_half(nodes[at + 3u]);
-    image.node.tilt = vec2<i32>(low_half(nodes[at + 4u]), high_half(nodes[at + 4u]));
-    image.node.cells = nodes[at + 5u];
+    image.node = node_at(at);
     let level = (flags >> 8u) & 7u;
     if (flags & 64u) != 0u {
-        // A piece of a sample of a large cell.
-        let finer = image.node.level - level;
-        let count = 1i << finer;
-        let piece = i32(flags >> 16u);
-        let half_size = max(image.node.half_size >> vec2<u32>(finer), vec2<u32>(128u));
-        let step = vec2<i32>(2 * (piece % count) + 1 - count, 2 * (piece / count) + 1 - count);
-        image.node.center += step * vec2<i32>(half_size);
-        image.node.half_size = half_size;
-        image.node.level = level;
+        image.node = piece_of(image.node, level, flags >> 16u);
     }
     image.level = level;
     image.center = image.node.center >> vec2<u32>(level);
@@ -462,7 +350,7 @@ fn draw(@builtin(global_invocation_id) id: vec3<u32>, @builtin(workgroup_id) gro
     let is_coverage = (flags & 32u) != 0u;
     var gain = 0;
     if !IS_WIDE {
-        gain = select(pen.dim_exponent, pen.coverage_exponent, is_bright);
+        gain = select(pen.dim_exponent, pen.coverage_exponent, image.node.is_bright);
     }
     // Light is that of a pixel of the node's own level.
     gain -= 2 * i32(level - image.node.level);

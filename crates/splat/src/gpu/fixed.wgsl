@@ -107,3 +107,18 @@ fn divide(by: Divisor, x: i32) -> i32 {
     let size = i32(min(mul_shift(u32(abs(x)) >> by.shift, by.reciprocal, 17u), 1u << 15u));
     return select(size, -size, x < 0);
 }
+
+// The nearest float, ties to even.
+fn float_of(x: u32) -> f32 {
+    if x < 0x1000000u {
+        return f32(x);
+    }
+    let shift = 8u - countLeadingZeros(x);
+    let rest = x & ((1u << shift) - 1u);
+    let middle = 1u << (shift - 1u);
+    var top = x >> shift;
+    if rest > middle || (rest == middle && (top & 1u) == 1u) {
+        top += 1u;
+    }
+    return f32(top) * f32(1u << shift);
+}

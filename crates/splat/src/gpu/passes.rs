@@ -7,11 +7,16 @@ use wgpu::{BindGroupLayout, BufferBindingType, ComputePipeline, Device, ShaderMo
 pub const KINDS: usize = 4;
 
 const FIXED: &str = include_str!("fixed.wgsl");
-const DRAW: &str = concat!(include_str!("draw.wgsl"), "\n", include_str!("seen_runs.wgsl"));
+const LIST: &str = concat!(include_str!("pen.wgsl"), "\n", include_str!("list.wgsl"));
+const DRAW: &str =
+    concat!(include_str!("pen.wgsl"), "\n", include_str!("draw.wgsl"), "\n", include_str!("seen_runs.wgsl"));
 const RESOLVE: &str = include_str!("resolve.wgsl");
 
 /// All passes.
 pub struct Passes {
+    /// Listing what is drawn: counting, then writing.
+    pub list: [Pass; 2],
+    pub list_layout: BindGroupLayout,
     /// Drawing, by kind of record: onto ordinary accumulators, then onto wide ones.
     pub draw: [[Pass; KINDS]; 2],
     pub draw_layout: BindGroupLayout,
@@ -85,7 +90,11 @@ impl Passes {
                 source: wgpu::ShaderSource::Wgsl(format!("{FIXED}\n{source}").into()),
             })
         };
-        let (draw, resolve) = (module("draw", DRAW), module("resolve", RESOLVE));
+        let (list, draw, resolve) = (module("list", LIST), module("draw", DRAW), module("resolve", RESOLVE));
+        let list_layout = layout(
+            device,
+            [(0, Read), (1, Read), (2, Read), (3, Read), (4, Write), (5, Write), (6, Uniform)],
+        );
         let reads = (0..6).map(|binding| (binding, Read));
         let draw_layout = layout(device, reads.chain([(6, Write), (7, Write), (8, Uniform)]));
         let integrate_layout =
@@ -107,6 +116,9 @@ impl Passes {
             Pass::new(&draw, &draw_layout, "draw", &[("IS_WIDE", is_wide), ("KIND", kind as f64)])
         };
         Self {
+            list: [1.0, 0.0]
+                .map(|is_counting| Pass::new(&list, &list_layout, "list", &[("IS_COUNTING", is_counting)])),
+            list_layout: list_layout.clone(),
             draw: [0.0, 1.0].map(|is_wide| std::array::from_fn(|kind| of_kind(is_wide, kind))),
             draw_layout: draw_layout.clone(),
             integrate: Pass::new(&resolve, &integrate_layout, "integrate", &[]),

@@ -1,14 +1,12 @@
-//! Which nodes are drawn, as the card reads it.
+//! What is drawn, as the card reads it: listed here where a stroke changes it, else by the card itself ([`super::listing`]).
 
-use crate::draw::{Form, Pen};
-use crate::drawn::{Scene, Spans};
+use crate::draw::{ALL, Form, Image, Large, Pen};
 use crate::gpu::passes::KINDS;
 use crate::lens_in_use::Placed;
-use crate::nodes::SplatNode;
+use crate::nodes::{Cells, SplatNode};
 use crate::stencil::Place;
 use crate::sums::is_sharing;
 use rayon::prelude::*;
-use std::ops::Range;
 
 /// Words of a record; of one of a large image twice as many.
 pub const WORDS: usize = 4;
@@ -19,7 +17,8 @@ const IMAGES: usize = 1;
 const SEEN: usize = 2;
 pub const LARGE: usize = 3;
 
-/// Flags of a record.
+/// A record's form, and its flags.
+const FORM_BITS: u32 = 7;
 const IS_SHARING: u32 = 8;
 const IS_REMOVED: u32 = 16;
 const IS_COVERAGE: u32 = 32;
@@ -38,36 +37,6 @@ pub struct Records {
 }
 
 impl Records {
-    /// All that is drawn of some blocks, whose nodes begin at `first`.
-    pub fn of_blocks(scene: &Scene, blocks: Range<usize>, first: u32) -> Self {
-        let of_block = |block| {
-            let mut records = Self::default();
-            scene.drawn(
-                block,
-                scene.paint.of_block(block),
-                &mut Spans::default(),
-                |index, node, placed, _| {
-                    records.push(&scene.pen, index, first, node, placed, 1);
-                },
-            );
-            records
-        };
-        let mut all = blocks.into_par_iter().map(of_block).reduce(Self::default, Self::joined);
-        all.places.sort_unstable_by_key(|place| place.index);
-        all.places.dedup();
-        all
-    }
-
-    fn joined(mut self, more: Self) -> Self {
-        for (of_width, more) in self.words.iter_mut().zip(more.words) {
-            for (words, more) in of_width.iter_mut().zip(more) {
-                words.extend(more);
-            }
-        }
-        self.places.extend(more.places);
-        self
-    }
-
     /// Adds a node that is drawn (`sign` 1) or taken away (−1).
     pub fn push(&mut self, pen: &Pen, index: u32, first: u32, node: &SplatNode, placed: Placed, sign: i32) {
         let mut flags = if is_sharing(node, placed) { IS_SHARING } else { 0 };
@@ -107,19 +76,10 @@ impl Records {
         let words = &mut words[width];
         let radius = placed.radius as u32;
         pen.forms(node, placed, |form| {
-            let head = |of_form: u32, number: u32| [index - first, radius, of_form, flags | number];
-            let mut image = pen.image(node, [0.0; 4], placed);
-            let (number, cells) = match form {
-                Form::Box(_) => return words[BOXES].extend(head(0, 0)),
-                Form::Parts(_) => return words[BOXES].extend(head(placed.depth_share as u32, 1)),
-                Form::SeenBox => return words[BOXES].extend(head(0, 4)),
-                Form::Image(share) => {
-                    image.share = share;
-                    image.lean(node, pen.tilt_shift);
-                    (2, None)
-                }
-                Form::Tilted(share) => (3, Some((&crate::draw::ALL, share))),
-                Form::Seen => (5, Some(pen.seen_of(node))),
+            let head = |of_form: u32| [index - first, radius, of_form, flags | number_of(form)];
+            let Some((image, cells)) = image_of(pen, node, placed, form) else {
+                let is_parts = matches!(form, Form::Parts(_));
+                return words[BOXES].extend(head(if is_parts { placed.depth_share as u32 } else { 0 }));
             };
             match pen.stencil_size_of(&image) {
                 Some(size) => {
@@ -129,14 +89,68 @@ impl Records {
                         places.push(place);
                     }
                     let kind = if cells.is_some() { SEEN } else { IMAGES };
-                    words[kind].extend(head(place.with_phase(phase), number));
+                    words[kind].extend(head(place.with_phase(phase)));
                 }
-                None => {
-                    let large = pen.large(&image, cells);
-                    words[LARGE].extend(head(0, number));
-                    words[LARGE].extend([large.height, large.height_bits, large.share, 0]);
-                }
+                None => words[LARGE].extend(with_large(head(0), pen.large(&image, cells))),
             }
         });
     }
+}
+
+/// Whole records of large images, of those that the card listed, of nodes that begin at `first`.
+pub fn complete_large(pen: &Pen, first: u32, listed: &[u32]) -> Vec<u32> {
+    let complete = |record: &[u32; WORDS]| {
+        let [index, radius, _, flags] = *record;
+        let level = (flags >> LEVEL_BIT & 7) as u8;
+        let placed = Placed { radius: radius as i32, depth_share: 0, is_standard: false, level };
+        let whole_node = &pen.nodes.nodes[(first + index) as usize];
+        let piece = || whole_node.pieces(level).nth((flags >> PIECE_BIT) as usize);
+        let node = if flags & IS_PIECE != 0 { piece() } else { None }.unwrap_or(*whole_node);
+        let mut whole = Vec::with_capacity(2 * WORDS);
+        pen.forms(&node, placed, |form| {
+            let is_it = number_of(form) == flags & FORM_BITS;
+            if let Some((image, cells)) = image_of(pen, &node, placed, form).filter(|_| is_it) {
+                whole.extend(with_large(*record, pen.large(&image, cells)));
+            }
+        });
+        whole
+    };
+    listed.as_chunks().0.par_iter().flat_map_iter(complete).collect()
+}
+
+fn with_large(record: [u32; WORDS], large: Large) -> impl Iterator<Item = u32> {
+    record.into_iter().chain([large.height, large.height_bits, large.share, 0])
+}
+
+/// The number that a form has in pen.wgsl.
+fn number_of(form: Form) -> u32 {
+    match form {
+        Form::Box(_) => 0,
+        Form::Parts(_) => 1,
+        Form::Image(_) => 2,
+        Form::Tilted(_) => 3,
+        Form::SeenBox => 4,
+        Form::Seen => 5,
+    }
+}
+
+/// The image of a form, and what it is seen through; none of a form that is boxes.
+fn image_of<'n>(
+    pen: &'n Pen,
+    node: &'n SplatNode,
+    placed: Placed,
+    form: Form,
+) -> Option<(Image<'n>, Option<(&'n Cells, u32)>)> {
+    let mut image = pen.image(node, [0.0; 4], placed);
+    let cells = match form {
+        Form::Image(share) => {
+            image.share = share;
+            image.lean(node, pen.tilt_shift);
+            None
+        }
+        Form::Tilted(share) => Some((&ALL, share)),
+        Form::Seen => Some(pen.seen_of(node)),
+        Form::Box(_) | Form::Parts(_) | Form::SeenBox => return None,
+    };
+    Some((image, cells))
 }

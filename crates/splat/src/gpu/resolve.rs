@@ -197,7 +197,12 @@ impl Resolve {
         }
     }
 
-    /// Pixel rows of the picture: red, green, blue and coverage.
+    /// The picture: of each pixel red, green, blue and coverage.
+    pub fn picture(&self) -> &Buffer {
+        &self.picture
+    }
+
+    /// Pixel rows of it.
     pub fn read(&self, gpu: &Gpu, rows: Range<u32>) -> Result<Vec<[f32; 4]>, Lost> {
         let row = 16 * self.size[0] as u64;
         let words = gpu.read(&self.picture, rows.start as u64 * row..rows.end as u64 * row)?;
@@ -233,7 +238,8 @@ fn words_of_level(k: usize, level: &Level, coarser: Option<&Level>) -> [u32; LEV
     ]
 }
 
-fn dispatch(gpu: &Gpu, kernel: &Pass, bound: &BindGroup, [x, y]: [u32; 2]) {
+/// Runs a pass in so many workgroups.
+pub fn dispatch(gpu: &Gpu, kernel: &Pass, bound: &BindGroup, [x, y]: [u32; 2]) {
     let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     {
         let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());

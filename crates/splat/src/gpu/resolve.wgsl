@@ -48,21 +48,6 @@ fn exact(x: f32) -> f32 {
     return bitcast<f32>(bitcast<u32>(x) ^ frame.zero);
 }
 
-// The nearest float, ties to even.
-fn float_of(x: u32) -> f32 {
-    if x < 0x1000000u {
-        return f32(x);
-    }
-    let shift = 8u - countLeadingZeros(x);
-    let rest = x & ((1u << shift) - 1u);
-    let middle = 1u << (shift - 1u);
-    var top = x >> shift;
-    if rest > middle || (rest == middle && (top & 1u) == 1u) {
-        top += 1u;
-    }
-    return f32(top) * f32(1u << shift);
-}
-
 fn signed_float(x: i32) -> f32 {
     let size = float_of(u32(abs(x)));
     return select(size, -size, x < 0);

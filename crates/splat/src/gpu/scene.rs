@@ -2,16 +2,25 @@
 
 use crate::gpu::Gpu;
 use crate::gpu::device::Lost;
+use crate::lens_in_use::NodeFocus;
 use crate::nodes::{Nodes, SplatNode};
+use crate::paint::Paint;
 use crate::seen::Seen;
+use std::iter::repeat_n;
 use std::ops::Range;
 use wgpu::{Buffer, BufferUsages};
 
-/// Nodes of a chunk at most: with ten words each a chunk is within the 128 MiB that any card can bind.
+/// Nodes of a chunk at most: with 13 words each a chunk is within the 128 MiB that any card can bind.
 const CHUNK_NODES: u32 = 1 << 21;
 
 /// Words of a node.
-const WORDS: usize = 10;
+const WORDS: usize = 13;
+
+/// Words of what is painted on it.
+const FOCUS_WORDS: usize = 4;
+
+/// Stands for the node above where there is none.
+const NO_PARENT: u32 = u32::MAX;
 
 /// Words of what a partly occluded one sees.
 const SEEN_WORDS: usize = 11;
@@ -29,9 +38,13 @@ pub struct Chunk {
     /// Its first node.
     pub first: u32,
     pub nodes: Buffer,
+    /// So many.
+    pub count: u32,
     /// What its partly occluded nodes see, after [`Scene::upload_seen`].
     pub cells: Buffer,
     partial: Vec<u32>,
+    /// What is painted on its nodes, after [`Scene::upload_paint`]; none if nothing is.
+    pub focus: Option<Buffer>,
 }
 
 impl Scene {
@@ -52,8 +65,11 @@ impl Scene {
 
     /// Bytes on the card.
     pub fn bytes(&self) -> usize {
-        let buffers = self.chunks.iter().flat_map(|chunk| [&chunk.nodes, &chunk.cells]);
-        buffers.map(|buffer| buffer.size() as usize).sum()
+        let buffers = |chunk: &Chunk| {
+            [Some(&chunk.nodes), Some(&chunk.cells), chunk.focus.as_ref()]
+                .map(|buffer| buffer.map_or(0, Buffer::size))
+        };
+        self.chunks.iter().flat_map(buffers).sum::<u64>() as usize
     }
 
     /// Uploads what partly occluded nodes see of an aperture.
@@ -72,14 +88,44 @@ impl Scene {
             gpu.write(&chunk.cells, &words);
         }
     }
+
+    /// Uploads what is painted on the nodes.
+    pub fn upload_paint(&mut self, gpu: &Gpu, nodes: &Nodes, paint: &Paint) -> Result<(), Lost> {
+        for chunk in &mut self.chunks {
+            if chunk.blocks.clone().all(|block| paint.of_block(block).is_none()) {
+                chunk.focus = None;
+                continue;
+            }
+            let mut words = Vec::with_capacity(chunk.count as usize * FOCUS_WORDS);
+            for block in chunk.blocks.clone() {
+                let standard = || repeat_n(&NodeFocus::STANDARD, nodes.blocks[block].len());
+                match paint.of_block(block) {
+                    Some(painted) => words.extend(painted.iter().flat_map(words_of_focus)),
+                    None => words.extend(standard().flat_map(words_of_focus)),
+                }
+            }
+            if chunk.focus.is_none() {
+                let usage = BufferUsages::STORAGE | BufferUsages::COPY_DST;
+                chunk.focus = Some(gpu.buffer("focus", words.len(), usage)?);
+            }
+            if let Some(focus) = &chunk.focus {
+                gpu.write(focus, &words);
+            }
+        }
+        Ok(())
+    }
 }
 
 impl Chunk {
     fn new(gpu: &Gpu, nodes: &Nodes, blocks: Range<usize>, range: Range<u32>) -> Result<Self, Lost> {
         let of_chunk = &nodes.nodes[range.start as usize..range.end as usize];
         let (mut words, mut partial) = (Vec::with_capacity(of_chunk.len() * WORDS), Vec::new());
-        for (index, node) in range.clone().zip(of_chunk) {
-            words.extend(words_of_node(node, partial.len() as u32));
+        let mut parents = vec![NO_PARENT; of_chunk.len()];
+        for (parent, node) in (0..).zip(of_chunk) {
+            node.children().for_each(|child| parents[(child - range.start) as usize] = parent);
+        }
+        for ((index, node), parent) in range.clone().zip(of_chunk).zip(parents) {
+            words.extend(words_of_node(node, partial.len() as u32, parent));
             if !node.is_open() {
                 partial.push(index);
             }
@@ -88,7 +134,8 @@ impl Chunk {
         let buffer = gpu.buffer("nodes", words.len(), usage)?;
         gpu.write(&buffer, &words);
         let cells = gpu.buffer("cells", partial.len() * SEEN_WORDS, usage)?;
-        Ok(Self { blocks, first: range.start, nodes: buffer, cells, partial })
+        let (first, count) = (range.start, range.len() as u32);
+        Ok(Self { blocks, first, nodes: buffer, count, cells, partial, focus: None })
     }
 }
 
@@ -96,21 +143,35 @@ fn pair_of(low: u16, high: u16) -> u32 {
     low as u32 | (high as u32) << 16
 }
 
-/// A node as draw.wgsl reads it; `cells` is its place among the partly occluded ones.
-fn words_of_node(node: &SplatNode, cells: u32) -> [u32; WORDS] {
+/// A node as pen.wgsl and list.wgsl read it; `cells` is its place among the partly occluded ones, `parent` that of the node
+/// above it in the chunk.
+fn words_of_node(node: &SplatNode, cells: u32, parent: u32) -> [u32; WORDS] {
     let light = node.light.map(f32::to_bits);
+    let flag = |is_set: bool, bit: u32| u16::from(is_set) << bit;
+    let flags = flag(node.is_highlight, 3)
+        | flag(node.is_leaf(), 4)
+        | flag(node.is_open(), 5)
+        | flag(node.is_bright, 7)
+        | u16::from(node.contrast) << 8;
     [
         node.center[0] as u32,
         node.center[1] as u32,
         pair_of(node.half_size[0], node.half_size[1]),
-        pair_of(node.level as u16 | (node.is_bright as u16) << 7, node.base as u16),
+        pair_of(u16::from(node.level) | flags, node.base as u16),
         pair_of(node.tilt[0] as u16, node.tilt[1] as u16),
         cells,
         light[0],
         light[1],
         light[2],
         light[3],
+        node.inverse_depth.to_bits(),
+        node.inverse_depth_spread.to_bits(),
+        parent,
     ]
+}
+
+fn words_of_focus(focus: &NodeFocus) -> [u32; FOCUS_WORDS] {
+    [focus.t, focus.anchor, focus.t_apart, focus.anchor_apart].map(f32::to_bits)
 }
 
 impl Gpu {
@@ -132,8 +193,13 @@ impl Gpu {
 
     /// Writes words to a buffer's beginning.
     pub(super) fn write(&self, buffer: &Buffer, words: &[u32]) {
-        if !words.is_empty() {
-            self.queue().write_buffer(buffer, 0, bytemuck::cast_slice(words));
+        self.write_at(buffer, 0, words);
+    }
+
+    /// Writes words, from the one at `first` on, to their places in a buffer.
+    pub(super) fn write_at(&self, buffer: &Buffer, first: usize, words: &[u32]) {
+        if first < words.len() {
+            self.queue().write_buffer(buffer, 4 * first as u64, bytemuck::cast_slice(&words[first..]));
         }
     }
 }

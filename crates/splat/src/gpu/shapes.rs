@@ -8,6 +8,9 @@ use crate::nodes::Scale;
 use crate::stencil::{Place, Stencils};
 use wgpu::{Buffer, BufferUsages};
 
+/// Words of a table's beginning: where each stencil's runs lie.
+const TABLE_WORDS: usize = 2 * Stencils::PLACES * Stencils::PHASES;
+
 /// Words that a table of stencils is made larger by.
 const GROWTH: usize = 1 << 18;
 
@@ -31,13 +34,12 @@ impl Shapes {
         let usage = BufferUsages::STORAGE | BufferUsages::COPY_DST;
         let of_shape = gpu.buffer("shape", words.len(), usage)?;
         gpu.write(&of_shape, &words);
-        let table = vec![0; 2 * Stencils::PLACES * Stencils::PHASES];
-        let capacity = table.len() + GROWTH;
+        let capacity = TABLE_WORDS + GROWTH;
         Ok(Self {
             shape: of_shape,
             stencils: gpu.buffer("stencils", capacity, usage)?,
             is_there: vec![false; Stencils::PLACES],
-            words: table,
+            words: vec![0; TABLE_WORDS],
             written: 0,
             capacity,
         })
@@ -68,8 +70,11 @@ impl Shapes {
             self.capacity = self.words.len() + self.words.len() / 2;
             let usage = BufferUsages::STORAGE | BufferUsages::COPY_DST;
             self.stencils = gpu.buffer("stencils", self.capacity, usage)?;
+            self.written = 0;
         }
-        gpu.write(&self.stencils, &self.words);
+        // The table, and what is new behind it.
+        gpu.write(&self.stencils, &self.words[..TABLE_WORDS]);
+        gpu.write_at(&self.stencils, self.written.max(TABLE_WORDS), &self.words);
         self.written = self.words.len();
         Ok(())
     }

@@ -5,11 +5,13 @@ use crate::draw::Pen;
 use crate::drawn::{BlockChanges, Changes, Scene};
 use crate::gpu::Gpu;
 use crate::gpu::device::Lost;
+use crate::gpu::listing::{Listed, Listing};
 use crate::gpu::passes::KINDS;
-use crate::gpu::records::{self, LARGE, Records};
-use crate::gpu::resolve::Resolve;
+use crate::gpu::records::{self, LARGE, Records, complete_large};
+use crate::gpu::resolve::{Resolve, dispatch};
 use crate::gpu::scene::Scene as Uploaded;
 use crate::gpu::shapes::Shapes;
+use crate::gpu::stopwatch::Stopwatch;
 use crate::nodes::Nodes;
 use crate::resolve::Overflow;
 use lens::Picture;
@@ -108,9 +110,14 @@ pub struct GpuSums {
     /// Ordinary ones, then wide ones if any sample is bright.
     accumulators: Vec<Accumulators>,
     pens: Vec<Buffer>,
+    listing: Listing,
+    /// Whether what is painted has been uploaded.
+    is_paint_there: bool,
+    /// Room for what is listed elsewhere.
     records: Buffer,
     batch: Buffer,
     resolve: Resolve,
+    stopwatch: Option<Stopwatch>,
 }
 
 impl GpuSums {
@@ -129,8 +136,12 @@ impl GpuSums {
         }
         let most = (0..KINDS).map(|kind| BATCH[kind] * words_of(kind)).max().unwrap_or(0);
         let pens: Result<Vec<_>, Lost> = all.iter().map(|_| Shapes::pen_buffer(gpu)).collect();
+        let scene = Uploaded::new(gpu, nodes)?;
         Ok(Self {
-            scene: Uploaded::new(gpu, nodes)?,
+            listing: Listing::new(gpu, &scene)?,
+            is_paint_there: false,
+            stopwatch: Stopwatch::new(gpu)?,
+            scene,
             shapes: None,
             resolve: Resolve::new(gpu, size, &all[0].layout)?,
             accumulators: all,
@@ -152,8 +163,14 @@ impl GpuSums {
         self.shapes = None;
     }
 
+    /// The next picture is painted otherwise.
+    pub fn forget_paint(&mut self) {
+        self.is_paint_there = false;
+    }
+
     /// Sets the sums to what a scene sends.
     pub fn set(&mut self, scene: &Scene, progress: &dyn Progress) -> Result<(), GpuError> {
+        self.begin();
         let mut encoder =
             self.gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         for buffer in self.accumulators.iter().flat_map(|accumulators| &accumulators.sums) {
@@ -161,19 +178,55 @@ impl GpuSums {
         }
         self.gpu.queue().submit([encoder.finish()]);
         self.take_up(&scene.pen)?;
+        let is_painted = !scene.paint.is_standard();
+        if is_painted && !self.is_paint_there {
+            self.scene.upload_paint(&self.gpu, scene.pen.nodes, scene.paint)?;
+            self.is_paint_there = true;
+        }
+        let counts = self.listing.count(&self.gpu, &self.scene, scene, &self.pens[0], is_painted)?;
+        self.shapes.as_mut().ok_or(Lost)?.upload(&self.gpu, scene.pen.stencils, &counts.places)?;
         let count = self.scene.chunks.len();
         for chunk in 0..count {
             progress.check()?;
-            let of_chunk = &self.scene.chunks[chunk];
-            let records = Records::of_blocks(scene, of_chunk.blocks.clone(), of_chunk.first);
-            self.draw(&scene.pen, chunk, &records, progress)?;
+            let listed =
+                self.listing.list(&self.gpu, &self.scene, chunk, &counts, &self.pens[0], is_painted)?;
+            self.draw_listed(&scene.pen, chunk, listed, progress)?;
             progress.report((chunk + 1) as f32 / count as f32);
+        }
+        Ok(())
+    }
+
+    /// Draws what the card listed of a chunk.
+    fn draw_listed(
+        &mut self,
+        pen: &Pen,
+        chunk: usize,
+        listed: Listed,
+        progress: &dyn Progress,
+    ) -> Result<(), GpuError> {
+        for (width, kinds) in listed.into_iter().enumerate().take(self.accumulators.len()) {
+            let bound = self.bound(chunk, width, self.listing.records())?;
+            let [boxes, images, seen, large] = kinds;
+            for (kind, records) in [boxes, images, seen].into_iter().enumerate() {
+                for first in records.clone().step_by(BATCH[kind]) {
+                    progress.check()?;
+                    let count = (records.end - first).min(BATCH[kind] as u32);
+                    self.draw_batch(&bound, width, kind, [first, count])?;
+                }
+            }
+            if !large.is_empty() {
+                let bytes = [large.start, large.end].map(|at| 4 * (records::WORDS as u64) * u64::from(at));
+                let listed = self.gpu.read(self.listing.records(), bytes[0]..bytes[1])?;
+                let words = complete_large(pen, self.scene.chunks[chunk].first, &listed);
+                self.draw_words(chunk, width, LARGE, &words, progress)?;
+            }
         }
         Ok(())
     }
 
     /// Takes nodes away and adds others.
     pub fn change(&mut self, pen: &Pen, changes: &Changes) -> Result<(), GpuError> {
+        self.begin();
         self.take_up(pen)?;
         for chunk in 0..self.scene.chunks.len() {
             let first = self.scene.chunks[chunk].first;
@@ -217,36 +270,50 @@ impl GpuSums {
         let shapes = self.shapes.as_mut().ok_or(Lost)?;
         shapes.upload(&self.gpu, pen.stencils, &records.places)?;
         for width in 0..self.accumulators.len() {
-            let bound = self.bound(chunk, width)?;
             for (kind, words) in records.words[width].iter().enumerate() {
-                for words in words.chunks(BATCH[kind] * words_of(kind)) {
-                    progress.check()?;
-                    self.draw_batch(&bound, width, kind, words)?;
-                }
+                self.draw_words(chunk, width, kind, words, progress)?;
             }
         }
         Ok(())
     }
 
-    fn draw_batch(&self, bound: &BindGroup, width: usize, kind: usize, words: &[u32]) -> Result<(), Lost> {
-        self.gpu.check()?;
-        let count = (words.len() / words_of(kind)) as u32;
-        self.gpu.write(&self.records, words);
-        self.gpu.write(&self.batch, &[count, 0, 0, 0]);
-        let mut encoder =
-            self.gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        {
-            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
-            pass.set_pipeline(self.gpu.passes().draw[width][kind].pipeline(self.gpu.device()));
-            pass.set_bind_group(0, bound, &[]);
-            pass.dispatch_workgroups(count.div_ceil(64), 1, 1);
+    /// Draws records that are not on the card yet.
+    fn draw_words(
+        &self,
+        chunk: usize,
+        width: usize,
+        kind: usize,
+        words: &[u32],
+        progress: &dyn Progress,
+    ) -> Result<(), GpuError> {
+        if words.is_empty() {
+            return Ok(());
         }
-        self.gpu.queue().submit([encoder.finish()]);
+        let bound = self.bound(chunk, width, &self.records)?;
+        for words in words.chunks(BATCH[kind] * words_of(kind)) {
+            progress.check()?;
+            self.gpu.write(&self.records, words);
+            self.draw_batch(&bound, width, kind, [0, (words.len() / words_of(kind)) as u32])?;
+        }
+        Ok(())
+    }
+
+    /// Draws so many records, after so many others.
+    fn draw_batch(
+        &self,
+        bound: &BindGroup,
+        width: usize,
+        kind: usize,
+        [first, count]: [u32; 2],
+    ) -> Result<(), Lost> {
+        self.gpu.check()?;
+        self.gpu.write(&self.batch, &[count, first, 0, 0]);
+        dispatch(&self.gpu, &self.gpu.passes().draw[width][kind], bound, [count.div_ceil(64), 1]);
         // Frees what was staged for batches that are through.
         self.gpu.device().poll(wgpu::PollType::Poll).map(|_| ()).map_err(|_| Lost)
     }
 
-    fn bound(&self, chunk: usize, width: usize) -> Result<BindGroup, Lost> {
+    fn bound(&self, chunk: usize, width: usize, records: &Buffer) -> Result<BindGroup, Lost> {
         let (chunk, shapes) = (&self.scene.chunks[chunk], self.shapes.as_ref().ok_or(Lost)?);
         let sums = &self.accumulators[width].sums;
         let buffers = [
@@ -255,7 +322,7 @@ impl GpuSums {
             &self.pens[width],
             &shapes.shape,
             &shapes.stencils,
-            &self.records,
+            records,
             &sums[0],
             &sums[1],
             &self.batch,
@@ -292,24 +359,46 @@ impl GpuSums {
     }
 
     /// Makes pixel rows of a picture, which were integrated last.
-    pub fn picture(
-        &self,
-        gains: &Gains,
-        rest: [f32; 3],
-        rows: Range<u32>,
-        picture: &mut Picture,
-    ) -> Result<(), GpuError> {
+    pub fn make_picture(&mut self, gains: &Gains, rest: [f32; 3], rows: &Range<u32>) {
         self.resolve.set_gains(&self.gpu, gains, rest);
-        self.resolve.finish(&self.gpu, &rows);
-        let width = self.resolve.size[0];
-        let pixels = self.resolve.read(&self.gpu, rows.clone())?;
-        let first = rows.start as usize * width;
+        self.resolve.finish(&self.gpu, rows);
+        if let Some(stopwatch) = &mut self.stopwatch {
+            stopwatch.end(&self.gpu);
+        }
+    }
+
+    /// The picture on the card: of each pixel red, green, blue and coverage.
+    pub fn picture(&self) -> &Buffer {
+        self.resolve.picture()
+    }
+
+    /// Waits until the picture is made.
+    pub fn wait(&self) -> Result<(), GpuError> {
+        Ok(self.gpu.wait()?)
+    }
+
+    /// Brings pixel rows of the picture back.
+    pub fn read_picture(&self, rows: Range<u32>, picture: &mut Picture) -> Result<(), GpuError> {
+        let first = rows.start as usize * self.resolve.size[0];
+        let pixels = self.resolve.read(&self.gpu, rows)?;
         let out = picture.radiance[first..].iter_mut().zip(&mut picture.coverage[first..]);
         for (&[r, g, b, covered], (radiance, coverage)) in pixels.iter().zip(out) {
             *radiance = [r, g, b];
             *coverage = covered;
         }
         Ok(())
+    }
+
+    /// The seconds by the card's own clock from the beginning of the last sum, or change, to the end of its picture; none
+    /// where it has no clock.
+    pub fn seconds(&self) -> Option<f64> {
+        self.stopwatch.as_ref()?.seconds(&self.gpu).ok()
+    }
+
+    fn begin(&mut self) {
+        if let Some(stopwatch) = &mut self.stopwatch {
+            stopwatch.begin(&self.gpu);
+        }
     }
 
     fn integrate_lines(&self, rows: &Range<u32>) -> Result<(), Lost> {

@@ -86,6 +86,8 @@ struct Hard {
     brightest: f32,
     /// One sample in so many is partly occluded; 0: none.
     partial: u32,
+    /// The side of a sample's cell, px.
+    cell: u32,
     is_painted: bool,
     tolerance: Tolerance,
 }
@@ -101,6 +103,7 @@ impl Hard {
         tilt: 0.0,
         brightest: 1.0,
         partial: 0,
+        cell: 1,
         is_painted: false,
         tolerance: Tolerance::VIEWING,
     };
@@ -137,6 +140,13 @@ impl Hard {
                 partial: 3,
                 tilt: 0.3,
                 tolerance: Tolerance::NONE,
+                ..plain.clone()
+            },
+            Self {
+                name: "large cells, some in focus",
+                cell: 4,
+                partial: 3,
+                is_painted: true,
                 ..plain.clone()
             },
             Self { name: "edge on", tilt: 1.5, partial: 4, inverse_depths: [0.45, 0.55], ..plain },
@@ -176,9 +186,9 @@ impl Hard {
             };
             let bright = if mixed % 600 == 1 { self.brightest } else { 1.0 };
             Sample {
-                center: Vec2::new(x as f32 + 0.5, y as f32 + 0.5),
-                half_size: Vec2::splat(0.5),
-                inverse_depth: near + (far - near) * x as f32 / WIDTH as f32,
+                center: self.cell as f32 * Vec2::new(x as f32 + 0.5, y as f32 + 0.5),
+                half_size: Vec2::splat(0.5 * self.cell as f32),
+                inverse_depth: near + (far - near) * x as f32 * self.cell as f32 / WIDTH as f32,
                 weight: 1.0,
                 tilt: Vec2::new(self.tilt, (mixed % 5) as f32 * -0.1 * self.tilt),
                 radiance: bright * Vec3::new(1e-3, 0.5, (mixed % 9) as f32),
@@ -186,7 +196,8 @@ impl Hard {
                 visibility,
             }
         };
-        let samples = (0..WIDTH * HEIGHT).map(sample).collect();
+        let is_within = |index: &u32| index % WIDTH * self.cell < WIDTH && index / WIDTH * self.cell < HEIGHT;
+        let samples = (0..WIDTH * HEIGHT).filter(is_within).map(sample).collect();
         Arc::new(Salf { camera: self.camera(), margin_px: 0, samples })
     }
 
@@ -273,7 +284,8 @@ fn card_and_processor_sum_the_same_bits() {
         // The control: one sample whose light is some quanta more; those of bright sums are 64 times as large.
         let mut samples = salf.samples.to_vec();
         let quanta = if sums.len() == 4 { 2048.0 } else { 32.0 };
-        samples[1000].radiance.y += crate::QUANTUM as f32 * quanta;
+        let one = samples.len() / 4;
+        samples[one].radiance.y += crate::QUANTUM as f32 * quanta;
         let other = Salf { samples: samples.into(), ..(*salf).clone() };
         let other = hard.rendered(Arc::new(other), &focus, None);
         assert!(first_difference(&sums_here(&other), &others).is_some(), "{}: the control", hard.name);
@@ -300,6 +312,44 @@ fn strokes_on_the_card_equal_renders_from_scratch() {
     let fresh = hard.rendered(salf, &focus, Some(gpu));
     assert_eq!(first_difference(&sums_there(&fresh, true), &sums_there(&there, true)), None);
     assert_eq!(differing(fresh.picture(), there.picture()), 0);
+}
+
+#[test]
+fn what_stays_on_the_card_is_fetched() {
+    let Some(gpu) = gpu() else { return };
+    let hard = Hard { partial: 3, ..Hard::PLAIN };
+    let (salf, mut focus) = (hard.light_field(), hard.focus());
+    let mut here = hard.rendered(salf.clone(), &focus, None);
+    let mut there = Splatter::new(salf.clone());
+    there.set_tolerance(hard.tolerance);
+    there.use_gpu(Some(gpu.clone()));
+    there.keep_on_card(true);
+    there.render(&hard.lens(), &focus, &Unwatched).unwrap();
+    assert_eq!(there.picture(), &Picture::black(WIDTH, HEIGHT), "nobody asked for it");
+    assert!(there.picture_on_card().is_some() && here.picture_on_card().is_none());
+    let clock = gpu.device().features().contains(wgpu::Features::TIMESTAMP_QUERY);
+    assert_eq!(
+        there.seconds_on_card().map(|seconds| seconds > 0.0 && seconds < 600.0),
+        clock.then_some(true)
+    );
+    there.fetch().unwrap();
+    assert_eq!(differing(here.picture(), there.picture()), 0);
+    for round in 0..3u32 {
+        let changed: Vec<u32> = (0..100).map(|k| (round * 977 + k * 13) % (WIDTH * HEIGHT)).collect();
+        for &index in &changed {
+            focus.0[index as usize] = FocusOffset::new(0.95 + 0.02 * round as f64, 0.5);
+        }
+        here.update(&focus, &changed).unwrap();
+        there.update(&focus, &changed).unwrap();
+        assert!(differing(here.picture(), there.picture()) > 0, "round {round}: it is the one of before");
+        if round == 2 {
+            // Lost before anybody has seen it.
+            gpu.destroy();
+        }
+        there.fetch().unwrap();
+        assert_eq!(differing(here.picture(), there.picture()), 0, "round {round}");
+    }
+    assert!(there.gpu().is_none(), "the processor has taken over");
 }
 
 #[test]

@@ -2,6 +2,7 @@
 
 use super::{SplatError, Splatter, Summed, Wanted};
 use crate::balance::{NO_REST, rest};
+use crate::drawn::hull;
 use crate::gpu::{Gpu, GpuError, GpuSums};
 use progress::Progress;
 use std::ops::Range;
@@ -13,6 +14,10 @@ pub struct Card {
     /// Its sums, from the first render on.
     sums: Option<GpuSums>,
     is_lost: bool,
+    /// Whether pictures stay there until they are asked for.
+    keeps: bool,
+    /// The rows that are newer there.
+    newer: Range<u32>,
 }
 
 impl Card {
@@ -21,6 +26,18 @@ impl Card {
         if let Some(sums) = &mut self.sums {
             sums.forget_aperture();
         }
+    }
+
+    /// The next picture is painted otherwise.
+    pub fn forget_paint(&mut self) {
+        if let Some(sums) = &mut self.sums {
+            sums.forget_paint();
+        }
+    }
+
+    /// Whether the sums are on it.
+    pub fn has_sums(&self) -> bool {
+        self.sums.is_some()
     }
 
     /// Bytes of the hierarchy and of the sums.
@@ -47,8 +64,35 @@ impl Splatter {
     ///
     /// Once the card is lost, or where it does not hold the picture, the processor goes on: nothing else is lost.
     pub fn use_gpu(&mut self, gpu: Option<Gpu>) {
-        self.card = Card { gpu, ..Card::default() };
+        self.card = Card { gpu, keeps: self.card.keeps, ..Card::default() };
         self.shares_of = None;
+    }
+
+    /// Sets whether pictures stay on the card (no, by default): they are shown from there ([`Self::picture_on_card`]), and
+    /// [`Self::picture`] is that of the last [`Self::fetch`].
+    pub fn keep_on_card(&mut self, keeps: bool) {
+        self.card.keeps = keeps;
+    }
+
+    /// The picture on the card: of each pixel, row by row, red, green, blue and coverage as floats. None where it is summed
+    /// on the processor.
+    pub fn picture_on_card(&self) -> Option<&wgpu::Buffer> {
+        self.card.sums.as_ref().map(GpuSums::picture)
+    }
+
+    /// Brings back what of the picture stayed on the card; from the processor, summed anew, if that is lost.
+    pub fn fetch(&mut self) -> Result<(), SplatError> {
+        let rows = std::mem::take(&mut self.card.newer);
+        let (Some(sums), false) = (&self.card.sums, rows.is_empty()) else { return Ok(()) };
+        let read = sums.read_picture(rows, &mut self.picture);
+        let fetched = self.card.came_of(read);
+        if self.drop_lost_card() { self.sum(&progress::Unwatched) } else { fetched }
+    }
+
+    /// The seconds by the card's own clock that the last picture took, from its first sum to its last pixel; none where it
+    /// has no clock.
+    pub fn seconds_on_card(&self) -> Option<f64> {
+        self.card.sums.as_ref()?.seconds()
     }
 
     /// The card that is summed on; none where it is the processor.
@@ -82,13 +126,9 @@ impl Splatter {
         progress: &dyn Progress,
     ) -> Option<Result<(), SplatError>> {
         let (nodes, sums) = (self.nodes.as_ref()?, self.card.sums.as_mut()?);
-        let scene_as = |paint| self.aperture.scene(nodes, &self.lens, paint, &self.salf.camera);
-        let set = sums.set(&scene_as(summed.paint(&self.paint)), progress);
-        if summed == Summed::ToPaintOver {
-            let painted = self.paint.blocks.iter().enumerate().filter(|(_, paint)| paint.is_some());
-            let blocks: Vec<_> = painted.map(|(block, _)| (block, None)).collect();
-            self.changes.find(&scene_as(&self.paint), &blocks);
-        }
+        let paint = summed.paint(&self.paint);
+        let scene = self.aperture.scene(nodes, &self.lens, paint, &self.salf.camera);
+        let set = sums.set(&scene, progress);
         Some(self.card.came_of(set))
     }
 
@@ -115,7 +155,13 @@ impl Splatter {
         if wanted.has_picture() {
             sums.integrate(nodes, &rows, is_evened)?;
             let rest = if is_balanced { rest(&sums.shared_sums(gains)?) } else { NO_REST };
-            sums.picture(gains, rest, rows, &mut self.picture)?;
+            sums.make_picture(gains, rest, &rows);
+            if self.card.keeps {
+                let newer = std::mem::take(&mut self.card.newer);
+                self.card.newer = hull([newer, rows].into_iter().filter(|rows| !rows.is_empty()));
+                return sums.wait();
+            }
+            sums.read_picture(rows, &mut self.picture)?;
         }
         Ok(())
     }
