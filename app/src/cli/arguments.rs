@@ -266,6 +266,12 @@ pub struct ReportArguments {
     /// error, 1920x1080 unless --size says otherwise
     #[arg(long, conflicts_with_all = ["hard", "quick"])]
     pub engine: bool,
+    /// What the engine is measured on. auto: the processor, and then a graphics card, too, if there is one
+    #[arg(long, value_enum, requires = "engine", default_value_t = BackendName::Auto)]
+    pub backend: BackendName,
+    /// Only a graphics adapter whose name contains this, also one in software (focus-brush doctor lists them)
+    #[arg(long, value_name = "NAME", requires = "engine")]
+    pub adapter: Option<String>,
     /// Write what was done as JSON to stdout
     #[arg(long)]
     pub json: bool,

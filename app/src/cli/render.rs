@@ -115,12 +115,17 @@ fn gpu(arguments: &RenderArguments) -> Result<Option<Gpu>, Failure> {
         );
         return if is_asked_for { Err(SessionError::GpuAbsent(message).into()) } else { Ok(None) };
     }
-    let choice = match arguments.backend {
+    open_gpu(arguments.backend, arguments.adapter.as_deref())
+}
+
+/// The graphics card that is asked for; none for the processor.
+pub fn open_gpu(backend: BackendName, adapter: Option<&str>) -> Result<Option<Gpu>, Failure> {
+    let choice = match backend {
         BackendName::Auto => BackendChoice::Auto,
         BackendName::Gpu => BackendChoice::Gpu,
         BackendName::Cpu => BackendChoice::Cpu,
     };
-    let opened = Gpu::open(choice, arguments.adapter.as_deref());
+    let opened = Gpu::open(choice, adapter);
     Ok(opened.map_err(|absent| SessionError::GpuAbsent(absent.to_string()))?)
 }
 

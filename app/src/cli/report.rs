@@ -1,13 +1,15 @@
 //! `focus-brush report`.
 
-use super::arguments::ReportArguments;
+use super::arguments::{BackendName, ReportArguments};
 use super::console::{Console, say_json};
 use super::failure::Failure;
+use super::render::open_gpu;
 use super::shot::unwrap_options;
 use crate::window::demo;
 use report::{ReportOptions, SceneRequest};
 use serde_json::json;
 use sha2::{Digest, Sha256};
+use splat::Gpu;
 use std::io::Read;
 use std::path::PathBuf;
 
@@ -63,7 +65,9 @@ fn run_engine(
     console: &Console,
 ) -> Result<(), Failure> {
     let note = |line: &str| console.note(line);
-    let report = report::run_engine(&requests(arguments)?, options, &arguments.output, console, &note)?;
+    let backends = backends(arguments)?;
+    let requests = requests(arguments)?;
+    let report = report::run_engine(&requests, options, &backends, &arguments.output, console, &note)?;
     let broken: Vec<_> = report.checks.iter().filter(|check| !check.holds).collect();
     if arguments.json {
         say_json(&json!({
@@ -83,6 +87,18 @@ fn run_engine(
             Err(Failure::partly(format!("{}: {what} (see its `checks`)", about.display())))
         }
     }
+}
+
+/// What the engine is measured on; none: the processor.
+fn backends(arguments: &ReportArguments) -> Result<Vec<Option<Gpu>>, Failure> {
+    let gpu = open_gpu(arguments.backend, arguments.adapter.as_deref())?;
+    let with_processor = match arguments.backend {
+        BackendName::Auto => arguments.adapter.is_none(),
+        BackendName::Gpu => false,
+        BackendName::Cpu => true,
+    };
+    let card = gpu.map(Some);
+    Ok(with_processor.then_some(None).into_iter().chain(card).collect())
 }
 
 /// The scenes that were named; without any the demo, unless the hard cases were asked for.

@@ -58,17 +58,16 @@ impl Field {
         steps: &dyn Steps,
         note: &dyn Fn(&str),
     ) -> Result<(), SessionError> {
-        let Measured { frame, records, checks } = measured;
+        let Measured { frame, records, checks, gpu } = measured;
         let mut keep = |record: EngineRecord| {
             note(&record.line());
             records.push(record);
         };
-        for traced in self.truth.iter().flat_map(|truth| &truth.ray_tracer.curve) {
-            keep(self.traced(traced, frame));
-        }
         let start = Instant::now();
         let mut splatter = Splatter::new(self.salf.clone());
         let hierarchy_seconds = start.elapsed().as_secs_f64();
+        splatter.use_gpu(gpu.clone());
+        splatter.keep_on_card(true);
         keep(self.record("hierarchy", frame.beside(hierarchy_seconds), &splatter));
         let mut converged: Option<Picture> = None;
         let mut errors = Vec::new();
@@ -84,7 +83,9 @@ impl Field {
                 .in_turn(&mut [|| Ok(splatter.refocus(&lenses.next().expect("endless"), &*progress)?)])?;
             splatter.refocus(camera, &*progress)?;
             let mut record = self.record("full_splat", drawn[0], &splatter);
+            record.card_ms = splatter.seconds_on_card().map(|seconds| seconds * 1e3);
             record.tolerance = Some(share);
+            splatter.fetch()?;
             match &converged {
                 None => converged = Some(splatter.picture().clone()),
                 Some(converged) => {
@@ -106,7 +107,8 @@ impl Field {
             keep(record);
         }
         checks.push(self.check("the error grows with the tolerance", is_growing(&errors)));
-        if self.with_dense {
+        // The others do not depend on what sums.
+        if self.with_dense && gpu.is_none() {
             let mut record = self.record("full_splat", frame.beside(dense_seconds(&self.salf)), &splatter);
             (record.renderer, record.bytes) = ("dense_scatter".into(), 0);
             keep(record);
@@ -116,9 +118,24 @@ impl Field {
             keep(record);
             checks.push(self.check("a dab equals a render from scratch, bit for bit, and shows", holds));
         }
-        let holds = self.is_same_with_one_thread(&mut splatter, steps)?;
-        checks.push(self.check("one thread draws the picture of many, bit for bit", holds));
+        if let Some(gpu) = gpu {
+            let what = format!("{} draws the picture of the processor, bit for bit", gpu.name());
+            let holds = self.is_same_on_the_processor(&mut splatter, steps)?;
+            checks.push(self.check(&what, holds));
+        } else {
+            let holds = self.is_same_with_one_thread(&mut splatter, steps)?;
+            checks.push(self.check("one thread draws the picture of many, bit for bit", holds));
+        }
         Ok(())
+    }
+
+    /// The ray tracer's pictures.
+    pub fn traced(&self, measured: &mut Measured, note: &dyn Fn(&str)) {
+        for traced in self.truth.iter().flat_map(|truth| &truth.ray_tracer.curve) {
+            let record = self.traced_at(traced, &mut measured.frame);
+            note(&record.line());
+            measured.records.push(record);
+        }
     }
 
     /// `what` with the focus, if the field has several.
@@ -130,7 +147,7 @@ impl Field {
         Check { scene: self.scene.clone(), what: self.named(what), holds }
     }
 
-    fn traced(&self, traced: &Traced, frame: &mut FrameCopy) -> EngineRecord {
+    fn traced_at(&self, traced: &Traced, frame: &mut FrameCopy) -> EngineRecord {
         let CurvePoint { seconds, rmse } = traced.point;
         let timing = frame.beside(seconds);
         let record = EngineRecord::of(&self.scene, &self.named("ray tracer"), &self.salf, timing);
@@ -145,10 +162,8 @@ impl Field {
     }
 
     fn record(&self, what: &str, timing: Timing, splatter: &Splatter) -> EngineRecord {
-        let mut record = EngineRecord::of(&self.scene, &self.named(what), &self.salf, timing);
-        record.coc_px = self.coc_px;
-        record.bytes = splatter.bytes().iter().sum::<usize>() as u64;
-        record
+        let record = EngineRecord::of(&self.scene, &self.named(what), &self.salf, timing).by(splatter);
+        EngineRecord { coc_px: self.coc_px, ..record }
     }
 
     /// Paints a dab and takes it back, again and again, on a live picture at the tolerance of viewing.
@@ -163,6 +178,7 @@ impl Field {
         splatter.set_tolerance(Tolerance::VIEWING);
         splatter.set_live(true);
         splatter.render(camera, &*self.focus, &*progress)?;
+        splatter.fetch()?;
         let before = splatter.picture().clone();
         let dabbed = Dabbed::new(&self.salf, self.focus.clone());
         let mut times = Vec::new();
@@ -173,11 +189,31 @@ impl Field {
             times.push(start.elapsed().as_secs_f64());
         }
         let mut record = self.record("dab", frame.beside(median(&mut times)), splatter);
+        record.card_ms = splatter.seconds_on_card().map(|seconds| seconds * 1e3);
         record.tolerance = Some(Tolerance::VIEWING.share_of_circle);
+        splatter.fetch()?;
         let after = splatter.picture().clone();
         splatter.render(camera, &dabbed, &*progress)?;
+        splatter.fetch()?;
         splatter.set_live(false);
         Ok((record, &after == splatter.picture() && after != before))
+    }
+
+    fn is_same_on_the_processor(
+        &self,
+        splatter: &mut Splatter,
+        steps: &dyn Steps,
+    ) -> Result<bool, SessionError> {
+        let camera = &self.salf.camera;
+        let progress = steps.begin("splatting");
+        splatter.set_tolerance(Tolerance::VIEWING);
+        splatter.render(camera, &*self.focus, &*progress)?;
+        splatter.fetch()?;
+        let was_there = splatter.gpu().is_some();
+        let there = splatter.picture().clone();
+        splatter.use_gpu(None);
+        splatter.refocus(camera, &*progress)?;
+        Ok(was_there && &there == splatter.picture())
     }
 
     fn is_same_with_one_thread(

@@ -26,6 +26,7 @@ use field::{Field, Truth};
 use frame_copy::FrameCopy;
 use ray_tracer::RayTracer;
 use session::{RenderOptions, SessionError, Steps, bake};
+use splat::Gpu;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
@@ -54,10 +55,12 @@ pub struct Check {
     pub holds: bool,
 }
 
-/// Measures pictures of `size` and writes `report.json`, `engine.md` and `about.json` into `folder`.
+/// Measures pictures of `size`, summed on each of `backends` (none: the processor), and writes `report.json`, `engine.md` and
+/// `about.json` into `folder`.
 pub fn run_engine(
     requests: &[SceneRequest],
     options: &ReportOptions,
+    backends: &[Option<Gpu>],
     folder: &Path,
     steps: &dyn Steps,
     note: &dyn Fn(&str),
@@ -65,18 +68,21 @@ pub fn run_engine(
     std::fs::create_dir_all(folder).map_err(|error| SessionError::io(folder, &error))?;
     let [width, height] = options.size.unwrap_or([1920, 1080]);
     let frame = FrameCopy::new(width as usize * height as usize);
-    let mut measured = Measured { frame, records: Vec::new(), checks: Vec::new() };
-    for field in synthetic::fields([width, height]) {
-        field.measure(&mut measured, steps, note)?;
+    let mut measured = Measured { frame, records: Vec::new(), checks: Vec::new(), gpu: None };
+    for gpu in backends {
+        measured.gpu.clone_from(gpu);
+        for field in synthetic::fields([width, height]) {
+            field.measure(&mut measured, steps, note)?;
+        }
+        synthetic::sweep_circles([width, height], &mut measured, steps, note)?;
+        synthetic::sweep_sizes([width, height], &mut measured, steps, note)?;
     }
-    synthetic::sweep_circles([width, height], &mut measured, steps, note)?;
-    synthetic::sweep_sizes([width, height], &mut measured, steps, note)?;
     for request in requests {
         let options = ReportOptions { size: Some([width, height]), ..options.clone() };
         let subject = Subject::open(request, &options, steps)?;
-        measure_scene(&subject, options.reference_spp, &mut measured, steps, note)?;
+        measure_scene(&subject, options.reference_spp, backends, &mut measured, steps, note)?;
     }
-    let Measured { records, checks, frame } = measured;
+    let Measured { records, checks, frame, .. } = measured;
     note(&format!("copying one frame of {width} × {height} takes {:.2} ms", frame.seconds() * 1e3));
     let mut report = EngineReport { records, checks, machine: Machine::here(), files: Vec::new() };
     report.files = write::write(&report, frame.seconds(), folder)?;
@@ -88,12 +94,15 @@ struct Measured {
     frame: FrameCopy,
     records: Vec<EngineRecord>,
     checks: Vec<Check>,
+    /// What pictures are summed on; none: the processor.
+    gpu: Option<Gpu>,
 }
 
 /// Bakes a scene's light field and measures it and the ray tracer under each focus.
 fn measure_scene(
     subject: &Subject,
     reference_spp: u32,
+    backends: &[Option<Gpu>],
     measured: &mut Measured,
     steps: &dyn Steps,
     note: &dyn Fn(&str),
@@ -125,7 +134,11 @@ fn measure_scene(
             with_dab: true,
             truth: Some(Truth { ray_tracer, bake_seconds: seconds }),
         };
-        field.measure(measured, steps, note)?;
+        field.traced(measured, note);
+        for gpu in backends {
+            measured.gpu.clone_from(gpu);
+            field.measure(measured, steps, note)?;
+        }
     }
     Ok(())
 }

@@ -30,7 +30,7 @@ pub fn plots(records: &[EngineRecord]) -> Vec<Chart> {
             title: "time of a full splat against circle of confusion".into(),
             x: Axis { label: "circle of confusion (px)".into(), kind: Kind::Linear, number: plain },
             y: Axis { label: "time".into(), kind: Kind::Linear, number: seconds },
-            series: circles(records).into_iter().collect(),
+            series: circles(records),
             rules: Vec::new(),
         },
     ];
@@ -92,25 +92,28 @@ fn sweeps(records: &[EngineRecord], of: impl Fn(&EngineRecord) -> Option<(f64, f
     lines
 }
 
-/// The scene or field, and its focus.
+/// The scene or field, its focus, and the graphics card, if that is one.
 fn name(record: &EngineRecord) -> String {
-    match record.what.split_once(", ") {
-        Some((_, focus)) => format!("{}, {focus}", record.scene),
-        None => record.scene.clone(),
-    }
+    let focus = record.what.split_once(", ").map(|(_, focus)| focus);
+    let parts = [Some(record.scene.as_str()), focus, record.adapter.as_deref()];
+    parts.into_iter().flatten().collect::<Vec<_>>().join(", ")
 }
 
-/// Planes of growing circles.
-fn circles(records: &[EngineRecord]) -> Option<Series> {
-    let planes = records.iter().filter(|record| record.what == "against circle");
-    let point = |record: &EngineRecord| Point {
-        x: record.coc_px,
-        y: record.ms_median / 1e3,
-        label: format!("{} px", plain(record.coc_px)),
+/// Planes of growing circles, a line for each thing that sums.
+fn circles(records: &[EngineRecord]) -> Vec<Series> {
+    let planes: Vec<_> = records.iter().filter(|record| record.what == "against circle").collect();
+    let line = |planes: &[&EngineRecord]| {
+        let point = |record: &&EngineRecord| Point {
+            x: record.coc_px,
+            y: record.ms_median / 1e3,
+            label: format!("{} px", plain(record.coc_px)),
+        };
+        let card = planes[0].adapter.as_ref().map_or(String::new(), |name| format!(", {name}"));
+        let name = format!("planes, as one looks at them{card}");
+        Series { name, style: 0, is_dashed: false, points: planes.iter().map(point).collect() }
     };
-    let points: Vec<_> = planes.map(point).collect();
-    let line = Series { name: "planes, as one looks at them".into(), style: 0, is_dashed: false, points };
-    (!line.points.is_empty()).then_some(line)
+    let lines = planes.chunk_by(|a, b| a.adapter == b.adapter).zip(0..);
+    lines.map(|(planes, style)| Series { style, ..line(planes) }).collect()
 }
 
 #[cfg(test)]
@@ -124,6 +127,7 @@ mod tests {
             what: what.into(),
             renderer: "splat".into(),
             backend: "cpu".into(),
+            adapter: None,
             threads: 2,
             size: [8, 8],
             samples: 64,
@@ -131,6 +135,7 @@ mod tests {
             tolerance: Some(tolerance),
             spp: None,
             ms_median: 2.0,
+            card_ms: None,
             frame_copy_ms: 1.0,
             frame_copies: 1.0,
             psnr: Some(psnr),
@@ -156,6 +161,11 @@ mod tests {
         assert_eq!(names, [("wall, unpainted", 2), ("wall, painted", 1)]);
         assert!((errors.series[0].points[1].y - 0.1).abs() < 1e-12);
         assert_eq!(circles.series[0].points.len(), 1);
+        let on_card = |record: EngineRecord| EngineRecord { adapter: Some("card".into()), ..record };
+        let both = [records.to_vec(), records.map(on_card).to_vec()].concat();
+        let [errors, _, circles] = &plots(&both)[..] else { panic!("no other plots") };
+        assert_eq!(errors.series.len(), 4);
+        assert_eq!(circles.series.iter().map(|line| line.points.len()).collect::<Vec<_>>(), [1, 1]);
     }
 
     #[test]

@@ -4,6 +4,7 @@ use crate::engine::frame_copy::Timing;
 use crate::engine::ray_tracer::AgainstTruth;
 use salf::Salf;
 use serde::Serialize;
+use splat::Splatter;
 
 /// A time with its error. Pictures are compared with the converged splat of the same light field, those of the ray tracer
 /// with the ground truth, on linear values clipped to [0, 1].
@@ -15,8 +16,10 @@ pub struct EngineRecord {
     pub what: String,
     /// What drew.
     pub renderer: String,
-    /// Where it ran.
+    /// Where it ran: "cpu" or "gpu".
     pub backend: String,
+    /// What the graphics card's driver calls it, where that is one.
+    pub adapter: Option<String>,
     /// Threads that worked.
     pub threads: u32,
     /// Columns and rows, px.
@@ -31,6 +34,8 @@ pub struct EngineRecord {
     pub spp: Option<u32>,
     /// Median time, ms.
     pub ms_median: f64,
+    /// The last of these times by the graphics card's own clock, from the first sum to the last pixel, where it has one, ms.
+    pub card_ms: Option<f64>,
     /// Median time to copy one frame meanwhile, ms.
     pub frame_copy_ms: f64,
     /// The one in times of the other.
@@ -55,6 +60,7 @@ impl EngineRecord {
             what: what.into(),
             renderer: "splat".into(),
             backend: "cpu".into(),
+            adapter: None,
             threads: rayon::current_num_threads() as u32,
             size: [salf.camera.width, salf.camera.height],
             samples: salf.samples.len() as u64,
@@ -62,6 +68,7 @@ impl EngineRecord {
             tolerance: None,
             spp: None,
             ms_median: 0.0,
+            card_ms: None,
             frame_copy_ms: 0.0,
             frame_copies: 0.0,
             psnr: None,
@@ -84,6 +91,15 @@ impl EngineRecord {
         }
     }
 
+    /// The same of what a splatter sums, where it does.
+    pub(super) fn by(self, splatter: &Splatter) -> Self {
+        let bytes = splatter.bytes().iter().sum::<usize>() as u64;
+        match splatter.gpu() {
+            Some(gpu) => Self { backend: "gpu".into(), adapter: Some(gpu.name().into()), bytes, ..self },
+            None => Self { bytes, ..self },
+        }
+    }
+
     /// How many times as fast as the ray tracer it comes to its error; at least so many, if that takes longer than known.
     pub(super) fn times_as_fast(&self) -> Option<f64> {
         self.truth.as_ref().map(|truth| truth.ray_tracer_ms / self.ms_median)
@@ -94,13 +110,15 @@ impl EngineRecord {
         let decibels =
             |name: &str, value: Option<f64>| value.map_or(String::new(), |v| format!(", {name}{v:.1} dB"));
         format!(
-            "{} {}{}{}: {:.1} ms = {:.1} F{}{}{}",
+            "{} {}{}{}{}: {:.1} ms = {:.1} F{}{}{}{}",
             self.scene,
             self.what,
+            self.adapter.as_ref().map_or(String::new(), |name| format!(" on {name}")),
             self.tolerance.map_or(String::new(), |t| format!(" at {t}")),
             self.spp.map_or(String::new(), |spp| format!(" of {spp} rays")),
             self.ms_median,
             self.frame_copies,
+            self.card_ms.map_or(String::new(), |ms| format!(", {ms:.1} ms by its clock")),
             decibels("", self.psnr),
             decibels("outlines ", self.band_psnr),
             self.against_truth(),

@@ -170,6 +170,8 @@ fn time_planes(
     let mut planes = Vec::new();
     for &size in sizes {
         let mut splatter = Splatter::new(plane(size, diameter));
+        splatter.use_gpu(measured.gpu.clone());
+        splatter.keep_on_card(true);
         splatter.set_tolerance(Tolerance::VIEWING);
         let camera = splatter.salf().camera.clone();
         splatter.render(&camera, &Unpainted, &*progress)?;
@@ -186,10 +188,10 @@ fn time_planes(
     let timings = measured.frame.in_turn(&mut works)?;
     for ((splatter, _), timing) in planes.iter().zip(timings) {
         let scene = format!("plane, circle {diameter} px");
-        let mut record = EngineRecord::of(&scene, what, splatter.salf(), timing);
+        let mut record = EngineRecord::of(&scene, what, splatter.salf(), timing).by(splatter);
+        record.card_ms = splatter.seconds_on_card().map(|seconds| seconds * 1e3);
         record.coc_px = diameter;
         record.tolerance = Some(Tolerance::VIEWING.share_of_circle);
-        record.bytes = splatter.bytes().iter().sum::<usize>() as u64;
         note(&record.line());
         measured.records.push(record);
     }

@@ -32,7 +32,7 @@ fn method(copy: f64) -> String {
          the same light field, on linear values clipped to [0, 1]; outlines: within 6 px of depth discontinuities. \
          Tolerance: the side of a node as a share of a circle of confusion of 16 px. Truth: against ray tracing with many \
          rays, exposure \"conserve\", the own error of which is part of it; the ray tracer itself: how many times as long it \
-         takes to be as close.",
+         takes to be as close. Pictures on a graphics card stay there; a time ends when the picture is there.",
         copy * 1e3
     )
 }
@@ -69,12 +69,14 @@ fn table(report: &EngineReport) -> Table {
         "Scene",
         "What",
         "Renderer",
+        "On",
         "Size",
         "#Samples",
         "#Circle, px",
         "#Tolerance",
         "#ms",
         "#F",
+        "#Its clock, ms",
         "#PSNR, dB",
         "#Outlines, dB",
         "#Coverage rms",
@@ -100,12 +102,14 @@ fn row(record: &EngineRecord) -> Vec<String> {
         record.scene.clone(),
         record.what.clone(),
         record.renderer.clone(),
+        record.adapter.clone().unwrap_or_else(|| "processor".into()),
         format!("{} × {}", record.size[0], record.size[1]),
         record.samples.to_string(),
         format!("{:.0}", record.coc_px),
         record.spp.map_or(decimals(record.tolerance, 3), |spp| format!("{spp} rays")),
         format!("{:.1}", record.ms_median),
         format!("{:.1}", record.frame_copies),
+        decimals(record.card_ms, 2),
         decimals(record.psnr, 1),
         decimals(record.band_psnr, 1),
         decimals(record.band_coverage_rms, 4),
