@@ -25,6 +25,10 @@ pub struct Arguments {
     /// Longest side of the live picture in pixels, instead of the setting
     #[arg(long, value_name = "PX", value_parser = clap::value_parser!(u32).range(16..=8192))]
     pub preview_size: Option<u32>,
+    /// Where the live picture is summed; it is the same. auto: on the window's graphics card, and on the processor rather
+    /// than on a card that is one in software
+    #[arg(long, value_enum, default_value_t = BackendName::Auto)]
+    pub backend: BackendName,
     /// What to do without a window.
     #[command(subcommand)]
     pub command: Option<Subcommand>,
@@ -328,6 +332,16 @@ pub enum BackendName {
     Gpu,
     /// The processor.
     Cpu,
+}
+
+impl From<BackendName> for splat::BackendChoice {
+    fn from(name: BackendName) -> Self {
+        match name {
+            BackendName::Auto => Self::Auto,
+            BackendName::Gpu => Self::Gpu,
+            BackendName::Cpu => Self::Cpu,
+        }
+    }
 }
 
 /// How the sum becomes the picture.

@@ -77,7 +77,7 @@ fn dispatch(command: Subcommand) -> Result<(), Failure> {
 }
 
 fn open_window(arguments: Arguments) -> Result<(), Failure> {
-    let Arguments { file, replay, trace, preview_size, command: _ } = arguments;
+    let Arguments { file, replay, trace, preview_size, backend, command: _ } = arguments;
     let replay = replay.map(|recording| project::read_strokes(&recording)).transpose()?;
     if let Some(trace) = &trace {
         shot::check_folder(trace)?;
@@ -106,6 +106,7 @@ fn open_window(arguments: Arguments) -> Result<(), Failure> {
         preview_size,
         remember,
         light_fields,
+        backend: backend.into(),
         ..Default::default()
     };
     window::run(options).map_err(|error| {

@@ -11,7 +11,7 @@ use session::{
     Aov, Input, LayeredOptions, RenderOptions, Rendered, Renderer, ScatterOptions, SessionError,
     ViewsOptions, render_input,
 };
-use splat::{BackendChoice, Gpu};
+use splat::Gpu;
 use std::time::Instant;
 use trace::truth::{Estimator, Sampler, TruthOptions};
 
@@ -120,12 +120,7 @@ fn gpu(arguments: &RenderArguments) -> Result<Option<Gpu>, Failure> {
 
 /// The graphics card that is asked for; none for the processor.
 pub fn open_gpu(backend: BackendName, adapter: Option<&str>) -> Result<Option<Gpu>, Failure> {
-    let choice = match backend {
-        BackendName::Auto => BackendChoice::Auto,
-        BackendName::Gpu => BackendChoice::Gpu,
-        BackendName::Cpu => BackendChoice::Cpu,
-    };
-    let opened = Gpu::open(choice, adapter);
+    let opened = Gpu::open(backend.into(), adapter);
     Ok(opened.map_err(|absent| SessionError::GpuAbsent(absent.to_string()))?)
 }
 

@@ -39,6 +39,11 @@ impl Drawable {
     pub fn size(&self) -> [u32; 2] {
         self.size
     }
+
+    /// What it is drawn from.
+    pub fn texture(&self) -> &wgpu::Texture {
+        &self.texture
+    }
 }
 
 impl Blitter {
@@ -86,6 +91,16 @@ impl Blitter {
             })
         });
         Self { device, queue: state.queue.clone(), layout, pipeline, samplers }
+    }
+
+    /// The device that it draws with.
+    pub fn device(&self) -> &wgpu::Device {
+        &self.device
+    }
+
+    /// What work is given to it by.
+    pub fn queue(&self) -> &wgpu::Queue {
+        &self.queue
     }
 
     /// A black picture.

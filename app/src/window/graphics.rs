@@ -1,5 +1,6 @@
 //! The device that the window is drawn with.
 
+use splat::{BackendChoice, Gpu};
 use std::sync::Arc;
 
 /// A device with the adapter's own limits of texture and buffer size: atlases and scenes are larger than the defaults.
@@ -13,15 +14,31 @@ pub fn graphics() -> egui_wgpu::WgpuConfiguration {
     egui_wgpu::WgpuConfiguration { wgpu_setup: setup.into(), ..Default::default() }
 }
 
+/// The device that the window is drawn with as one that pictures are summed on and shown from, without coming back; none where
+/// the processor is to sum, or is better at it than an adapter in software.
+pub fn summing(state: &egui_wgpu::RenderState, choice: BackendChoice) -> Option<Gpu> {
+    let info = state.adapter.get_info();
+    let is_wanted = match choice {
+        BackendChoice::Auto => info.device_type != wgpu::DeviceType::Cpu && info.backend != wgpu::Backend::Gl,
+        BackendChoice::Gpu => true,
+        BackendChoice::Cpu => false,
+    };
+    let gpu = || Gpu::of(state.device.clone(), state.queue.clone(), info.name.clone()).ok();
+    if is_wanted { gpu() } else { None }
+}
+
 fn descriptor(adapter: &wgpu::Adapter) -> wgpu::DeviceDescriptor<'static> {
     let mut limits = adapter.limits();
     if adapter.get_info().backend != wgpu::Backend::Gl {
-        let own = limits.clone();
-        limits = wgpu::Limits::default();
-        limits.max_texture_dimension_2d = own.max_texture_dimension_2d;
-        limits.max_buffer_size = own.max_buffer_size;
+        let max_texture_dimension_2d = limits.max_texture_dimension_2d;
+        limits = wgpu::Limits { max_texture_dimension_2d, ..Gpu::limits(&limits) };
     }
-    wgpu::DeviceDescriptor { label: Some("focus-brush"), required_limits: limits, ..Default::default() }
+    wgpu::DeviceDescriptor {
+        label: Some("focus-brush"),
+        required_limits: limits,
+        required_features: Gpu::features(adapter.features()),
+        ..Default::default()
+    }
 }
 
 /// By how much the threads of an adapter in software stand back behind those that sum pictures: as far as work that has time.
@@ -32,7 +49,7 @@ const STANDS_BACK: i32 = 5;
 /// is summed first and drawn then. Threads inherit that from the one that makes the device.
 #[cfg(target_os = "linux")]
 fn behind_the_sums() -> Option<egui_wgpu::WgpuSetupExisting> {
-    if splat::Gpu::may_be_there() {
+    if Gpu::may_be_there() {
         return None;
     }
     let make = || {

@@ -80,6 +80,8 @@ pub struct WindowOptions {
     pub exact_after: Option<Duration>,
     /// Where light fields are kept from one run to the next; none: they are baked every time.
     pub light_fields: Option<session::LightFieldStore>,
+    /// Where the live picture is summed.
+    pub backend: splat::BackendChoice,
     /// How scenes are unwrapped.
     pub unwrap: atlas::UnwrapOptions,
     /// Whether the system is asked for its file dialogs; else paths are typed.
@@ -99,6 +101,7 @@ impl Default for WindowOptions {
             preview_size: None,
             exact_after: Some(Duration::from_millis(500)),
             light_fields: None,
+            backend: splat::BackendChoice::Auto,
             unwrap: atlas::UnwrapOptions::default(),
             system_dialogs: system_dialogs(),
             replay: None,

@@ -173,8 +173,9 @@ impl Player {
             return Err(SessionError::NothingOpen);
         };
         let exact = session.exact_picture()?;
-        let [shown, exact] =
-            [&*preview.picture, &exact].map(|picture| LinearPicture::of(picture, document.exposure));
+        let what = "the graphics card that held the picture was lost (try again)";
+        let shown = preview.picture.bring().ok_or(SessionError::TryAgain(what.into()))?;
+        let [shown, exact] = [&*shown, &exact].map(|picture| LinearPicture::of(picture, document.exposure));
         let error = compare(&shown, &exact)?;
         let all = |of: fn(&Seen) -> Duration| statistics(self.seen.iter().map(of));
         let of_step = |k: usize| statistics(self.seen.iter().map(|seen| seen.steps[k]));

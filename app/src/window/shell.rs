@@ -28,7 +28,7 @@ use super::status_line::{StatusNotes, status_line};
 use super::toasts::{Severity, Toasts};
 use super::tool_bar::{largest_radius, tool_bar};
 use super::unsaved_question::{Next, UnsavedQuestion};
-use super::{Action, Tool, ViewSettings, WindowOptions, keys, soft_painter, theme};
+use super::{Action, Tool, ViewSettings, WindowOptions, graphics, keys, soft_painter, theme};
 use eframe::{CreationContext, Frame, Storage};
 use egui::{CentralPanel, Context, Panel, Ui, ViewportCommand};
 use session::{CameraEdit, Command, CommandId, Event, ReferenceKind, Session, SessionError, SessionOptions};
@@ -92,6 +92,7 @@ impl Shell {
             preview_size: options.preview_size.unwrap_or(settings.preview_size),
             exact_after: options.exact_after,
             light_fields: options.light_fields,
+            gpu: state.and_then(|state| graphics::summing(state, options.backend)),
             waker: Arc::new(move || context.request_repaint()),
             ..SessionOptions::default()
         })?;

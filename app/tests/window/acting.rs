@@ -68,7 +68,7 @@ impl Person {
     }
 
     pub fn picture(&self) -> Arc<Picture> {
-        self.shell().session().preview().expect("a picture").picture.clone()
+        self.shell().session().preview().expect("a picture").picture.bring().expect("its card is there")
     }
 
     pub fn complaints(&self) -> Vec<String> {

@@ -123,9 +123,9 @@ fn a_rectangle_is_checked_by_rays_better_and_better_and_can_be_closed() {
     assert!(person.window.query_by_label_contains("PSNR").is_some());
     // A control that fails: another picture is far off.
     let mut wrong = preview.clone();
-    let mut picture = (*wrong.picture).clone();
+    let mut picture = (*wrong.picture.bring().unwrap()).clone();
     picture.radiance.iter_mut().for_each(|rgb| *rgb = [0.5; 3]);
-    wrong.picture = std::sync::Arc::new(picture);
+    wrong.picture = session::LivePicture::Here(std::sync::Arc::new(picture));
     let far = verification.error_of(&wrong, lens::Exposure::Normalise).unwrap().unwrap();
     assert!(far.psnr < error.psnr - 8.0, "{} {}", far.psnr, error.psnr);
 

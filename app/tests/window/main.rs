@@ -10,6 +10,7 @@ mod documents;
 mod dragging;
 mod key_maps;
 mod layers;
+mod on_card;
 mod painting;
 mod panels;
 mod quality;

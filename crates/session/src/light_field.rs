@@ -1,5 +1,6 @@
 //! A baked light field with its running sum, and what it takes to bring the sum up to date.
 
+use crate::live_picture::Source;
 use crate::picture_ring::Rectangle;
 use crate::reach::Reach;
 use crate::render::light;
@@ -9,7 +10,7 @@ use focus::Focus;
 use lens::{Camera, Picture};
 use progress::Progress;
 use salf::{BakeOptions, Salf};
-use splat::{BackendChoice, Gpu, SplatError, Splatter, Tolerance};
+use splat::{Gpu, SplatError, Splatter, Tolerance};
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -79,12 +80,14 @@ pub(crate) enum Brought {
 }
 
 /// How a light field is baked and summed.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct FieldOptions {
     /// How far outside the frame to sample at least, px.
     pub least_margin_px: f64,
     /// How coarse its sums may be.
     pub tolerance: Tolerance,
+    /// What they are made on; none: the processor.
+    pub gpu: Option<Gpu>,
 }
 
 /// A light field to look at.
@@ -132,11 +135,11 @@ impl LightField {
         let options = BakeOptions { margin_px, ..BakeOptions::default() };
         let radiance = light(&stage.tracer, camera);
         let salf = salf::bake(&stage.tracer, &radiance, camera, &options, progress)?;
-        Ok(Self::of(stage, Arc::new(salf), how.tolerance))
+        Ok(Self::of(stage, Arc::new(salf), how.tolerance, how.gpu))
     }
 
     /// A light field that was baked before.
-    pub fn of(stage: &Stage, salf: Arc<Salf>, tolerance: Tolerance) -> Self {
+    pub fn of(stage: &Stage, salf: Arc<Salf>, tolerance: Tolerance, gpu: Option<Gpu>) -> Self {
         let index = Arc::new(SampleIndex::new(&salf, &stage.atlas));
         let modelled = Modelled::with_texels(&salf, &stage.tracer, Some(&stage.texels.texels));
         let mut splatter = Splatter::new(salf);
@@ -144,7 +147,8 @@ impl LightField {
         // The first dab on it is to cost what any dab does.
         splatter.set_live(true);
         // Without a card, or one that works, the processor sums.
-        splatter.use_gpu(Gpu::open(BackendChoice::Auto, None).ok().flatten());
+        splatter.use_gpu(gpu);
+        splatter.keep_on_card(true);
         Self::unsummed(splatter, index, modelled)
     }
 
@@ -290,9 +294,16 @@ impl LightField {
         Ok(brought)
     }
 
-    /// The picture of the sum.
-    pub fn picture(&self) -> &Picture {
-        self.splatter.picture()
+    /// The picture of the sum, where it was made.
+    pub fn source(&self) -> Source<'_> {
+        let on_card = self.splatter.picture_on_card().map(Source::There);
+        on_card.unwrap_or_else(|| Source::Here(self.splatter.picture()))
+    }
+
+    /// The picture of the sum, brought back if it is on a card.
+    pub fn brought(&mut self) -> Result<&Picture, SplatError> {
+        self.splatter.fetch()?;
+        Ok(self.splatter.picture())
     }
 
     /// The light field itself, and where its samples are.
@@ -363,7 +374,7 @@ mod tests {
         let camera = Camera { width: 90, height: 60, ..document.camera.clone() };
         let (blank, none) = painted(&document, FocusOffset::STANDARD, |_| false);
         assert!(none.is_empty());
-        let how = FieldOptions { least_margin_px: 0.0, tolerance: Tolerance::VIEWING };
+        let how = FieldOptions { least_margin_px: 0.0, tolerance: Tolerance::VIEWING, gpu: None };
         let mut field = LightField::bake(stage, &camera, &blank, how, &Unwatched).unwrap();
         field.bring_up(&camera, &blank, &Unwatched).unwrap();
         field.survey(&camera, &blank);
@@ -414,20 +425,21 @@ mod tests {
         let document = quads();
         let camera = Camera { width: 90, height: 60, ..document.camera.clone() };
         let (blank, _) = painted(&document, FocusOffset::STANDARD, |_| false);
-        let how = FieldOptions { least_margin_px: 0.0, tolerance: Tolerance::VIEWING };
+        let how = FieldOptions { least_margin_px: 0.0, tolerance: Tolerance::VIEWING, gpu: None };
         let field = LightField::bake(&document.stage, &camera, &blank, how, &Unwatched).unwrap();
         let mut exact = field.exact();
         assert!(exact.is_twin_of(&field) && exact.summing_bytes() > 0);
         assert!(!exact.is_up_to_date(&camera));
         exact.bring_up(&camera, &blank, &Unwatched).unwrap();
         assert!(exact.is_up_to_date(&camera));
-        let was = exact.picture().clone();
+        let was = exact.brought().unwrap().clone();
         let dab = |at: DVec3| at.z < -3.5 && at.x.abs() < 0.3;
         let (focus, texels) = painted(&document, FocusOffset::new(1.2, 1.0), dab);
         exact.note(&Changes::Texels(texels));
         assert!(matches!(exact.bring_up(&camera, &focus, &Unwatched), Ok(Brought::Update(_))));
         let mut anew = field.exact();
         anew.bring_up(&camera, &focus, &Unwatched).unwrap();
-        assert!(exact.picture() == anew.picture() && *exact.picture() != was);
+        let exact = exact.brought().unwrap();
+        assert!(exact == anew.brought().unwrap() && *exact != was);
     }
 }

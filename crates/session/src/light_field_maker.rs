@@ -118,7 +118,7 @@ impl LightFieldMaker {
 fn make(order: Order, shared: &Shared, store: Option<&LightFieldStore>) -> Result<LightField, SessionError> {
     let Order { begin, stage, camera, focus, tolerance, epoch: _ } = order;
     let bake = |least_margin_px| {
-        let how = FieldOptions { least_margin_px, tolerance };
+        let how = FieldOptions { least_margin_px, tolerance, gpu: shared.gpu() };
         let start = Instant::now();
         shared.progress.begin_step("", 0.0, BAKE_SHARE);
         let field =
@@ -136,7 +136,7 @@ fn make(order: Order, shared: &Shared, store: Option<&LightFieldStore>) -> Resul
         Begin::Find { least_margin_px } => {
             let stored = store.and_then(|store| store.find(&stage, &camera, least_margin_px));
             match stored {
-                Some(salf) => LightField::of(&stage, Arc::new(salf), tolerance),
+                Some(salf) => LightField::of(&stage, Arc::new(salf), tolerance, shared.gpu()),
                 None => bake(least_margin_px)?,
             }
         }

@@ -1,17 +1,19 @@
 //! How pictures come to be shown: where one differs from the one before, in what tone, with which number.
 
+use crate::live_picture::{LivePicture, Source};
 use crate::picture_ring::{PictureRing, Rectangle, whole};
 use crate::preview::Shared;
-use crate::screen::Patch;
+use crate::screen::{Content, Patch};
 use crate::tone::rectangle_to_screen;
 use crate::{DrawingCosts, Modelled, PictureTimes, Preview, PreviewKind, Quality, Tone};
-use lens::{Camera, Exposure, Picture};
+use lens::{Camera, Exposure};
+use splat::PictureOnCard;
 use std::sync::Arc;
 use std::time::Instant;
 
 /// A picture that was made.
 pub(crate) struct Made<'a> {
-    pub picture: &'a Picture,
+    pub picture: Source<'a>,
     pub camera: &'a Camera,
     /// What it has to do with the one before.
     pub relation: Relation,
@@ -39,6 +41,8 @@ pub(crate) struct Presenter {
     shown: Option<Preview>,
     /// It and those of before.
     pictures: PictureRing,
+    /// It, if it is on a card.
+    on_card: Option<PictureOnCard>,
     tone: Tone,
     last_id: u64,
     /// Which of the session's documents is shown.
@@ -57,6 +61,7 @@ impl Presenter {
             shared,
             shown: None,
             pictures: PictureRing::default(),
+            on_card: None,
             tone: Tone::default(),
             last_id: 0,
             generation: 0,
@@ -78,11 +83,6 @@ impl Presenter {
         self.shown.as_ref()
     }
 
-    /// The picture that is worked with, beneath a better one that may lie over it.
-    pub fn followed(&self) -> Option<Arc<Picture>> {
-        self.pictures.followed()
-    }
-
     /// By which exposure pictures are shown.
     pub fn exposure(&self) -> Exposure {
         self.tone.exposure
@@ -92,11 +92,7 @@ impl Presenter {
     pub fn show(&mut self, made: Made) {
         let summed = Instant::now();
         let is_new = matches!(made.relation, Relation::New);
-        let (picture, changed) = match made.relation {
-            Relation::New => (self.pictures.begin(made.picture), Some(whole(made.picture))),
-            Relation::Changed(rectangle) => self.pictures.follow(made.picture, &rectangle),
-            Relation::Better => self.pictures.overlay(made.picture),
-        };
+        let (picture, changed) = self.take_up(made.picture, made.relation);
         self.last_id += 1;
         let preview = Preview {
             id: self.last_id,
@@ -130,17 +126,58 @@ impl Presenter {
         if let Some(mut preview) = self.shown.clone() {
             self.last_id += 1;
             preview.id = self.last_id;
-            let patch = self.patch(&preview.picture, whole(&preview.picture));
+            let patch = self.patch(&preview.picture, preview.picture.size().map(|side| 0..side));
             self.shared.publish(preview, Some(patch), None);
         }
     }
 
-    /// A rectangle of a picture, as the screen shows it.
-    fn patch(&self, picture: &Picture, rectangle: Rectangle) -> Patch {
-        Patch {
-            size: [picture.width, picture.height],
-            pixels: rectangle_to_screen(picture, self.tone, rectangle.clone()),
-            rectangle,
+    /// The picture that is shown from now on, and where it differs from the one before.
+    fn take_up(&mut self, picture: Source, relation: Relation) -> (LivePicture, Option<Rectangle>) {
+        let picture = match picture {
+            Source::Here(picture) => picture,
+            Source::There(picture) => return self.take_up_on_card(&picture, relation),
+        };
+        self.on_card = None;
+        let (picture, changed) = match relation {
+            Relation::New => (self.pictures.begin(picture), Some(whole(picture))),
+            Relation::Changed(rectangle) => self.pictures.follow(picture, &rectangle),
+            Relation::Better => self.pictures.overlay(picture),
+        };
+        (LivePicture::Here(picture), changed)
+    }
+
+    /// The same of one on a card: it does not come back.
+    fn take_up_on_card(
+        &mut self,
+        picture: &PictureOnCard,
+        relation: Relation,
+    ) -> (LivePicture, Option<Rectangle>) {
+        // What is kept of the processor's pictures is of before.
+        self.pictures = PictureRing::default();
+        let kept = self.on_card.take_if(|shown| shown.is_like(picture));
+        let (shown, changed) = match (kept, relation) {
+            (Some(shown), Relation::Changed(rectangle)) => (shown, rectangle),
+            // Where there is no room for another, what is summed is shown while it is.
+            (kept, _) => {
+                let shown = kept.or_else(|| PictureOnCard::like(picture)).unwrap_or_else(|| picture.clone());
+                (shown, picture.size().map(|side| 0..side))
+            }
+        };
+        if !shown.is_same(picture) {
+            shown.copy(picture, &changed);
         }
+        self.on_card = Some(shown.clone());
+        (LivePicture::There(shown), Some(changed))
+    }
+
+    /// A rectangle of a picture, as the screen shows it.
+    fn patch(&self, picture: &LivePicture, rectangle: Rectangle) -> Patch {
+        let content = match picture {
+            LivePicture::Here(picture) => {
+                Content::Pixels(rectangle_to_screen(picture, self.tone, rectangle.clone()))
+            }
+            LivePicture::There(picture) => Content::OnCard(picture.clone(), self.tone),
+        };
+        Patch { size: picture.size(), rectangle, content }
     }
 }

@@ -25,12 +25,12 @@ use crate::light_field_store::LightFieldStore;
 use crate::preview_worker::Worker;
 use crate::refinement::Refined;
 use crate::screen::Patch;
-use crate::{Modelled, SessionError, Stage, Tone};
+use crate::{LivePicture, Modelled, SessionError, Stage, Tone};
 use focus::FocusMap;
-use lens::{Camera, Picture};
+use lens::Camera;
 use progress::{Cancelled, Progress};
 use salf::Salf;
-use splat::Tolerance;
+use splat::{Gpu, Tolerance};
 use std::sync::atomic::{AtomicBool, AtomicU8, AtomicUsize, Ordering};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
@@ -41,7 +41,7 @@ pub struct Preview {
     /// Counts up: a newer picture has a greater id.
     pub id: u64,
     /// The picture, radiance and coverage.
-    pub picture: Arc<Picture>,
+    pub picture: LivePicture,
     /// How it was made.
     pub kind: PreviewKind,
     /// How good it is.
@@ -207,6 +207,7 @@ pub(crate) struct Shared {
     /// The light field that the helper makes.
     pub field: FieldWatch,
     published: Mutex<Published>,
+    gpu: Option<Gpu>,
     waker: Waker,
 }
 
@@ -327,7 +328,7 @@ impl Shared {
             published.news.finished.extend(times);
         }
         if let Some(patch) = patch {
-            let is_whole = patch.pixels.len() == patch.size[0] as usize * patch.size[1] as usize;
+            let is_whole = patch.is_whole();
             let patches = &mut published.news.patches;
             patches.retain(|_| !is_whole);
             patches.push((preview.generation, patch));
@@ -335,6 +336,11 @@ impl Shared {
         published.latest = Some(preview);
         drop(published);
         (self.waker)();
+    }
+
+    /// What pictures are summed on; none, or none any more: the processor.
+    pub fn gpu(&self) -> Option<Gpu> {
+        self.gpu.clone().filter(|gpu| !gpu.is_lost())
     }
 
     /// Shows the light field that pictures are made of.
@@ -420,13 +426,15 @@ pub(crate) struct PreviewThread {
 
 impl PreviewThread {
     /// Starts the thread. `exact_after`: for how long nothing must change until the exact picture is drawn; none: never.
-    /// `store`: where light fields are kept.
+    /// `store`: where light fields are kept. `gpu`: what pictures are summed on; none: the processor.
     pub fn start(
         waker: Waker,
         exact_after: Option<Duration>,
         store: Option<LightFieldStore>,
+        gpu: Option<Gpu>,
     ) -> Result<Self, SessionError> {
         let shared = Arc::new(Shared {
+            gpu,
             wishes: Mutex::default(),
             wake: Condvar::new(),
             quick: JobProgress::default(),

@@ -4,6 +4,7 @@ use crate::job::guarded;
 use crate::light_field::{Brought, FieldOptions, LightField, Plan};
 use crate::light_field_maker::{Begin, LightFieldMaker, Order};
 use crate::light_field_store::LightFieldStore;
+use crate::live_picture::Source;
 use crate::presenter::{Made, Presenter, Relation};
 use crate::preview::{Delivery, Shared, Wishes};
 use crate::refinement::{Refined, Refinement, Task};
@@ -247,7 +248,7 @@ impl Worker {
             // The sum of a new one was made elsewhere.
             let elsewhere = if is_new { fine.whole_seconds() } else { 0.0 };
             self.presenter.show(Made {
-                picture: fine.picture(),
+                picture: fine.source(),
                 camera,
                 kind: PreviewKind::from(&brought),
                 quality: if is_exact { Quality::Exact } else { Quality::Viewing },
@@ -280,7 +281,7 @@ impl Worker {
         let radiance = light(&stage.tracer, camera);
         let hits = FirstHits::trace(&stage.tracer, &radiance, focus, camera, &self.shared.quick)?;
         self.presenter.show(Made {
-            picture: &hits.picture(),
+            picture: Source::Here(&hits.picture()),
             camera,
             relation: Relation::New,
             kind: PreviewKind::Pinhole,
@@ -307,7 +308,8 @@ impl Worker {
             Some(coarse) => coarse,
             None => {
                 self.shared.begin(PreviewActivity::RoughBaking)?;
-                let how = FieldOptions { least_margin_px: 0.0, tolerance: self.tolerance };
+                let (tolerance, gpu) = (self.tolerance, self.shared.gpu());
+                let how = FieldOptions { least_margin_px: 0.0, tolerance, gpu };
                 self.coarse.insert(LightField::bake(stage, small, focus, how, &self.shared.quick)?)
             }
         };
@@ -317,7 +319,7 @@ impl Worker {
         let is_another = self.presenter.shown().is_none_or(|shown| shown.camera != *small);
         if brought != Brought::Nothing || is_another {
             self.presenter.show(Made {
-                picture: coarse.picture(),
+                picture: coarse.source(),
                 camera: small,
                 kind: PreviewKind::from(&brought),
                 quality: Quality::Coarse,
@@ -351,7 +353,8 @@ impl Worker {
 
     /// Begins to draw the exact picture, if nothing was wished meanwhile.
     fn refine(&mut self, camera: Camera, focus: Focus) {
-        let (Some(fine), Some(viewing)) = (&self.fine, self.presenter.followed()) else { return };
+        let Some(fine) = &mut self.fine else { return };
+        let Ok(viewing) = fine.brought().cloned().map(Arc::new) else { return };
         let (exposure, map_serial) = (self.presenter.exposure(), self.presenter.map_serial);
         let task = Task { camera, focus, viewing, exposure, map_serial };
         self.refinement.start(&self.shared, fine, task);
@@ -375,7 +378,7 @@ impl Worker {
         costs.viewing_psnr = Some(exact.viewing_psnr);
         costs.exact_seconds = Some(field.whole_seconds());
         self.presenter.show(Made {
-            picture: field.picture(),
+            picture: field.source(),
             camera: &exact.camera,
             relation: Relation::Better,
             kind: PreviewKind::Splat,

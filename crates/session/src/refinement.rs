@@ -141,7 +141,7 @@ fn draw(field: &mut LightField, task: Task, shared: &Shared) -> Result<Exact, Se
     let start = Instant::now();
     field.bring_up(&camera, &focus, &Share::new(&shared.refining, 0.0, 1.0))?;
     let seconds = start.elapsed().as_secs_f64();
-    let viewing_psnr = psnr_between(&viewing, field.picture(), exposure);
+    let viewing_psnr = psnr_between(&viewing, field.brought()?, exposure);
     Ok(Exact { map_serial, camera, seconds, viewing_psnr })
 }
 

@@ -1,19 +1,21 @@
 //! The live picture as the screen shows it, and where it changed lately.
 
-use crate::ScreenPixel;
 use crate::picture_ring::Rectangle;
+use crate::{ScreenPixel, Tone};
 use focus::union;
+use splat::PictureOnCard;
 use std::collections::VecDeque;
 use std::ops::Range;
 
 /// Changes that are remembered: a window that looks at every frame needs one or two.
 const REMEMBERED: usize = 16;
 
-/// The live picture, exposed, tone mapped and encoded: ready to be shown.
+/// The live picture, exposed, tone mapped and encoded: ready to be shown. One on a graphics card is still to be.
 #[derive(Debug, Default)]
 pub struct Screen {
     size: [u32; 2],
     pixels: Vec<ScreenPixel>,
+    on_card: Option<(PictureOnCard, Tone)>,
     /// Counts up with every change.
     serial: u64,
     /// What changed, with the serial after it.
@@ -27,8 +29,23 @@ pub(crate) struct Patch {
     pub size: [u32; 2],
     /// Columns and rows.
     pub rectangle: Rectangle,
+    pub content: Content,
+}
+
+/// What is in it.
+#[derive(Debug)]
+pub(crate) enum Content {
     /// Row by row.
-    pub pixels: Vec<ScreenPixel>,
+    Pixels(Vec<ScreenPixel>),
+    /// What it holds in this rectangle of a card's memory.
+    OnCard(PictureOnCard, Tone),
+}
+
+impl Patch {
+    /// Whether it leaves nothing of what was shown.
+    pub fn is_whole(&self) -> bool {
+        self.rectangle == self.size.map(|side| 0..side)
+    }
 }
 
 impl Screen {
@@ -37,9 +54,14 @@ impl Screen {
         self.size
     }
 
-    /// All pixels, row by row.
+    /// All pixels, row by row; none where the picture is [on a card](Self::on_card).
     pub fn pixels(&self) -> &[ScreenPixel] {
         &self.pixels
+    }
+
+    /// The picture on a graphics card, linear, and how it is to be shown.
+    pub fn on_card(&self) -> Option<(&PictureOnCard, Tone)> {
+        self.on_card.as_ref().map(|(picture, tone)| (picture, *tone))
     }
 
     /// Counts changes.
@@ -68,14 +90,21 @@ impl Screen {
     /// Takes up what was made anew.
     pub(crate) fn take(&mut self, patch: Patch) {
         let width = patch.rectangle[0].len();
-        if patch.size != self.size {
-            self.size = patch.size;
-            self.pixels = vec![[0; 4]; patch.size[0] as usize * patch.size[1] as usize];
+        if std::mem::replace(&mut self.size, patch.size) != patch.size {
+            self.pixels = Vec::new();
         }
-        if width > 0 {
-            for (pixels, row) in patch.pixels.chunks_exact(width).zip(patch.rectangle[1].clone()) {
-                let first = row as usize * self.size[0] as usize + patch.rectangle[0].start as usize;
-                self.pixels[first..first + width].copy_from_slice(pixels);
+        match patch.content {
+            Content::OnCard(picture, tone) => {
+                self.on_card = Some((picture, tone));
+                self.pixels = Vec::new();
+            }
+            Content::Pixels(patch_pixels) => {
+                self.on_card = None;
+                self.pixels.resize(patch.size[0] as usize * patch.size[1] as usize, [0; 4]);
+                for (pixels, row) in patch_pixels.chunks_exact(width.max(1)).zip(patch.rectangle[1].clone()) {
+                    let first = row as usize * self.size[0] as usize + patch.rectangle[0].start as usize;
+                    self.pixels[first..first + width].copy_from_slice(pixels);
+                }
             }
         }
         self.serial += 1;
@@ -96,7 +125,7 @@ mod tests {
         assert_eq!(screen.changed_since(0), None);
         let patch = |rectangle: Rectangle, value: u8| {
             let pixels = vec![[value; 4]; rectangle[0].len() * rectangle[1].len()];
-            Patch { size: [10, 8], rectangle, pixels }
+            Patch { size: [10, 8], rectangle, content: Content::Pixels(pixels) }
         };
         screen.take(patch([0..10, 0..8], 1));
         assert_eq!(screen.changed_since(0), Some([0..10, 0..8]));

@@ -25,7 +25,7 @@ use atlas::UnwrapOptions;
 use focus::FillTarget;
 use glam::DVec2;
 use lens::{Camera, FocusOffset};
-use splat::Tolerance;
+use splat::{Gpu, Tolerance};
 use std::collections::BTreeMap;
 use std::ops::Range;
 use std::path::PathBuf;
@@ -50,6 +50,8 @@ pub struct SessionOptions {
     pub exact_after: Option<Duration>,
     /// Where light fields are kept from one run to the next; none: they are baked every time.
     pub light_fields: Option<LightFieldStore>,
+    /// The graphics card that the preview is summed on, and shown from; none: the processor sums.
+    pub gpu: Option<Gpu>,
     /// Called from any thread when there is something to poll.
     pub waker: Waker,
 }
@@ -63,6 +65,7 @@ impl Default for SessionOptions {
             keep_after: Duration::from_secs(15),
             exact_after: None,
             light_fields: None,
+            gpu: None,
             waker: Arc::new(|| {}),
         }
     }
@@ -156,6 +159,7 @@ impl Session {
                 options.waker.clone(),
                 options.exact_after,
                 options.light_fields.clone(),
+                options.gpu.clone(),
             )?,
             options,
             document: None,

@@ -44,13 +44,13 @@ impl Verification {
         exposure: Exposure,
     ) -> Option<Result<VerifiedError, ProjectError>> {
         let estimate = self.estimate.as_ref()?;
-        let shown = &preview.picture;
         let is_same = preview.kind != PreviewKind::Pinhole
             && preview.quality > Quality::Coarse
-            && (shown.width, shown.height) == (self.camera.width, self.camera.height);
-        is_same.then(|| {
+            && preview.picture.size() == [self.camera.width, self.camera.height];
+        let shown = if is_same { preview.picture.bring() } else { None }?;
+        let compared = || {
             let truth = LinearPicture::of(&estimate.picture, exposure);
-            let splat = LinearPicture::of(&crop(shown, self.region), exposure);
+            let splat = LinearPicture::of(&crop(&shown, self.region), exposure);
             let compared = compare(&splat, &truth)?;
             Ok(VerifiedError {
                 psnr: compared.psnr,
@@ -58,7 +58,8 @@ impl Verification {
                 noise_psnr: -20.0 * estimate.expected_rmse(exposure).log10(),
                 map: project::error_colours(&splat, &truth)?,
             })
-        })
+        };
+        Some(compared())
     }
 }
 

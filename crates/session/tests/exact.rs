@@ -38,7 +38,7 @@ fn wait_for(session: &mut Session, quality: Quality) -> Picture {
             .is_some_and(|preview| preview.quality == quality && preview.map_serial == session.map_serial())
             && session.is_settled()
     });
-    (*preview(session).picture).clone()
+    (*preview(session).picture.bring().unwrap()).clone()
 }
 
 fn opened(scene: &Path, exact_after: Option<Duration>) -> Session {
@@ -63,7 +63,7 @@ fn dab(session: &mut Session, x: f64) {
 /// What is on screen is the preview's picture.
 fn shows_preview(session: &Session) -> bool {
     let tone = Tone { exposure: session.document().unwrap().exposure, display: session.display() };
-    session.screen().pixels() == to_screen(&preview(session).picture, tone)
+    session.screen().pixels() == to_screen(&preview(session).picture.bring().unwrap(), tone)
 }
 
 #[test]
@@ -136,7 +136,7 @@ fn without_the_wish_no_exact_picture_is_drawn_and_the_tolerance_is_the_users() {
         pairs.map(|(a, b)| f64::from(a - b).powi(2)).sum()
     };
     session.apply(Command::SetTolerance(Tolerance { share_of_circle: 1.0 })).unwrap();
-    wait(&mut session, "a coarser picture", |session| *preview(session).picture != fine);
+    wait(&mut session, "a coarser picture", |session| *preview(session).picture.bring().unwrap() != fine);
     let coarse = wait_for(&mut session, Quality::Viewing);
     session.apply(Command::SetTolerance(Tolerance::NONE)).unwrap();
     let exact = wait_for(&mut session, Quality::Exact);

@@ -42,7 +42,7 @@ fn opened(scene: &Path, folder: &Path) -> Session {
 fn fine(session: &mut Session) -> Picture {
     let is_fine = |preview: &Preview| preview.quality == Quality::Viewing;
     wait(session, "a picture", |session| session.preview().is_some_and(is_fine) && session.is_settled());
-    (*session.preview().unwrap().picture).clone()
+    (*session.preview().unwrap().picture.bring().unwrap()).clone()
 }
 
 /// The files that are kept, once there are as many.
@@ -84,7 +84,9 @@ fn a_scene_that_was_baked_once_is_not_baked_again() {
     // F5 bakes whatever is kept, and keeps that.
     session.apply(Command::Bake).unwrap();
     wait(&mut session, "another picture", |session| {
-        session.preview().is_some_and(|p| p.quality == Quality::Viewing && *p.picture == picture)
+        session
+            .preview()
+            .is_some_and(|p| p.quality == Quality::Viewing && *p.picture.bring().unwrap() == picture)
     });
     drop(session);
     assert_eq!(kept(&store, 1), files);

@@ -48,7 +48,7 @@ fn opened_with(path: &Path, options: SessionOptions) -> Session {
 fn picture(session: &Session) -> Picture {
     let preview = session.preview().expect("a preview");
     assert_ne!(preview.kind, PreviewKind::Pinhole);
-    (*preview.picture).clone()
+    (*preview.picture.bring().unwrap()).clone()
 }
 
 /// A point of the picture on the wall, away from card and dot.
@@ -87,7 +87,7 @@ fn paint_shows_while_the_stroke_goes_on_and_undo_brings_the_same_bits_back() {
     assert!(session.is_painting());
     let shown = |session: &Session| {
         let tone = Tone { exposure: session.document().unwrap().exposure, display: session.display() };
-        session.screen().pixels() == to_screen(&session.preview().unwrap().picture, tone)
+        session.screen().pixels() == to_screen(&session.preview().unwrap().picture.bring().unwrap(), tone)
     };
     assert!(shown(&session), "what was made anew piece by piece is the whole");
     let [columns, rows] = session.screen().changed_since(seen).expect("a change");

@@ -10,6 +10,7 @@ mod adapter;
 mod device;
 mod listing;
 mod passes;
+mod picture_on_card;
 mod records;
 mod resolve;
 mod scene;
@@ -21,4 +22,5 @@ mod tests;
 
 pub use adapter::{AdapterDescription, BackendChoice, GpuAbsent, adapters};
 pub use device::Gpu;
+pub use picture_on_card::PictureOnCard;
 pub(crate) use sums::{GpuError, GpuSums};

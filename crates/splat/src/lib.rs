@@ -35,7 +35,7 @@ mod stencil;
 mod sums;
 mod widest;
 
-pub use gpu::{AdapterDescription, BackendChoice, Gpu, GpuAbsent, adapters};
+pub use gpu::{AdapterDescription, BackendChoice, Gpu, GpuAbsent, PictureOnCard, adapters};
 pub use lens_in_use::Tolerance;
 pub use nodes::QUANTUM;
 pub use splatter::{SplatError, Splatter};

@@ -125,6 +125,7 @@ impl Splatter {
     pub fn twin(&self) -> Self {
         let mut twin = Self::of(self.salf.clone(), self.nodes.clone(), self.aperture.clone());
         twin.use_gpu(self.gpu().cloned());
+        twin.keep_on_card(self.keeps_on_card());
         twin.set_live(self.is_live);
         twin
     }

@@ -1,5 +1,6 @@
 //! The picture view: the latest refocused picture, as the shot camera sees it, painted on directly.
 
+mod develop;
 mod shown;
 mod verify;
 mod wipe;

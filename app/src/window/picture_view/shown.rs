@@ -1,8 +1,10 @@
 //! The pictures that the view can show, as textures.
 
 use crate::window::blit::{Blitter, Drawable};
+use crate::window::picture_view::develop::Developer;
 use lens::Picture;
 use session::{ReferenceKind, Screen, Session, Tone, to_screen};
+use splat::PictureOnCard;
 use std::sync::Arc;
 
 /// Which picture is shown.
@@ -57,6 +59,8 @@ impl Shown {
 /// The textures of the pictures, each as new as its picture.
 #[derive(Default)]
 pub struct Textures {
+    /// From the first picture on a card on.
+    developer: Option<Developer>,
     held: [Option<Held>; Shown::ALL.len()],
 }
 
@@ -70,6 +74,8 @@ struct Held {
 enum Source {
     /// The live picture, after this many changes of the screen.
     Live(u64),
+    /// The same from a graphics card, and how it was put on screen.
+    OnCard(u64, Tone),
     /// A picture to compare with, and how it was put on screen.
     Reference(Arc<Picture>, Tone),
 }
@@ -85,7 +91,13 @@ impl Textures {
     ) -> Option<&Drawable> {
         let held = &mut self.held[shown as usize];
         match shown.kind() {
-            None => show_live(held, blitter, session.screen()),
+            None => match session.screen().on_card() {
+                Some(on_card) => {
+                    let developer = self.developer.get_or_insert_with(|| Developer::new(blitter));
+                    show_on_card(held, (blitter, developer), session.screen(), on_card);
+                }
+                None => show_live(held, blitter, session.screen()),
+            },
             Some(kind) => {
                 let picture = session.reference(kind).map(|reference| &reference.picture);
                 show_reference(held, blitter, picture, tone);
@@ -112,6 +124,28 @@ fn show_live(held: &mut Option<Held>, blitter: &Blitter, screen: &Screen) {
         blitter.write(&drawn, screen.pixels(), &rectangle);
     }
     *held = Some(Held { drawn, of: Source::Live(screen.serial()) });
+}
+
+/// Develops what changed of a picture on a graphics card.
+fn show_on_card(
+    held: &mut Option<Held>,
+    (blitter, developer): (&Blitter, &Developer),
+    screen: &Screen,
+    (picture, tone): (&PictureOnCard, Tone),
+) {
+    let size = screen.size();
+    let old = held.take().filter(|held| held.drawn.size() == size);
+    let (drawn, changed) = match old {
+        Some(Held { drawn, of: Source::OnCard(seen, by) }) if by == tone => {
+            (drawn, screen.changed_since(seen))
+        }
+        Some(Held { drawn, of: Source::OnCard(..) }) => (drawn, Some(size.map(|side| 0..side))),
+        _ => (developer.picture(blitter, size), Some(size.map(|side| 0..side))),
+    };
+    if let Some(rectangle) = changed {
+        developer.develop(picture, tone, &drawn, &rectangle);
+    }
+    *held = Some(Held { drawn, of: Source::OnCard(screen.serial(), tone) });
 }
 
 /// Writes another picture, or the same one by another tone.

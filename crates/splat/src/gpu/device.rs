@@ -82,6 +82,11 @@ impl Gpu {
         &self.0.name
     }
 
+    /// Whether both are one device.
+    pub fn is_same(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.0, &other.0)
+    }
+
     /// Whether it no longer works.
     pub fn is_lost(&self) -> bool {
         self.0.is_lost.load(Ordering::SeqCst)

@@ -52,6 +52,9 @@ impl From<Cancelled> for GpuError {
 /// Records that are drawn at a time, by kind: few enough that no card takes a second.
 const BATCH: [usize; KINDS] = [1 << 16, 1 << 15, 1 << 14, 1 << 9];
 
+/// After so many batches it is waited until they are through.
+const BATCHES_AHEAD: usize = 4;
+
 /// What a row's total is split into, so that not all threads add to one word.
 pub const SLOTS: usize = 8;
 
@@ -196,7 +199,7 @@ impl GpuSums {
         Ok(())
     }
 
-    /// Draws what the card listed of a chunk.
+    /// Draws what the card listed of a chunk. It is not asked for much at a time: others wait their turn on it, too.
     fn draw_listed(
         &mut self,
         pen: &Pen,
@@ -208,10 +211,13 @@ impl GpuSums {
             let bound = self.bound(chunk, width, self.listing.records())?;
             let [boxes, images, seen, large] = kinds;
             for (kind, records) in [boxes, images, seen].into_iter().enumerate() {
-                for first in records.clone().step_by(BATCH[kind]) {
+                for (k, first) in records.clone().step_by(BATCH[kind]).enumerate() {
                     progress.check()?;
                     let count = (records.end - first).min(BATCH[kind] as u32);
                     self.draw_batch(&bound, width, kind, [first, count])?;
+                    if k % BATCHES_AHEAD == BATCHES_AHEAD - 1 {
+                        self.gpu.wait()?;
+                    }
                 }
             }
             if !large.is_empty() {

@@ -3,7 +3,7 @@
 use super::{SplatError, Splatter, Summed, Wanted};
 use crate::balance::{NO_REST, rest};
 use crate::drawn::hull;
-use crate::gpu::{Gpu, GpuError, GpuSums};
+use crate::gpu::{Gpu, GpuError, GpuSums, PictureOnCard};
 use progress::Progress;
 use std::ops::Range;
 
@@ -74,10 +74,16 @@ impl Splatter {
         self.card.keeps = keeps;
     }
 
-    /// The picture on the card: of each pixel, row by row, red, green, blue and coverage as floats. None where it is summed
-    /// on the processor.
-    pub fn picture_on_card(&self) -> Option<&wgpu::Buffer> {
-        self.card.sums.as_ref().map(GpuSums::picture)
+    /// Whether pictures stay there.
+    pub(super) fn keeps_on_card(&self) -> bool {
+        self.card.keeps
+    }
+
+    /// The picture on the card, which the next sum writes over. None where it is summed on the processor.
+    pub fn picture_on_card(&self) -> Option<PictureOnCard> {
+        let (gpu, sums) = (self.card.gpu.as_ref()?, self.card.sums.as_ref()?);
+        let camera = &self.salf.camera;
+        Some(PictureOnCard::of(gpu, sums.picture(), [camera.width, camera.height]))
     }
 
     /// Brings back what of the picture stayed on the card; from the processor, summed anew, if that is lost.
