@@ -103,6 +103,12 @@ impl Gpu {
     }
 }
 
+/// The adapter of this name with no more than these features.
+#[cfg(test)]
+pub fn with_features(name: &str, features: wgpu::Features) -> Option<Gpu> {
+    ranked(&instance(), Some(name)).first().and_then(|adapter| Gpu::with(adapter, features).ok())
+}
+
 /// Without OpenGL: asking for it makes drivers chatter on stderr.
 fn instance() -> Instance {
     let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();

@@ -33,10 +33,15 @@ impl Gpu {
     /// # Errors
     /// What the driver said.
     pub(super) fn new(adapter: &Adapter) -> Result<Self, String> {
+        Self::with(adapter, Self::features(adapter.features()))
+    }
+
+    /// The same with no more than these features.
+    pub(super) fn with(adapter: &Adapter, required_features: Features) -> Result<Self, String> {
         let descriptor = wgpu::DeviceDescriptor {
             label: Some("splat"),
             required_limits: Self::limits(&adapter.limits()),
-            required_features: Self::features(adapter.features()),
+            required_features,
             ..wgpu::DeviceDescriptor::default()
         };
         let requested = pollster::block_on(adapter.request_device(&descriptor));
@@ -53,9 +58,9 @@ impl Gpu {
         }
     }
 
-    /// What such a device may be asked for of what its adapter has: a clock. Nothing depends on it.
+    /// What such a device may be asked for of what its adapter has: a clock, and sums over subgroups. Nothing depends on them.
     pub fn features(there: Features) -> Features {
-        there & Features::TIMESTAMP_QUERY
+        there & (Features::TIMESTAMP_QUERY | Features::SUBGROUP)
     }
 
     /// Takes a device into use that others use, too, as one that shows pictures does: they need not come back to be shown. Its

@@ -11,6 +11,10 @@ const LIST: &str = concat!(include_str!("pen.wgsl"), "\n", include_str!("list.wg
 const DRAW: &str =
     concat!(include_str!("pen.wgsl"), "\n", include_str!("draw.wgsl"), "\n", include_str!("seen_runs.wgsl"));
 const RESOLVE: &str = include_str!("resolve.wgsl");
+/// A running sum over a workgroup: by steps that any card does, and by subgroups.
+const SCAN: [&str; 2] = [include_str!("scan.wgsl"), include_str!("scan_subgroups.wgsl")];
+/// Threads of the workgroups that do.
+const SCAN_THREADS: u32 = 256;
 
 /// All passes.
 pub struct Passes {
@@ -84,13 +88,17 @@ impl Passes {
     /// Has a card read the shaders.
     pub fn new(device: &Device) -> Self {
         use Bound::{Read, Uniform, Write};
-        let module = |name: &'static str, source: &str| {
+        let module = |name: &'static str, source: String| {
             device.create_shader_module(wgpu::ShaderModuleDescriptor {
                 label: Some(name),
-                source: wgpu::ShaderSource::Wgsl(format!("{FIXED}\n{source}").into()),
+                source: wgpu::ShaderSource::Wgsl(source.into()),
             })
         };
-        let (list, draw, resolve) = (module("list", LIST), module("draw", DRAW), module("resolve", RESOLVE));
+        let with_arithmetic = |source: &str| format!("{FIXED}\n{source}");
+        let (list, draw) = (module("list", with_arithmetic(LIST)), module("draw", with_arithmetic(DRAW)));
+        let by_subgroups = has_whole_subgroups(device);
+        let scan = SCAN[usize::from(by_subgroups)];
+        let resolve = module("resolve", with_arithmetic(&format!("{scan}\n{RESOLVE}")));
         let list_layout = layout(
             device,
             [(0, Read), (1, Read), (2, Read), (3, Read), (4, Write), (5, Write), (6, Uniform)],
@@ -130,6 +138,16 @@ impl Passes {
             finish_layout: finish_layout.clone(),
         }
     }
+}
+
+/// Whether a workgroup falls into subgroups of one size, whole ones.
+fn has_whole_subgroups(device: &Device) -> bool {
+    let info = device.adapter_info();
+    let size = info.subgroup_min_size;
+    device.features().contains(wgpu::Features::SUBGROUP)
+        && size == info.subgroup_max_size
+        && size >= 4
+        && SCAN_THREADS.is_multiple_of(size)
 }
 
 fn layout(device: &Device, bound: impl IntoIterator<Item = (u32, Bound)>) -> BindGroupLayout {

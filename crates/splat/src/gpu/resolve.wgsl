@@ -1,6 +1,6 @@
 // Accumulators to a picture: the twin of ../resolve.rs, ../partition.rs and ../balance.rs.
 //
-// Floats are added and multiplied in the same order as there. A product that is added to something goes through `exact`,
+// Read after scan.wgsl or scan_subgroups.wgsl. Floats are added and multiplied in the same order as there. A product that is added to something goes through `exact`,
 // for compilers like to round the two as one.
 
 struct Level {
@@ -138,12 +138,12 @@ fn total_of(row: i32) -> vec2<u32> {
     return total;
 }
 
-var<workgroup> before: array<vec4<i32>, THREADS>;
 var<workgroup> covered_low: atomic<u32>;
 var<workgroup> covered_high: atomic<u32>;
 
 @compute @workgroup_size(THREADS)
-fn integrate(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) thread: u32) {
+fn integrate(@builtin(workgroup_id) group: vec3<u32>, lane: Lane) {
+    let thread = place_of(lane);
     let row = row_of(group.x);
     if row >= end_of_rows() {
         return;
@@ -158,17 +158,7 @@ fn integrate(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_
         let at = line + 4u * x;
         sum += vec4<i32>(vec4<u32>(sums[at], sums[at + 1u], sums[at + 2u], sums[at + 3u]));
     }
-    before[thread] = sum;
-    for (var step = 1u; step < THREADS; step *= 2u) {
-        workgroupBarrier();
-        var more = vec4<i32>();
-        if thread >= step {
-            more = before[thread - step];
-        }
-        workgroupBarrier();
-        before[thread] += more;
-    }
-    sum = before[thread] - sum;
+    sum = sum_before(lane, sum);
     var low = 0u;
     var high = 0;
     for (var x = first; x < end; x += 1u) {

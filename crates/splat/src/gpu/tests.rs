@@ -315,6 +315,20 @@ fn strokes_on_the_card_equal_renders_from_scratch() {
 }
 
 #[test]
+fn no_feature_is_needed() {
+    let Some(gpu) = gpu() else { return };
+    let plain = super::adapter::with_features(gpu.name(), wgpu::Features::empty()).expect("it opened before");
+    let features = gpu.device().features();
+    eprintln!("{}: compared with none of {features:?}", gpu.name());
+    assert!(!plain.device().features().intersects(Gpu::features(wgpu::Features::all())));
+    let hard = Hard { partial: 3, is_painted: true, ..Hard::PLAIN };
+    let (salf, focus) = (hard.light_field(), hard.focus());
+    let [some, none] = [gpu, plain].map(|gpu| hard.rendered(salf.clone(), &focus, Some(gpu)));
+    assert!(some.gpu().is_some() && none.gpu().is_some() && none.seconds_on_card().is_none());
+    assert_eq!(differing(some.picture(), none.picture()), 0);
+}
+
+#[test]
 fn what_stays_on_the_card_is_fetched() {
     let Some(gpu) = gpu() else { return };
     let hard = Hard { partial: 3, ..Hard::PLAIN };
