@@ -19,6 +19,7 @@ mod stopwatch;
 mod sums;
 #[cfg(test)]
 mod tests;
+mod work;
 
 pub use adapter::{AdapterDescription, BackendChoice, GpuAbsent, adapters};
 pub use device::Gpu;

@@ -3,7 +3,7 @@
 use crate::gpu::passes::Passes;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use wgpu::{Adapter, Device, Features, Limits, Queue};
+use wgpu::{Adapter, Device, Features, Limits, PollType, Queue, SubmissionIndex};
 
 /// The card is gone, or refuses to work on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -122,7 +122,14 @@ impl Gpu {
 
     /// Waits until all that was asked for is done.
     pub(super) fn wait(&self) -> Result<(), Lost> {
-        self.device().poll(wgpu::PollType::wait_indefinitely()).map_err(|_| Lost)?;
+        self.device().poll(PollType::wait_indefinitely()).map_err(|_| Lost)?;
+        self.check()
+    }
+
+    /// Waits until this is done, and all before it.
+    pub(super) fn wait_for(&self, asked_for: SubmissionIndex) -> Result<(), Lost> {
+        let until = PollType::Wait { submission_index: Some(asked_for), timeout: None };
+        self.device().poll(until).map_err(|_| Lost)?;
         self.check()
     }
 

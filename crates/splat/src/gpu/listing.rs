@@ -5,8 +5,8 @@ use crate::gpu::Gpu;
 use crate::gpu::device::Lost;
 use crate::gpu::passes::KINDS;
 use crate::gpu::records;
-use crate::gpu::resolve::dispatch;
 use crate::gpu::scene::{Chunk, Scene};
+use crate::gpu::work::Work;
 use crate::stencil::{COARSER, Place, Stencils};
 use salf::tree::LEVELS;
 use std::ops::Range;
@@ -81,7 +81,7 @@ impl Listing {
         let words = 2 * COUNTS * scene.chunks.len() + PLACE_WORDS;
         gpu.write(&self.found, &vec![0; words]);
         for (k, chunk) in scene.chunks.iter().enumerate() {
-            self.dispatch(gpu, (k, chunk), pen, is_painted, None);
+            self.ask(gpu, (k, chunk), pen, is_painted, None);
         }
         let found = gpu.read(&self.found, 0..4 * words as u64)?;
         let (counts, places) = found.split_at(words - PLACE_WORDS);
@@ -113,14 +113,14 @@ impl Listing {
         if 4 * words as u64 > self.records.size() {
             self.records = gpu.buffer("listed", words + words / 4, self.records.usage())?;
         }
-        self.dispatch(gpu, (chunk, &scene.chunks[chunk]), pen, is_painted, Some(&firsts));
+        self.ask(gpu, (chunk, &scene.chunks[chunk]), pen, is_painted, Some(&firsts));
         let [of_ordinary, of_wide] =
             [0, KINDS].map(|first| std::array::from_fn(|kind| firsts[first + kind].clone()));
         Ok([of_ordinary, of_wide])
     }
 
     /// Counts (`firsts` none) or writes the records of a chunk.
-    fn dispatch(
+    fn ask(
         &self,
         gpu: &Gpu,
         (index, chunk): (usize, &Chunk),
@@ -138,7 +138,9 @@ impl Listing {
         gpu.write(uniform, &words);
         let bound = self.bound(gpu, chunk, pen, focus, uniform);
         let pass = &gpu.passes().list[usize::from(is_writing)];
-        dispatch(gpu, pass, &bound, [chunk.count.div_ceil(64), 1]);
+        let mut work = Work::new(gpu);
+        work.run(pass, &bound, &[], [chunk.count.div_ceil(64), 1]);
+        work.submit();
     }
 
     fn bound(

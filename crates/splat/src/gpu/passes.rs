@@ -82,12 +82,14 @@ enum Bound {
     Read,
     Write,
     Uniform,
+    /// One that may begin anywhere in its buffer.
+    UniformPart,
 }
 
 impl Passes {
     /// Has a card read the shaders.
     pub fn new(device: &Device) -> Self {
-        use Bound::{Read, Uniform, Write};
+        use Bound::{Read, Uniform, UniformPart, Write};
         let module = |name: &'static str, source: String| {
             device.create_shader_module(wgpu::ShaderModuleDescriptor {
                 label: Some(name),
@@ -104,7 +106,7 @@ impl Passes {
             [(0, Read), (1, Read), (2, Read), (3, Read), (4, Write), (5, Write), (6, Uniform)],
         );
         let reads = (0..6).map(|binding| (binding, Read));
-        let draw_layout = layout(device, reads.chain([(6, Write), (7, Write), (8, Uniform)]));
+        let draw_layout = layout(device, reads.chain([(6, Write), (7, Write), (8, UniformPart)]));
         let integrate_layout =
             layout(device, [(0, Read), (1, Write), (2, Uniform), (3, Uniform), (4, Write)]);
         let finish_layout = layout(
@@ -158,9 +160,9 @@ fn layout(device: &Device, bound: impl IntoIterator<Item = (u32, Bound)>) -> Bin
             ty: match bound {
                 Bound::Read => BufferBindingType::Storage { read_only: true },
                 Bound::Write => BufferBindingType::Storage { read_only: false },
-                Bound::Uniform => BufferBindingType::Uniform,
+                Bound::Uniform | Bound::UniformPart => BufferBindingType::Uniform,
             },
-            has_dynamic_offset: false,
+            has_dynamic_offset: matches!(bound, Bound::UniformPart),
             min_binding_size: None,
         },
         count: None,

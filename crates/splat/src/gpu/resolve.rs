@@ -5,11 +5,12 @@ use crate::gpu::Gpu;
 use crate::gpu::device::Lost;
 use crate::gpu::passes::Pass;
 use crate::gpu::sums::{Layout, Level};
+use crate::gpu::work::Work;
 use crate::nodes::{BRIGHT, Nodes};
 use crate::resolve::{MARGIN, Overflow, Quanta};
 use std::ops::Range;
 use std::sync::mpsc;
-use wgpu::{BindGroup, BindGroupLayout, Buffer, BufferUsages};
+use wgpu::{BindGroup, BindGroupLayout, Buffer, BufferBinding, BufferUsages};
 
 /// Lines, shares and picture.
 pub struct Resolve {
@@ -97,7 +98,7 @@ impl Resolve {
     }
 
     /// Integrates the sums of free (0) or sharing (1) samples to lines, coarse levels first.
-    pub fn integrate(&self, gpu: &Gpu, kind: usize, sums: &Buffer, rows: &Range<u32>) {
+    pub fn integrate(&self, gpu: &Gpu, work: &mut Work, kind: usize, sums: &Buffer, rows: &Range<u32>) {
         let passes = gpu.passes();
         for (k, level) in self.levels.iter().enumerate().rev() {
             let bound = self.bound(gpu, sums, kind, &self.uniforms[k]);
@@ -108,7 +109,7 @@ impl Resolve {
                 [(rows.start as i32 >> k) - MARGIN, ((rows.end as i32 - 1) >> k) + MARGIN + 1]
             };
             let count = end.min(level.height as i32 + 1) - first.max(-1);
-            dispatch(gpu, &passes.integrate, &bound, [count.max(0) as u32, 1]);
+            work.run(&passes.integrate, &bound, &[], [count.max(0) as u32, 1]);
         }
     }
 
@@ -116,6 +117,7 @@ impl Resolve {
     pub fn integrate_wide(
         &self,
         gpu: &Gpu,
+        work: &mut Work,
         kind: usize,
         sums: &Buffer,
         layout: &Layout,
@@ -123,7 +125,7 @@ impl Resolve {
     ) -> Result<(), Lost> {
         gpu.write(&self.wide_uniform, &words_of_level(0, layout.levels.first().ok_or(Lost)?, None));
         let bound = self.bound(gpu, sums, kind, &self.wide_uniform);
-        dispatch(gpu, &gpu.passes().integrate_wide, &bound, [rows.len() as u32, 1]);
+        work.run(&gpu.passes().integrate_wide, &bound, &[], [rows.len() as u32, 1]);
         Ok(())
     }
 
@@ -135,7 +137,9 @@ impl Resolve {
     /// Makes shares or the picture of the lines.
     pub fn finish(&self, gpu: &Gpu, rows: &Range<u32>) {
         let across = (self.size[0] as u32).div_ceil(64);
-        dispatch(gpu, &gpu.passes().finish, &self.finish_bound(gpu), [across, rows.len() as u32]);
+        let mut work = Work::new(gpu);
+        work.run(&gpu.passes().finish, &self.finish_bound(gpu), &[], [across, rows.len() as u32]);
+        work.submit();
     }
 
     /// What lines and shares bring to each knot.
@@ -159,7 +163,9 @@ impl Resolve {
         pass: &Pass,
         groups: [usize; 2],
     ) -> Result<Vec<[[f32; 4]; COUNT]>, Lost> {
-        dispatch(gpu, pass, &self.finish_bound(gpu), groups.map(|groups| groups as u32));
+        let mut work = Work::new(gpu);
+        work.run(pass, &self.finish_bound(gpu), &[], groups.map(|groups| groups as u32));
+        work.submit();
         let bytes = groups[0] * groups[1] * size_of::<[[f32; 4]; COUNT]>();
         let words = gpu.read(&self.knots, 0..bytes as u64)?;
         let floats: Vec<f32> = words.into_iter().map(f32::from_bits).collect();
@@ -238,18 +244,6 @@ fn words_of_level(k: usize, level: &Level, coarser: Option<&Level>) -> [u32; LEV
     ]
 }
 
-/// Runs a pass in so many workgroups.
-pub fn dispatch(gpu: &Gpu, kernel: &Pass, bound: &BindGroup, [x, y]: [u32; 2]) {
-    let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-    {
-        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
-        pass.set_pipeline(kernel.pipeline(gpu.device()));
-        pass.set_bind_group(0, bound, &[]);
-        pass.dispatch_workgroups(x, y, 1);
-    }
-    gpu.queue().submit([encoder.finish()]);
-}
-
 impl Gpu {
     /// Buffers at their bindings.
     pub(super) fn bind<'a>(
@@ -257,9 +251,20 @@ impl Gpu {
         layout: &BindGroupLayout,
         buffers: impl IntoIterator<Item = (u32, &'a Buffer)>,
     ) -> BindGroup {
-        let entries = buffers
-            .into_iter()
-            .map(|(binding, buffer)| wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() });
+        let whole = |(binding, buffer): (u32, &'a Buffer)| (binding, buffer.as_entire_buffer_binding());
+        self.bind_parts(layout, buffers.into_iter().map(whole))
+    }
+
+    /// Parts of buffers at their bindings.
+    pub(super) fn bind_parts<'a>(
+        &self,
+        layout: &BindGroupLayout,
+        parts: impl IntoIterator<Item = (u32, BufferBinding<'a>)>,
+    ) -> BindGroup {
+        let entries = parts.into_iter().map(|(binding, part)| wgpu::BindGroupEntry {
+            binding,
+            resource: wgpu::BindingResource::Buffer(part),
+        });
         let entries: Vec<_> = entries.collect();
         let descriptor = wgpu::BindGroupDescriptor { label: None, layout, entries: &entries };
         self.device().create_bind_group(&descriptor)

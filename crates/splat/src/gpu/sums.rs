@@ -8,17 +8,19 @@ use crate::gpu::device::Lost;
 use crate::gpu::listing::{Listed, Listing};
 use crate::gpu::passes::KINDS;
 use crate::gpu::records::{self, LARGE, Records, complete_large};
-use crate::gpu::resolve::{Resolve, dispatch};
+use crate::gpu::resolve::Resolve;
 use crate::gpu::scene::Scene as Uploaded;
 use crate::gpu::shapes::Shapes;
 use crate::gpu::stopwatch::Stopwatch;
+use crate::gpu::work::Work;
 use crate::nodes::Nodes;
 use crate::resolve::Overflow;
 use lens::Picture;
 use progress::{Cancelled, Progress};
 use salf::tree::LEVELS;
+use std::num::NonZeroU64;
 use std::ops::Range;
-use wgpu::{BindGroup, Buffer, BufferUsages};
+use wgpu::{BindGroup, Buffer, BufferUsages, SubmissionIndex};
 
 /// Why a sum on the card failed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -52,8 +54,11 @@ impl From<Cancelled> for GpuError {
 /// Records that are drawn at a time, by kind: few enough that no card takes a second.
 const BATCH: [usize; KINDS] = [1 << 16, 1 << 15, 1 << 14, 1 << 9];
 
-/// After so many batches it is waited until they are through.
-const BATCHES_AHEAD: usize = 4;
+/// So many batches are asked for at once; and as many more before they are through.
+const BATCHES_AT_ONCE: usize = 4;
+
+/// Words of what draw.wgsl is told of a batch: bindings begin at multiples of 256 bytes.
+const BATCH_WORDS: usize = 64;
 
 /// What a row's total is split into, so that not all threads add to one word.
 pub const SLOTS: usize = 8;
@@ -118,7 +123,7 @@ pub struct GpuSums {
     is_paint_there: bool,
     /// Room for what is listed elsewhere.
     records: Buffer,
-    batch: Buffer,
+    batches: Buffer,
     resolve: Resolve,
     stopwatch: Option<Stopwatch>,
 }
@@ -150,7 +155,11 @@ impl GpuSums {
             accumulators: all,
             pens: pens?,
             records: gpu.buffer("records", most, BufferUsages::STORAGE | BufferUsages::COPY_DST)?,
-            batch: gpu.buffer("batch", 4, BufferUsages::UNIFORM | BufferUsages::COPY_DST)?,
+            batches: gpu.buffer(
+                "batches",
+                BATCHES_AT_ONCE * BATCH_WORDS,
+                BufferUsages::UNIFORM | BufferUsages::COPY_DST,
+            )?,
             gpu: gpu.clone(),
         })
     }
@@ -174,12 +183,12 @@ impl GpuSums {
     /// Sets the sums to what a scene sends.
     pub fn set(&mut self, scene: &Scene, progress: &dyn Progress) -> Result<(), GpuError> {
         self.begin();
-        let mut encoder =
-            self.gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        for buffer in self.accumulators.iter().flat_map(|accumulators| &accumulators.sums) {
-            encoder.clear_buffer(buffer, 0, None);
-        }
-        self.gpu.queue().submit([encoder.finish()]);
+        let mut work = Work::new(&self.gpu);
+        self.accumulators
+            .iter()
+            .flat_map(|accumulators| &accumulators.sums)
+            .for_each(|sums| work.clear(sums));
+        work.submit();
         self.take_up(&scene.pen)?;
         let is_painted = !scene.paint.is_standard();
         if is_painted && !self.is_paint_there {
@@ -211,12 +220,15 @@ impl GpuSums {
             let bound = self.bound(chunk, width, self.listing.records())?;
             let [boxes, images, seen, large] = kinds;
             for (kind, records) in [boxes, images, seen].into_iter().enumerate() {
-                for (k, first) in records.clone().step_by(BATCH[kind]).enumerate() {
+                let first = records.clone().step_by(BATCH[kind]);
+                let batches: Vec<_> =
+                    first.map(|first| [first, (records.end - first).min(BATCH[kind] as u32)]).collect();
+                let mut asked_for = None;
+                for batches in batches.chunks(BATCHES_AT_ONCE) {
                     progress.check()?;
-                    let count = (records.end - first).min(BATCH[kind] as u32);
-                    self.draw_batch(&bound, width, kind, [first, count])?;
-                    if k % BATCHES_AHEAD == BATCHES_AHEAD - 1 {
-                        self.gpu.wait()?;
+                    let before = asked_for.replace(self.draw_batches(&bound, width, kind, batches)?);
+                    if let Some(before) = before {
+                        self.gpu.wait_for(before)?;
                     }
                 }
             }
@@ -299,24 +311,34 @@ impl GpuSums {
         for words in words.chunks(BATCH[kind] * words_of(kind)) {
             progress.check()?;
             self.gpu.write(&self.records, words);
-            self.draw_batch(&bound, width, kind, [0, (words.len() / words_of(kind)) as u32])?;
+            self.draw_batches(&bound, width, kind, &[[0, (words.len() / words_of(kind)) as u32]])?;
         }
         Ok(())
     }
 
-    /// Draws so many records, after so many others.
-    fn draw_batch(
+    /// Draws batches of records: so many, after so many others.
+    fn draw_batches(
         &self,
         bound: &BindGroup,
         width: usize,
         kind: usize,
-        [first, count]: [u32; 2],
-    ) -> Result<(), Lost> {
+        batches: &[[u32; 2]],
+    ) -> Result<SubmissionIndex, Lost> {
         self.gpu.check()?;
-        self.gpu.write(&self.batch, &[count, first, 0, 0]);
-        dispatch(&self.gpu, &self.gpu.passes().draw[width][kind], bound, [count.div_ceil(64), 1]);
+        let mut words = vec![0; BATCH_WORDS * batches.len()];
+        for (words, [first, count]) in words.chunks_mut(BATCH_WORDS).zip(batches) {
+            words[..2].copy_from_slice(&[*count, *first]);
+        }
+        self.gpu.write(&self.batches, &words);
+        let pass = &self.gpu.passes().draw[width][kind];
+        let mut work = Work::new(&self.gpu);
+        for (k, [_, count]) in (0..).zip(batches) {
+            work.run(pass, bound, &[4 * BATCH_WORDS as u32 * k], [count.div_ceil(64), 1]);
+        }
+        let asked_for = work.submit();
         // Frees what was staged for batches that are through.
-        self.gpu.device().poll(wgpu::PollType::Poll).map(|_| ()).map_err(|_| Lost)
+        self.gpu.device().poll(wgpu::PollType::Poll).map_err(|_| Lost)?;
+        Ok(asked_for)
     }
 
     fn bound(&self, chunk: usize, width: usize, records: &Buffer) -> Result<BindGroup, Lost> {
@@ -331,9 +353,15 @@ impl GpuSums {
             records,
             &sums[0],
             &sums[1],
-            &self.batch,
         ];
-        Ok(self.gpu.bind(&self.gpu.passes().draw_layout, (0..).zip(buffers)))
+        let batch = wgpu::BufferBinding {
+            buffer: &self.batches,
+            offset: 0,
+            size: NonZeroU64::new(4 * size_of::<u32>() as u64),
+        };
+        let whole = buffers.map(|buffer| buffer.as_entire_buffer_binding());
+        let bindings = (0..).zip(whole.into_iter().chain([batch]));
+        Ok(self.gpu.bind_parts(&self.gpu.passes().draw_layout, bindings))
     }
 
     /// Finds the shares of a standard picture whose sums these are, and the gains.
@@ -409,12 +437,15 @@ impl GpuSums {
 
     fn integrate_lines(&self, rows: &Range<u32>) -> Result<(), Lost> {
         self.gpu.check()?;
+        let mut work = Work::new(&self.gpu);
         for kind in 0..2 {
-            self.resolve.integrate(&self.gpu, kind, &self.accumulators[0].sums[kind], rows);
+            let work = &mut work;
+            self.resolve.integrate(&self.gpu, work, kind, &self.accumulators[0].sums[kind], rows);
             if let Some(wide) = self.accumulators.get(1) {
-                self.resolve.integrate_wide(&self.gpu, kind, &wide.sums[kind], &wide.layout, rows)?;
+                self.resolve.integrate_wide(&self.gpu, work, kind, &wide.sums[kind], &wide.layout, rows)?;
             }
         }
+        work.submit();
         Ok(())
     }
 

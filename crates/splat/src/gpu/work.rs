@@ -1,0 +1,36 @@
+//! Passes that a card is asked for at once.
+
+use crate::gpu::Gpu;
+use crate::gpu::passes::Pass;
+use wgpu::{BindGroup, Buffer, CommandEncoder, SubmissionIndex};
+
+/// What is to be done, one thing after the other.
+pub struct Work<'g> {
+    gpu: &'g Gpu,
+    encoder: CommandEncoder,
+}
+
+impl<'g> Work<'g> {
+    pub fn new(gpu: &'g Gpu) -> Self {
+        let encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        Self { gpu, encoder }
+    }
+
+    /// Runs a pass in so many workgroups; `offsets`: where in their buffers bindings begin that may begin anywhere.
+    pub fn run(&mut self, pass: &Pass, bound: &BindGroup, offsets: &[u32], [x, y]: [u32; 2]) {
+        let mut compute = self.encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+        compute.set_pipeline(pass.pipeline(self.gpu.device()));
+        compute.set_bind_group(0, bound, offsets);
+        compute.dispatch_workgroups(x, y, 1);
+    }
+
+    /// Sets a buffer to 0.
+    pub fn clear(&mut self, buffer: &Buffer) {
+        self.encoder.clear_buffer(buffer, 0, None);
+    }
+
+    /// Asks for it.
+    pub fn submit(self) -> SubmissionIndex {
+        self.gpu.queue().submit([self.encoder.finish()])
+    }
+}
