@@ -11,6 +11,7 @@ mod device;
 mod listing;
 mod passes;
 mod picture_on_card;
+mod probe;
 mod records;
 mod resolve;
 mod scene;

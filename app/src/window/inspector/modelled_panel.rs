@@ -2,7 +2,7 @@
 
 use crate::window::controls::{bytes, count, row, rows, seconds};
 use egui::{RichText, Ui};
-use session::{Document, Modelled, Session};
+use session::{Document, LivePicture, Modelled, Session};
 
 /// Texels, samples and memory of the light field, kind by kind, and the time of the last picture.
 pub fn modelled_panel(ui: &mut Ui, session: &Session, document: &Document) {
@@ -20,6 +20,11 @@ pub fn modelled_panel(ui: &mut Ui, session: &Session, document: &Document) {
         line("A sample", "Mean memory of a sample; in dense form each would take 384 B.", each);
         let size = format!("{} × {} px", preview.camera.width, preview.camera.height);
         line("Drawn at", "Size of the live picture.", size);
+        let by = match &preview.picture {
+            LivePicture::Here(_) => "the processor",
+            LivePicture::There(picture) => picture.card_name(),
+        };
+        line("Drawn by", "What sums the picture.", by.into());
         line("Drawn in", "How long the last picture took.", seconds(preview.seconds));
         let map = format!("{} × {}", document.map.width(), document.map.height());
         line("Focus map", "Texels of the painted map.", map);

@@ -79,7 +79,14 @@ impl Gpu {
         if let Some(error) = pollster::block_on(scope.pop()) {
             return Err(error.to_string());
         }
-        Ok(Self(Arc::new(Card { device, queue, name, is_lost, passes })))
+        let gpu = Self(Arc::new(Card { device, queue, name, is_lost, passes }));
+        match gpu.rounds_alike() {
+            Ok(true) => Ok(gpu),
+            Ok(false) => {
+                Err("it does not round as IEEE 754 says, and would not draw the same picture".into())
+            }
+            Err(Lost) => Err("it gives up when it is first asked for something".into()),
+        }
     }
 
     /// What its driver calls it.

@@ -11,6 +11,7 @@ const LIST: &str = concat!(include_str!("pen.wgsl"), "\n", include_str!("list.wg
 const DRAW: &str =
     concat!(include_str!("pen.wgsl"), "\n", include_str!("draw.wgsl"), "\n", include_str!("seen_runs.wgsl"));
 const RESOLVE: &str = include_str!("resolve.wgsl");
+const PROBE: &str = include_str!("probe.wgsl");
 /// A running sum over a workgroup: by steps that any card does, and by subgroups.
 const SCAN: [&str; 2] = [include_str!("scan.wgsl"), include_str!("scan_subgroups.wgsl")];
 /// Threads of the workgroups that do.
@@ -31,6 +32,8 @@ pub struct Passes {
     pub balance: Pass,
     pub share: Pass,
     pub finish_layout: BindGroupLayout,
+    pub probe: Pass,
+    pub probe_layout: BindGroupLayout,
 }
 
 /// One pass, compiled when it is first needed.
@@ -122,6 +125,8 @@ impl Passes {
                 (10, Read),
             ],
         );
+        let probe = module("probe", PROBE.to_owned());
+        let probe_layout = layout(device, [(0, Read), (1, Write), (2, Uniform)]);
         let of_kind = |is_wide: f64, kind: usize| {
             Pass::new(&draw, &draw_layout, "draw", &[("IS_WIDE", is_wide), ("KIND", kind as f64)])
         };
@@ -138,6 +143,8 @@ impl Passes {
             balance: Pass::new(&resolve, &finish_layout, "balance", &[]),
             share: Pass::new(&resolve, &finish_layout, "share", &[]),
             finish_layout: finish_layout.clone(),
+            probe: Pass::new(&probe, &probe_layout, "probe", &[]),
+            probe_layout: probe_layout.clone(),
         }
     }
 }

@@ -28,6 +28,11 @@ impl PictureOnCard {
         Some(Self { pixels, ..other.clone() })
     }
 
+    /// What the card's driver calls it.
+    pub fn card_name(&self) -> &str {
+        self.gpu.name()
+    }
+
     /// Columns and rows, px.
     pub fn size(&self) -> [u32; 2] {
         self.size
