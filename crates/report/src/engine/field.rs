@@ -118,14 +118,12 @@ impl Field {
             keep(record);
             checks.push(self.check("a dab equals a render from scratch, bit for bit, and shows", holds));
         }
-        if let Some(gpu) = gpu {
-            let what = format!("{} draws the picture of the processor, bit for bit", gpu.name());
-            let holds = self.is_same_on_the_processor(&mut splatter, steps)?;
-            checks.push(self.check(&what, holds));
-        } else {
-            let holds = self.is_same_with_one_thread(&mut splatter, steps)?;
-            checks.push(self.check("one thread draws the picture of many, bit for bit", holds));
-        }
+        let what = match gpu {
+            Some(gpu) => &format!("{} draws the picture of the processor, bit for bit", gpu.name()),
+            None => "one thread draws the picture of many, bit for bit",
+        };
+        let holds = self.is_same_otherwise(&mut splatter, gpu.is_some(), steps)?;
+        checks.push(self.check(what, holds));
         Ok(())
     }
 
@@ -199,9 +197,12 @@ impl Field {
         Ok((record, &after == splatter.picture() && after != before))
     }
 
-    fn is_same_on_the_processor(
+    /// Whether the picture is the same summed otherwise: that of a card (`is_on_card`) by the processor, that of the processor by
+    /// one thread.
+    fn is_same_otherwise(
         &self,
         splatter: &mut Splatter,
+        is_on_card: bool,
         steps: &dyn Steps,
     ) -> Result<bool, SessionError> {
         let camera = &self.salf.camera;
@@ -209,27 +210,13 @@ impl Field {
         splatter.set_tolerance(Tolerance::VIEWING);
         splatter.render(camera, &*self.focus, &*progress)?;
         splatter.fetch()?;
-        let was_there = splatter.gpu().is_some();
-        let there = splatter.picture().clone();
+        let was_on_card = splatter.gpu().is_some();
+        let before = splatter.picture().clone();
         splatter.use_gpu(None);
-        splatter.refocus(camera, &*progress)?;
-        Ok(was_there && &there == splatter.picture())
-    }
-
-    fn is_same_with_one_thread(
-        &self,
-        splatter: &mut Splatter,
-        steps: &dyn Steps,
-    ) -> Result<bool, SessionError> {
-        let camera = &self.salf.camera;
-        let progress = steps.begin("splatting");
-        splatter.set_tolerance(Tolerance::VIEWING);
-        splatter.render(camera, &*self.focus, &*progress)?;
-        let many = splatter.picture().clone();
         let alone = rayon::ThreadPoolBuilder::new().num_threads(1).build();
         let alone = alone.map_err(|error| SessionError::Internal(format!("no thread: {error}")))?;
         alone.install(|| splatter.refocus(camera, &*progress))?;
-        Ok(&many == splatter.picture())
+        Ok(was_on_card == is_on_card && &before == splatter.picture())
     }
 }
 

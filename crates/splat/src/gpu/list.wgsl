@@ -256,6 +256,14 @@ fn record_of(node: Node, placed: Placed, form: u32) -> Record {
     return Record(select(KIND_SEEN, KIND_IMAGES, form == FORM_IMAGE), stencil);
 }
 
+// All of a node, or of a sample of a large cell one of the pieces that it is drawn in.
+fn part_drawn(node: Node, level: u32, piece: u32) -> Node {
+    if level < node.level {
+        return piece_of(node, level, piece);
+    }
+    return node;
+}
+
 // How many records of each kind the workgroup has, then where its own begin.
 var<workgroup> of_group: array<atomic<u32>, 8>;
 
@@ -287,10 +295,7 @@ fn list(@builtin(global_invocation_id) id: vec3<u32>, @builtin(local_invocation_
     let width = select(0u, 1u, node.is_bright);
     var counts = vec4<u32>();
     for (var piece = 0u; piece < piece_count; piece += 1u) {
-        var drawn = node;
-        if (flags & 64u) != 0u {
-            drawn = piece_of(node, placed.level, piece);
-        }
+        let drawn = part_drawn(node, placed.level, piece);
         let forms = forms_of(drawn, placed);
         for (var k = 0u; k < 2u; k += 1u) {
             if forms[k] != NO_FORM {
@@ -327,10 +332,7 @@ fn list(@builtin(global_invocation_id) id: vec3<u32>, @builtin(local_invocation_
         next[k] += atomicLoad(&of_group[k]);
     }
     for (var piece = 0u; piece < piece_count; piece += 1u) {
-        var drawn = node;
-        if (flags & 64u) != 0u {
-            drawn = piece_of(node, placed.level, piece);
-        }
+        let drawn = part_drawn(node, placed.level, piece);
         let forms = forms_of(drawn, placed);
         for (var k = 0u; k < 2u; k += 1u) {
             if forms[k] != NO_FORM {

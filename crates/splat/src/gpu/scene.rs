@@ -11,7 +11,8 @@ use std::ops::Range;
 use wgpu::{Buffer, BufferUsages};
 
 /// Nodes of a chunk at most: with 13 words each a chunk is within the 128 MiB that any card can bind.
-const CHUNK_NODES: u32 = 1 << 21;
+/// Tests' scenes have several, too.
+const CHUNK_NODES: u32 = if cfg!(test) { 1 << 11 } else { 1 << 21 };
 
 /// Words of a node.
 const WORDS: usize = 13;

@@ -52,7 +52,9 @@ impl From<Cancelled> for GpuError {
 }
 
 /// Records that are drawn at a time, by kind: few enough that no card takes a second.
-const BATCH: [usize; KINDS] = [1 << 16, 1 << 15, 1 << 14, 1 << 9];
+/// Tests' scenes have several, too.
+const BATCH: [usize; KINDS] =
+    if cfg!(test) { [1 << 7, 1 << 6, 1 << 5, 1 << 5] } else { [1 << 16, 1 << 15, 1 << 14, 1 << 9] };
 
 /// So many batches are asked for at once; and as many more before they are through.
 const BATCHES_AT_ONCE: usize = 4;
