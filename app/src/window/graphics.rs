@@ -16,15 +16,24 @@ pub fn graphics() -> egui_wgpu::WgpuConfiguration {
 
 /// The device that the window is drawn with as one that pictures are summed on and shown from, without coming back; none where
 /// the processor is to sum, or is better at it than an adapter in software.
-pub fn summing(state: &egui_wgpu::RenderState, choice: BackendChoice) -> Option<Gpu> {
+///
+/// # Errors
+/// Why it cannot be used, where it was asked for.
+pub fn summing(state: &egui_wgpu::RenderState, choice: BackendChoice) -> Result<Option<Gpu>, String> {
     let info = state.adapter.get_info();
     let is_wanted = match choice {
         BackendChoice::Auto => info.device_type != wgpu::DeviceType::Cpu && info.backend != wgpu::Backend::Gl,
         BackendChoice::Gpu => true,
         BackendChoice::Cpu => false,
     };
-    let gpu = || Gpu::of(state.device.clone(), state.queue.clone(), info.name.clone()).ok();
-    if is_wanted { gpu() } else { None }
+    if !is_wanted {
+        return Ok(None);
+    }
+    match Gpu::of(state.device.clone(), state.queue.clone(), info.name.clone()) {
+        Ok(gpu) => Ok(Some(gpu)),
+        Err(why) if choice == BackendChoice::Gpu => Err(why.replace('\n', " ")),
+        Err(_) => Ok(None),
+    }
 }
 
 fn descriptor(adapter: &wgpu::Adapter) -> wgpu::DeviceDescriptor<'static> {

@@ -87,12 +87,15 @@ impl Shell {
             stored(SETTINGS_KEY).and_then(|text| serde_json::from_str(&text).ok()).unwrap_or_default();
         let layout = stored(LAYOUT_KEY).and_then(|text| Layout::stored(&text)).unwrap_or_default();
         let context = creation.egui_ctx.clone();
+        let gpu = state.map_or(Ok(None), |state| graphics::summing(state, options.backend));
+        let instead = "the processor sums the picture, not the graphics card";
+        let unused = gpu.as_ref().err().map(|why| format!("{instead}: {why}"));
         let session = Session::new(SessionOptions {
             unwrap: options.unwrap,
             preview_size: options.preview_size.unwrap_or(settings.preview_size),
             exact_after: options.exact_after,
             light_fields: options.light_fields,
-            gpu: state.and_then(|state| graphics::summing(state, options.backend)),
+            gpu: gpu.ok().flatten(),
             waker: Arc::new(move || context.request_repaint()),
             ..SessionOptions::default()
         })?;
@@ -124,6 +127,9 @@ impl Shell {
             player: options.replay.map(Player::new),
             trace: options.trace,
         };
+        if let Some(what) = unused {
+            shell.toasts.error(what);
+        }
         match options.file {
             Some(file) => shell.open(file),
             None if options.demo => shell.open_demo(),

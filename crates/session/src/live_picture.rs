@@ -3,6 +3,7 @@
 use lens::Picture;
 use splat::PictureOnCard;
 use std::sync::Arc;
+use trace::truth::Region;
 
 /// The live picture: as it was when it was shown, or in the memory of a graphics card, which shows it from there.
 #[derive(Clone, Debug)]
@@ -27,8 +28,30 @@ impl LivePicture {
     pub fn bring(&self) -> Option<Arc<Picture>> {
         match self {
             Self::Here(picture) => Some(picture.clone()),
-            Self::There(picture) => picture.read().map(Arc::new),
+            Self::There(picture) => picture.read(0..picture.size()[1]).map(Arc::new),
         }
+    }
+
+    /// The pixels of a region, which must lie in the picture. `None` where the card was lost.
+    pub fn bring_region(&self, region: Region) -> Option<Picture> {
+        let rows = region.y..region.y + region.height;
+        let of_rows;
+        let (picture, first) = match self {
+            Self::Here(picture) => (&**picture, rows.start),
+            Self::There(picture) => {
+                of_rows = picture.read(rows.clone())?;
+                (&of_rows, 0)
+            }
+        };
+        let mut cut = Picture::black(region.width, region.height);
+        let (width, across) = (picture.width as usize, region.width as usize);
+        for (k, row) in (first..first + region.height).enumerate() {
+            let from = row as usize * width + region.x as usize;
+            let to = k * across..(k + 1) * across;
+            cut.radiance[to.clone()].copy_from_slice(&picture.radiance[from..from + across]);
+            cut.coverage[to].copy_from_slice(&picture.coverage[from..from + across]);
+        }
+        Some(cut)
     }
 }
 

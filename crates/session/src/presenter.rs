@@ -6,7 +6,7 @@ use crate::preview::Shared;
 use crate::screen::{Content, Patch};
 use crate::tone::rectangle_to_screen;
 use crate::{DrawingCosts, Modelled, PictureTimes, Preview, PreviewKind, Quality, Tone};
-use lens::{Camera, Exposure};
+use lens::{Camera, Exposure, Picture};
 use splat::PictureOnCard;
 use std::sync::Arc;
 use std::time::Instant;
@@ -81,6 +81,11 @@ impl Presenter {
     /// The newest picture.
     pub fn shown(&self) -> Option<&Preview> {
         self.shown.as_ref()
+    }
+
+    /// The picture that is worked with, beneath a better one that may lie over it; none of one on a card.
+    pub fn followed(&self) -> Option<Arc<Picture>> {
+        self.pictures.followed()
     }
 
     /// By which exposure pictures are shown.

@@ -354,7 +354,8 @@ impl Worker {
     /// Begins to draw the exact picture, if nothing was wished meanwhile.
     fn refine(&mut self, camera: Camera, focus: Focus) {
         let Some(fine) = &mut self.fine else { return };
-        let Ok(viewing) = fine.brought().cloned().map(Arc::new) else { return };
+        let brought = || fine.brought().ok().cloned().map(Arc::new);
+        let Some(viewing) = self.presenter.followed().or_else(brought) else { return };
         let (exposure, map_serial) = (self.presenter.exposure(), self.presenter.map_serial);
         let task = Task { camera, focus, viewing, exposure, map_serial };
         self.refinement.start(&self.shared, fine, task);

@@ -1,7 +1,7 @@
 //! A rectangle of the picture, checked against the ground truth.
 
 use crate::{Preview, PreviewKind, Quality};
-use lens::{Camera, Exposure, Picture};
+use lens::{Camera, Exposure};
 use project::{LinearPicture, ProjectError, compare};
 use std::sync::Arc;
 use trace::truth::{Estimate, Region};
@@ -47,10 +47,10 @@ impl Verification {
         let is_same = preview.kind != PreviewKind::Pinhole
             && preview.quality > Quality::Coarse
             && preview.picture.size() == [self.camera.width, self.camera.height];
-        let shown = if is_same { preview.picture.bring() } else { None }?;
+        let shown = if is_same { preview.picture.bring_region(self.region) } else { None }?;
         let compared = || {
             let truth = LinearPicture::of(&estimate.picture, exposure);
-            let splat = LinearPicture::of(&crop(&shown, self.region), exposure);
+            let splat = LinearPicture::of(&shown, exposure);
             let compared = compare(&splat, &truth)?;
             Ok(VerifiedError {
                 psnr: compared.psnr,
@@ -60,19 +60,5 @@ impl Verification {
             })
         };
         Some(compared())
-    }
-}
-
-/// The pixels of a region, which must lie in the picture.
-fn crop(picture: &Picture, region: Region) -> Picture {
-    let rows = region.y..region.y + region.height;
-    let indices = rows.flat_map(|y| (region.x..region.x + region.width).map(move |x| (y, x)));
-    let indices: Vec<usize> =
-        indices.map(|(y, x)| y as usize * picture.width as usize + x as usize).collect();
-    Picture {
-        width: region.width,
-        height: region.height,
-        radiance: indices.iter().map(|&i| picture.radiance[i]).collect(),
-        coverage: indices.iter().map(|&i| picture.coverage[i]).collect(),
     }
 }

@@ -4,7 +4,7 @@
 //! nodes are drawn ([`listing`]), draws them onto accumulators of its own ([`sums`]), integrates these, and keeps the
 //! picture, which may be shown without coming back. What a stroke changes is listed by the processor ([`records`]), and
 //! taken away and added there too.
-//! Portable WGSL without optional features: 64 bits are pairs of words, adders of 64 bits carry by atomics.
+//! Portable WGSL that needs no optional features: 64 bits are pairs of words, adders of 64 bits carry by atomics.
 
 mod adapter;
 mod device;

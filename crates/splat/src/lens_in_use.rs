@@ -63,7 +63,18 @@ impl NodeFocus {
 
     pub fn of(offset: FocusOffset) -> Self {
         let t = (offset.t as f32).clamp(-LARGEST_OFFSET, LARGEST_OFFSET);
-        Self { t, anchor: offset.anchor as f32, ..Self::STANDARD }
+        Self { t, anchor: offset.anchor as f32, ..Self::STANDARD }.without_subnormals()
+    }
+
+    /// Without numbers so small that a card may take them as 0.
+    pub fn without_subnormals(self) -> Self {
+        let normal = |x: f32| if x.is_subnormal() { 0.0 } else { x };
+        Self {
+            t: normal(self.t),
+            anchor: normal(self.anchor),
+            t_apart: normal(self.t_apart),
+            anchor_apart: normal(self.anchor_apart),
+        }
     }
 }
 
@@ -235,6 +246,9 @@ impl LensInUse {
     /// Whether a node that was `placed` may stand for all below it.
     #[inline(always)]
     pub fn may_merge(&self, node: &SplatNode, focus: &NodeFocus, placed: Placed) -> bool {
+        if focus.t_apart >= LARGEST_OFFSET {
+            return false;
+        }
         let size = placed.radius.unsigned_abs();
         let is_sharp = node.level == 0 && size <= SHARP;
         let of_contrast = &self.smallest_joint_radius[node.contrast as usize];

@@ -311,7 +311,7 @@ fn convert(node: &Node, scale: Scale) -> Option<SplatNode> {
     const NARROWEST: f32 = PIXEL as f32 / 32.0;
     // What is nearer is that near, so that no product overflows; nodes of no weight are at no depth.
     const NEAREST: f32 = 1e12;
-    let nearness = |x: f32| if x.is_nan() { 0.0 } else { x.clamp(0.0, NEAREST) };
+    let nearness = |x: f32| if x >= f32::MIN_POSITIVE { x.min(NEAREST) } else { 0.0 };
     let fixed = |px: f32| (px * PIXEL as f32).round() as i32;
     let half_size =
         node.half_size.to_array().map(|half| (half * PIXEL as f32).round().clamp(NARROWEST, 65535.0));

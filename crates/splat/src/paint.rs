@@ -142,5 +142,5 @@ fn take_up(nodes: &Nodes, block: usize, painted: &mut [NodeFocus], index: usize)
     if standard > 0 {
         mean.t_apart = LARGEST_OFFSET;
     }
-    painted[index] = mean;
+    painted[index] = mean.without_subnormals();
 }

@@ -124,8 +124,7 @@ impl Splatter {
     /// one that is new, on the same card.
     pub fn twin(&self) -> Self {
         let mut twin = Self::of(self.salf.clone(), self.nodes.clone(), self.aperture.clone());
-        twin.use_gpu(self.gpu().cloned());
-        twin.keep_on_card(self.keeps_on_card());
+        twin.use_card_of(self);
         twin.set_live(self.is_live);
         twin
     }
@@ -260,6 +259,7 @@ impl Splatter {
     /// Sums all and resolves the picture; on the processor once the card is lost.
     fn sum(&mut self, progress: &dyn Progress) -> Result<(), SplatError> {
         self.take_up_card();
+        self.card.begin();
         let summed = self.sum_all(progress);
         if !self.drop_lost_card() {
             return summed;
@@ -347,6 +347,7 @@ impl Splatter {
         let mut leaves: Vec<u32> =
             samples.iter().map(|&sample| nodes.node_of_sample[sample as usize]).collect();
         leaves.par_sort_unstable();
+        self.card.begin();
         let before = self.paint.update(nodes, &leaves, &self.salf.samples, focus);
         self.card.forget_paint();
         let scene = self.aperture.scene(nodes, &self.lens, &self.paint, &self.salf.camera);

@@ -149,9 +149,10 @@ impl Session {
             let what = "the picture on screen is still rough (wait until the status line says live or exact; File, Export picture waits by itself)";
             return Err(SessionError::bad(&path, what));
         }
-        let what = "the graphics card that held the picture was lost (try again once it is drawn anew)";
-        let picture = preview.picture.bring().ok_or(SessionError::TryAgain(what.into()))?;
+        let picture = preview.picture.clone();
         self.start(format!("writing {}", file_name(&path)), move |_| {
+            let what = "the graphics card that held the picture was lost (try again once it is drawn anew)";
+            let picture = picture.bring().ok_or(SessionError::TryAgain(what.into()))?;
             write_shown(&path, &picture, &[Layer::coverage(&picture)], tone)?;
             Ok(Outcome::Written(path, Vec::new()))
         })?;

@@ -3,7 +3,11 @@
 use crate::gpu::passes::Passes;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use wgpu::{Adapter, Device, Features, Limits, PollType, Queue, SubmissionIndex};
+use std::time::Duration;
+use wgpu::{Adapter, Device, Features, Limits, PollError, PollType, Queue, SubmissionIndex};
+
+/// For how long a device is waited for in one go: whoever shows pictures on it waits as long.
+pub(super) const MOMENT: Duration = Duration::from_millis(1);
 
 /// The card is gone, or refuses to work on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -70,23 +74,28 @@ impl Gpu {
     /// What the driver said.
     pub fn of(device: Device, queue: Queue, name: String) -> Result<Self, String> {
         let is_lost = Arc::new(AtomicBool::new(false));
-        let (by_loss, by_error) = (is_lost.clone(), is_lost.clone());
-        device.set_device_lost_callback(move |_, _| by_loss.store(true, Ordering::SeqCst));
-        // Whatever it does not do, the processor does.
-        device.on_uncaptured_error(Arc::new(move |_| by_error.store(true, Ordering::SeqCst)));
         let scope = device.push_error_scope(wgpu::ErrorFilter::Validation);
         let passes = Passes::new(&device);
+        let gpu = Self(Arc::new(Card { device, queue, name, is_lost: is_lost.clone(), passes }));
+        let rounds_alike = gpu.rounds_alike();
         if let Some(error) = pollster::block_on(scope.pop()) {
             return Err(error.to_string());
         }
-        let gpu = Self(Arc::new(Card { device, queue, name, is_lost, passes }));
-        match gpu.rounds_alike() {
-            Ok(true) => Ok(gpu),
+        match rounds_alike {
+            Ok(true) => {}
             Ok(false) => {
-                Err("it does not round as IEEE 754 says, and would not draw the same picture".into())
+                return Err("it does not round as IEEE 754 says, and would not draw the same picture".into());
             }
-            Err(Lost) => Err("it gives up when it is first asked for something".into()),
+            Err(Lost) => return Err("it gives up when it is first asked for something".into()),
         }
+        let by_error = is_lost.clone();
+        gpu.device().set_device_lost_callback(move |_, _| is_lost.store(true, Ordering::SeqCst));
+        // Whatever it does not do, the processor does.
+        gpu.device().on_uncaptured_error(Arc::new(move |error| {
+            tracing::error!("graphics card: {error}");
+            by_error.store(true, Ordering::SeqCst);
+        }));
+        Ok(gpu)
     }
 
     /// What its driver calls it.
@@ -127,17 +136,17 @@ impl Gpu {
         limits.max_storage_buffer_binding_size.min(limits.max_buffer_size)
     }
 
-    /// Waits until all that was asked for is done.
-    pub(super) fn wait(&self) -> Result<(), Lost> {
-        self.device().poll(PollType::wait_indefinitely()).map_err(|_| Lost)?;
-        self.check()
-    }
-
-    /// Waits until this is done, and all before it.
+    /// Waits until this is done, and all before it: a moment at a time, for nobody else can show anything meanwhile.
     pub(super) fn wait_for(&self, asked_for: SubmissionIndex) -> Result<(), Lost> {
-        let until = PollType::Wait { submission_index: Some(asked_for), timeout: None };
-        self.device().poll(until).map_err(|_| Lost)?;
-        self.check()
+        loop {
+            self.check()?;
+            let until = PollType::Wait { submission_index: Some(asked_for.clone()), timeout: Some(MOMENT) };
+            match self.device().poll(until) {
+                Ok(_) => return self.check(),
+                Err(PollError::Timeout) => std::thread::yield_now(),
+                Err(PollError::WrongSubmissionIndex(..)) => return Err(Lost),
+            }
+        }
     }
 
     /// An error if it is lost.

@@ -54,6 +54,7 @@ const SHARP: u32 = 16u;
 const LEVELS: u32 = 5u;
 const LARGEST_RADIUS: f32 = 536870912.0;
 const LARGEST_DEPTH_SHARE: f32 = 131071.0;
+const LARGEST_OFFSET: f32 = 1e9;
 const NO_PARENT: u32 = 0xFFFFFFFFu;
 const NO_FORM: u32 = 0xFFFFFFFFu;
 const TOO_LARGE: u32 = 0xFFFFFFFFu;
@@ -127,6 +128,9 @@ fn place(at: u32, painted: Focus) -> Placed {
 }
 
 fn may_merge(at: u32, painted: Focus, radius: i32) -> bool {
+    if painted.t_apart >= LARGEST_OFFSET {
+        return false;
+    }
     let size = u32(abs(radius));
     let level = level_of(at);
     let is_sharp = level == 0u && size <= SHARP;

@@ -111,7 +111,9 @@ impl Listing {
         });
         let words = records::WORDS * end as usize;
         if 4 * words as u64 > self.records.size() {
-            self.records = gpu.buffer("listed", words + words / 4, self.records.usage())?;
+            // With some room, that it need not grow with every lens.
+            let roomy = (words + words / 4).min((gpu.largest_binding() / 4) as usize);
+            self.records = gpu.buffer("listed", roomy.max(words), self.records.usage())?;
         }
         self.ask(gpu, (chunk, &scene.chunks[chunk]), pen, is_painted, Some(&firsts));
         let [of_ordinary, of_wide] =
@@ -131,7 +133,7 @@ impl Listing {
         let focus = chunk.focus.as_ref().filter(|_| is_painted);
         let (is_writing, counts) = (firsts.is_some(), 2 * COUNTS * index);
         let counts = counts + if is_writing { COUNTS } else { 0 };
-        let mut words = vec![chunk.count, focus.is_some().into(), counts as u32];
+        let mut words = vec![chunk.shared.count, focus.is_some().into(), counts as u32];
         words.push((2 * COUNTS * self.chunks.len()) as u32);
         words.extend((0..COUNTS).map(|kind| firsts.map_or(0, |firsts| firsts[kind].start)));
         let uniform = &self.chunks[index][usize::from(is_writing)];
@@ -139,7 +141,7 @@ impl Listing {
         let bound = self.bound(gpu, chunk, pen, focus, uniform);
         let pass = &gpu.passes().list[usize::from(is_writing)];
         let mut work = Work::new(gpu);
-        work.run(pass, &bound, &[], [chunk.count.div_ceil(64), 1]);
+        work.run(pass, &bound, &[], [chunk.shared.count.div_ceil(64), 1]);
         work.submit();
     }
 
@@ -152,7 +154,7 @@ impl Listing {
         uniform: &Buffer,
     ) -> BindGroup {
         let focus = focus.unwrap_or(&self.unpainted);
-        let buffers = [&chunk.nodes, focus, pen, &self.lens, &self.found, &self.records, uniform];
+        let buffers = [&chunk.shared.nodes, focus, pen, &self.lens, &self.found, &self.records, uniform];
         gpu.bind(&gpu.passes().list_layout, (0..).zip(buffers))
     }
 }

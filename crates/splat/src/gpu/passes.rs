@@ -3,7 +3,7 @@
 use std::sync::OnceLock;
 use wgpu::{BindGroupLayout, BufferBindingType, ComputePipeline, Device, ShaderModule};
 
-/// Kinds of records, as in draw.wgsl.
+/// Kinds of records, as in pen.wgsl.
 pub const KINDS: usize = 4;
 
 const FIXED: &str = include_str!("fixed.wgsl");

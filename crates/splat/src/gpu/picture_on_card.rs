@@ -78,13 +78,13 @@ impl PictureOnCard {
         self.gpu.queue().submit([encoder.finish()]);
     }
 
-    /// Brings it back. `None` where the card is lost.
-    pub fn read(&self) -> Option<Picture> {
-        let [width, height] = self.size;
-        let bytes = u64::from(width) * u64::from(height) * PIXEL_BYTES;
-        let words = self.gpu.read(&self.pixels, 0..bytes).ok()?;
+    /// Brings pixel rows of it back, as a picture of their own. `None` where the card is lost.
+    pub fn read(&self, rows: Range<u32>) -> Option<Picture> {
+        let row_bytes = u64::from(self.size[0]) * PIXEL_BYTES;
+        let bytes = [rows.start, rows.end].map(|row| u64::from(row) * row_bytes);
+        let words = self.gpu.read(&self.pixels, bytes[0]..bytes[1]).ok()?;
         let (pixels, _) = words.as_chunks::<4>();
-        let mut picture = Picture::black(width, height);
+        let mut picture = Picture::black(self.size[0], rows.len() as u32);
         for ((radiance, coverage), pixel) in
             picture.radiance.iter_mut().zip(&mut picture.coverage).zip(pixels)
         {

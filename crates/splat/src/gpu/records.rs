@@ -11,7 +11,7 @@ use rayon::prelude::*;
 /// Words of a record; of one of a large image twice as many.
 pub const WORDS: usize = 4;
 
-/// The kinds of draw.wgsl.
+/// The kinds of pen.wgsl.
 const BOXES: usize = 0;
 const IMAGES: usize = 1;
 const SEEN: usize = 2;

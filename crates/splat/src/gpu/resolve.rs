@@ -2,15 +2,15 @@
 
 use crate::balance::{Gains, KnotSums, Knots, SharedSums};
 use crate::gpu::Gpu;
-use crate::gpu::device::Lost;
+use crate::gpu::device::{Lost, MOMENT};
 use crate::gpu::passes::Pass;
 use crate::gpu::sums::{Layout, Level};
 use crate::gpu::work::Work;
 use crate::nodes::{BRIGHT, Nodes};
 use crate::resolve::{MARGIN, Overflow, Quanta};
 use std::ops::Range;
-use std::sync::mpsc;
-use wgpu::{BindGroup, BindGroupLayout, Buffer, BufferBinding, BufferUsages};
+use std::sync::mpsc::{self, RecvTimeoutError};
+use wgpu::{BindGroup, BindGroupLayout, Buffer, BufferBinding, BufferUsages, SubmissionIndex};
 
 /// Lines, shares and picture.
 pub struct Resolve {
@@ -135,11 +135,11 @@ impl Resolve {
     }
 
     /// Makes shares or the picture of the lines.
-    pub fn finish(&self, gpu: &Gpu, rows: &Range<u32>) {
+    pub fn finish(&self, gpu: &Gpu, rows: &Range<u32>) -> SubmissionIndex {
         let across = (self.size[0] as u32).div_ceil(64);
         let mut work = Work::new(gpu);
         work.run(&gpu.passes().finish, &self.finish_bound(gpu), &[], [across, rows.len() as u32]);
-        work.submit();
+        work.submit()
     }
 
     /// What lines and shares bring to each knot.
@@ -278,14 +278,23 @@ impl Gpu {
         let staging = self.buffer("read", size as usize / 4, usage)?;
         let mut encoder = self.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         encoder.copy_buffer_to_buffer(buffer, range.start, &staging, 0, size);
-        self.queue().submit([encoder.finish()]);
+        let asked_for = self.queue().submit([encoder.finish()]);
         let (sender, receiver) = mpsc::channel();
         staging.map_async(wgpu::MapMode::Read, 0..size, move |result| {
             // Nobody listens any more where the device was lost meanwhile.
             let _ = sender.send(result.is_ok());
         });
-        self.device().poll(wgpu::PollType::wait_indefinitely()).map_err(|_| Lost)?;
-        if !receiver.try_recv().unwrap_or(false) {
+        self.wait_for(asked_for)?;
+        // It may be another thread that is told so first.
+        let is_mapped = loop {
+            match receiver.recv_timeout(MOMENT) {
+                Ok(is_mapped) => break is_mapped,
+                Err(RecvTimeoutError::Disconnected) => break false,
+                Err(RecvTimeoutError::Timeout) => self.check()?,
+            }
+            self.device().poll(wgpu::PollType::Poll).map_err(|_| Lost)?;
+        };
+        if !is_mapped {
             return Err(Lost);
         }
         let view = staging.get_mapped_range(0..size).map_err(|_| Lost)?;

@@ -8,6 +8,7 @@ use crate::paint::Paint;
 use crate::seen::Seen;
 use std::iter::repeat_n;
 use std::ops::Range;
+use std::sync::Arc;
 use wgpu::{Buffer, BufferUsages};
 
 /// Nodes of a chunk at most: with 13 words each a chunk is within the 128 MiB that any card can bind.
@@ -35,17 +36,22 @@ pub struct Scene {
 
 /// Neighbouring blocks.
 pub struct Chunk {
-    pub blocks: Range<usize>,
-    /// Its first node.
-    pub first: u32,
-    pub nodes: Buffer,
-    /// So many.
-    pub count: u32,
+    pub shared: Arc<NodesOfChunk>,
     /// What its partly occluded nodes see, after [`Scene::upload_seen`].
     pub cells: Buffer,
-    partial: Vec<u32>,
     /// What is painted on its nodes, after [`Scene::upload_paint`]; none if nothing is.
     pub focus: Option<Buffer>,
+}
+
+/// What is the same whatever lens and paint: splatters of one light field share it.
+pub struct NodesOfChunk {
+    pub blocks: Range<usize>,
+    /// The first of them.
+    pub first: u32,
+    /// So many.
+    pub count: u32,
+    pub nodes: Buffer,
+    partial: Vec<u32>,
 }
 
 impl Scene {
@@ -64,20 +70,25 @@ impl Scene {
         Ok(Self { chunks, dim_bits: nodes.scale.dim_bits })
     }
 
-    /// Bytes on the card.
-    pub fn bytes(&self) -> usize {
-        let buffers = |chunk: &Chunk| {
-            [Some(&chunk.nodes), Some(&chunk.cells), chunk.focus.as_ref()]
-                .map(|buffer| buffer.map_or(0, Buffer::size))
-        };
-        self.chunks.iter().flat_map(buffers).sum::<u64>() as usize
+    /// The same nodes, for another lens and paint.
+    pub fn twin(&self, gpu: &Gpu) -> Result<Self, Lost> {
+        let chunks = self.chunks.iter().map(|chunk| Chunk::of(gpu, chunk.shared.clone()));
+        Ok(Self { chunks: chunks.collect::<Result<_, Lost>>()?, dim_bits: self.dim_bits })
+    }
+
+    /// Bytes on the card: of what twins share, and of its own.
+    pub fn bytes(&self) -> [usize; 2] {
+        let shared = self.chunks.iter().map(|chunk| chunk.shared.nodes.size());
+        let own = |chunk: &Chunk| chunk.cells.size() + chunk.focus.as_ref().map_or(0, Buffer::size);
+        [shared.sum::<u64>(), self.chunks.iter().map(own).sum()].map(|bytes| bytes as usize)
     }
 
     /// Uploads what partly occluded nodes see of an aperture.
     pub fn upload_seen(&self, gpu: &Gpu, nodes: &Nodes, seen: &[Seen]) {
         for chunk in &self.chunks {
-            let mut words = Vec::with_capacity(chunk.partial.len() * SEEN_WORDS);
-            for &index in &chunk.partial {
+            let partial = &chunk.shared.partial;
+            let mut words = Vec::with_capacity(partial.len() * SEEN_WORDS);
+            for &index in partial {
                 let node = &nodes.nodes[index as usize];
                 if let Some(cells) = nodes.cells(node) {
                     let seen = &seen[node.cells as usize];
@@ -93,12 +104,13 @@ impl Scene {
     /// Uploads what is painted on the nodes.
     pub fn upload_paint(&mut self, gpu: &Gpu, nodes: &Nodes, paint: &Paint) -> Result<(), Lost> {
         for chunk in &mut self.chunks {
-            if chunk.blocks.clone().all(|block| paint.of_block(block).is_none()) {
+            let NodesOfChunk { blocks, count, .. } = &*chunk.shared;
+            if blocks.clone().all(|block| paint.of_block(block).is_none()) {
                 chunk.focus = None;
                 continue;
             }
-            let mut words = Vec::with_capacity(chunk.count as usize * FOCUS_WORDS);
-            for block in chunk.blocks.clone() {
+            let mut words = Vec::with_capacity(*count as usize * FOCUS_WORDS);
+            for block in blocks.clone() {
                 let standard = || repeat_n(&NodeFocus::STANDARD, nodes.blocks[block].len());
                 match paint.of_block(block) {
                     Some(painted) => words.extend(painted.iter().flat_map(words_of_focus)),
@@ -134,9 +146,14 @@ impl Chunk {
         let usage = BufferUsages::STORAGE | BufferUsages::COPY_DST;
         let buffer = gpu.buffer("nodes", words.len(), usage)?;
         gpu.write(&buffer, &words);
-        let cells = gpu.buffer("cells", partial.len() * SEEN_WORDS, usage)?;
         let (first, count) = (range.start, range.len() as u32);
-        Ok(Self { blocks, first, nodes: buffer, count, cells, partial, focus: None })
+        Self::of(gpu, Arc::new(NodesOfChunk { blocks, first, count, nodes: buffer, partial }))
+    }
+
+    fn of(gpu: &Gpu, shared: Arc<NodesOfChunk>) -> Result<Self, Lost> {
+        let usage = BufferUsages::STORAGE | BufferUsages::COPY_DST;
+        let cells = gpu.buffer("cells", shared.partial.len() * SEEN_WORDS, usage)?;
+        Ok(Self { shared, cells, focus: None })
     }
 }
 

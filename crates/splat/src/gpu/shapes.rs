@@ -116,6 +116,6 @@ impl Shapes {
     }
 }
 
-/// Words of `Pen` in draw.wgsl before its levels, and in all.
+/// Words of `Pen` in pen.wgsl before its levels, and in all.
 const FIRST_LEVEL: usize = 19;
 const PEN_WORDS: usize = FIRST_LEVEL + 4 * salf::tree::LEVELS + 1 + 8 * 16;

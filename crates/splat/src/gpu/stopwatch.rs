@@ -8,7 +8,6 @@ use wgpu::{Buffer, BufferUsages, ComputePassTimestampWrites, QuerySet};
 pub struct Stopwatch {
     moments: QuerySet,
     words: Buffer,
-    is_running: bool,
 }
 
 impl Stopwatch {
@@ -23,21 +22,17 @@ impl Stopwatch {
             count: 2,
         });
         let usage = BufferUsages::QUERY_RESOLVE | BufferUsages::COPY_SRC;
-        Ok(Some(Self { moments, words: gpu.buffer("moments", 4, usage)?, is_running: false }))
+        Ok(Some(Self { moments, words: gpu.buffer("moments", 4, usage)? }))
     }
 
-    /// Begins, unless it runs.
-    pub fn begin(&mut self, gpu: &Gpu) {
-        if !std::mem::replace(&mut self.is_running, true) {
-            self.note(gpu, Some(0), None);
-        }
+    /// Begins.
+    pub fn begin(&self, gpu: &Gpu) {
+        self.note(gpu, Some(0), None);
     }
 
     /// Ends.
-    pub fn end(&mut self, gpu: &Gpu) {
-        if std::mem::take(&mut self.is_running) {
-            self.note(gpu, None, Some(1));
-        }
+    pub fn end(&self, gpu: &Gpu) {
+        self.note(gpu, None, Some(1));
     }
 
     /// Notes when the card has come so far.

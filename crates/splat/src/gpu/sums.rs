@@ -18,6 +18,7 @@ use crate::resolve::Overflow;
 use lens::Picture;
 use progress::{Cancelled, Progress};
 use salf::tree::LEVELS;
+use std::collections::VecDeque;
 use std::num::NonZeroU64;
 use std::ops::Range;
 use wgpu::{BindGroup, Buffer, BufferUsages, SubmissionIndex};
@@ -56,11 +57,30 @@ impl From<Cancelled> for GpuError {
 const BATCH: [usize; KINDS] =
     if cfg!(test) { [1 << 7, 1 << 6, 1 << 5, 1 << 5] } else { [1 << 16, 1 << 15, 1 << 14, 1 << 9] };
 
-/// So many batches are asked for at once; and as many more before they are through.
-const BATCHES_AT_ONCE: usize = 4;
+/// So many batches are asked for at once.
+const BATCHES_AT_ONCE: usize = 2;
+
+/// As often, before the first of them must be done.
+const MOST_AHEAD: usize = 4;
 
 /// Words of what draw.wgsl is told of a batch: bindings begin at multiples of 256 bytes.
 const BATCH_WORDS: usize = 64;
+
+/// What the card was asked for and may not have done yet.
+#[derive(Default)]
+struct Ahead(VecDeque<SubmissionIndex>);
+
+impl Ahead {
+    /// More, once little enough waits: others wait their turn on the card, too, and what nobody wants any more is soon out of
+    /// their way.
+    fn add(&mut self, gpu: &Gpu, asked_for: SubmissionIndex) -> Result<(), Lost> {
+        self.0.push_back(asked_for);
+        if self.0.len() <= MOST_AHEAD {
+            return Ok(());
+        }
+        self.0.pop_front().map_or(Ok(()), |first| gpu.wait_for(first))
+    }
+}
 
 /// What a row's total is split into, so that not all threads add to one word.
 pub const SLOTS: usize = 8;
@@ -133,6 +153,16 @@ pub struct GpuSums {
 impl GpuSums {
     /// Room for a picture of this size of some nodes, which are uploaded.
     pub fn new(gpu: &Gpu, nodes: &Nodes, size: [usize; 2]) -> Result<Self, Lost> {
+        Self::of(gpu, Uploaded::new(gpu, nodes)?, nodes.has_bright, size)
+    }
+
+    /// The same of the same nodes, which are there.
+    pub fn twin(&self) -> Result<Self, Lost> {
+        let has_bright = self.accumulators.len() > 1;
+        Self::of(&self.gpu, self.scene.twin(&self.gpu)?, has_bright, self.resolve.size)
+    }
+
+    fn of(gpu: &Gpu, scene: Uploaded, has_bright: bool, size: [usize; 2]) -> Result<Self, Lost> {
         gpu.check()?;
         let storage = BufferUsages::STORAGE | BufferUsages::COPY_DST | BufferUsages::COPY_SRC;
         let accumulators = |levels, words_of_pixel| {
@@ -141,12 +171,11 @@ impl GpuSums {
             Ok::<_, Lost>(Accumulators { sums: [buffer()?, buffer()?], layout })
         };
         let mut all = vec![accumulators(LEVELS, 4)?];
-        if nodes.has_bright {
+        if has_bright {
             all.push(accumulators(1, 8)?);
         }
         let most = (0..KINDS).map(|kind| BATCH[kind] * words_of(kind)).max().unwrap_or(0);
         let pens: Result<Vec<_>, Lost> = all.iter().map(|_| Shapes::pen_buffer(gpu)).collect();
-        let scene = Uploaded::new(gpu, nodes)?;
         Ok(Self {
             listing: Listing::new(gpu, &scene)?,
             is_paint_there: false,
@@ -169,7 +198,10 @@ impl GpuSums {
     /// Bytes on the card, the hierarchy's first, then those of the sums.
     pub fn bytes(&self) -> [usize; 2] {
         let sums = self.accumulators.iter().flat_map(|accumulators| &accumulators.sums);
-        [self.scene.bytes(), sums.map(|buffer| buffer.size() as usize).sum::<usize>() + self.resolve.bytes()]
+        let stencils = self.shapes.iter().map(|shapes| &shapes.stencils);
+        let own = sums.chain(stencils).chain([self.listing.records()]).map(|buffer| buffer.size() as usize);
+        let [shared, of_scene] = self.scene.bytes();
+        [shared, of_scene + own.sum::<usize>() + self.resolve.bytes()]
     }
 
     /// Forgets the aperture: the next picture is of another.
@@ -184,7 +216,6 @@ impl GpuSums {
 
     /// Sets the sums to what a scene sends.
     pub fn set(&mut self, scene: &Scene, progress: &dyn Progress) -> Result<(), GpuError> {
-        self.begin();
         let mut work = Work::new(&self.gpu);
         self.accumulators
             .iter()
@@ -210,7 +241,7 @@ impl GpuSums {
         Ok(())
     }
 
-    /// Draws what the card listed of a chunk. It is not asked for much at a time: others wait their turn on it, too.
+    /// Draws what the card listed of a chunk.
     fn draw_listed(
         &mut self,
         pen: &Pen,
@@ -218,6 +249,7 @@ impl GpuSums {
         listed: Listed,
         progress: &dyn Progress,
     ) -> Result<(), GpuError> {
+        let mut ahead = Ahead::default();
         for (width, kinds) in listed.into_iter().enumerate().take(self.accumulators.len()) {
             let bound = self.bound(chunk, width, self.listing.records())?;
             let [boxes, images, seen, large] = kinds;
@@ -225,20 +257,19 @@ impl GpuSums {
                 let first = records.clone().step_by(BATCH[kind]);
                 let batches: Vec<_> =
                     first.map(|first| [first, (records.end - first).min(BATCH[kind] as u32)]).collect();
-                let mut asked_for = None;
                 for batches in batches.chunks(BATCHES_AT_ONCE) {
                     progress.check()?;
-                    let before = asked_for.replace(self.draw_batches(&bound, width, kind, batches)?);
-                    if let Some(before) = before {
-                        self.gpu.wait_for(before)?;
-                    }
+                    ahead.add(&self.gpu, self.draw_batches(&bound, width, kind, batches)?)?;
                 }
             }
             if !large.is_empty() {
                 let bytes = [large.start, large.end].map(|at| 4 * (records::WORDS as u64) * u64::from(at));
                 let listed = self.gpu.read(self.listing.records(), bytes[0]..bytes[1])?;
-                let words = complete_large(pen, self.scene.chunks[chunk].first, &listed);
-                self.draw_words(chunk, width, LARGE, &words, progress)?;
+                for listed in listed.chunks(BATCH[LARGE] * records::WORDS) {
+                    progress.check()?;
+                    let words = complete_large(pen, self.scene.chunks[chunk].shared.first, listed);
+                    self.draw_words([chunk, width, LARGE], &words, &mut ahead, progress)?;
+                }
             }
         }
         Ok(())
@@ -246,11 +277,10 @@ impl GpuSums {
 
     /// Takes nodes away and adds others.
     pub fn change(&mut self, pen: &Pen, changes: &Changes) -> Result<(), GpuError> {
-        self.begin();
         self.take_up(pen)?;
         for chunk in 0..self.scene.chunks.len() {
-            let first = self.scene.chunks[chunk].first;
-            let end = self.scene.chunks.get(chunk + 1).map_or(u32::MAX, |next| next.first);
+            let first = self.scene.chunks[chunk].shared.first;
+            let end = self.scene.chunks.get(chunk + 1).map_or(u32::MAX, |next| next.shared.first);
             let mut records = Records::default();
             let of_chunk =
                 |block: &&BlockChanges| block.first().is_some_and(|node| (first..end).contains(&node));
@@ -289,21 +319,21 @@ impl GpuSums {
     ) -> Result<(), GpuError> {
         let shapes = self.shapes.as_mut().ok_or(Lost)?;
         shapes.upload(&self.gpu, pen.stencils, &records.places)?;
+        let mut ahead = Ahead::default();
         for width in 0..self.accumulators.len() {
             for (kind, words) in records.words[width].iter().enumerate() {
-                self.draw_words(chunk, width, kind, words, progress)?;
+                self.draw_words([chunk, width, kind], words, &mut ahead, progress)?;
             }
         }
         Ok(())
     }
 
-    /// Draws records that are not on the card yet.
+    /// Draws records of a chunk, a width and a kind that are not on the card yet.
     fn draw_words(
         &self,
-        chunk: usize,
-        width: usize,
-        kind: usize,
+        [chunk, width, kind]: [usize; 3],
         words: &[u32],
+        ahead: &mut Ahead,
         progress: &dyn Progress,
     ) -> Result<(), GpuError> {
         if words.is_empty() {
@@ -313,7 +343,8 @@ impl GpuSums {
         for words in words.chunks(BATCH[kind] * words_of(kind)) {
             progress.check()?;
             self.gpu.write(&self.records, words);
-            self.draw_batches(&bound, width, kind, &[[0, (words.len() / words_of(kind)) as u32]])?;
+            let all = [0, (words.len() / words_of(kind)) as u32];
+            ahead.add(&self.gpu, self.draw_batches(&bound, width, kind, &[all])?)?;
         }
         Ok(())
     }
@@ -347,7 +378,7 @@ impl GpuSums {
         let (chunk, shapes) = (&self.scene.chunks[chunk], self.shapes.as_ref().ok_or(Lost)?);
         let sums = &self.accumulators[width].sums;
         let buffers = [
-            &chunk.nodes,
+            &chunk.shared.nodes,
             &chunk.cells,
             &self.pens[width],
             &shapes.shape,
@@ -395,12 +426,13 @@ impl GpuSums {
     }
 
     /// Makes pixel rows of a picture, which were integrated last.
-    pub fn make_picture(&mut self, gains: &Gains, rest: [f32; 3], rows: &Range<u32>) {
+    pub fn make_picture(&self, gains: &Gains, rest: [f32; 3], rows: &Range<u32>) -> SubmissionIndex {
         self.resolve.set_gains(&self.gpu, gains, rest);
-        self.resolve.finish(&self.gpu, rows);
-        if let Some(stopwatch) = &mut self.stopwatch {
+        let asked_for = self.resolve.finish(&self.gpu, rows);
+        if let Some(stopwatch) = &self.stopwatch {
             stopwatch.end(&self.gpu);
         }
+        asked_for
     }
 
     /// The picture on the card: of each pixel red, green, blue and coverage.
@@ -408,9 +440,9 @@ impl GpuSums {
         self.resolve.picture()
     }
 
-    /// Waits until the picture is made.
-    pub fn wait(&self) -> Result<(), GpuError> {
-        Ok(self.gpu.wait()?)
+    /// Waits until that is done.
+    pub fn wait_for(&self, asked_for: SubmissionIndex) -> Result<(), GpuError> {
+        Ok(self.gpu.wait_for(asked_for)?)
     }
 
     /// Brings pixel rows of the picture back.
@@ -431,8 +463,9 @@ impl GpuSums {
         self.stopwatch.as_ref()?.seconds(&self.gpu).ok()
     }
 
-    fn begin(&mut self) {
-        if let Some(stopwatch) = &mut self.stopwatch {
+    /// Work on another picture begins.
+    pub fn begin(&self) {
+        if let Some(stopwatch) = &self.stopwatch {
             stopwatch.begin(&self.gpu);
         }
     }

@@ -28,6 +28,13 @@ impl Card {
         }
     }
 
+    /// Work on another picture begins.
+    pub fn begin(&self) {
+        if let Some(sums) = &self.sums {
+            sums.begin();
+        }
+    }
+
     /// The next picture is painted otherwise.
     pub fn forget_paint(&mut self) {
         if let Some(sums) = &mut self.sums {
@@ -74,11 +81,6 @@ impl Splatter {
         self.card.keeps = keeps;
     }
 
-    /// Whether pictures stay there.
-    pub(super) fn keeps_on_card(&self) -> bool {
-        self.card.keeps
-    }
-
     /// The picture on the card, which the next sum writes over. None where it is summed on the processor.
     pub fn picture_on_card(&self) -> Option<PictureOnCard> {
         let (gpu, sums) = (self.card.gpu.as_ref()?, self.card.sums.as_ref()?);
@@ -99,6 +101,14 @@ impl Splatter {
     /// has no clock.
     pub fn seconds_on_card(&self) -> Option<f64> {
         self.card.sums.as_ref()?.seconds()
+    }
+
+    /// Sums on the card of another of the same light field, whose nodes are there.
+    pub(super) fn use_card_of(&mut self, other: &Self) {
+        self.use_gpu(other.card.gpu.clone());
+        self.card.keeps = other.card.keeps;
+        // Where it has no room, the next sum finds out.
+        self.card.sums = other.card.sums.as_ref().and_then(|sums| sums.twin().ok());
     }
 
     /// The card that is summed on; none where it is the processor.
@@ -161,11 +171,11 @@ impl Splatter {
         if wanted.has_picture() {
             sums.integrate(nodes, &rows, is_evened)?;
             let rest = if is_balanced { rest(&sums.shared_sums(gains)?) } else { NO_REST };
-            sums.make_picture(gains, rest, &rows);
+            let asked_for = sums.make_picture(gains, rest, &rows);
             if self.card.keeps {
                 let newer = std::mem::take(&mut self.card.newer);
                 self.card.newer = hull([newer, rows].into_iter().filter(|rows| !rows.is_empty()));
-                return sums.wait();
+                return sums.wait_for(asked_for);
             }
             sums.read_picture(rows, &mut self.picture)?;
         }
