@@ -208,6 +208,8 @@ pub(crate) struct Shared {
     pub field: FieldWatch,
     published: Mutex<Published>,
     gpu: Option<Gpu>,
+    /// Whether it was told that the card was lost.
+    is_loss_told: AtomicBool,
     waker: Waker,
 }
 
@@ -227,6 +229,7 @@ pub(crate) struct News {
     /// Another light field of full size, and of which of the session's documents.
     pub field: Option<(u64, BakedField)>,
     pub failures: Vec<String>,
+    pub notices: Vec<String>,
 }
 
 /// A poisoned lock only means that a panic passed by; what it guards is replaced as a whole.
@@ -338,6 +341,18 @@ impl Shared {
         (self.waker)();
     }
 
+    /// Tells the user once that the card was lost.
+    pub fn tell_loss(&self) {
+        let Some((gpu, why)) = self.gpu.as_ref().and_then(|gpu| Some((gpu, gpu.why_lost()?))) else { return };
+        if self.is_loss_told.swap(true, Ordering::Relaxed) {
+            return;
+        }
+        let why = why.lines().next().unwrap_or_default();
+        let what = format!("{} was lost ({why}): the processor sums the picture now", gpu.name());
+        lock(&self.published).news.notices.push(what);
+        (self.waker)();
+    }
+
     /// What pictures are summed on; none, or none any more: the processor.
     pub fn gpu(&self) -> Option<Gpu> {
         self.gpu.clone().filter(|gpu| !gpu.is_lost())
@@ -435,6 +450,7 @@ impl PreviewThread {
     ) -> Result<Self, SessionError> {
         let shared = Arc::new(Shared {
             gpu,
+            is_loss_told: AtomicBool::new(false),
             wishes: Mutex::default(),
             wake: Condvar::new(),
             quick: JobProgress::default(),

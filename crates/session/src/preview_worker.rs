@@ -98,7 +98,9 @@ impl Worker {
     pub fn run(mut self) {
         while let Some(wishes) = self.shared.next(self.exact_after.filter(|_| self.may_refine())) {
             self.presenter.begun = Instant::now();
-            match guarded("drawing the preview", || self.follow(wishes)) {
+            let followed = guarded("drawing the preview", || self.follow(wishes));
+            self.shared.tell_loss();
+            match followed {
                 Ok(()) | Err(SessionError::Cancelled) => {}
                 Err(error) => {
                     if matches!(error, SessionError::Internal(_)) {

@@ -306,6 +306,7 @@ impl Session {
             }
         }
         self.events.extend(news.failures.into_iter().map(Event::Failed));
+        self.events.extend(news.notices.into_iter().map(Event::Notice));
         let jobs = self.jobs();
         let moved = jobs.iter().filter(|job| !self.reported.contains(job)).cloned();
         self.events.extend(moved.map(Event::Progress));

@@ -6,21 +6,28 @@ mod tiny_glb;
 
 use glam::DVec2;
 use lens::{FocusOffset, Picture};
-use session::{Command, LivePicture, Session, SessionOptions, StrokePoint};
+use session::{Command, Event, LivePicture, Session, SessionOptions, StrokePoint};
 use splat::{BackendChoice, Gpu};
 use std::path::Path;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-fn settle(session: &mut Session) {
+/// Polls until all work is done; what the user is told.
+fn settle(session: &mut Session) -> Vec<String> {
     let start = Instant::now();
-    session.poll();
+    let mut events = session.poll();
     while !session.is_settled() {
         assert!(start.elapsed() < Duration::from_secs(120), "it never settles: {:?}", session.jobs());
         std::thread::sleep(Duration::from_millis(2));
-        session.poll();
+        events.extend(session.poll());
     }
-    session.poll();
+    events.extend(session.poll());
+    let told = events.into_iter().filter_map(|event| match event {
+        Event::Notice(text) => Some(text),
+        Event::Failed(text) => panic!("{text}"),
+        _ => None,
+    });
+    told.collect()
 }
 
 fn opened(path: &Path, gpu: Option<Gpu>) -> Session {
@@ -43,7 +50,7 @@ fn point(session: &Session, k: usize) -> StrokePoint {
 const POINTS: usize = 8;
 
 /// Paints the stroke, `at` a point of it doing something.
-fn paint(session: &mut Session, at: usize, something: impl FnOnce(&mut Session)) {
+fn paint(session: &mut Session, at: usize, something: impl FnOnce(&mut Session)) -> Vec<String> {
     session.apply(Command::BeginStroke(point(session, 0))).unwrap();
     let mut something = Some(something);
     for k in 1..POINTS {
@@ -53,7 +60,7 @@ fn paint(session: &mut Session, at: usize, something: impl FnOnce(&mut Session))
         session.apply(Command::ExtendStroke(point(session, k))).unwrap();
     }
     session.apply(Command::CommitStroke).unwrap();
-    settle(session);
+    settle(session)
 }
 
 fn picture(session: &Session) -> Arc<Picture> {
@@ -81,13 +88,15 @@ fn twenty_lost_cards_lose_no_stroke() {
         assert!(is_there(&session) && session.screen().on_card().is_some(), "round {round}");
         assert_eq!(picture(&session), blank, "round {round}");
         let card = gpu.expect("asked for");
-        paint(&mut session, 1 + round % (POINTS - 1), |session| {
+        let told = paint(&mut session, 1 + round % (POINTS - 1), |session| {
             // Now and then when the last picture stands, else while the next one is made.
             if round % 3 == 0 {
                 settle(session);
             }
             card.destroy();
         });
+        let is_of_loss = |text: &&String| text.contains(&format!("{} was lost", card.name()));
+        assert_eq!(told.iter().filter(is_of_loss).count(), 1, "round {round}: {told:?}");
         assert!(!is_there(&session) && session.screen().on_card().is_none(), "round {round}");
         assert_eq!(session.document().unwrap().map, expected.document().unwrap().map, "round {round}");
         assert_eq!(picture(&session), picture(&expected), "round {round}");

@@ -1,8 +1,7 @@
 //! A graphics card in use.
 
 use crate::gpu::passes::Passes;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, OnceLock};
 use std::time::Duration;
 use wgpu::{Adapter, Device, Features, Limits, PollError, PollType, Queue, SubmissionIndex};
 
@@ -27,7 +26,8 @@ struct Card {
     device: Device,
     queue: Queue,
     name: String,
-    is_lost: Arc<AtomicBool>,
+    /// Why it no longer works, once it does not.
+    lost: Arc<OnceLock<String>>,
     passes: Passes,
 }
 
@@ -73,10 +73,10 @@ impl Gpu {
     /// # Errors
     /// What the driver said.
     pub fn of(device: Device, queue: Queue, name: String) -> Result<Self, String> {
-        let is_lost = Arc::new(AtomicBool::new(false));
+        let lost = Arc::new(OnceLock::new());
         let scope = device.push_error_scope(wgpu::ErrorFilter::Validation);
         let passes = Passes::new(&device);
-        let gpu = Self(Arc::new(Card { device, queue, name, is_lost: is_lost.clone(), passes }));
+        let gpu = Self(Arc::new(Card { device, queue, name, lost: lost.clone(), passes }));
         let rounds_alike = gpu.rounds_alike();
         if let Some(error) = pollster::block_on(scope.pop()) {
             return Err(error.to_string());
@@ -88,12 +88,13 @@ impl Gpu {
             }
             Err(Lost) => return Err("it gives up when it is first asked for something".into()),
         }
-        let by_error = is_lost.clone();
-        gpu.device().set_device_lost_callback(move |_, _| is_lost.store(true, Ordering::SeqCst));
-        // Whatever it does not do, the processor does.
+        // Whatever it does not do, the processor does. The first reason counts.
+        let by_error = lost.clone();
+        gpu.device().set_device_lost_callback(move |_, message| {
+            let _ = lost.set(message);
+        });
         gpu.device().on_uncaptured_error(Arc::new(move |error| {
-            tracing::error!("graphics card: {error}");
-            by_error.store(true, Ordering::SeqCst);
+            let _ = by_error.set(error.to_string());
         }));
         Ok(gpu)
     }
@@ -110,7 +111,12 @@ impl Gpu {
 
     /// Whether it no longer works.
     pub fn is_lost(&self) -> bool {
-        self.0.is_lost.load(Ordering::SeqCst)
+        self.why_lost().is_some()
+    }
+
+    /// Why it no longer works, in its driver's words; none while it does.
+    pub fn why_lost(&self) -> Option<&str> {
+        self.0.lost.get().map(String::as_str)
     }
 
     /// Gives the device back at once, as a driver does that crashes: what is summed on it goes on on the processor.

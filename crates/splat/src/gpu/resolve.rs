@@ -9,7 +9,7 @@ use crate::gpu::work::Work;
 use crate::nodes::{BRIGHT, Nodes};
 use crate::resolve::{MARGIN, Overflow, Quanta};
 use std::ops::Range;
-use std::sync::mpsc::{self, RecvTimeoutError};
+use std::sync::mpsc;
 use wgpu::{BindGroup, BindGroupLayout, Buffer, BufferBinding, BufferUsages, SubmissionIndex};
 
 /// Lines, shares and picture.
@@ -28,6 +28,9 @@ pub struct Resolve {
     picture: Buffer,
     overflow: Buffer,
 }
+
+/// What is done comes back within so many moments: ten seconds.
+const MOST_MOMENTS: usize = 10_000;
 
 /// Words of `Level` and of `Frame` in resolve.wgsl.
 const LEVEL_WORDS: usize = 12;
@@ -286,15 +289,11 @@ impl Gpu {
         });
         self.wait_for(asked_for)?;
         // It may be another thread that is told so first.
-        let is_mapped = loop {
-            match receiver.recv_timeout(MOMENT) {
-                Ok(is_mapped) => break is_mapped,
-                Err(RecvTimeoutError::Disconnected) => break false,
-                Err(RecvTimeoutError::Timeout) => self.check()?,
-            }
-            self.device().poll(wgpu::PollType::Poll).map_err(|_| Lost)?;
-        };
-        if !is_mapped {
+        let told = (0..MOST_MOMENTS).find_map(|_| {
+            let told = receiver.recv_timeout(MOMENT).ok();
+            told.or_else(|| self.device().poll(wgpu::PollType::Poll).err().map(|_| false))
+        });
+        if told != Some(true) {
             return Err(Lost);
         }
         let view = staging.get_mapped_range(0..size).map_err(|_| Lost)?;
