@@ -208,8 +208,6 @@ pub(crate) struct Shared {
     pub field: FieldWatch,
     published: Mutex<Published>,
     gpu: Option<Gpu>,
-    /// Whether it was told that the card was lost.
-    is_loss_told: AtomicBool,
     waker: Waker,
 }
 
@@ -341,16 +339,11 @@ impl Shared {
         (self.waker)();
     }
 
-    /// Tells the user once that the card was lost.
-    pub fn tell_loss(&self) {
-        let Some((gpu, why)) = self.gpu.as_ref().and_then(|gpu| Some((gpu, gpu.why_lost()?))) else { return };
-        if self.is_loss_told.swap(true, Ordering::Relaxed) {
-            return;
-        }
-        let why = why.lines().next().unwrap_or_default();
-        let what = format!("{} was lost ({why}): the processor sums the picture now", gpu.name());
-        lock(&self.published).news.notices.push(what);
-        (self.waker)();
+    /// What the user is to know of a card that was lost.
+    pub fn loss(&self) -> Option<String> {
+        let gpu = self.gpu.as_ref()?;
+        let why = gpu.why_lost()?.lines().next().unwrap_or_default();
+        Some(format!("{} was lost ({why}): the processor sums the picture now", gpu.name()))
     }
 
     /// What pictures are summed on; none, or none any more: the processor.
@@ -361,6 +354,12 @@ impl Shared {
     /// Shows the light field that pictures are made of.
     pub fn publish_field(&self, generation: u64, field: BakedField) {
         lock(&self.published).news.field = Some((generation, field));
+    }
+
+    /// Tells the user of what is no failure.
+    pub fn notice(&self, what: String) {
+        lock(&self.published).news.notices.push(what);
+        (self.waker)();
     }
 
     /// Tells the user.
@@ -450,7 +449,6 @@ impl PreviewThread {
     ) -> Result<Self, SessionError> {
         let shared = Arc::new(Shared {
             gpu,
-            is_loss_told: AtomicBool::new(false),
             wishes: Mutex::default(),
             wake: Condvar::new(),
             quick: JobProgress::default(),

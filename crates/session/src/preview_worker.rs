@@ -65,6 +65,8 @@ pub(crate) struct Worker {
     bakes_anew: bool,
     /// The user wants no more work until the next change that needs it.
     is_held: bool,
+    /// The user knows that the card was lost.
+    is_loss_told: bool,
     presenter: Presenter,
 }
 
@@ -91,6 +93,7 @@ impl Worker {
             is_settled: false,
             bakes_anew: false,
             is_held: false,
+            is_loss_told: false,
         }
     }
 
@@ -99,7 +102,7 @@ impl Worker {
         while let Some(wishes) = self.shared.next(self.exact_after.filter(|_| self.may_refine())) {
             self.presenter.begun = Instant::now();
             let followed = guarded("drawing the preview", || self.follow(wishes));
-            self.shared.tell_loss();
+            self.tell_loss();
             match followed {
                 Ok(()) | Err(SessionError::Cancelled) => {}
                 Err(error) => {
@@ -114,6 +117,14 @@ impl Worker {
         // They were cancelled with everything else.
         self.maker.join();
         self.refinement.join();
+    }
+
+    /// Tells the user once that the card was lost.
+    fn tell_loss(&mut self) {
+        if let Some(loss) = self.shared.loss().filter(|_| !self.is_loss_told) {
+            self.is_loss_told = true;
+            self.shared.notice(loss);
+        }
     }
 
     fn follow(&mut self, mut wishes: Wishes) -> Result<(), SessionError> {

@@ -1,12 +1,16 @@
 //! A graphics card in use.
 
 use crate::gpu::passes::Passes;
+use std::sync::mpsc::{Receiver, RecvTimeoutError};
 use std::sync::{Arc, OnceLock};
 use std::time::Duration;
 use wgpu::{Adapter, Device, Features, Limits, PollError, PollType, Queue, SubmissionIndex};
 
 /// For how long a device is waited for in one go: whoever shows pictures on it waits as long.
-pub(super) const MOMENT: Duration = Duration::from_millis(1);
+const MOMENT: Duration = Duration::from_millis(1);
+
+/// What is done is told within so many moments: ten seconds.
+const MOST_MOMENTS: usize = 10_000;
 
 /// The card is gone, or refuses to work on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -153,6 +157,21 @@ impl Gpu {
                 Err(PollError::WrongSubmissionIndex(..)) => return Err(Lost),
             }
         }
+    }
+
+    /// What a callback of the device sends about work that is done; another thread may be told that it is, first. A device
+    /// that stays silent is lost.
+    pub(super) fn answer<T>(&self, receiver: &Receiver<T>) -> Result<T, Lost> {
+        for _ in 0..MOST_MOMENTS {
+            match receiver.recv_timeout(MOMENT) {
+                Ok(answer) => return Ok(answer),
+                Err(RecvTimeoutError::Disconnected) => return Err(Lost),
+                Err(RecvTimeoutError::Timeout) => self.check()?,
+            }
+            self.device().poll(PollType::Poll).map_err(|_| Lost)?;
+        }
+        let _ = self.0.lost.set("it no longer answers".into());
+        Err(Lost)
     }
 
     /// An error if it is lost.

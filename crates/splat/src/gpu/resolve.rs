@@ -2,7 +2,7 @@
 
 use crate::balance::{Gains, KnotSums, Knots, SharedSums};
 use crate::gpu::Gpu;
-use crate::gpu::device::{Lost, MOMENT};
+use crate::gpu::device::Lost;
 use crate::gpu::passes::Pass;
 use crate::gpu::sums::{Layout, Level};
 use crate::gpu::work::Work;
@@ -28,9 +28,6 @@ pub struct Resolve {
     picture: Buffer,
     overflow: Buffer,
 }
-
-/// What is done comes back within so many moments: ten seconds.
-const MOST_MOMENTS: usize = 10_000;
 
 /// Words of `Level` and of `Frame` in resolve.wgsl.
 const LEVEL_WORDS: usize = 12;
@@ -288,12 +285,7 @@ impl Gpu {
             let _ = sender.send(result.is_ok());
         });
         self.wait_for(asked_for)?;
-        // It may be another thread that is told so first.
-        let told = (0..MOST_MOMENTS).find_map(|_| {
-            let told = receiver.recv_timeout(MOMENT).ok();
-            told.or_else(|| self.device().poll(wgpu::PollType::Poll).err().map(|_| false))
-        });
-        if told != Some(true) {
+        if !self.answer(&receiver)? {
             return Err(Lost);
         }
         let view = staging.get_mapped_range(0..size).map_err(|_| Lost)?;
