@@ -17,7 +17,7 @@ use crate::sample::{Salf, Sample, Visibility};
 use crate::samples::{Found, Packer, Samples, block_corner};
 use crate::surface_patches;
 use crate::view::View;
-use crate::visibility::{self, Patterns};
+use crate::visibility::{self, Fineness, Patterns};
 use glam::{DVec2, IVec2};
 use lens::{Camera, FocusOffset};
 use progress::{Cancelled, Progress, Stage};
@@ -34,7 +34,7 @@ pub struct BakeOptions {
     /// may give. What the standard picture needs is always sampled.
     pub margin_px: f64,
     /// How large a cell of a partly visible aperture may be on the picture, px, where 16 cells a side allow it: up to
-    /// twice this circle of confusion, samples have 8 cells a side. A pixel of a surface whose radiance varies by more
+    /// this circle of confusion, samples have 8 cells a side. A pixel of a surface whose radiance varies by more
     /// than [`Self::EVEN_PER_PX`] times this is a sample a quadrant. Smaller is more exact and takes more memory.
     pub tolerance_px: f64,
     /// Whether samples are packed ([`Samples`]). It is right unless what that loses is to be measured.
@@ -248,9 +248,7 @@ impl Baker<'_> {
         if view.optics.aperture_radius == 0.0 || is_open() {
             return Some(Visibility::Open);
         }
-        let corner = cell.corner.as_uvec2();
-        let seed = [corner.x, corner.y.wrapping_add((index as u32) << 16)];
-        let side = visibility::cells_a_side(view, inverse_depth);
-        visibility::visibility(tracer, view, patterns, viewpoint, side, seed, |_| true)
+        let (fineness, number) = (Fineness::of(view, inverse_depth), Patterns::number_of(cell, index));
+        visibility::visibility(tracer, view, patterns, viewpoint, fineness, number, |_| true)
     }
 }

@@ -27,24 +27,45 @@ pub struct Net {
     seed: [u32; 2],
     /// Binary digits of n.
     bits: u32,
-    flips: [usize; 2],
+    /// Binary digits of the places in their cells that are turned over: that leaves a net a net.
+    shift: [u32; 2],
 }
 
 impl Net {
     /// Of 2 to `bits` cells a side; another one for each seed.
     pub fn new(bits: u32, seed: [u32; 2]) -> Self {
         let [a, b, _] = mix(seed[0], seed[1], u32::MAX);
-        Self { seed, bits, flips: [a, b].map(|flips| (flips >> (u32::BITS - bits)) as usize) }
+        let digits = u32::MAX << (u32::BITS - bits);
+        Self { seed, bits, shift: [a & digits, b & digits] }
+    }
+
+    /// The `k`-th of nets that together have, in each cell, places that are spread as evenly: any 4^m of them that follow each
+    /// other from a multiple of 4^m on.
+    pub fn one_of_many(bits: u32, k: u32) -> Self {
+        Self { seed: [0, bits], bits, shift: sequence(k) }
     }
 
     /// The place in a cell, in [0, 1)².
     pub fn place(&self, row: usize, column: usize) -> [f64; 2] {
-        let [u, v, _] = jitter(self.seed[0], self.seed[1], (row << self.bits | column) as u32);
-        let n = (1 << self.bits) as f64;
-        // The digits of the other coordinate, in reverse.
-        let slot = |k: usize, flips: usize| ((k.reverse_bits() >> (usize::BITS - self.bits)) ^ flips) as f64;
-        [(slot(row, self.flips[0]) + u) / n, (slot(column, self.flips[1]) + v) / n]
+        let [u, v, _] = mix(self.seed[0], self.seed[1], (row << self.bits | column) as u32);
+        // The digits of the other coordinate, in reverse, and what is random behind them.
+        let slot = |k: usize, random: u32| (k as u32).reverse_bits() | random >> self.bits;
+        let [u, v] = [slot(row, u) ^ self.shift[0], slot(column, v) ^ self.shift[1]];
+        [u, v].map(|x| f64::from(x) / 4294967296.0)
     }
+}
+
+/// The `k`-th point of the (0, 2)-sequence in base 2 of van der Corput and Sobol, as 32 binary digits behind the point.
+fn sequence(k: u32) -> [u32; 2] {
+    let (mut sobol, mut direction, mut rest) = (0, 1u32 << 31, k);
+    while rest != 0 {
+        if rest & 1 == 1 {
+            sobol ^= direction;
+        }
+        direction ^= direction >> 1;
+        rest >>= 1;
+    }
+    [k.reverse_bits(), sobol]
 }
 
 #[cfg(test)]
@@ -53,8 +74,10 @@ mod tests {
 
     #[test]
     fn a_net_has_one_place_in_each_box() {
-        for (bits, seed) in (0..200).map(|k| (2 + k % 3, [k, 7 * k])) {
-            let (net, n) = (Net::new(bits, seed), 1usize << bits);
+        let alone = (0..200).map(|k| (2 + k % 3, Net::new(2 + k % 3, [k, 7 * k])));
+        let of_many = (0..200).map(|k| (2 + k % 3, Net::one_of_many(2 + k % 3, k)));
+        for (index, (bits, net)) in alone.chain(of_many).enumerate() {
+            let n = 1usize << bits;
             for wide in 0..=2 * bits {
                 let [columns, rows] = [1usize << (2 * bits - wide), 1 << wide];
                 let mut found = vec![false; n * n];
@@ -64,7 +87,21 @@ mod tests {
                     let y = (row as f64 + v) / n as f64 * rows as f64;
                     found[y as usize * columns + x as usize] = true;
                 }
-                assert!(found.iter().all(|&found| found), "{seed:?}, {n}: {columns} × {rows}");
+                assert!(found.iter().all(|&found| found), "{index}, {n}: {columns} × {rows}");
+            }
+        }
+    }
+
+    #[test]
+    fn many_nets_are_spread_evenly_in_each_cell() {
+        for (first, side) in [(0, 2), (12, 2), (16, 4), (192, 8), (0, 16)] {
+            for (row, column) in [(0, 0), (3, 7), (15, 15)] {
+                let mut found = vec![false; side * side];
+                for k in first..first + (side * side) as u32 {
+                    let [u, v] = Net::one_of_many(4, k).place(row, column);
+                    found[(v * side as f64) as usize * side + (u * side as f64) as usize] = true;
+                }
+                assert!(found.iter().all(|&found| found), "{first}, {side}: {row} {column}");
             }
         }
     }

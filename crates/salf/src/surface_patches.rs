@@ -9,7 +9,7 @@ use crate::domain::Domain;
 use crate::jitter::jitter;
 use crate::sample::Sample;
 use crate::view::View;
-use crate::visibility::{self, Patterns};
+use crate::visibility::{self, Fineness, Patterns};
 use glam::{DVec2, DVec3};
 use scene::SurfacePoint;
 use trace::{Radiance, Tracer, Viewpoint};
@@ -115,11 +115,19 @@ fn patch(
     }
     let pixel = view.camera.pixel_from_q(optics.chief(position));
     let inverse_depth = 1.0 / position.z;
-    let cells = visibility::cells_a_side(view, inverse_depth);
+    let fineness = Fineness::of(view, inverse_depth);
     let seed = [point.triangle, (jitter(point.barycentric.x.to_bits() as u32, 0, 0)[0] * 1e9) as u32];
     let is_on_side = |u: DVec2| weight + tilt.dot(u) > 0.0;
     let from = Viewpoint::Surface(point);
-    let visibility = visibility::visibility(tracer, view, patterns, from, cells, seed, is_on_side)?;
+    let visibility = visibility::visibility(
+        tracer,
+        view,
+        patterns,
+        from,
+        fineness,
+        Patterns::some_number(seed),
+        is_on_side,
+    )?;
     let rim = view.aperture_point(tilt.signum());
     Some(Sample {
         center: pixel.as_vec2(),

@@ -1,48 +1,104 @@
 //! What of the aperture a point of a surface sees: a shadow ray a cell of the aperture, all of them at once.
 
+use crate::domain::Cell;
 use crate::jitter::{Net, jitter};
 use crate::sample::Visibility;
 use crate::view::View;
 use glam::DVec2;
 use trace::{PlaceSet, Places, Tracer, Viewpoint};
 
-/// Cells a side for a point of inverse depth `inverse_depth`.
-pub fn cells_a_side(view: &View, inverse_depth: f64) -> usize {
-    let kappa = view.optics.standard_kappa(inverse_depth);
-    if view.optics.circle_of_confusion_px(kappa) <= 2.0 * view.tolerance_px { 8 } else { 16 }
+/// How much of its cell, along each axis, the places of a ray are spread over, of 16 cells a side.
+///
+/// Rays that go anywhere through their cells tell most exactly how much is seen. Where the cells are larger than pixels they blur
+/// the image of an edge, though, which those through their middles do half as much; that the edges of many samples together lie
+/// anywhere in their cells is enough then.
+const SPREADS: [f64; 5] = [1.0, 0.75, 0.5, 0.375, 0.25];
+
+/// Rays are spread over so many px of the picture at least, as the standard lens shows it, where that is within their cells.
+const SPREAD_PX: f64 = 0.5;
+
+/// How a point's view of the aperture is told.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Fineness {
+    /// 8 cells a side.
+    Coarse,
+    /// 16 cells a side, with this one of [`SPREADS`].
+    Fine(usize),
 }
 
-/// Where in each cell of the aperture its ray goes through: several patterns, so that neighbours do not share their errors.
+impl Fineness {
+    /// For a point of inverse depth `inverse_depth`.
+    pub fn of(view: &View, inverse_depth: f64) -> Self {
+        let circle_px = view.optics.circle_of_confusion_px(view.optics.standard_kappa(inverse_depth));
+        if circle_px <= view.tolerance_px {
+            return Self::Coarse;
+        }
+        // The narrowest that is as wide, or the narrowest of all.
+        let wanted = SPREAD_PX * 16.0 / circle_px;
+        Self::Fine(SPREADS.iter().skip(1).take_while(|&&spread| wanted <= spread).count())
+    }
+
+    fn cells_a_side(self) -> usize {
+        match self {
+            Self::Coarse => 8,
+            Self::Fine(_) => 16,
+        }
+    }
+}
+
+/// Where in each cell of the aperture its ray goes through: several patterns, spread so that in each cell of it the rays of
+/// neighbours are spread evenly, too.
 pub struct Patterns {
-    /// For 8 and for 16 cells a side, row by row.
-    of_side: [Vec<Places>; 2],
+    coarse: Vec<Places>,
+    /// By spread.
+    fine: [Vec<Places>; SPREADS.len()],
 }
 
 impl Patterns {
+    /// Binary digits of the coordinates that tell a pixel's pattern.
+    const DIGITS: u32 = 3;
+
     /// How many there are of each.
-    const COUNT: usize = 64;
+    const COUNT: u32 = 1 << (2 * Self::DIGITS);
 
     pub fn new() -> Self {
-        let of_side = |side: usize| (0..Self::COUNT).map(|k| Self::pattern(side, k as u32)).collect();
-        Self { of_side: [of_side(8), of_side(16)] }
+        let all =
+            |side: usize, spread: f64| (0..Self::COUNT).map(|k| Self::pattern(side, spread, k)).collect();
+        Self { coarse: all(8, 1.0), fine: SPREADS.map(|spread| all(16, spread)) }
     }
 
-    fn pattern(side: usize, number: u32) -> Places {
-        let net = Net::new(side.ilog2(), [number, side as u32]);
+    fn pattern(side: usize, spread: f64, number: u32) -> Places {
+        let net = Net::one_of_many(side.ilog2(), number);
         let place = |cell: usize| {
             let (row, column) = (cell / side, cell % side);
-            let [u, v] = net.place(row, column);
+            let [u, v] = net.place(row, column).map(|at| 0.5 + spread * (at - 0.5));
             DVec2::new(column as f64 + u, row as f64 + v) * (2.0 / side as f64) - 1.0
         };
         Places::new(&(0..side * side).map(place).collect::<Vec<_>>())
     }
 
-    fn of(&self, side: usize, number: usize) -> &Places {
-        &self.of_side[usize::from(side == 16)][number % Self::COUNT]
+    /// The number of the pattern for the `index`-th surface of a cell: along Morton's curve, so that neighbours have others.
+    pub fn number_of(cell: Cell, index: usize) -> u32 {
+        let at = (cell.corner / cell.side).as_uvec2();
+        let digit = |k: u32| (at.x >> k & 1) << (2 * k) | (at.y >> k & 1) << (2 * k + 1);
+        (0..Self::DIGITS).map(digit).sum::<u32>() ^ (index as u32).wrapping_mul(21)
+    }
+
+    /// The number of some pattern.
+    pub fn some_number(seed: [u32; 2]) -> u32 {
+        (jitter(seed[0], seed[1], 0)[0] * f64::from(Self::COUNT)) as u32
+    }
+
+    fn of(&self, fineness: Fineness, number: u32) -> &Places {
+        let patterns = match fineness {
+            Fineness::Coarse => &self.coarse,
+            Fineness::Fine(spread) => &self.fine[spread],
+        };
+        &patterns[(number % Self::COUNT) as usize]
     }
 }
 
-/// The cells of the aperture that a point sees: one jittered ray each. `None` if it sees none.
+/// The cells of the aperture that a point sees: one ray each, of the pattern of a `number`. `None` if it sees none.
 ///
 /// `is_on_side` tells which aperture points lie on the side of the surface that the point stands for.
 pub fn visibility(
@@ -50,16 +106,15 @@ pub fn visibility(
     view: &View,
     patterns: &Patterns,
     from: Viewpoint,
-    side: usize,
-    seed: [u32; 2],
+    fineness: Fineness,
+    number: u32,
     is_on_side: impl Fn(DVec2) -> bool,
 ) -> Option<Visibility> {
-    let [pick, ..] = jitter(seed[0], seed[1], 0);
-    let places = patterns.of(side, (pick * Patterns::COUNT as f64) as usize);
+    let places = patterns.of(fineness, number);
     let hidden = tracer.hidden_places(from, &view.aperture_square(), places);
     let seen = (places.all() - hidden).iter().filter(|&cell| is_on_side(places.at(cell)));
     let seen: PlaceSet = seen.collect();
-    let words = &seen.words()[..side * side / 64];
+    let words = &seen.words()[..fineness.cells_a_side().pow(2) / 64];
     if words.iter().all(|&word| word == 0) {
         return None;
     }
@@ -67,4 +122,45 @@ pub fn visibility(
         return Some(Visibility::Open);
     }
     Some(Visibility::Cells { words: words.into() })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::IVec2;
+    use lens::Camera;
+
+    #[test]
+    fn rays_are_spread_less_where_cells_are_larger_than_pixels() {
+        let camera = Camera {
+            width: 640,
+            height: 360,
+            focus_distance: 1.0,
+            aperture_radius: 0.05,
+            ..Camera::default()
+        };
+        let mut view = View::new(&camera);
+        view.tolerance_px = 2.0;
+        let of_circle = |px: f64| {
+            let kappa = view.optics.kappa_for_circle_px(px).expect("there is an aperture");
+            Fineness::of(&view, 1.0 - kappa)
+        };
+        let found = [1.0, 1.99, 2.01, 8.0, 12.0, 15.0, 18.0, 25.0, 500.0].map(of_circle);
+        let spreads = [0, 0, 1, 1, 2, 3, 4].map(Fineness::Fine);
+        assert_eq!(found[..2], [Fineness::Coarse; 2]);
+        assert_eq!(found[2..], spreads);
+    }
+
+    #[test]
+    fn neighbours_have_patterns_of_their_own() {
+        for (side, index) in [(1, 0), (1, 3), (4, 1)] {
+            let mut found = [0; Patterns::COUNT as usize];
+            for k in 0..Patterns::COUNT as i32 {
+                let corner = IVec2::new(k % 8 - 16, k / 8 + 32) * side;
+                let number = Patterns::number_of(Cell { corner, side }, index);
+                found[(number % Patterns::COUNT) as usize] += 1;
+            }
+            assert!(found.iter().all(|&count| count == 1), "{side} {index}: {found:?}");
+        }
+    }
 }

@@ -65,9 +65,7 @@ impl Word for i32 {
     }
     #[inline(always)]
     fn near(bits: u32, part: u32) -> Self {
-        // ⌊(4096·high + low)·part/4096⌋: products of 32 bits.
-        let (high, low) = (bits >> POSITION_BITS, bits & (PIXEL as u32 - 1));
-        (high.wrapping_mul(part).wrapping_add(low.wrapping_mul(part) >> POSITION_BITS)) as i32
+        ((bits as u64 * part as u64) >> POSITION_BITS) as i32
     }
 }
 
@@ -298,6 +296,13 @@ pub struct Rows<'a, W> {
 }
 
 impl<W: Word> Rows<'_, W> {
+    /// The same rows, for a loop to have all that they are at hand.
+    #[inline(always)]
+    pub fn borrowed(&mut self) -> Rows<'_, W> {
+        let Self { first, end, width, patch_bits, ref mut cells, ref mut totals, ref mut touched } = *self;
+        Rows { first, end, width, patch_bits, cells, totals, touched }
+    }
+
     /// Makes them black.
     pub fn clear(&mut self) {
         let stride = self.width + 3;
@@ -369,19 +374,12 @@ impl<W: Word> Rows<'_, W> {
         let stride = self.width + 3;
         let place = (row - self.first) as usize;
         let line = &mut self.cells[place * stride..][..stride];
-        // The border is column 0.
-        let [from, to] = [(start >> POSITION_BITS) + 1, (end >> POSITION_BITS) + 1];
-        let (mut bits, mut whole) = ([W::Bits::default(); 4], [W::default(); 4]);
-        for c in 0..4 {
-            bits[c] = W::bits(value[c]);
-            whole[c] = W::of(bits[c]);
-        }
-        let (begun, ended) = (near::<W>(&bits, start), near::<W>(&bits, end));
-        let last = stride - 1;
         let (touched, patch_bits) = (&mut self.touched[place], self.patch_bits);
+        let run = Run { start, end, value };
+        let [first, second] = run.columns();
         // Columns before the border are far beyond the last one too.
-        let [first, second] = [from as u32 as usize, to as u32 as usize];
-        let total = if first < last && second < last {
+        let total = if first + 1 < line.len() && second + 1 < line.len() {
+            let Ends { whole, begun, ended } = run.ends::<W>();
             add(&mut line[first], &begun, sign);
             add(&mut line[first + 1], &rest(&whole, &begun), sign);
             add(&mut line[second], &ended, -sign);
@@ -390,18 +388,67 @@ impl<W: Word> Rows<'_, W> {
             touched.touch(second, patch_bits);
             whole[3].wide() * (second as i64 - first as i64) + begun[3].wide() - ended[3].wide()
         } else {
-            let mut throw = |at: i32, near: &Pixel<W>, sign: i32| {
-                let far = rest(&whole, near);
-                let [first, second] = [at, at + 1].map(|column| column.clamp(0, last as i32) as usize);
-                add(&mut line[first], near, sign);
-                add(&mut line[second], &far, sign);
-                touched.touch(first, patch_bits);
-                near[3].wide() * (last - first) as i64 + far[3].wide() * (last - second) as i64
-            };
-            throw(from, &begun, sign) - throw(to, &ended, -sign)
+            run.add_beyond(line, touched, patch_bits, sign)
         };
         let row = &mut self.totals[place];
         *row = if sign < 0 { row.wrapping_sub(total) } else { row.wrapping_add(total) };
+    }
+}
+
+/// Light in a row from `start` to `end`, 1/4096 px: `value` a pixel.
+#[derive(Clone, Copy)]
+struct Run {
+    start: i32,
+    end: i32,
+    value: [u64; 4],
+}
+
+/// A pixel of a run, and what of it falls into the nearer column at either end.
+struct Ends<W> {
+    whole: Pixel<W>,
+    begun: Pixel<W>,
+    ended: Pixel<W>,
+}
+
+impl Run {
+    /// The nearer columns of its ends in memory; the border is column 0. Those before it count as far beyond all.
+    #[inline(always)]
+    fn columns(&self) -> [usize; 2] {
+        [self.start, self.end].map(|at| ((at >> POSITION_BITS) + 1) as u32 as usize)
+    }
+
+    #[inline(always)]
+    fn ends<W: Word>(&self) -> Ends<W> {
+        let (mut bits, mut whole) = ([W::Bits::default(); 4], [W::default(); 4]);
+        for c in 0..4 {
+            bits[c] = W::bits(self.value[c]);
+            whole[c] = W::of(bits[c]);
+        }
+        Ends { whole, begun: near::<W>(&bits, self.start), ended: near::<W>(&bits, self.end) }
+    }
+
+    /// Adds it to a row that it leaves. Returns the coverage thrown at the row.
+    #[cold]
+    #[inline(never)]
+    fn add_beyond<W: Word>(
+        self,
+        line: &mut [Pixel<W>],
+        touched: &mut Touched,
+        patch_bits: u32,
+        sign: i32,
+    ) -> i64 {
+        let Ends { whole, begun, ended } = self.ends::<W>();
+        let last = line.len() - 1;
+        let mut throw = |at: i32, near: &Pixel<W>, sign: i32| {
+            let far = rest(&whole, near);
+            let column = (at >> POSITION_BITS) + 1;
+            let [first, second] = [column, column + 1].map(|column| column.clamp(0, last as i32) as usize);
+            add(&mut line[first], near, sign);
+            add(&mut line[second], &far, sign);
+            touched.touch(first, patch_bits);
+            near[3].wide() * (last - first) as i64 + far[3].wide() * (last - second) as i64
+        };
+        throw(self.start, &begun, sign) - throw(self.end, &ended, -sign)
     }
 }
 

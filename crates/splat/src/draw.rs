@@ -66,6 +66,9 @@ pub struct Pen<'a> {
     pub parts: Vec<BoxPart>,
     /// Even images of a smaller radius, 1/4096 px, are one box; others one a part of the aperture.
     pub one_box_radius: u32,
+    /// Images of partly occluded nodes of a smaller radius, 1/4096 px of their level, take of all rows of cells that a pixel row
+    /// lies across.
+    pub all_rows_radius: u32,
     /// Whether what is drawn is drawn as exactly as it can be.
     pub is_exact: bool,
     /// From which |radius| on, 1/4096 px, stencils follow boxes; at twice that they are alone.
@@ -128,7 +131,17 @@ impl<'a> Pen<'a> {
             Detail::Exact => [ONE / 40, 0],
             Detail::Fine | Detail::Sketch => [ONE / 20, ONE / 20],
         };
-        let box_radius = deviations(if detail == Detail::Sketch { 2.0 } else { 1.0 });
+        let box_radius = deviations(match detail {
+            Detail::Exact => 1.0,
+            Detail::Fine => 1.5,
+            Detail::Sketch => 2.0,
+        });
+        // Below 3 px one row of cells in three or more would stand for a pixel row.
+        let all_rows_radius = match detail {
+            Detail::Exact => u32::MAX,
+            Detail::Fine => 3 * PIXEL as u32,
+            Detail::Sketch => 0,
+        };
         Self {
             nodes,
             stencils,
@@ -145,6 +158,7 @@ impl<'a> Pen<'a> {
             stencil_radius,
             per_stencil_radius: u32::MAX / stencil_radius,
             box_radius,
+            all_rows_radius,
             one_box_radius,
             even_tilt,
             even_seen_tilt,

@@ -8,17 +8,17 @@ pub fn with_widest_instructions<R>(work: impl FnOnce() -> R) -> R {
     {
         use std::is_x86_feature_detected as has;
 
-        #[target_feature(enable = "avx2,bmi1,bmi2,lzcnt")]
+        #[target_feature(enable = "avx2,bmi1,bmi2,lzcnt,popcnt")]
         #[inline(never)]
         fn wide<R>(work: impl FnOnce() -> R) -> R {
             work()
         }
-        #[target_feature(enable = "avx2,bmi1,bmi2,lzcnt,avx512f,avx512bw,avx512dq,avx512vl")]
+        #[target_feature(enable = "avx2,bmi1,bmi2,lzcnt,popcnt,avx512f,avx512bw,avx512dq,avx512vl")]
         #[inline(never)]
         fn wider<R>(work: impl FnOnce() -> R) -> R {
             work()
         }
-        if has!("avx2") && has!("bmi1") && has!("bmi2") && has!("lzcnt") {
+        if has!("avx2") && has!("bmi1") && has!("bmi2") && has!("lzcnt") && has!("popcnt") {
             let is_wider = has!("avx512f") && has!("avx512bw") && has!("avx512dq") && has!("avx512vl");
             // SAFETY: the machine has what either is compiled for.
             return unsafe { if is_wider { wider(work) } else { wide(work) } };

@@ -75,7 +75,7 @@ impl Pen<'_> {
                     let span = lines.span(run.start, run.end);
                     match cells {
                         None => add(span[0], span[1], ONE),
-                        Some((cells, _)) => seen.of_row(image, cells, Row { row, v }, span, add),
+                        Some((cells, _)) => seen.of_row::<false>(cells, Row { row, v }, span, add),
                     }
                 }
             }
@@ -116,7 +116,7 @@ impl Pen<'_> {
                 };
                 match cells {
                     None => add(span[0], span[1], ONE),
-                    Some((cells, _)) => seen.of_row(image, cells, Row { row, v }, span, add),
+                    Some((cells, _)) => seen.of_row::<false>(cells, Row { row, v }, span, add),
                 }
             }
         }

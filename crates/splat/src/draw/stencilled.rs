@@ -7,6 +7,7 @@ use crate::draw::{Paper, Pen};
 use crate::fixed::{mul_shift, ratio};
 use crate::nodes::{Cells, ONE};
 use crate::stencil::{HEIGHT_BITS, Stencil, StencilSize};
+use crate::widest::with_widest_instructions;
 
 /// What is let through of a stencil is scaled by this at most.
 const LARGEST_SCALE: u32 = 4;
@@ -24,7 +25,7 @@ impl Pen<'_> {
         let Some(size) = self.stencil_size_of(image) else {
             return self.draw_large(image, cells, &mut paper.rows, sign);
         };
-        let rows = &mut paper.rows;
+        let mut rows = paper.rows.borrowed();
         // Most of what misses these rows is found out before its stencil is fetched.
         let reach = image.radius.abs() + image.radius.abs() / 2 + 2 * PIXEL;
         if (image.center[1] + reach) >> POSITION_BITS < rows.first
@@ -44,11 +45,21 @@ impl Pen<'_> {
             }
             return;
         };
-        let Some(scale) = self.find_seen(image, cells, share, stencil, base, &mut paper.found) else {
+        // Either on its own: together they leave one another too few registers.
+        let found = if self.takes_all_rows(image) {
+            with_widest_instructions(
+                #[inline(always)]
+                || self.find_seen::<true>(image, cells, share, stencil, base, &mut paper.found),
+            )
+        } else {
+            self.find_seen::<false>(image, cells, share, stencil, base, &mut paper.found)
+        };
+        let Some((scale, found)) = found else {
             return self.draw_seen_box(image, paper, sign);
         };
         image.share = scale;
-        for run in &paper.found {
+        let mut rows = paper.rows.borrowed();
+        for run in found {
             if run.row >= rows.first && run.row < rows.end {
                 let value = image.value(run.height, shift, run.row);
                 rows.add_run(run.row, run.start, run.end, value, sign);
@@ -56,36 +67,40 @@ impl Pen<'_> {
         }
     }
 
-    /// Finds what `cells` let through of a stencil, and what it is to be scaled by (times 2²⁴) so that it is `share` (times
-    /// 2²⁴) of the light: rows of pixels and rows of cells meet only roughly. `None` where a partly occluded node's few
-    /// cells are missed.
+    /// Finds what `cells` let through of a stencil, with `room` to keep it in, and what it is to be scaled by (times 2²⁴) so that
+    /// it is `share` (times 2²⁴) of the light: rows of pixels and rows of cells meet only roughly. `None` where a partly occluded
+    /// node's few cells are missed.
     #[inline(always)]
-    fn find_seen(
+    fn find_seen<'r, const TAKES_ALL: bool>(
         &self,
         image: &Image,
         cells: &Cells,
         share: u32,
         stencil: &Stencil,
         base: i32,
-        found: &mut Vec<SeenRun>,
-    ) -> Option<u32> {
+        room: &'r mut Vec<SeenRun>,
+    ) -> Option<(u32, &'r [SeenRun])> {
         // Heights are as much finer as the stencil is larger.
         let finer = POSITION_BITS + stencil.height_bits - HEIGHT_BITS;
         let seen = SeenRuns::new(self, image);
-        let mut passing = 0;
-        found.clear();
+        let most = stencil.runs.len() * seen.most_of_row::<TAKES_ALL>();
+        if room.len() < most {
+            room.resize(most, SeenRun::default());
+        }
+        let (room, mut count, mut passing) = (&mut room[..most], 0, 0);
         for run in &stencil.runs {
             let row = Row { row: base + run.row, v: run.v };
             let span = [image.center[0] + run.start, image.center[0] + run.end];
-            seen.of_row(image, cells, row, span, |start, end, weight| {
+            seen.of_row::<TAKES_ALL>(cells, row, span, |start, end, weight| {
                 let height =
                     if weight == ONE { run.height } else { mul_shift(run.height, weight as u32, 14) };
                 passing += mul_shift(end.wrapping_sub(start) as u32, height, finer);
-                found.push(SeenRun { row: row.row, start, end, height });
+                room[count] = SeenRun { row: row.row, start, end, height };
+                count += 1;
             });
         }
         let is_missed = !image.node.is_open() && passing < share / LARGEST_SCALE;
-        (!is_missed).then(|| ratio(share, passing, LARGEST_SCALE))
+        (!is_missed).then(|| (ratio(share, passing, LARGEST_SCALE), &room[..count]))
     }
 
     /// The size of the stencil that, blurred by its level, has the variance of the footprint and the aperture's image;

@@ -255,6 +255,7 @@ fn draw_image(image: ptr<function, Image>, place: u32, cells: u32, share: u32) {
     } else {
         let finer = POSITION_BITS + height_bits - HEIGHT_BITS;
         let seen = seen_runs_of(image, cells);
+        let takes_all = takes_all_rows(image);
         var passing = 0u;
         for (var pass_number = 0u; pass_number < 2u; pass_number += 1u) {
             for (var k = 0u; k < count; k += 1u) {
@@ -264,7 +265,8 @@ fn draw_image(image: ptr<function, Image>, place: u32, cells: u32, share: u32) {
                 let span = vec2<i32>(center + bitcast<i32>(stencils[at]), center + bitcast<i32>(stencils[at + 1u]));
                 let is_found = pass_number == 0u;
                 if is_found || (row >= -1 && row <= level.height) {
-                    passing += seen_row(image, seen, row, v, span, stencils[at + 2u], shift, finer, is_found);
+                    let here = SeenRow(row, v, span, stencils[at + 2u], shift, finer, is_found);
+                    passing += seen_row(image, seen, here, takes_all);
                 }
             }
             if cells != OPEN && passing < share / LARGEST_SCALE {
@@ -303,7 +305,7 @@ fn draw_large(image: ptr<function, Image>, height_of_clear: u32, height_bits: u3
                 let value = value_of(image, mul_shift(height, u32(ONE), 14u), (*image).share, shift, row);
                 add_run(image, row, clamped(image, span.x), clamped(image, span.y), value);
             } else {
-                seen_row(image, seen, row, v, span, height, shift, 0u, false);
+                seen_row(image, seen, SeenRow(row, v, span, height, shift, 0u, false), false);
             }
         }
     }

@@ -32,6 +32,7 @@ struct Pen {
     coverage_exponent: i32,
     part_count: u32,
     even_seen_tilt: i32,
+    all_rows_radius: u32,
     is_exact: u32,
     levels: array<Level, 5>,
     // Share, mean, variance, half.

@@ -98,7 +98,7 @@ impl Shapes {
         let rows = pen.stencils.shape.firsts.len() as u32;
         words.extend([rows - 1, rows]);
         words.extend([(now - dim_bits) as u32, (now - bright_bits) as u32, pen.parts.len() as u32]);
-        words.extend([pen.even_seen_tilt as u32, u32::from(pen.is_exact)]);
+        words.extend([pen.even_seen_tilt as u32, pen.all_rows_radius, u32::from(pen.is_exact)]);
         for level in &layout.levels {
             words.extend([level.width as u32, level.height as u32, level.pixels, level.totals]);
         }
@@ -117,5 +117,5 @@ impl Shapes {
 }
 
 /// Words of `Pen` in pen.wgsl before its levels, and in all.
-const FIRST_LEVEL: usize = 19;
-const PEN_WORDS: usize = FIRST_LEVEL + 4 * salf::tree::LEVELS + 1 + 8 * 16;
+const FIRST_LEVEL: usize = 20;
+const PEN_WORDS: usize = FIRST_LEVEL + 4 * salf::tree::LEVELS + 8 * 16;
