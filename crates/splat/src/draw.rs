@@ -136,7 +136,7 @@ impl<'a> Pen<'a> {
             Detail::Fine => 1.5,
             Detail::Sketch => 2.0,
         });
-        // Below 3 px one row of cells in three or more would stand for a pixel row.
+        // Below 3 px one of three rows of cells, or of more, would stand for a pixel row.
         let all_rows_radius = match detail {
             Detail::Exact => u32::MAX,
             Detail::Fine => 3 * PIXEL as u32,
