@@ -414,7 +414,7 @@ impl Run {
     /// The nearer columns of its ends in memory; the border is column 0. Those before it count as far beyond all.
     #[inline(always)]
     fn columns(&self) -> [usize; 2] {
-        [self.start, self.end].map(|at| ((at >> POSITION_BITS) + 1) as u32 as usize)
+        [self.start, self.end].map(|at| (((at >> POSITION_BITS) + 1) as u32 as usize).min(usize::MAX - 1))
     }
 
     #[inline(always)]
