@@ -45,7 +45,7 @@ impl Pen<'_> {
             }
             return;
         };
-        // Either on its own: together they leave one another too few registers.
+        // Each in a function of its own: 2 to 3 % off a picture that has many of either.
         let found = if self.takes_all_rows(image) {
             with_widest_instructions(
                 #[inline(always)]
