@@ -10,7 +10,7 @@ use std::cmp::Ordering;
 use std::ops::Range;
 
 /// How many nodes ahead of the one that is looked at, or drawn, are fetched from memory.
-pub const AHEAD: usize = 8;
+pub const AHEAD: usize = 24;
 
 /// What is summed: nodes as a lens sees them, and their paint.
 pub struct Scene<'a> {

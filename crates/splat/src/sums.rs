@@ -20,6 +20,9 @@ use std::time::Instant;
 /// A picture has no more bands of rows than one for so many: what lies at their edges is drawn twice.
 const BAND_ROWS: u32 = 64;
 
+/// How many nodes ahead what they see of the aperture is asked for: they must have come by then.
+const SEEN_AHEAD: usize = 4;
+
 /// How many blocks, a row or two of them, are changed before the next: what is added to one lies in memory that taking away from
 /// it has brought near.
 const CHANGED: usize = 128;
@@ -316,10 +319,10 @@ impl Band<'_> {
                 ask_for(pen.seen.get(node.cells as usize));
             }
         };
-        (0..AHEAD / 2).for_each(ask_for_seen);
+        (0..SEEN_AHEAD).for_each(ask_for_seen);
         for (at, drawn) in list.iter().enumerate() {
             ask_for(node_at(at + AHEAD));
-            ask_for_seen(at + AHEAD / 2);
+            ask_for_seen(at + SEEN_AHEAD);
             if !meet(&drawn.rows(), &self.rows) {
                 continue;
             }

@@ -13,6 +13,12 @@ const LARGEST_HALF: u32 = 10 << POSITION_BITS;
 /// Half the shortest side of a box, 1/4096 px.
 pub const SMALLEST_HALF: u32 = PIXEL as u32 / 32;
 
+/// Half the side of a box that is a pixel, 1/4096 px.
+const HALF_PIXEL: u32 = PIXEL as u32 / 2;
+
+/// The largest aperture's part that leaves a pixel's box a pixel: (h + 1)² is 2h + 1 more than h².
+const LARGEST_WITHIN_PIXEL: u32 = (2 * HALF_PIXEL).isqrt();
+
 /// A part of the aperture: its share times 2²⁴, mean and variance times 16384, √3 deviations times 65536.
 #[derive(Clone, Copy)]
 pub struct BoxPart {
@@ -75,14 +81,15 @@ impl Pen<'_> {
         paper: &mut Paper<W>,
         sign: i32,
     ) {
-        if let Some([column, row]) = image.filled_pixel(half_size).filter(|at| paper.rows.has_column(at[0])) {
+        let radius = image.radius.unsigned_abs();
+        let half = [mul_shift(radius, half[0], 16), mul_shift(radius, half[1], 16)];
+        let filled = image.filled_pixel(half_size, half);
+        if let Some([column, row]) = filled.filter(|at| paper.rows.has_column(at[0])) {
             // What such a box is, without its arithmetic.
             let shift = image.light.shift(HEIGHT_BITS);
             let value = image.light.in_pixel(image.share, shift, image.dither, 0);
             return paper.rows.add_pixel(row, column, value, sign);
         }
-        let radius = image.radius.unsigned_abs();
-        let half = [mul_shift(radius, half[0], 16), mul_shift(radius, half[1], 16)];
         let found = UnsizedBox { image, legs: [[half_size[0], half[0]], [half_size[1], half[1]]] };
         if found.is_small() {
             paper.add(&found, sign)
@@ -93,13 +100,14 @@ impl Pen<'_> {
 }
 
 impl Image<'_> {
-    /// The column and row of the pixel of the picture that is its footprint, if it is in focus.
+    /// The column and row of the pixel of the picture that is its box, if that is one: its footprint fills it, and the
+    /// aperture's part, `half`, is too small to make it wider by the least step.
     #[inline(always)]
-    fn filled_pixel(&self, half_size: [u32; 2]) -> Option<[i32; 2]> {
-        const HALF: i32 = PIXEL / 2;
+    fn filled_pixel(&self, half_size: [u32; 2], half: [u32; 2]) -> Option<[i32; 2]> {
         let [x, y] = self.center;
-        let is_pixel = half_size == [HALF as u32; 2] && [x & (PIXEL - 1), y & (PIXEL - 1)] == [HALF; 2];
-        (self.radius == 0 && self.level == 0 && is_pixel).then_some([x >> POSITION_BITS, y >> POSITION_BITS])
+        let is_centered = [x & (PIXEL - 1), y & (PIXEL - 1)] == [HALF_PIXEL as i32; 2];
+        let is_sharp = half_size == [HALF_PIXEL; 2] && half[0].max(half[1]) <= LARGEST_WITHIN_PIXEL;
+        (is_centered && is_sharp && self.level == 0).then_some([x >> POSITION_BITS, y >> POSITION_BITS])
     }
 }
 
@@ -107,7 +115,7 @@ impl Image<'_> {
 /// variance that is larger by (4^ℓ − 1)/12 px² than it should be.
 #[inline(always)]
 pub const fn too_blurred(level: u8) -> u32 {
-    const HALF_SQUARED: u32 = ((PIXEL / 2) * (PIXEL / 2)) as u32;
+    const HALF_SQUARED: u32 = HALF_PIXEL * HALF_PIXEL;
     HALF_SQUARED - (HALF_SQUARED >> (2 * level))
 }
 
@@ -182,15 +190,17 @@ mod tests {
 
     #[test]
     fn a_filled_pixel_is_a_box_bit_for_bit() {
-        const HALF: u32 = PIXEL as u32 / 2;
+        let half = |aperture: u32| hypotenuse(HALF_PIXEL, aperture, too_blurred(0));
+        let least = [LARGEST_WITHIN_PIXEL, LARGEST_WITHIN_PIXEL + 1].map(half);
+        assert_eq!(least, [HALF_PIXEL, HALF_PIXEL + 1]);
         for (light, share, sign) in
             [([1e6f32, 3e5, 7.0, 4.2e6], WHOLE, 1), ([0.3, 0.0, 8.1, 1.0], 12_345_678, -1), ([2.0; 4], 1, 1)]
         {
             let light = Light::of(light);
             let [mut wanted, mut found] = [0, 1].map(|_| Accumulator::<i32>::new(8, 8, 1));
             for (column, row) in [(-1, 0), (3, 2), (7, 7), (5, -1)] {
-                let center = [column, row].map(|at| (at << POSITION_BITS) + HALF as i32);
-                let (half, per_half) = ([HALF; 2], [Reciprocal::of(HALF); 2]);
+                let center = [column, row].map(|at| (at << POSITION_BITS) + HALF_PIXEL as i32);
+                let (half, per_half) = ([HALF_PIXEL; 2], [Reciprocal::of(HALF_PIXEL); 2]);
                 let sized = SizedBox { center, half, per_half, share, light, dither: 77 };
                 sized.draw(&mut wanted.canvas().levels[0], sign);
                 let value = light.in_pixel(share, light.shift(HEIGHT_BITS), 77, 0);
