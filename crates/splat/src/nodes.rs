@@ -89,11 +89,12 @@ const CONTRASTS_AN_OCTAVE: f64 = 4.0;
 /// Light with a dipole m to its centre, thrown as an aperture image of radius r, is wrong by about m/r² along the image's
 /// rim. For this to be alike everywhere, the node's side must fall with the root of the dipole for each side.
 fn contrast(node: &Node) -> u8 {
-    // Those that are less are not told from a single colour.
-    const LEAST: f32 = 0.02;
+    // Those that are less are not told from a single colour. What sees a part of the aperture is dearer to draw, and its images
+    // are less exact than its colours.
+    let least = if node.cells.is_some() { 0.01 } else { 0.004 };
     let side = (1 << node.level) as f32;
     let share = node.dipole / (side * node.radiance.max_element().max(1.0));
-    let octaves = (share / LEAST).log2() / 2.0;
+    let octaves = (share / least).log2() / 2.0;
     (octaves * CONTRASTS_AN_OCTAVE as f32).round().clamp(0.0, (CONTRASTS - 1) as f32) as u8
 }
 
