@@ -1,7 +1,7 @@
 //! The lens that a picture is summed with, and what it makes of each node.
 
 use crate::canvas::POSITION_BITS;
-use crate::nodes::{CONTRASTS, ONE, SplatNode, finer_by_contrast};
+use crate::nodes::{CONTRASTS, ONE, SplatNode, wider_by_contrast};
 use crate::shape::Shape;
 use lens::{FocusOffset, Optics};
 use salf::tree::LEVELS;
@@ -182,9 +182,9 @@ pub const SHARP: u32 = 16;
 impl LensInUse {
     pub fn new(optics: Optics, shape: &Shape, tolerance: Tolerance) -> Self {
         let deviation = (shape.variance.min_element()).sqrt();
-        let smallest = |finer: f64| {
+        let smallest = |finer: f64, wider: f64| {
             std::array::from_fn(|level| {
-                let circle = tolerance.smallest_circle_px(finer * (1 << level) as f64);
+                let circle = wider * tolerance.smallest_circle_px(finer * (1 << level) as f64);
                 // A disc as wide as the shape: its standard deviation is a quarter of its diameter.
                 (circle / (4.0 * deviation) * (1 << POSITION_BITS) as f64).ceil() as u32
             })
@@ -198,9 +198,9 @@ impl LensInUse {
             radius_per_kappa: rate(1.0),
             radius_per_offset: rate(1.0 / optics.image_distance),
             detail: Detail::of(tolerance),
-            smallest_radius: Fineness::FINER.map(smallest),
+            smallest_radius: Fineness::FINER.map(|finer| smallest(finer, 1.0)),
             smallest_joint_radius: std::array::from_fn(|contrast| {
-                Fineness::FINER.map(|finer| smallest(finer * finer_by_contrast(contrast as u8)))
+                Fineness::FINER.map(|finer| smallest(finer, wider_by_contrast(contrast as u8)))
             }),
         }
     }

@@ -52,7 +52,7 @@ pub struct SplatNode {
     pub level: u8,
     /// Whether it is summed in wide integers.
     pub is_bright: bool,
-    /// Below [`CONTRASTS`]: how much of its light lies to a side that is not that of the rest. See [`finer_by_contrast`].
+    /// Below [`CONTRASTS`]: how much of its light lies to a side that is not that of the rest. See [`wider_by_contrast`].
     pub contrast: u8,
     /// Whether its image is to be seen as such: of more than [`HIGHLIGHT`].
     pub is_highlight: bool,
@@ -75,10 +75,11 @@ pub struct SplatNode {
 }
 
 /// How many contrasts are told apart.
-pub const CONTRASTS: usize = 9;
+pub const CONTRASTS: usize = 7;
 
-/// By what factor a node of this contrast must be finer than one of a single colour to stand for those below it.
-pub fn finer_by_contrast(contrast: u8) -> f64 {
+/// By what factor the image of a node of this contrast must be larger than that of one of a single colour for it to stand for
+/// those below it.
+pub fn wider_by_contrast(contrast: u8) -> f64 {
     (f64::from(contrast) / CONTRASTS_AN_OCTAVE).exp2()
 }
 
@@ -87,7 +88,7 @@ const CONTRASTS_AN_OCTAVE: f64 = 4.0;
 /// The contrast of a node.
 ///
 /// Light with a dipole m to its centre, thrown as an aperture image of radius r, is wrong by about m/r² along the image's
-/// rim. For this to be alike everywhere, the node's side must fall with the root of the dipole for each side.
+/// rim. For this to be alike everywhere, r must grow with the root of the dipole for each side.
 fn contrast(node: &Node) -> u8 {
     // Those that are less are not told from a single colour. What sees a part of the aperture is dearer to draw, and its images
     // are less exact than its colours.

@@ -25,7 +25,7 @@ struct Lens {
     // By fineness and level.
     smallest: array<u32, 20>,
     // By contrast, fineness and level.
-    smallest_joint: array<u32, 180>,
+    smallest_joint: array<u32, 140>,
 }
 
 struct Chunk {
