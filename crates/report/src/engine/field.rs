@@ -230,7 +230,9 @@ pub fn other_lenses(camera: &Camera) -> impl Iterator<Item = Camera> + use<> {
     })
 }
 
-/// Whether pictures get no closer to the converged one, dB, from the first to the last.
+/// Whether pictures get no closer to the converged one, dB, from the first to the last: but for what a few nodes make, joined
+/// where all others are drawn alike, whose errors happen to offset others.
 fn is_growing(decibels: &[f64]) -> bool {
-    decibels.windows(2).all(|pair| pair[1] <= pair[0])
+    const BY_CHANCE: f64 = 0.01;
+    decibels.windows(2).all(|pair| pair[1] <= pair[0] + BY_CHANCE)
 }
