@@ -1,10 +1,14 @@
 //! Pictures to compare with, made in the background.
 
-use super::{Outcome, Session};
-use crate::FirstHits;
-use crate::render::{RenderOptions, Renderer, light, render};
-use crate::steps::{JobSteps, Steps};
-use crate::{Event, PreviewActivity, Reference, ReferenceKind, SessionError};
+use super::outcome::Outcome;
+use super::state::Session;
+use crate::commands::Event;
+use crate::error::SessionError;
+use crate::jobs::{JobSteps, Steps};
+use crate::light_field::light;
+use crate::output::{Reference, ReferenceKind, RenderOptions, Renderer, render};
+use crate::preview::PreviewActivity;
+use baselines::FirstHits;
 use focus::Focus;
 use lens::FocusOffset;
 use std::sync::Arc;

@@ -1,13 +1,14 @@
 //! Pictures as files: rendered at full size, from the light field that stands if it serves, or as they are on screen.
 
-use super::{Outcome, Session};
-use crate::error::file_name;
-use crate::light_field::serves;
-use crate::preview::{Exporting, Shared};
-use crate::reach::Reach;
-use crate::render::{RenderOptions, Rendered, bake, sum_light_field};
-use crate::steps::JobSteps;
-use crate::{Aov, LightFieldStore, Quality, SessionError, Stage, Steps, Tone};
+use super::outcome::Outcome;
+use super::state::Session;
+use crate::display::Tone;
+use crate::document::Stage;
+use crate::error::{SessionError, file_name};
+use crate::jobs::{JobSteps, Steps};
+use crate::light_field::{LightFieldStore, Reach, bake, serves};
+use crate::output::{Aov, RenderOptions, Rendered, sum_light_field};
+use crate::preview::{Exporting, Quality, Shared};
 use focus::Focus;
 use lens::{Camera, Picture};
 use project::{Layer, PictureOptions, write_picture, write_rgb};

@@ -1,10 +1,12 @@
 //! Opening, saving, exporting and keeping unsaved work: all in the background.
 
-use super::{Outcome, Session};
+use super::outcome::Outcome;
+use super::state::Session;
+use crate::commands::Event;
 use crate::document::Document;
-use crate::error::file_name;
-use crate::steps::JobSteps;
-use crate::{SessionError, write_unwrapped};
+use crate::error::{SessionError, file_name};
+use crate::jobs::JobSteps;
+use crate::output::write_unwrapped;
 use project::{FocusMapFile, write_focus_map};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -77,7 +79,7 @@ impl Session {
             Ok(Outcome::Kept { path, revision })
         });
         if let Err(error) = kept {
-            self.events.push(crate::Event::Failed(error.to_string()));
+            self.events.push(Event::Failed(error.to_string()));
         }
         self.recovery.changed = None;
     }
@@ -98,7 +100,7 @@ impl Session {
         if let Some(file) = self.recovery.file.take()
             && let Err(error) = project::remove_recovery(&file)
         {
-            self.events.push(crate::Event::Notice(error.to_string()));
+            self.events.push(Event::Notice(error.to_string()));
         }
     }
 
@@ -131,7 +133,7 @@ impl Session {
             return Err(SessionError::bad(path, what));
         }
         project::write_strokes(path, &steps)?;
-        self.events.push(crate::Event::Written(path.into()));
+        self.events.push(Event::Written(path.into()));
         Ok(())
     }
 

@@ -1,9 +1,9 @@
 //! Undo and redo: steps taken back and done again, and shown.
 
-use super::Session;
-use crate::document::Document;
-use crate::undo::{Undoable, Undone};
-use crate::{Event, SessionError};
+use super::state::Session;
+use crate::commands::Event;
+use crate::document::{Document, Undoable, Undone};
+use crate::error::SessionError;
 use focus::Changed;
 use std::cmp::Ordering;
 

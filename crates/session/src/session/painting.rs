@@ -1,8 +1,9 @@
 //! Strokes, gradients, fills, selections and layers.
 
-use super::Session;
-use crate::painter::{GradientInHand, Painter, Underway, redo};
-use crate::{Event, FillRegion, SessionError, StrokePoint};
+use super::state::Session;
+use crate::commands::Event;
+use crate::editing::{FillRegion, GradientInHand, Painter, StrokePoint, Underway, redo};
+use crate::error::SessionError;
 use focus::{Combine, FillTarget, FocusMap, Gradient, LayerEdit};
 use lens::FocusOffset;
 use project::{RecordedStep, SelectionShape};

@@ -1,8 +1,10 @@
 //! What changes in the document, brought to the views: camera, paint, exposure.
 
-use super::Session;
+use super::state::Session;
+use crate::commands::Event;
+use crate::document::CameraEdit;
+use crate::error::SessionError;
 use crate::light_field::{Changes, serves};
-use crate::{CameraEdit, Event, SessionError};
 use focus::{Changed, union};
 use lens::Camera;
 use std::collections::BTreeMap;

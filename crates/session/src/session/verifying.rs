@@ -1,8 +1,11 @@
 //! Checking a rectangle of the picture against the ground truth, pass by pass.
 
-use super::{Outcome, Session};
-use crate::render::light_for_many_points;
-use crate::{Event, SessionError, Verification};
+use super::outcome::Outcome;
+use super::state::Session;
+use crate::commands::Event;
+use crate::error::SessionError;
+use crate::light_field::light_for_many_points;
+use crate::output::Verification;
 use focus::Focus;
 use glam::DVec2;
 use progress::Stage as Share;

@@ -1,0 +1,19 @@
+//! How linear light is shown on a screen.
+//!
+//! Tone, the pixels as the screen has them, and what of them changed since somebody looked.
+
+mod live_picture;
+mod picture_ring;
+mod screen;
+mod tone;
+mod tone_curve;
+
+pub use live_picture::LivePicture;
+pub use screen::Screen;
+pub use tone::{Display, ScreenPixel, Tone, to_screen};
+pub use tone_curve::ToneCurve;
+
+pub(crate) use live_picture::Source;
+pub(crate) use picture_ring::{PictureRing, Rectangle, whole};
+pub(crate) use screen::{Content, Patch};
+pub(crate) use tone::rectangle_to_screen;

@@ -1,0 +1,270 @@
+//! What can be opened: a scene, a project or a light field, as the renderers need it.
+
+use super::scene_camera::camera_of;
+use super::stage::{Stage, atlas_error, load_scene};
+use crate::error::SessionError;
+use crate::jobs::Steps;
+use atlas::{Atlas, UnwrapOptions};
+use focus::{Focus, FocusMap, FocusRecipe, RecipeEntry};
+use lens::{Camera, Exposure, FocusOffset};
+use project::{FocusFile, ProjectError, ProjectFile, SceneState, read_camera, read_focus};
+use salf::{Salf, SalfFile};
+use scene::Scene;
+use std::fs::File;
+use std::io::BufReader;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+impl From<ProjectError> for SessionError {
+    fn from(error: ProjectError) -> Self {
+        use std::io::ErrorKind::{QuotaExceeded, ResourceBusy, StorageFull, TimedOut, WouldBlock};
+        match &error {
+            ProjectError::Read { source, .. } | ProjectError::Write { source, .. } => match source.kind() {
+                StorageFull | QuotaExceeded | ResourceBusy | TimedOut | WouldBlock => {
+                    Self::TryAgain(error.to_string())
+                }
+                _ => Self::BadInput(error.to_string()),
+            },
+            ProjectError::Unverified { .. } => Self::TryAgain(error.to_string()),
+            _ => Self::BadInput(error.to_string()),
+        }
+    }
+}
+
+/// An opened file.
+pub struct Input {
+    /// The file.
+    pub path: PathBuf,
+    /// The scene: its own, the project's, or the one that the light field was baked from.
+    pub scene: Arc<Scene>,
+    /// The camera that it is shown with unless another one is asked for.
+    pub camera: Camera,
+    /// Of a project: everything else that it says.
+    pub project: Option<ProjectFile>,
+    /// Of a light field: the light field.
+    pub salf: Option<Arc<Salf>>,
+    /// What is odd but does no harm, a sentence each.
+    pub warnings: Vec<String>,
+}
+
+/// A camera, as asked for.
+#[derive(Clone, Debug, PartialEq)]
+pub enum CameraChoice {
+    /// A camera file; what it lacks is as in the input's own camera.
+    File(PathBuf),
+    /// The camera of this name in the scene or project.
+    Named(String),
+}
+
+/// What a file seems to be, by its extension.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum InputKind {
+    /// `.glb` or `.gltf`.
+    Scene,
+    /// `.fbrush`.
+    Project,
+    /// `.salf`.
+    LightField,
+}
+
+impl InputKind {
+    /// What `path` seems to be; an error for a file that is none of them.
+    pub fn of(path: &Path) -> Result<Self, SessionError> {
+        let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
+        match extension.as_str() {
+            "glb" | "gltf" => Ok(Self::Scene),
+            ProjectFile::EXTENSION | "recovery" => Ok(Self::Project),
+            "salf" => Ok(Self::LightField),
+            _ if !path.exists() => Err(SessionError::bad(path, "no such file (check the path)")),
+            _ => {
+                let known = format!(".glb, .gltf, .{} or .salf", ProjectFile::EXTENSION);
+                Err(SessionError::bad(
+                    path,
+                    format!("neither scene, project nor light field (give a {known} file)"),
+                ))
+            }
+        }
+    }
+}
+
+impl Input {
+    /// Opens `path`.
+    pub fn open(path: &Path, steps: &dyn Steps) -> Result<Self, SessionError> {
+        match InputKind::of(path)? {
+            InputKind::Scene => Self::open_scene(path, steps),
+            InputKind::Project => Self::open_project(path, ProjectFile::load(path)?, steps),
+            InputKind::LightField => Self::open_light_field(path, steps),
+        }
+    }
+
+    fn open_scene(path: &Path, steps: &dyn Steps) -> Result<Self, SessionError> {
+        let scene = load_scene(path, &*steps.begin("reading"))?;
+        let camera = camera_of(&scene.cameras[0], &Camera::default());
+        let warnings = named(path, &scene.warnings);
+        Ok(Self { path: path.into(), scene, camera, project: None, salf: None, warnings })
+    }
+
+    /// Opens what `project` says, which was read from `path`.
+    pub(crate) fn open_project(
+        path: &Path,
+        project: ProjectFile,
+        steps: &dyn Steps,
+    ) -> Result<Self, SessionError> {
+        let mut warnings = Vec::new();
+        match project.scene_state() {
+            SceneState::Same => {}
+            SceneState::Changed => warnings.push(format!(
+                "{}: its scene {} has changed since (look at the paint before saving)",
+                path.display(),
+                project.scene.display()
+            )),
+            SceneState::Missing => {
+                let what = format!("its scene {} is missing (put it back)", project.scene.display());
+                return Err(SessionError::bad(path, what));
+            }
+        }
+        let scene = load_scene(&project.scene, &*steps.begin("reading"))?;
+        warnings.extend(named(&project.scene, &scene.warnings));
+        let camera = project.cameras[project.active_camera].camera.clone();
+        Ok(Self { path: path.into(), scene, camera, project: Some(project), salf: None, warnings })
+    }
+
+    fn open_light_field(path: &Path, steps: &dyn Steps) -> Result<Self, SessionError> {
+        let file = File::open(path).map_err(|error| SessionError::io(path, &error))?;
+        let SalfFile { source, triangles, salf } =
+            SalfFile::read(BufReader::new(file)).map_err(|error| SessionError::bad(path, error))?;
+        let beside = path.parent().unwrap_or(Path::new("")).join(&source);
+        if InputKind::of(&beside).ok() == Some(InputKind::LightField) || !beside.exists() {
+            let what = format!("the scene it was baked from, {}, is missing (put it back)", beside.display());
+            return Err(SessionError::bad(path, what));
+        }
+        let baked_from = Self::open(&beside, steps)?;
+        if baked_from.scene.triangles.len() != triangles as usize {
+            let what =
+                format!("the scene it was baked from, {}, has changed since (bake again)", beside.display());
+            return Err(SessionError::bad(path, what));
+        }
+        Ok(Self { path: path.into(), camera: salf.camera.clone(), salf: Some(salf), ..baked_from })
+    }
+
+    /// The camera to show it with. Where none is asked for: the project's, else the scene's first.
+    pub fn camera(&self, choice: Option<&CameraChoice>) -> Result<Camera, SessionError> {
+        match choice {
+            None => Ok(self.camera.clone()),
+            Some(CameraChoice::File(file)) => {
+                // A framing that was made up for a scene without a camera is nothing that a camera file counts on.
+                let is_invented =
+                    self.project.is_none() && self.salf.is_none() && self.scene.camera_is_invented;
+                let defaults = if is_invented { &Camera::default() } else { &self.camera };
+                Ok(read_camera(file, defaults)?)
+            }
+            Some(CameraChoice::Named(name)) => {
+                let saved = self.project.iter().flat_map(|project| &project.cameras);
+                let mut saved = saved.filter(|named| named.name == *name).map(|named| named.camera.clone());
+                let in_scene = || self.scene.cameras.iter().find(|camera| camera.name == *name);
+                saved.next().or_else(|| in_scene().map(|c| camera_of(c, &self.camera))).ok_or_else(|| {
+                    let names: Vec<_> =
+                        self.scene.cameras.iter().map(|c| format!("\"{}\"", c.name)).collect();
+                    let there_are = format!("there are {}; a camera file ends in .json", names.join(", "));
+                    SessionError::bad(&self.path, format!("no camera is called \"{name}\" ({there_are})"))
+                })
+            }
+        }
+    }
+
+    /// How the sum becomes the picture unless asked otherwise.
+    pub fn exposure(&self) -> Exposure {
+        self.project.as_ref().map_or(Exposure::Normalise, |project| project.exposure)
+    }
+
+    /// The focus that `file` gives (a recipe or a map), or without one that of the project; the ordinary lens for
+    /// a scene. The scene is unwrapped only for a map that needs it.
+    pub fn focus(
+        &self,
+        file: Option<&Path>,
+        unwrap: &UnwrapOptions,
+        steps: &dyn Steps,
+    ) -> Result<Focus, SessionError> {
+        let evaluated = |recipe: FocusRecipe, file: &Path| {
+            recipe.evaluate(&self.scene).map_err(|error| SessionError::bad(file, error))
+        };
+        match file {
+            None => self.painted(unwrap, steps),
+            Some(file) => match read_focus(file)? {
+                FocusFile::Recipe(recipe) => evaluated(recipe, file),
+                FocusFile::Map(map) if map.atlas_hash.is_none() => {
+                    let background = map.background.map(RecipeEntry::Value);
+                    let default = RecipeEntry::Map(Arc::new(map.image));
+                    evaluated(FocusRecipe { default, background, ..FocusRecipe::default() }, file)
+                }
+                FocusFile::Map(map) => {
+                    let atlas = self.atlas(unwrap, steps)?;
+                    let map = map.into_atlas_map(file, &atlas)?;
+                    Ok(Focus::painted(self.scene.clone(), atlas, Arc::new(map)))
+                }
+            },
+        }
+    }
+
+    fn painted(&self, unwrap: &UnwrapOptions, steps: &dyn Steps) -> Result<Focus, SessionError> {
+        let scene = self.scene.clone();
+        let Some(project) = &self.project else { return Ok(Focus::constant(scene, FocusOffset::STANDARD)) };
+        match &project.focus_map {
+            None => {
+                let mut focus = Focus::constant(scene, FocusOffset::STANDARD);
+                focus.background = project.background_focus;
+                Ok(focus)
+            }
+            Some(map) => {
+                let atlas = self.atlas(unwrap, steps)?;
+                self.check_fit(map, &atlas)?;
+                Ok(Focus::painted(scene, atlas, Arc::new(map.clone())))
+            }
+        }
+    }
+
+    fn check_fit(&self, map: &FocusMap, atlas: &Atlas) -> Result<(), SessionError> {
+        if map.size() == [atlas.width, atlas.height] {
+            return Ok(());
+        }
+        Err(SessionError::bad(
+            &self.path,
+            "its focus map does not fit its atlas (restore the file from a copy)",
+        ))
+    }
+
+    /// The atlas: the project's, or the scene unwrapped.
+    pub fn atlas(&self, unwrap: &UnwrapOptions, steps: &dyn Steps) -> Result<Arc<Atlas>, SessionError> {
+        let stored = self.project.as_ref().and_then(|project| project.atlas.as_ref());
+        let atlas = match stored {
+            Some(bytes) => Atlas::from_bytes(bytes, &self.scene),
+            None => Atlas::unwrap(&self.scene, unwrap, &*steps.begin("unwrapping")),
+        };
+        Ok(Arc::new(atlas.map_err(|error| atlas_error(&self.path, error))?))
+    }
+
+    /// Everything that painting needs, and the focus map.
+    pub(crate) fn stage(
+        &self,
+        unwrap: &UnwrapOptions,
+        steps: &dyn Steps,
+    ) -> Result<(Stage, FocusMap), SessionError> {
+        let atlas = self.atlas(unwrap, steps)?;
+        let project = self.project.as_ref();
+        let map = match project.and_then(|project| project.focus_map.clone()) {
+            Some(map) => map,
+            None => {
+                let mut map = FocusMap::new(atlas.width, atlas.height, FocusOffset::STANDARD);
+                map.background = project.map_or(FocusOffset::STANDARD, |project| project.background_focus);
+                map
+            }
+        };
+        self.check_fit(&map, &atlas)?;
+        Ok((Stage::of(self.scene.clone(), atlas, &*steps.begin("preparing"))?, map))
+    }
+}
+
+/// Warnings that say whose they are.
+fn named(path: &Path, warnings: &[String]) -> Vec<String> {
+    warnings.iter().map(|warning| format!("{}: {warning}", path.display())).collect()
+}

@@ -1,0 +1,51 @@
+//! A checksum of a scene's light: two scenes of the same one are lit, block and reflect light alike.
+
+use scene::{ImageLevel, Scene};
+use sha2::{Digest, Sha256};
+
+/// A checksum of everything in a scene that gives, blocks or reflects light.
+pub(crate) fn light_hash(scene: &Scene) -> [u8; 32] {
+    let mut hash = Sha256::new();
+    let mut arrays = |bytes: &[u8]| {
+        hash.update((bytes.len() as u64).to_le_bytes());
+        hash.update(bytes);
+    };
+    arrays(bytemuck::cast_slice(&scene.positions));
+    arrays(bytemuck::cast_slice(&scene.normals));
+    scene.uv.iter().for_each(|uv| arrays(bytemuck::cast_slice(uv)));
+    arrays(bytemuck::cast_slice(&scene.colors));
+    for triangle in &scene.triangles {
+        arrays(bytemuck::cast_slice(&triangle.vertices));
+    }
+    for image in &scene.images {
+        arrays(format!("{} {}", image.width, image.height).as_bytes());
+        match &image.texels {
+            ImageLevel::Bits8(texels) => arrays(texels),
+            ImageLevel::Bits16(texels) => arrays(bytemuck::cast_slice(texels)),
+        }
+    }
+    // Written out, numbers are as exact as they are.
+    arrays(format!("{:?} {:?} {:?}", scene.parts, scene.materials, scene.lights).as_bytes());
+    hash.finalize().into()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_scene_in_another_light_is_another() {
+        let mut scene = Scene::default();
+        let dark = light_hash(&scene);
+        assert_eq!(light_hash(&scene.clone()), dark);
+        scene.path = "elsewhere.glb".into();
+        assert_eq!(light_hash(&scene), dark, "wherever it lies");
+        scene.positions.push(glam::DVec3::X);
+        let moved = light_hash(&scene);
+        assert_ne!(moved, dark);
+        // Arrays do not run into each other.
+        let uv = Scene { uv: [vec![glam::Vec2::ONE], Vec::new()], ..Scene::default() };
+        let other = Scene { uv: [Vec::new(), vec![glam::Vec2::ONE]], ..Scene::default() };
+        assert_ne!(light_hash(&uv), light_hash(&other));
+    }
+}

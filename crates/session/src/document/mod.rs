@@ -1,0 +1,24 @@
+//! What is open: files in, and the state that is saved and undone.
+//!
+//! An [`Input`] is a file as read; with its scene unwrapped and ready for rays (the [`Stage`]) it becomes a [`Document`]. A new
+//! kind of file to open is a kind of [`InputKind`], here and nowhere else.
+
+mod camera_edit;
+mod input;
+mod light_hash;
+mod open_document;
+mod picking;
+mod scene_camera;
+mod stage;
+mod undo;
+
+pub use camera_edit::CameraEdit;
+pub use input::{CameraChoice, Input, InputKind};
+pub use open_document::Document;
+pub use picking::{SurfaceHit, chief_ray, pick, view_ray};
+pub use scene_camera::camera_of;
+pub use stage::{Stage, load_scene};
+pub use undo::HistoryStep;
+
+pub(crate) use stage::atlas_error;
+pub(crate) use undo::{Undo, Undoable, Undone};

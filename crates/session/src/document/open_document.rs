@@ -1,0 +1,321 @@
+//! What is open: the scene, its focus and its camera.
+
+use super::input::{CameraChoice, Input, InputKind};
+use super::picking::SurfaceHit;
+use super::scene_camera::camera_of;
+use super::stage::Stage;
+use super::undo::{HistoryStep, Undo};
+use crate::error::{SessionError, file_name};
+use crate::jobs::Steps;
+use atlas::UnwrapOptions;
+use focus::{
+    Brush, Changed, FocusMap, FocusRecipe, LayerStack, RecipeEntry, Selection, SelectionResult, Thumbnail,
+};
+use lens::{Camera, Exposure, FocusOffset};
+use project::{FocusFile, NamedCamera, ProjectFile, TexelSet};
+use scene::Scene;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// An open document. Focus map and camera are saved and can be undone. The selection can be undone and is saved with them,
+/// but is no change of theirs; brush, exposure and view are saved, too, and are not part of the history.
+pub struct Document {
+    /// Scene, atlas and what works on them.
+    pub stage: Arc<Stage>,
+    /// The layers of focus.
+    pub layers: LayerStack,
+    /// What the layers make together: the focus as it is rendered and exported.
+    pub map: FocusMap,
+    /// The shot camera.
+    pub camera: Camera,
+    /// How the sum becomes the picture.
+    pub exposure: Exposure,
+    /// The brush of the strokes to come.
+    pub brush: Brush,
+    /// What may be painted; everything where there is none.
+    pub selection: Option<Selection>,
+    /// Layout and viewpoint as the window wants them, any JSON.
+    pub view: serde_json::Value,
+    /// The project file; none before the first save.
+    pub path: Option<PathBuf>,
+    /// What is odd about its files but does no harm, a sentence each.
+    pub warnings: Vec<String>,
+    /// The camera's pose that the curves of the layers were evaluated for.
+    pub(crate) curves_for: glam::DMat4,
+    /// What is saved beside the fields above.
+    template: ProjectFile,
+    /// Steps of undo and redo.
+    pub(crate) undo: Undo,
+    /// The map after the latest step.
+    pictured: FocusMap,
+    /// Counts changes of what is saved.
+    pub(crate) revision: u64,
+    /// The revision that the project file holds.
+    pub(crate) saved: u64,
+}
+
+/// What the saved camera of a new document is called.
+const SHOT: &str = "shot";
+
+impl Document {
+    /// Memory that steps of undo may keep alive unless told otherwise.
+    pub const UNDO_BUDGET_BYTES: usize = 256 << 20;
+
+    /// Opens a scene or a project. Work that was not saved when the program last ended is restored: the document
+    /// is then unsaved, and its warnings say so.
+    pub fn open(path: &Path, unwrap: &UnwrapOptions, steps: &dyn Steps) -> Result<Self, SessionError> {
+        let kind = InputKind::of(path)?;
+        if kind == InputKind::LightField {
+            let what =
+                "a light field has no surface to paint on (open the scene or project it was baked from)";
+            return Err(SessionError::bad(path, what));
+        }
+        let is_project = kind == InputKind::Project;
+        let recovery = recovery_path(path, is_project);
+        let recovered = project::find_recovery(&recovery, is_project.then_some(path));
+        let is_recovered = recovered.is_some();
+        let input = match recovered {
+            Some(project) => Input::open_project(path, project, steps)?,
+            None => Input::open(path, steps)?,
+        };
+        let mut document = Self::of(input, unwrap, steps)?;
+        document.path = is_project.then(|| path.into());
+        if is_recovered {
+            document.note_recovery(path);
+        }
+        Ok(document)
+    }
+
+    /// Opens a project as what a new document begins with: it has no file of its own until it is saved as one.
+    /// Unsaved work on the same scene is restored as by [`Self::open`].
+    pub fn open_template(
+        path: &Path,
+        unwrap: &UnwrapOptions,
+        steps: &dyn Steps,
+    ) -> Result<Self, SessionError> {
+        let template = ProjectFile::load(path)?;
+        let recovered = project::find_recovery(&recovery_path(&template.scene, false), None);
+        let is_recovered = recovered.is_some();
+        let input = Input::open_project(path, recovered.unwrap_or(template), steps)?;
+        let mut document = Self::of(input, unwrap, steps)?;
+        if is_recovered {
+            document.note_recovery(path);
+        }
+        Ok(document)
+    }
+
+    /// Opens a project as it was saved, whatever was left unsaved.
+    pub fn open_saved(path: &Path, unwrap: &UnwrapOptions, steps: &dyn Steps) -> Result<Self, SessionError> {
+        let input = Input::open_project(path, ProjectFile::load(path)?, steps)?;
+        Ok(Self { path: Some(path.into()), ..Self::of(input, unwrap, steps)? })
+    }
+
+    /// Begins a document: a scene with a camera and a focus (a recipe or a focus map), where they are given.
+    pub fn begin(
+        scene: &Path,
+        camera: Option<&CameraChoice>,
+        focus: Option<&Path>,
+        unwrap: &UnwrapOptions,
+        steps: &dyn Steps,
+    ) -> Result<Self, SessionError> {
+        if InputKind::of(scene)? != InputKind::Scene {
+            return Err(SessionError::bad(scene, "is no scene (give a .glb or .gltf)"));
+        }
+        let input = Input::open(scene, steps)?;
+        let camera = input.camera(camera)?;
+        let mut document = Self::of(input, unwrap, steps)?;
+        document.camera = camera;
+        if let Some(focus) = focus {
+            document.map = document.imported_focus(focus)?;
+            document.layers = LayerStack::of(document.map.clone());
+        }
+        Ok(document)
+    }
+
+    /// The focus map that a recipe or a focus map gives this document.
+    pub(crate) fn imported_focus(&self, path: &Path) -> Result<FocusMap, SessionError> {
+        let stage = &self.stage;
+        let recipe = match project::read_focus(path)? {
+            FocusFile::Map(map) if map.atlas_hash.is_some() => {
+                return Ok(map.into_atlas_map(path, &stage.atlas)?);
+            }
+            FocusFile::Map(map) => FocusRecipe {
+                background: map.background.map(RecipeEntry::Value),
+                default: RecipeEntry::Map(Arc::new(map.image)),
+                ..Default::default()
+            },
+            FocusFile::Recipe(recipe) => recipe,
+        };
+        let focus = recipe.evaluate(&stage.scene).map_err(|error| SessionError::bad(path, error))?;
+        Ok(focus.bake(&stage.texels))
+    }
+
+    fn note_recovery(&mut self, path: &Path) {
+        self.revision += 1;
+        let what = "unsaved work from last time was restored (save it to keep it)";
+        self.warnings.push(format!("{}: {what}", path.display()));
+    }
+
+    fn of(input: Input, unwrap: &UnwrapOptions, steps: &dyn Steps) -> Result<Self, SessionError> {
+        let (stage, map) = input.stage(unwrap, steps)?;
+        let stored = input.project.as_ref().and_then(|project| project.layers.clone());
+        let (layers, map) = match stored {
+            Some(mut layers) => {
+                layers.evaluate(&stage.canvas, &input.camera);
+                let map = layers.composite();
+                (layers, map)
+            }
+            None => (LayerStack::of(map.clone()), map),
+        };
+        let template = match &input.project {
+            Some(project) => project.clone(),
+            None => {
+                let shot = NamedCamera { name: SHOT.into(), camera: input.camera.clone() };
+                let (low, high) = input.scene.bounds();
+                let radius = brush_radius(&input.camera, (high - low).length());
+                let brush = Brush { radius, ..Brush::default() };
+                ProjectFile { brush, ..ProjectFile::new(&input.scene.path, vec![shot])? }
+            }
+        };
+        let selection = template.selection.as_ref().and_then(|saved| selected_of(&stage, saved));
+        Ok(Self {
+            stage: Arc::new(stage),
+            layers,
+            pictured: map.clone(),
+            map,
+            curves_for: input.camera.camera_to_world,
+            camera: input.camera.clone(),
+            exposure: input.exposure(),
+            brush: template.brush.clone(),
+            view: template.view.clone(),
+            path: None,
+            warnings: input.warnings,
+            template,
+            undo: Undo::new(Self::UNDO_BUDGET_BYTES),
+            selection,
+            revision: 0,
+            saved: 0,
+        })
+    }
+
+    /// The document as it is saved now.
+    pub fn to_project(&self) -> ProjectFile {
+        let mut project = self.template.clone();
+        project.cameras[project.active_camera].camera = self.camera.clone();
+        project.exposure = self.exposure;
+        project.brush = self.brush.clone();
+        project.view = self.view.clone();
+        project.atlas = Some(self.stage.atlas.to_bytes());
+        project.background_focus = self.map.background;
+        project.focus_map = Some(self.map.clone());
+        project.selection = self.selection.as_ref().map(|selection| self.saved_selection(selection));
+        project.layers = (!self.layers.is_single()).then(|| self.layers.clone());
+        project
+    }
+
+    /// The selection as a project keeps it.
+    fn saved_selection(&self, selection: &Selection) -> TexelSet {
+        let texels = self.stage.canvas.texels().iter().enumerate();
+        let chosen = texels.filter(|(index, _)| selection.contains(*index));
+        TexelSet::new(self.map.size(), chosen.map(|(_, texel)| [texel.x, texel.y]))
+    }
+
+    /// Brings the map up to date after `changed` texels of any layer have changed, or after any change (`None`).
+    /// Returns what changed in the map, and whether the background's focus did.
+    pub(crate) fn recomposite(&mut self, changed: Option<&Changed>) -> (Changed, bool) {
+        let background = self.map.background;
+        let changed = match changed {
+            Some(changed) => self.layers.recomposite(&mut self.map, changed),
+            None => self.layers.recomposite_all(&mut self.map),
+        };
+        (changed, background != self.map.background)
+    }
+
+    /// Where unsaved work is kept.
+    pub(crate) fn recovery_path(&self) -> PathBuf {
+        let file = self.path.as_deref().unwrap_or(&self.stage.scene.path);
+        recovery_path(file, self.path.is_some())
+    }
+
+    /// The scene.
+    pub fn scene(&self) -> &Arc<Scene> {
+        &self.stage.scene
+    }
+
+    /// The focus at a surface point.
+    pub fn focus_at(&self, hit: &SurfaceHit) -> FocusOffset {
+        self.map.sample(self.stage.atlas.position_of(hit.point))
+    }
+
+    /// Whether the project file (or, before the first save, the scene as opened) differs from what is open.
+    pub fn is_unsaved(&self) -> bool {
+        self.revision != self.saved
+    }
+
+    /// What to call it: the project's file name, else the scene's.
+    pub fn name(&self) -> String {
+        file_name(self.path.as_deref().unwrap_or(&self.stage.scene.path))
+    }
+
+    /// What undo would take back.
+    pub fn undo_name(&self) -> Option<&str> {
+        self.undo.undo_name()
+    }
+
+    /// What redo would do again.
+    pub fn redo_name(&self) -> Option<&str> {
+        self.undo.redo_name()
+    }
+
+    /// The history, oldest step first: what is done, then what was taken back and can be done again.
+    pub fn history(&self) -> impl Iterator<Item = HistoryStep<'_>> {
+        self.undo.steps()
+    }
+
+    /// Adds a picture of what it changed to the step that was just taken, if it was of paint.
+    pub(crate) fn picture_step(&mut self) {
+        self.undo.picture(Thumbnail::between(&self.pictured, &self.map));
+        self.pictured = self.map.clone();
+    }
+
+    /// A step was taken back, or done again.
+    pub(crate) fn stepped(&mut self) {
+        self.pictured = self.map.clone();
+    }
+
+    /// All that can be undone, oldest first.
+    pub fn undo_names(&self) -> impl Iterator<Item = &str> {
+        self.undo.names()
+    }
+
+    /// Memory that the undo steps keep alive, and how much they may, in bytes.
+    pub fn undo_bytes(&self) -> [usize; 2] {
+        self.undo.bytes()
+    }
+
+    /// The cameras of the scene by name, as shot cameras: with the lens of the current one.
+    pub fn scene_cameras(&self) -> impl Iterator<Item = (&str, Camera)> {
+        let cameras = self.stage.scene.cameras.iter();
+        cameras.map(|camera| (camera.name.as_str(), camera_of(camera, &self.camera)))
+    }
+}
+
+/// The selection that a project kept; none where it chose nothing, or everything.
+fn selected_of(stage: &Stage, saved: &TexelSet) -> Option<Selection> {
+    match Selection::of(&stage.canvas, |texel| saved.contains([texel.x, texel.y])) {
+        SelectionResult::Some(selection) => Some(selection),
+        SelectionResult::Nothing | SelectionResult::Everything => None,
+    }
+}
+
+fn recovery_path(file: &Path, is_project: bool) -> PathBuf {
+    if is_project { project::recovery_path_for(file) } else { project::unsaved_recovery_path(file) }
+}
+
+/// An eighth of half the picture's height where the lens focuses, but at most a twentieth of the scene; the brush's
+/// default for a scene that is a point.
+fn brush_radius(camera: &Camera, diagonal: f64) -> f64 {
+    let seen = camera.focus_distance * (camera.yfov / 2.0).tan() / 8.0;
+    let radius = seen.min(diagonal / 20.0);
+    if radius > 0.0 && radius.is_finite() { radius } else { Brush::default().radius }
+}

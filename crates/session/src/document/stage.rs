@@ -1,0 +1,87 @@
+//! What stays while a document is open: the scene, its atlas and what answers rays and dabs on it.
+
+use super::light_hash::light_hash;
+use super::picking::SurfaceHit;
+use crate::error::SessionError;
+use atlas::{Atlas, AtlasError, TexelMap};
+use focus::Canvas;
+use glam::{DVec2, DVec3};
+use progress::Progress;
+use scene::{LoadOptions, Scene, SceneError};
+use std::path::Path;
+use std::sync::{Arc, OnceLock};
+use trace::Tracer;
+
+/// A scene that can be painted on.
+pub struct Stage {
+    /// The scene.
+    pub scene: Arc<Scene>,
+    /// Lowest and highest corner of its box.
+    pub bounds: (DVec3, DVec3),
+    /// Where its triangles lie in the focus map.
+    pub atlas: Arc<Atlas>,
+    /// What answers rays.
+    pub tracer: Arc<Tracer>,
+    /// The way back from texels to the surface.
+    pub texels: Arc<TexelMap>,
+    /// What dabs are painted on.
+    pub canvas: Arc<Canvas>,
+    light_hash: OnceLock<[u8; 32]>,
+}
+
+impl From<SceneError> for SessionError {
+    fn from(error: SceneError) -> Self {
+        match error {
+            SceneError::Cancelled(_) => Self::Cancelled,
+            other => Self::BadInput(other.to_string()),
+        }
+    }
+}
+
+/// What an error about the atlas of the scene at `path` means.
+pub(crate) fn atlas_error(path: &Path, error: AtlasError) -> SessionError {
+    match error {
+        AtlasError::Cancelled => SessionError::Cancelled,
+        AtlasError::Write { path, source } => SessionError::io(&path, &source),
+        other => SessionError::bad(path, other),
+    }
+}
+
+/// Reads a scene within the usual limits.
+pub fn load_scene(path: &Path, progress: &dyn Progress) -> Result<Arc<Scene>, SessionError> {
+    Ok(Arc::new(scene::load(path, &LoadOptions::default(), progress)?))
+}
+
+impl Stage {
+    /// The surface at a position in the atlas laid flat, (0, 0) its upper left corner, (1, 1) its lower right: the middle
+    /// of what the texel there covers.
+    pub fn surface_at(&self, position: DVec2) -> Option<SurfaceHit> {
+        let texel = position * DVec2::new(self.atlas.width.into(), self.atlas.height.into());
+        let inside = texel.cmpge(DVec2::ZERO).all();
+        let texel = self.texels.at(texel.x as u32, texel.y as u32).filter(|_| inside)?;
+        let position = texel.centroid.position(&self.scene);
+        let normal = self.scene.area_normal(texel.centroid.triangle).normalize_or_zero();
+        Some(SurfaceHit { point: texel.centroid, position, normal, distance: 0.0 })
+    }
+
+    /// A checksum of everything in the scene that gives, blocks or reflects light; the first call takes a while.
+    pub(crate) fn light_hash(&self) -> &[u8; 32] {
+        self.light_hash.get_or_init(|| light_hash(&self.scene))
+    }
+
+    /// Prepares a scene whose atlas is known.
+    pub fn of(scene: Arc<Scene>, atlas: Arc<Atlas>, progress: &dyn Progress) -> Result<Self, SessionError> {
+        progress.check()?;
+        let tracer = Arc::new(Tracer::new(scene.clone()));
+        progress.report(0.3);
+        progress.check()?;
+        let texels = Arc::new(atlas.texel_map(&scene));
+        progress.report(0.7);
+        progress.check()?;
+        let place = |address: u32| [address % atlas.width, address / atlas.width];
+        let gutters: Vec<_> = texels.dilations.iter().map(|d| [place(d.texel), place(d.source)]).collect();
+        let canvas = Arc::new(Canvas::new(&scene, &atlas, &texels.texels, &gutters));
+        progress.report(1.0);
+        Ok(Self { bounds: scene.bounds(), scene, atlas, tracer, texels, canvas, light_hash: OnceLock::new() })
+    }
+}

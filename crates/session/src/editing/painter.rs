@@ -1,0 +1,92 @@
+//! A stroke being painted on a document, live or from a recording.
+
+use super::paintable::paintable;
+use super::stroke_point::{StrokePoint, StrokeTarget};
+use crate::document::{Document, SurfaceHit, pick, view_ray};
+use crate::error::SessionError;
+use focus::{Brush, Changed, PenSample, Stroke, ViewFrame};
+use glam::DVec2;
+use project::{RecordedStep, RecordedStroke, StrokeView};
+
+/// A stroke and its record.
+pub(crate) struct Painter {
+    stroke: Stroke,
+    record: RecordedStroke,
+    /// Whether all of it was painted in the record's view: else there is nothing to record.
+    is_recordable: bool,
+}
+
+impl Painter {
+    /// Begins a stroke with the document's brush on its active layer. Nothing is painted yet.
+    pub fn begin(document: &Document, point: &StrokePoint) -> Result<Self, SessionError> {
+        let layer = document.layers.active();
+        let channels = paintable(layer, document.brush.channels)?;
+        let hit = hit_of(document, point);
+        let brush = Brush { channels, ..document.brush_at(hit.as_ref()) };
+        let stroke = Stroke::begin(&layer.map, document.stage.canvas.clone(), brush.clone())?;
+        let stroke = stroke.within(document.selection.clone());
+        let view = match point.at {
+            StrokeTarget::View(view, _) => Some(StrokeView::Scene(view)),
+            StrokeTarget::Atlas(_) => Some(StrokeView::Atlas { atlas: document.stage.atlas.hash.clone() }),
+            StrokeTarget::Ray(_) | StrokeTarget::Surface(_) => None,
+        };
+        let is_recordable = view.is_some();
+        let shot = &document.camera;
+        let unseen =
+            ViewFrame { camera_to_world: shot.camera_to_world, yfov: shot.yfov, aspect: shot.aspect() };
+        let record = RecordedStroke {
+            layer: layer.name.clone(),
+            brush,
+            view: view.unwrap_or(unseen.into()),
+            points: Vec::new(),
+        };
+        Ok(Self { stroke, record, is_recordable })
+    }
+
+    /// Draws on to the next point. What changed in the layer.
+    pub fn extend(&mut self, document: &mut Document, point: &StrokePoint) -> Changed {
+        let hit = hit_of(document, point);
+        match (point.at, &self.record.view) {
+            (StrokeTarget::View(view, at), StrokeView::Scene(own)) if view == *own => self.note(at, point),
+            (StrokeTarget::Atlas(at), StrokeView::Atlas { .. }) => self.note(at, point),
+            _ => self.is_recordable = false,
+        }
+        let Some(hit) = hit else {
+            self.stroke.lift();
+            return Changed::default();
+        };
+        let front = document.stage.scene.area_normal(hit.point.triangle).try_normalize();
+        let hit = focus::SurfaceHit { position: hit.position, normal: front.map(|n| n.as_vec3()) };
+        let pen = PenSample { pressure: point.pressure as f64 };
+        self.stroke.extend(&mut document.layers.active_mut().map, hit, pen)
+    }
+
+    fn note(&mut self, at: DVec2, point: &StrokePoint) {
+        self.record.points.push([at.x, at.y, point.pressure as f64]);
+    }
+
+    /// Ends the stroke: one step of undo, or nothing if it changed nothing. Whether it changed anything.
+    pub fn commit(self, document: &mut Document) -> bool {
+        let Some(edit) = self.stroke.commit(&document.layers.active().map) else { return false };
+        let record = self.is_recordable.then_some(RecordedStep::Stroke(self.record));
+        document.undo.push_paint(document.layers.active_index(), edit, record);
+        document.revision += 1;
+        true
+    }
+
+    /// Takes the stroke back. What changed in the layer.
+    pub fn abort(self, document: &mut Document) -> Changed {
+        self.stroke.abort(&mut document.layers.active_mut().map)
+    }
+}
+
+/// The surface under a point of a stroke.
+fn hit_of(document: &Document, point: &StrokePoint) -> Option<SurfaceHit> {
+    let tracer = &document.stage.tracer;
+    match point.at {
+        StrokeTarget::Surface(hit) => Some(hit),
+        StrokeTarget::Ray(ray) => pick(tracer, &ray),
+        StrokeTarget::View(view, position) => pick(tracer, &view_ray(&view, position)),
+        StrokeTarget::Atlas(position) => document.stage.surface_at(position),
+    }
+}

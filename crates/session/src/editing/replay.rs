@@ -1,0 +1,87 @@
+//! Recorded steps, done again.
+
+use super::gradient_in_hand::GradientInHand;
+use super::painter::Painter;
+use super::stroke_point::StrokePoint;
+use crate::document::Document;
+use crate::error::SessionError;
+use project::{RecordedStep, RecordedStroke, StrokeView};
+
+/// Does recorded steps on a document, each on the layer of its name, as steps of undo. The document's brush stays
+/// what it was. Returns how many changed anything.
+pub fn replay(document: &mut Document, steps: &[RecordedStep]) -> Result<usize, SessionError> {
+    let brush = document.brush.clone();
+    let mut done = 0;
+    for (index, step) in steps.iter().enumerate() {
+        let changed = redo(document, step)
+            .map_err(|error| SessionError::BadInput(format!("step {}: {error}", index + 1)))?;
+        done += usize::from(changed);
+    }
+    document.brush = brush;
+    Ok(done)
+}
+
+/// Does one recorded step. Whether it changed anything.
+pub(crate) fn redo(document: &mut Document, step: &RecordedStep) -> Result<bool, SessionError> {
+    let before = document.undo.names().count();
+    match step {
+        RecordedStep::Stroke(stroke) => {
+            activate(document, &stroke.layer)?;
+            return draw(document, stroke);
+        }
+        RecordedStep::Fill(fill) => {
+            activate(document, &fill.layer)?;
+            document.fill(fill.targets.clone(), fill.focus)?;
+        }
+        RecordedStep::Gradient(drawn) => {
+            activate(document, &drawn.layer)?;
+            GradientInHand::begin(document, drawn.gradient)?.commit(document);
+        }
+        RecordedStep::Select(selection) => {
+            return document.select(selection.shape.clone(), selection.combine);
+        }
+        RecordedStep::Layers(edit) => {
+            document.edit_layers(edit.clone())?;
+        }
+        RecordedStep::Mask => {
+            document.mask_selected()?;
+        }
+        RecordedStep::Reset => {
+            document.reset_map()?;
+        }
+    }
+    document.recomposite(None);
+    Ok(document.undo.names().count() != before)
+}
+
+/// Paints on the layer of this name from now on.
+fn activate(document: &mut Document, name: &str) -> Result<(), SessionError> {
+    let layers = document.layers.layers();
+    let Some(layer) = layers.iter().position(|layer| layer.name == name) else {
+        let names: Vec<_> = layers.iter().map(|layer| format!("\"{}\"", layer.name)).collect();
+        let there_are = names.join(", ");
+        let what = format!("no layer is called \"{name}\" (there are {there_are})");
+        return Err(SessionError::BadInput(what));
+    };
+    document.layers.activate(layer);
+    Ok(())
+}
+
+/// Paints a recorded stroke on the active layer. Whether it changed anything.
+fn draw(document: &mut Document, stroke: &RecordedStroke) -> Result<bool, SessionError> {
+    if let StrokeView::Atlas { atlas } = &stroke.view
+        && *atlas != document.stage.atlas.hash
+    {
+        let what = "the stroke was painted in another atlas (replay it on the project it was recorded on)";
+        return Err(SessionError::BadInput(what.into()));
+    }
+    document.brush = stroke.brush.clone();
+    let mut points = stroke.points.iter().map(|point| StrokePoint::recorded(&stroke.view, point));
+    let Some(first) = points.next() else { return Ok(false) };
+    let mut painter = Painter::begin(document, &first)?;
+    for point in std::iter::once(first).chain(points) {
+        let changed = painter.extend(document, &point);
+        document.recomposite(Some(&changed));
+    }
+    Ok(painter.commit(document))
+}

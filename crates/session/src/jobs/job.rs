@@ -1,0 +1,138 @@
+//! Background work: a named thread with progress, cancel and a result; its panics become errors.
+
+use super::job_progress::JobProgress;
+use super::threads::{STACK_BYTES, Urgency, among_others, guarded};
+use crate::error::SessionError;
+use progress::Progress;
+use std::sync::Arc;
+
+/// Names one piece of background work.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct JobId(pub u64);
+
+/// How background work stands, for the status line.
+#[derive(Clone, Debug, PartialEq)]
+pub struct JobStatus {
+    /// Which.
+    pub id: JobId,
+    /// What it does: "opening house.glb".
+    pub label: String,
+    /// Which step of it goes on: "unwrapping"; empty where it has but one.
+    pub step: String,
+    /// The share done, in [0, 1].
+    pub fraction: f32,
+    /// Seconds until the step is done, as far as can be told from how long the share that is done has taken.
+    pub seconds_left: Option<u32>,
+    /// Whether [`crate::Command::Cancel`] can stop it.
+    pub can_cancel: bool,
+}
+
+/// Calls the window back when there is something to [`crate::Session::poll`].
+pub type Waker = Arc<dyn Fn() + Send + Sync>;
+
+/// Work in the background.
+pub(crate) struct Job {
+    pub id: JobId,
+    pub label: String,
+    pub progress: Arc<JobProgress>,
+}
+
+impl Job {
+    /// Starts `work` on a thread of its own and hands its result, or what its panic means, to `deliver`.
+    pub fn start<T: Send + 'static>(
+        id: JobId,
+        label: String,
+        work: impl FnOnce(&JobProgress) -> Result<T, SessionError> + Send + 'static,
+        deliver: impl FnOnce(JobId, Result<T, SessionError>) + Send + 'static,
+    ) -> Result<Self, SessionError> {
+        let progress = Arc::new(JobProgress::default());
+        let (shared, doing) = (progress.clone(), label.clone());
+        std::thread::Builder::new()
+            .name(label.clone())
+            .stack_size(STACK_BYTES)
+            .spawn(move || deliver(id, guarded(&doing, || among_others(Urgency::Later, || work(&shared)))))
+            .map_err(|e| {
+                SessionError::TryAgain(format!("{label}: no thread could be started: {e} (try again)"))
+            })?;
+        Ok(Self { id, label, progress })
+    }
+
+    pub fn status(&self) -> JobStatus {
+        let (step, seconds_left) = self.progress.standing();
+        JobStatus {
+            id: self.id,
+            label: self.label.clone(),
+            step,
+            fraction: self.progress.fraction(),
+            seconds_left,
+            can_cancel: !self.progress.cancelled(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::sync::mpsc;
+
+    #[test]
+    fn a_panic_is_an_error_and_a_result_arrives() {
+        let (send, receive) = mpsc::channel();
+        let deliver = send.clone();
+        let panics = |_: &JobProgress| -> Result<u8, SessionError> { panic!("index out of bounds") };
+        Job::start(JobId(1), "testing".into(), panics, move |id, r| deliver.send((id, r)).unwrap()).unwrap();
+        let (id, result) = receive.recv_timeout(Duration::from_secs(10)).unwrap();
+        assert_eq!(id, JobId(1));
+        assert!(matches!(result, Err(SessionError::Internal(text)) if text.contains("index out of bounds")));
+
+        Job::start(JobId(2), "testing".into(), |_| Ok(7), move |id, r| send.send((id, r)).unwrap()).unwrap();
+        assert_eq!(receive.recv_timeout(Duration::from_secs(10)).unwrap(), (JobId(2), Ok(7)));
+    }
+
+    #[test]
+    fn what_is_quick_does_not_wait_for_long_work() {
+        use rayon::prelude::*;
+        let (send, receive) = mpsc::channel();
+        let (begun, has_begun) = mpsc::channel();
+        let everybody = 4 * rayon::current_num_threads();
+        let job = Job::start(
+            JobId(1),
+            "working".into(),
+            move |progress| {
+                // More pieces than threads, none of which ends by itself.
+                (0..everybody).into_par_iter().for_each(|_| {
+                    begun.send(()).unwrap();
+                    while !progress.cancelled() {
+                        std::thread::sleep(Duration::from_millis(1));
+                    }
+                });
+                Ok(())
+            },
+            move |_, result: Result<(), _>| send.send(result).unwrap(),
+        )
+        .unwrap();
+        has_begun.recv_timeout(Duration::from_secs(10)).unwrap();
+        let quick: u32 = (0..1000u32).into_par_iter().sum();
+        assert_eq!(quick, 499_500);
+        assert!(receive.try_recv().is_err(), "the long work goes on");
+        job.progress.cancel();
+        assert_eq!(receive.recv_timeout(Duration::from_secs(10)).unwrap(), Ok(()));
+    }
+
+    #[test]
+    fn cancel_reaches_the_work() {
+        let (send, receive) = mpsc::channel();
+        let job = Job::start(
+            JobId(1),
+            "waiting".into(),
+            |progress| loop {
+                progress.check()?;
+                std::thread::sleep(Duration::from_millis(1));
+            },
+            move |_, r: Result<(), _>| send.send(r).unwrap(),
+        )
+        .unwrap();
+        job.progress.cancel();
+        assert_eq!(receive.recv_timeout(Duration::from_secs(10)).unwrap(), Err(SessionError::Cancelled));
+    }
+}

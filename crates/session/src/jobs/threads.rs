@@ -1,0 +1,59 @@
+//! Threads of background work: how soon it is needed, and what its panics mean.
+
+use crate::error::SessionError;
+use std::panic::AssertUnwindSafe;
+
+/// Stack of a job's thread: imports and unwrapping may recurse over a scene's hierarchy.
+pub(super) const STACK_BYTES: usize = 16 << 20;
+
+/// How soon work is needed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Urgency {
+    /// Somebody looks on.
+    Now,
+    /// When there is time: it stands back behind the pictures that one paints on.
+    Later,
+}
+
+/// By how much the threads of work that has time stand back.
+#[cfg(target_os = "linux")]
+const STANDS_BACK: i32 = 5;
+
+impl Urgency {
+    /// Says so to the system, for the thread that calls.
+    #[cfg(target_os = "linux")]
+    fn declare(self) {
+        if self == Self::Later {
+            // Where that is not allowed, it does not stand back.
+            let _ = rustix::process::nice(STANDS_BACK);
+        }
+    }
+
+    /// Elsewhere only whole processes have a say.
+    #[cfg(not(target_os = "linux"))]
+    fn declare(self) {}
+}
+
+/// Rayon threads for work that takes its time: in the common ones, what the window needs at once would wait for its long
+/// pieces. The system shares the processors out.
+pub(crate) fn own_threads(urgency: Urgency) -> Result<rayon::ThreadPool, SessionError> {
+    let pool = rayon::ThreadPoolBuilder::new()
+        .stack_size(STACK_BYTES)
+        .start_handler(move |_| urgency.declare())
+        .build();
+    pool.map_err(|e| SessionError::TryAgain(format!("no threads could be started: {e} (try again)")))
+}
+
+/// Runs `work` with threads of its own.
+pub(crate) fn among_others<T: Send>(
+    urgency: Urgency,
+    work: impl FnOnce() -> Result<T, SessionError> + Send,
+) -> Result<T, SessionError> {
+    own_threads(urgency)?.install(work)
+}
+
+/// Runs `work`; a panic in it becomes an error.
+pub fn guarded<T>(doing: &str, work: impl FnOnce() -> Result<T, SessionError>) -> Result<T, SessionError> {
+    std::panic::catch_unwind(AssertUnwindSafe(work))
+        .unwrap_or_else(|payload| Err(SessionError::panicked(doing, payload.as_ref())))
+}

@@ -1,0 +1,148 @@
+//! What of the aperture a surface point sees, and what it sends there: the light field at one point, cell by cell.
+
+use super::light::light;
+use super::running_sum::BakedField;
+use crate::document::{Document, SurfaceHit};
+use glam::{DVec2, DVec3};
+use lens::FocusOffset;
+use rayon::prelude::*;
+use salf::Visibility;
+use trace::Radiance;
+
+/// The image of the aperture as one surface point sees it, by rays.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ApertureImage {
+    /// The point, world.
+    pub position: DVec3,
+    /// Rows and columns of cells over the square [−R, R]².
+    pub side: usize,
+    /// The cells: row 0 at v = +R, column 0 at u = −R, as seen from behind the camera.
+    pub cells: Vec<ApertureCell>,
+    /// Depth of the point in the shot camera.
+    pub depth: f64,
+    /// The focus of the point.
+    pub focus: FocusOffset,
+    /// Its defocus κ: how this image is scaled where it lands in the picture.
+    pub kappa: f64,
+    /// Its signed circle of confusion, px: negative lands turned by half a turn.
+    pub circle_px: f64,
+    /// What the preview's light field keeps of it; none while there is no light field, or where it has no sample.
+    pub kept: Option<KeptVisibility>,
+}
+
+/// What the sample of the light field nearest to a point keeps of the aperture.
+#[derive(Clone, Debug, PartialEq)]
+pub struct KeptVisibility {
+    /// Rows and columns of cells over the square [−R, R]² of the lens that it was made for; 1 where it sees all.
+    pub side: usize,
+    /// Which of them it sees, in the order of [`ApertureImage::cells`].
+    pub cells: Vec<bool>,
+    /// Linear RGB radiance toward the aperture: one for all cells.
+    pub radiance: [f32; 3],
+    /// How far from the point the sample is, scene units.
+    pub distance: f64,
+    /// The aperture radius that it was made for: the cells lie in it, however far the lens is stopped down since.
+    pub aperture_radius: f64,
+}
+
+impl KeptVisibility {
+    /// The share of its cells that it sees, in [0, 1].
+    pub fn visible_share(&self) -> f64 {
+        self.cells.iter().filter(|is_seen| **is_seen).count() as f64 / self.cells.len().max(1) as f64
+    }
+}
+
+/// A cell of the aperture.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ApertureCell {
+    /// How much of it the aperture's shape lets through, in [0, 1].
+    pub transmission: f32,
+    /// Whether the point sees its middle.
+    pub is_seen: bool,
+    /// Linear RGB radiance from the point to its middle; black where it is not seen.
+    pub radiance: [f32; 3],
+}
+
+/// How far the nearest sample is sought, texels.
+const SQUARES: [u32; 6] = [0, 2, 8, 24, 64, 160];
+
+impl ApertureImage {
+    /// Rows and columns of cells.
+    pub const SIDE: usize = 32;
+
+    /// The share of the open aperture that the point sees, in [0, 1].
+    pub fn visible_share(&self) -> f64 {
+        let sum = |cells: &mut dyn Iterator<Item = &ApertureCell>| {
+            cells.map(|cell| f64::from(cell.transmission)).sum::<f64>()
+        };
+        let open = sum(&mut self.cells.iter());
+        if open > 0.0 { sum(&mut self.cells.iter().filter(|cell| cell.is_seen)) / open } else { 0.0 }
+    }
+}
+
+impl ApertureImage {
+    /// The aperture as a surface point of a document sees it, and what `field` keeps of that. A thousand rays: quick enough
+    /// to wait for. `None` where the aperture is a pinhole, or the point stands behind it.
+    pub(crate) fn at(document: &Document, field: Option<&BakedField>, hit: &SurfaceHit) -> Option<Self> {
+        let (camera, tracer) = (&document.camera, &document.stage.tracer);
+        let (radius, depth) = (camera.aperture_radius, camera.camera_from_world(hit.position).z);
+        if radius <= 0.0 || depth <= 0.0 {
+            return None;
+        }
+        let light = light(tracer, camera);
+        let side = ApertureImage::SIDE;
+        let cell = |index: usize| {
+            let [row, column] = [index / side, index % side].map(|k| (k as f64 + 0.5) / side as f64);
+            let u = DVec2::new(2.0 * column - 1.0, 1.0 - 2.0 * row);
+            let eye = camera.world_from_camera((u * radius).extend(0.0));
+            let is_seen = !tracer.occluded(hit.point, eye);
+            ApertureCell {
+                transmission: camera.aperture.transmission(u) as f32,
+                is_seen,
+                radiance: if is_seen { light.toward(hit.point, eye).to_array() } else { [0.0; 3] },
+            }
+        };
+        let cells = (0..side * side).into_par_iter().map(cell).collect();
+        let focus = document.focus_at(hit);
+        let optics = camera.optics();
+        let kappa = optics.kappa(1.0 / depth, focus);
+        let circle_px = 2.0 * optics.splat_radius_px(kappa);
+        let kept = field.and_then(|field| KeptVisibility::at(document, field, hit));
+        Some(Self { position: hit.position, side, cells, depth, focus, kappa, circle_px, kept })
+    }
+}
+
+impl KeptVisibility {
+    /// What a light field keeps of the aperture beside a surface point: its nearest sample, sought in ever wider squares
+    /// of the atlas.
+    fn at(document: &Document, field: &BakedField, hit: &SurfaceHit) -> Option<Self> {
+        let stage = &document.stage;
+        let place = stage.atlas.position_of(hit.point);
+        let samples = SQUARES.into_iter().find_map(|reach| {
+            let along = |at: f64, count: u32| {
+                let at = (at.max(0.0) as u32).min(count.saturating_sub(1));
+                at.saturating_sub(reach)..(at + reach + 1).min(count)
+            };
+            let (columns, rows) = (along(place.x, stage.atlas.width), along(place.y, stage.atlas.height));
+            let texels: Vec<_> = rows.flat_map(|y| columns.clone().map(move |x| [x, y])).collect();
+            Some(field.index.samples_reading(&texels)).filter(|found| !found.is_empty())
+        })?;
+        let mut addresses = field.salf.samples.addresses();
+        let mut position = |index: u32| Some(addresses.of(index)?.position(&stage.scene));
+        let near =
+            samples.into_iter().filter_map(|index| Some((position(index)?.distance(hit.position), index)));
+        let (distance, index) = near.min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)))?;
+        let sample = field.salf.samples.get(index);
+        let (side, cells) = match &sample.visibility {
+            Visibility::Open => (1, vec![true]),
+            Visibility::Cells { words, .. } => {
+                let side = Visibility::side_of(words);
+                // Its row 0 lies at v = −R.
+                let rows = (0..side).rev().map(|row| Visibility::row(words, row));
+                (side, rows.flat_map(|bits| (0..side).map(move |column| bits >> column & 1 == 1)).collect())
+            }
+        };
+        let (radiance, aperture_radius) = (sample.radiance.to_array(), field.salf.camera.aperture_radius);
+        Some(Self { side, cells, radiance, distance, aperture_radius })
+    }
+}

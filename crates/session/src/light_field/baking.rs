@@ -1,0 +1,43 @@
+//! Light fields, baked as coarse as a picture allows.
+
+use super::light::light;
+use crate::error::SessionError;
+use crate::jobs::Steps;
+use focus::Focus;
+use lens::Camera;
+use salf::{BakeOptions, Salf};
+use std::sync::Arc;
+use trace::Tracer;
+
+/// Bakes the light field that `camera` needs to show `focus`, as coarse as `tolerance_px` allows.
+pub fn bake(
+    tracer: &Arc<Tracer>,
+    camera: &Camera,
+    focus: &Focus,
+    tolerance_px: f64,
+    steps: &dyn Steps,
+) -> Result<Salf, SessionError> {
+    let options = BakeOptions { tolerance_px, ..BakeOptions::for_focus(tracer, camera, focus) };
+    bake_with(tracer, camera, &options, steps)
+}
+
+/// The same light field with samples as they were found, not packed: what the saving is measured against.
+pub fn bake_unpacked(
+    tracer: &Arc<Tracer>,
+    camera: &Camera,
+    focus: &Focus,
+    tolerance_px: f64,
+    steps: &dyn Steps,
+) -> Result<Salf, SessionError> {
+    let margin = BakeOptions::for_focus(tracer, camera, focus);
+    bake_with(tracer, camera, &BakeOptions { tolerance_px, packs: false, ..margin }, steps)
+}
+
+fn bake_with(
+    tracer: &Arc<Tracer>,
+    camera: &Camera,
+    options: &BakeOptions,
+    steps: &dyn Steps,
+) -> Result<Salf, SessionError> {
+    Ok(salf::bake(tracer, &light(tracer, camera), camera, options, &*steps.begin("baking"))?)
+}

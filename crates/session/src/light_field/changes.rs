@@ -1,0 +1,36 @@
+//! What of the focus map a sum has not seen yet.
+
+/// Changes of more texels than these are not counted singly.
+const MOST_TEXELS: usize = 1 << 22;
+
+/// Texels of the focus map that a sum has not seen yet.
+#[derive(Clone, Debug)]
+pub(crate) enum Changes {
+    /// These.
+    Texels(Vec<[u32; 2]>),
+    /// All of them, or the background.
+    Everything,
+}
+
+impl Default for Changes {
+    fn default() -> Self {
+        Self::Texels(Vec::new())
+    }
+}
+
+impl Changes {
+    /// Whether nothing has changed.
+    pub fn is_none(&self) -> bool {
+        matches!(self, Self::Texels(texels) if texels.is_empty())
+    }
+
+    /// Takes up newer changes.
+    pub fn join(&mut self, newer: &Changes) {
+        match (&mut *self, newer) {
+            (Self::Texels(texels), Self::Texels(more)) if texels.len() + more.len() <= MOST_TEXELS => {
+                texels.extend(more);
+            }
+            _ => *self = Self::Everything,
+        }
+    }
+}

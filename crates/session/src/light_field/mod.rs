@@ -1,0 +1,30 @@
+//! A document's light field: baked, kept on disk, summed, indexed, counted.
+//!
+//! Where its radiance comes from is chosen in `light.rs`, here and nowhere else. Everything above asks for a light field that
+//! serves a camera, whoever made it.
+
+mod aperture_image;
+mod baking;
+mod changes;
+mod field_watch;
+mod light;
+mod modelled;
+mod reach;
+mod running_sum;
+mod salf_file;
+mod sample_index;
+mod serves;
+mod store;
+
+pub use aperture_image::{ApertureCell, ApertureImage, KeptVisibility};
+pub use baking::{bake, bake_unpacked};
+pub use modelled::{DENSE_SAMPLE_BYTES, Modelled, ModelledRow, TexelStatistics};
+pub use salf_file::write_salf;
+pub use store::LightFieldStore;
+
+pub(crate) use changes::Changes;
+pub(crate) use field_watch::{FieldWatch, Standing};
+pub(crate) use light::{light, light_for_many_points};
+pub(crate) use reach::Reach;
+pub(crate) use running_sum::{BakedField, Brought, FieldOptions, LightField, Plan};
+pub(crate) use serves::serves;

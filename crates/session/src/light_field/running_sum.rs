@@ -1,0 +1,399 @@
+//! A baked light field with its running sum, and what it takes to bring the sum up to date.
+
+use super::changes::Changes;
+use super::light::light;
+use super::modelled::Modelled;
+use super::reach::Reach;
+use super::sample_index::SampleIndex;
+use super::serves::serves;
+use crate::display::{Rectangle, Source};
+use crate::document::Stage;
+use crate::error::SessionError;
+use focus::Focus;
+use lens::{Camera, Picture};
+use progress::Progress;
+use salf::{BakeOptions, Salf};
+use splat::{Gpu, SplatError, Splatter, Tolerance};
+use std::sync::Arc;
+use std::time::Instant;
+
+/// The margin is baked this much wider than the paint needs, in picture heights, so that the next strokes find
+/// room: a tenth of the height is a circle of confusion as wide as paint usually gives.
+const MARGIN_HEADROOM: f64 = 0.1;
+
+/// Below this share of the baked aperture's radius another light field would be better: half of the cells of its
+/// masks are closed then.
+const SMALLER_APERTURE: f64 = 0.7;
+
+/// When more than this share of the samples move, a whole sum is quicker: it runs on all cores, and removes nothing.
+const LARGEST_UPDATE: f64 = 0.25;
+
+/// What it takes to bring a sum up to date.
+pub(crate) enum Plan {
+    /// Moving these samples.
+    Move(Vec<u32>),
+    /// The whole sum.
+    Whole,
+}
+
+/// What it took to bring a sum up to date.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) enum Brought {
+    /// It was.
+    Nothing,
+    /// Some samples were moved: the picture changed in this rectangle.
+    Update(Rectangle),
+    /// The whole sum was made.
+    Whole,
+}
+
+/// How a light field is baked and summed.
+#[derive(Clone, Debug)]
+pub(crate) struct FieldOptions {
+    /// How far outside the frame to sample at least, px.
+    pub least_margin_px: f64,
+    /// How coarse its sums may be.
+    pub tolerance: Tolerance,
+    /// What they are made on; none: the processor.
+    pub gpu: Option<Gpu>,
+}
+
+/// A light field to look at.
+#[derive(Clone)]
+pub(crate) struct BakedField {
+    pub salf: Arc<Salf>,
+    pub index: Arc<SampleIndex>,
+}
+
+/// A light field and its running sum.
+pub(crate) struct LightField {
+    splatter: Splatter,
+    index: Arc<SampleIndex>,
+    modelled: Modelled,
+    /// The lens of the sum; none while there is no valid sum.
+    summed: Option<Camera>,
+    /// What the sum has not seen.
+    unseen: Changes,
+    /// Who reaches from further outside the frame than was baked; none until it was asked for, and after a whole sum.
+    reach: Option<Reach>,
+    /// Seconds that the last whole sum took.
+    whole_seconds: f64,
+}
+
+impl From<SplatError> for SessionError {
+    fn from(error: SplatError) -> Self {
+        match error {
+            SplatError::Cancelled => Self::Cancelled,
+            other => Self::BadInput(other.to_string()),
+        }
+    }
+}
+
+impl LightField {
+    /// Bakes what `camera` and `focus` need: a margin of at least `least_margin_px`.
+    pub fn bake(
+        stage: &Stage,
+        camera: &Camera,
+        focus: &Focus,
+        how: FieldOptions,
+        progress: &dyn Progress,
+    ) -> Result<Self, SessionError> {
+        let needed = BakeOptions::for_focus(&stage.tracer, camera, focus).margin_px.max(how.least_margin_px);
+        let margin_px = needed + MARGIN_HEADROOM * camera.height as f64;
+        let options = BakeOptions { margin_px, ..BakeOptions::default() };
+        let radiance = light(&stage.tracer, camera);
+        let salf = salf::bake(&stage.tracer, &radiance, camera, &options, progress)?;
+        Ok(Self::of(stage, Arc::new(salf), how.tolerance, how.gpu))
+    }
+
+    /// A light field that was baked before.
+    pub fn of(stage: &Stage, salf: Arc<Salf>, tolerance: Tolerance, gpu: Option<Gpu>) -> Self {
+        let index = Arc::new(SampleIndex::new(&salf, &stage.atlas));
+        let modelled = Modelled::with_texels(&salf, &stage.tracer, Some(&stage.texels.texels));
+        let mut splatter = Splatter::new(salf);
+        splatter.set_tolerance(tolerance);
+        // The first dab on it is to cost what any dab does.
+        splatter.set_live(true);
+        // Without a card, or one that works, the processor sums.
+        splatter.use_gpu(gpu);
+        splatter.keep_on_card(true);
+        Self::unsummed(splatter, index, modelled)
+    }
+
+    fn unsummed(splatter: Splatter, index: Arc<SampleIndex>, modelled: Modelled) -> Self {
+        Self {
+            splatter,
+            index,
+            modelled,
+            summed: None,
+            unseen: Changes::default(),
+            reach: None,
+            whole_seconds: f64::INFINITY,
+        }
+    }
+
+    /// The same light field and hierarchy, to be summed without tolerance.
+    pub fn exact(&self) -> Self {
+        Self::unsummed(self.splatter.twin(), self.index.clone(), self.modelled)
+    }
+
+    /// See [`Splatter::prepare`].
+    pub fn prepare(&self) -> impl FnOnce(&dyn Progress) + Send + use<> {
+        self.splatter.prepare()
+    }
+
+    /// Whether it is the same light field, whatever is painted on it.
+    pub fn is_twin_of(&self, other: &Self) -> bool {
+        Arc::ptr_eq(self.splatter.salf(), other.splatter.salf())
+    }
+
+    /// Bytes of its sums; twins share all else.
+    pub fn summing_bytes(&self) -> usize {
+        let [_, sums] = self.splatter.bytes();
+        sums
+    }
+
+    /// Sets how coarse sums may be: with another tolerance the next one is made whole.
+    pub fn set_tolerance(&mut self, tolerance: Tolerance) {
+        if tolerance != self.splatter.tolerance() {
+            self.splatter.set_tolerance(tolerance);
+            self.summed = None;
+        }
+    }
+
+    /// Whether it can show what `camera` sees.
+    pub fn serves(&self, camera: &Camera) -> bool {
+        serves(&self.splatter.salf().camera, camera)
+    }
+
+    /// Whether another bake would serve better: paint or lens has come to spread light from further outside the
+    /// frame, or the aperture has become much smaller than the one whose cells were looked through. The least margin, px,
+    /// of that bake.
+    ///
+    /// Quick after an update; after a whole sum every sample is looked at, unless [`Self::survey`] has done it.
+    pub fn is_outgrown(&mut self, camera: &Camera, focus: &Focus) -> Option<f64> {
+        self.survey(camera, focus);
+        let salf = self.splatter.salf();
+        let exceeded = self.reach.as_ref().filter(|reach| reach.is_exceeded());
+        let is_stopped_down = camera.aperture_radius < SMALLER_APERTURE * salf.camera.aperture_radius;
+        let needed_px = exceeded.map(|reach| reach.needed_px(salf, camera, focus));
+        needed_px.or(is_stopped_down.then_some(0.0))
+    }
+
+    /// Looks how far samples reach, those of which that is not known. It must be summed for this lens and focus.
+    pub fn survey(&mut self, camera: &Camera, focus: &Focus) {
+        let salf = self.splatter.salf();
+        match &mut self.reach {
+            Some(reach) => reach.look_again(salf, camera, focus),
+            None => self.reach = Some(Reach::of_all(salf, camera, focus)),
+        }
+    }
+
+    /// Notes changes of the focus map.
+    pub fn note(&mut self, changes: &Changes) {
+        self.unseen.join(changes);
+    }
+
+    /// What it takes to bring the sum to a lens and all changes.
+    pub fn plan(&self, camera: &Camera) -> Plan {
+        let texels = match &self.unseen {
+            Changes::Texels(texels) if self.summed.as_ref() == Some(camera) => texels,
+            _ => return Plan::Whole,
+        };
+        let samples = self.index.samples_reading(texels);
+        let few = samples.len() as f64 <= LARGEST_UPDATE * self.splatter.salf().samples.len() as f64;
+        if few { Plan::Move(samples) } else { Plan::Whole }
+    }
+
+    /// Whether the sum shows this lens and all changes.
+    pub fn is_up_to_date(&self, camera: &Camera) -> bool {
+        self.summed.as_ref() == Some(camera) && self.unseen.is_none()
+    }
+
+    /// Seconds that the last whole sum took; infinite before the first.
+    pub fn whole_seconds(&self) -> f64 {
+        self.whole_seconds
+    }
+
+    /// Brings the sum to a lens and a focus. After an error the next call makes the whole sum.
+    pub fn bring_up(
+        &mut self,
+        camera: &Camera,
+        focus: &Focus,
+        progress: &dyn Progress,
+    ) -> Result<Brought, SessionError> {
+        let plan = self.plan(camera);
+        self.carry_out(plan, camera, focus, progress)
+    }
+
+    /// The same, as it was just planned for this lens.
+    pub fn carry_out(
+        &mut self,
+        plan: Plan,
+        camera: &Camera,
+        focus: &Focus,
+        progress: &dyn Progress,
+    ) -> Result<Brought, SessionError> {
+        // Until all is through, the sum is of no lens.
+        let was_summed = self.summed.take().is_some();
+        let brought = match plan {
+            Plan::Move(samples) if samples.is_empty() => Brought::Nothing,
+            Plan::Move(samples) => {
+                let [rows, columns] = self.splatter.update(focus, &samples)?;
+                if let Some(reach) = &mut self.reach {
+                    reach.note_moved(&samples);
+                }
+                Brought::Update([columns, rows])
+            }
+            Plan::Whole => {
+                self.reach = None;
+                let start = Instant::now();
+                if was_summed && self.unseen.is_none() {
+                    self.splatter.refocus(camera, progress)?;
+                } else {
+                    self.splatter.render(camera, focus, progress)?;
+                }
+                self.whole_seconds = start.elapsed().as_secs_f64();
+                Brought::Whole
+            }
+        };
+        self.unseen = Changes::default();
+        self.summed = Some(camera.clone());
+        Ok(brought)
+    }
+
+    /// The picture of the sum, where it was made.
+    pub fn source(&self) -> Source<'_> {
+        let on_card = self.splatter.picture_on_card().map(Source::There);
+        on_card.unwrap_or_else(|| Source::Here(self.splatter.picture()))
+    }
+
+    /// The picture of the sum, brought back if it is on a card.
+    pub fn brought(&mut self) -> Result<&Picture, SplatError> {
+        self.splatter.fetch()?;
+        Ok(self.splatter.picture())
+    }
+
+    /// The light field itself, and where its samples are.
+    pub fn baked(&self) -> BakedField {
+        BakedField { salf: self.splatter.salf().clone(), index: self.index.clone() }
+    }
+
+    /// What it holds, counted.
+    pub fn modelled(&self) -> Modelled {
+        self.modelled
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::document::Document;
+    use crate::tiny_glb;
+    use glam::DVec3;
+    use lens::FocusOffset;
+    use progress::Unwatched;
+
+    /// A scene of few quads.
+    fn quads() -> Document {
+        let folder = tempfile::tempdir().unwrap();
+        let scene = folder.path().join("quads.glb");
+        tiny_glb::write(&scene);
+        Document::begin(&scene, None, None, &Default::default(), &Unwatched).unwrap()
+    }
+
+    /// The texels of the wall whose middle lies where `wanted` says, and the focus with `value` on them.
+    fn painted(
+        document: &Document,
+        value: FocusOffset,
+        wanted: impl Fn(DVec3) -> bool,
+    ) -> (Focus, Vec<[u32; 2]>) {
+        let stage = &document.stage;
+        let mut map = document.map.clone();
+        let [width, height] = map.size();
+        let inside = |[x, y]: &[u32; 2]| {
+            let texel = stage.texels.at(*x, *y);
+            texel.is_some_and(|texel| wanted(texel.centroid.position(&stage.scene)))
+        };
+        let all = (0..height).flat_map(|y| (0..width).map(move |x| [x, y]));
+        let texels: Vec<_> = all.filter(inside).collect();
+        texels.iter().for_each(|&[x, y]| map.set(x, y, [value.t as f32, value.anchor as f32]));
+        (Focus::painted(stage.scene.clone(), stage.atlas.clone(), Arc::new(map)), texels)
+    }
+
+    #[test]
+    fn a_stroke_tells_whether_the_margin_is_still_wide_enough_as_the_whole_frame_does() {
+        let document = quads();
+        let stage = &document.stage;
+        let camera = Camera { width: 90, height: 60, ..document.camera.clone() };
+        let (blank, none) = painted(&document, FocusOffset::STANDARD, |_| false);
+        assert!(none.is_empty());
+        let how = FieldOptions { least_margin_px: 0.0, tolerance: Tolerance::VIEWING, gpu: None };
+        let mut field = LightField::bake(stage, &camera, &blank, how, &Unwatched).unwrap();
+        field.bring_up(&camera, &blank, &Unwatched).unwrap();
+        field.survey(&camera, &blank);
+        assert_eq!(field.is_outgrown(&camera, &blank), None);
+
+        let in_view = |at: DVec3| at.z < -3.5 && at.x.abs() < 0.3 && at.y.abs() < 0.3;
+        let per_t = camera.optics().splat_radius_px(1.0 / camera.optics().image_distance);
+        let margin = f64::from(field.splatter.salf().margin_px);
+        let mut grew = 0;
+        for share in [0.5, 0.9, 1.3, 0.2, 2.0] {
+            // Anchored at the point: the radius is that of (t − 1)/d.
+            let value = FocusOffset::new(1.0 + share * margin / per_t, 1.0);
+            let (focus, texels) = painted(&document, value, in_view);
+            assert!(texels.len() > 10);
+            field.note(&Changes::Texels(texels));
+            field.bring_up(&camera, &focus, &Unwatched).unwrap();
+            let needed = BakeOptions::for_focus(&stage.tracer, &camera, &focus).margin_px;
+            let found = field.is_outgrown(&camera, &focus);
+            assert_eq!(found.is_some(), needed > margin, "{share} of the margin");
+            if let Some(found) = found {
+                assert!((found - share * margin).abs() < 1e-3 * margin, "{found} px of {margin}");
+                grew += 1;
+            }
+            field.reach = None;
+            assert_eq!(
+                field.is_outgrown(&camera, &focus),
+                found,
+                "whether all are asked or those that moved"
+            );
+        }
+        assert_eq!(grew, 2);
+
+        // Far outside the frame nothing reaches it, however blurred.
+        let beside = |at: DVec3| at.z < -3.5 && at.x > 3.5;
+        let (focus, texels) = painted(&document, FocusOffset::new(1.0 + 0.05 * margin / per_t, 1.0), beside);
+        assert!(!texels.is_empty());
+        field.note(&Changes::Everything);
+        field.bring_up(&camera, &focus, &Unwatched).unwrap();
+        assert_eq!(field.is_outgrown(&camera, &focus), None);
+        // A much smaller aperture is another reason.
+        let stopped = Camera { aperture_radius: camera.aperture_radius * 0.5, ..camera.clone() };
+        field.bring_up(&stopped, &focus, &Unwatched).unwrap();
+        assert_eq!(field.is_outgrown(&stopped, &focus), Some(0.0));
+    }
+
+    #[test]
+    fn the_exact_sum_follows_as_a_new_one_would() {
+        let document = quads();
+        let camera = Camera { width: 90, height: 60, ..document.camera.clone() };
+        let (blank, _) = painted(&document, FocusOffset::STANDARD, |_| false);
+        let how = FieldOptions { least_margin_px: 0.0, tolerance: Tolerance::VIEWING, gpu: None };
+        let field = LightField::bake(&document.stage, &camera, &blank, how, &Unwatched).unwrap();
+        let mut exact = field.exact();
+        assert!(exact.is_twin_of(&field) && exact.summing_bytes() > 0);
+        assert!(!exact.is_up_to_date(&camera));
+        exact.bring_up(&camera, &blank, &Unwatched).unwrap();
+        assert!(exact.is_up_to_date(&camera));
+        let was = exact.brought().unwrap().clone();
+        let dab = |at: DVec3| at.z < -3.5 && at.x.abs() < 0.3;
+        let (focus, texels) = painted(&document, FocusOffset::new(1.2, 1.0), dab);
+        exact.note(&Changes::Texels(texels));
+        assert!(matches!(exact.bring_up(&camera, &focus, &Unwatched), Ok(Brought::Update(_))));
+        let mut anew = field.exact();
+        anew.bring_up(&camera, &focus, &Unwatched).unwrap();
+        let exact = exact.brought().unwrap();
+        assert!(exact == anew.brought().unwrap() && *exact != was);
+    }
+}

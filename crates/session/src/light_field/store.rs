@@ -1,0 +1,150 @@
+//! Light fields kept from one run of the program to the next, so that what was baked once is not baked again.
+//!
+//! A light field is found by what it was baked from: all of the scene that gives or blocks light, the camera but for what
+//! may differ (see [`crate::light_field::serves`]), and the very build of the program. They are `.salf` files in a folder of
+//! their own; when that holds too much, those go that were not looked for the longest.
+
+use super::salf_file::write_salf;
+use crate::document::Stage;
+use lens::{Aperture, Camera};
+use salf::{Salf, SalfFile};
+use sha2::{Digest, Sha256};
+use std::fs::File;
+use std::io::BufReader;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::{Duration, SystemTime};
+
+/// Bytes that the folder may hold: half a dozen light fields of 1920 × 1080 pixels.
+const BUDGET_BYTES: u64 = 2 << 30;
+
+/// What is baked in less time is baked again.
+const SHORTEST_BAKE: Duration = Duration::from_secs(2);
+
+/// A folder of light fields.
+#[derive(Clone, Debug)]
+pub struct LightFieldStore {
+    folder: PathBuf,
+    budget_bytes: u64,
+    shortest_bake: Duration,
+}
+
+impl LightFieldStore {
+    /// Light fields in `folder`, which is made when there is one to keep.
+    pub fn new(folder: PathBuf) -> Self {
+        Self { folder, budget_bytes: BUDGET_BYTES, shortest_bake: SHORTEST_BAKE }
+    }
+
+    /// The same store, which keeps what took at least `shortest_bake` to bake.
+    pub fn with_shortest_bake(self, shortest_bake: Duration) -> Self {
+        Self { shortest_bake, ..self }
+    }
+
+    /// The file of a light field; none where builds of the program cannot be told apart.
+    fn file(&self, stage: &Stage, camera: &Camera) -> Option<PathBuf> {
+        let mut hash = Sha256::new();
+        hash.update(build()?);
+        hash.update(format!("{:?}", common(camera)));
+        hash.update(stage.light_hash());
+        let name: String = hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect();
+        Some(self.folder.join(name).with_extension("salf"))
+    }
+
+    /// Whether there is a light field of the stage for `camera`.
+    pub(crate) fn has(&self, stage: &Stage, camera: &Camera) -> bool {
+        self.file(stage, camera).is_some_and(|file| file.exists())
+    }
+
+    /// The light field of the stage for `camera`, if one is kept that reaches at least `least_margin_px` beyond the frame. One
+    /// that cannot be read is as good as none.
+    pub(crate) fn find(&self, stage: &Stage, camera: &Camera, least_margin_px: f64) -> Option<Salf> {
+        let path = self.file(stage, camera)?;
+        let file = File::open(&path).ok()?;
+        // It was looked for: it goes last. Where that cannot be noted, it goes by when it was written.
+        let _ = file.set_modified(SystemTime::now());
+        let found = SalfFile::read(BufReader::with_capacity(1 << 20, file)).ok()?;
+        let salf = Arc::into_inner(found.salf)?;
+        let fits = common(&salf.camera) == common(camera)
+            && found.triangles as usize == stage.scene.triangles.len()
+            && f64::from(salf.margin_px) >= least_margin_px;
+        fits.then_some(salf)
+    }
+
+    /// Keeps a light field that took `bake` to make, on a thread of its own. That it cannot be kept only costs time later.
+    pub(crate) fn keep(&self, stage: &Arc<Stage>, salf: &Arc<Salf>, bake: Duration) {
+        if bake < self.shortest_bake {
+            return;
+        }
+        let (store, stage, salf) = (self.clone(), stage.clone(), salf.clone());
+        let write = move || store.write(&stage, &salf);
+        let _ = std::thread::Builder::new().name("keeping light field".into()).spawn(write);
+    }
+
+    fn write(&self, stage: &Stage, salf: &Arc<Salf>) {
+        let Some(path) = self.file(stage, &salf.camera) else { return };
+        let made = std::fs::create_dir_all(&self.folder).is_ok();
+        if made && write_salf(&path, &stage.scene.path, &stage.scene, salf).is_ok() {
+            self.tidy(&path);
+        }
+    }
+
+    /// Removes the oldest files beyond the budget, but not the `newest`.
+    fn tidy(&self, newest: &Path) {
+        let Ok(listing) = std::fs::read_dir(&self.folder) else { return };
+        let known = |path: &PathBuf| path.extension().is_some_and(|extension| extension == "salf");
+        let paths = listing.filter_map(|entry| Some(entry.ok()?.path())).filter(known);
+        let mut files: Vec<_> = paths
+            .filter_map(|path| {
+                let data = path.metadata().ok()?;
+                Some((data.modified().ok()?, data.len(), path))
+            })
+            .collect();
+        files.sort();
+        let mut bytes: u64 = files.iter().map(|(_, bytes, _)| bytes).sum();
+        for (_, size, path) in files.iter().filter(|(.., path)| path != newest) {
+            if bytes <= self.budget_bytes {
+                return;
+            }
+            if std::fs::remove_file(path).is_ok() {
+                bytes -= size;
+            }
+        }
+    }
+}
+
+/// Tells this build of the program from others, which may bake otherwise.
+fn build() -> Option<String> {
+    let program = std::env::current_exe().and_then(std::fs::metadata).ok()?;
+    let modified = program.modified().ok()?.duration_since(SystemTime::UNIX_EPOCH).ok()?;
+    Some(format!("{} {modified:?}", program.len()))
+}
+
+/// What all cameras have in common that a light field serves, but for smaller apertures.
+fn common(camera: &Camera) -> Camera {
+    Camera { focus_distance: f64::INFINITY, aperture: Aperture::default(), ..camera.clone() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_was_not_looked_for_the_longest_goes_first() {
+        let folder = tempfile::tempdir().unwrap();
+        let store = LightFieldStore { budget_bytes: 250, ..LightFieldStore::new(folder.path().into()) };
+        let write = |name: &str, age: u64| {
+            let path = folder.path().join(name);
+            std::fs::write(&path, [0; 100]).unwrap();
+            let file = File::options().write(true).open(&path).unwrap();
+            file.set_modified(SystemTime::now() - Duration::from_secs(age)).unwrap();
+            path
+        };
+        let (old, young) = (write("old.salf", 90), write("young.salf", 20));
+        let other = write("notes.txt", 500);
+        let newest = write("newest.salf", 100);
+        store.tidy(&newest);
+        assert!(!old.exists() && young.exists() && newest.exists() && other.exists());
+        store.tidy(&newest);
+        assert!(young.exists(), "what is left is within the budget");
+    }
+}

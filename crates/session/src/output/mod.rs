@@ -1,0 +1,21 @@
+//! Pictures at full size and what is told beside them.
+//!
+//! Rendering by any renderer, extra channels, pictures to compare with, checks by rays, counts, and scenes as files.
+
+mod aov;
+mod blur_histogram;
+mod reference;
+mod render;
+mod renderer;
+mod unwrapped;
+mod verification;
+
+pub use aov::Aov;
+pub use blur_histogram::BlurHistogram;
+pub use reference::{Reference, ReferenceKind};
+pub use render::{MOST_CELLS_A_SIDE, RenderCost, RenderOptions, Rendered, render, render_input};
+pub use renderer::Renderer;
+pub use unwrapped::write_unwrapped;
+pub use verification::{Verification, VerifiedError};
+
+pub(crate) use render::sum_light_field;

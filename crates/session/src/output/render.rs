@@ -1,0 +1,320 @@
+//! A picture without a window: what the command line and the export of the window do.
+
+use super::aov::{Aov, Known};
+use super::renderer::Renderer;
+use crate::document::Input;
+use crate::error::SessionError;
+use crate::jobs::Steps;
+use crate::light_field::{bake, light, light_for_many_points, serves};
+use baselines::{BaselineError, FirstHits, LayeredOptions, ScatterOptions, ViewsOptions};
+use focus::Focus;
+use lens::{Camera, Picture};
+use project::Layer;
+use salf::{BakeOptions, Salf, SalfStatistics};
+use serde::Serialize;
+use splat::{Gpu, Splatter, Tolerance};
+use std::sync::Arc;
+use std::time::Instant;
+use trace::Tracer;
+use trace::truth::{Estimate, TruthOptions};
+
+impl From<BaselineError> for SessionError {
+    fn from(error: BaselineError) -> Self {
+        match error {
+            BaselineError::Cancelled => Self::Cancelled,
+            other => Self::BadInput(other.to_string()),
+        }
+    }
+}
+
+/// How to render.
+#[derive(Clone, Debug)]
+pub struct RenderOptions {
+    /// What draws it.
+    pub renderer: Renderer,
+    /// How the ray tracer samples. Its region must be the frame.
+    pub truth: TruthOptions,
+    /// How coarse the light field may be, px (see [`BakeOptions::tolerance_px`]).
+    pub tolerance_px: f64,
+    /// How coarse its splat may be.
+    pub splat_tolerance: Tolerance,
+    /// A light field that is to be baked is sampled on a grid of n × n cells a pixel, n from 1 to [`MOST_CELLS_A_SIDE`],
+    /// and a pixel is the mean of what these give. What a tolerance of 0 leaves of the error is how far apart samples lie.
+    pub cells_a_side: u32,
+    /// The graphics card that the splat is summed on; none for the processor. The picture is the same.
+    pub gpu: Option<Gpu>,
+    /// How [`Renderer::Layers`] cuts the picture.
+    pub layered: LayeredOptions,
+    /// What [`Renderer::Views`] captures.
+    pub views: ViewsOptions,
+    /// What [`Renderer::Scatter`] throws.
+    pub scatter: ScatterOptions,
+    /// The pictures that come along.
+    pub aovs: Vec<Aov>,
+}
+
+impl Default for RenderOptions {
+    fn default() -> Self {
+        Self {
+            renderer: Renderer::Splat,
+            truth: TruthOptions { samples_per_pixel: 64, ..TruthOptions::default() },
+            tolerance_px: BakeOptions::TOLERANCE_PX,
+            splat_tolerance: Tolerance::NONE,
+            cells_a_side: 1,
+            gpu: None,
+            layered: LayeredOptions::default(),
+            views: ViewsOptions::default(),
+            scatter: ScatterOptions::default(),
+            aovs: Vec::new(),
+        }
+    }
+}
+
+/// The most of [`RenderOptions::cells_a_side`].
+pub const MOST_CELLS_A_SIDE: u32 = 4;
+
+impl RenderOptions {
+    /// A light field and splat as coarse as `px` pixels. At 0 they are as fine as they are meant to get, with nine cells a
+    /// pixel.
+    pub fn at_tolerance(px: f64) -> Self {
+        Self {
+            tolerance_px: px,
+            splat_tolerance: Tolerance::px(px),
+            cells_a_side: if px == 0.0 { 3 } else { 1 },
+            ..Self::default()
+        }
+    }
+
+    /// Bakes the light field for `camera`: its own camera is as much finer as [`Self::cells_a_side`] says.
+    pub fn bake(
+        &self,
+        tracer: &Arc<Tracer>,
+        camera: &Camera,
+        focus: &Focus,
+        steps: &dyn Steps,
+    ) -> Result<Salf, SessionError> {
+        let finer = camera.finer(self.cells_a_side);
+        let tell = |error| {
+            let n = self.cells_a_side;
+            SessionError::BadInput(format!(
+                "with {n} × {n} cells a pixel the {error} (take fewer, or a smaller picture)"
+            ))
+        };
+        finer.validate().map_err(tell)?;
+        bake(tracer, &finer, focus, self.tolerance_px * f64::from(self.cells_a_side), steps)
+    }
+}
+
+/// A rendered picture, what came along and what it cost.
+#[derive(Clone, Debug)]
+pub struct Rendered {
+    /// The picture, radiance and coverage.
+    pub picture: Picture,
+    /// The layers of the AOVs, in the order in which they were asked for.
+    pub layers: Vec<Layer>,
+    /// What it cost.
+    pub cost: RenderCost,
+    /// What the picture lacks, a sentence each.
+    pub warnings: Vec<String>,
+}
+
+/// What a picture cost.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct RenderCost {
+    /// Seconds for the hierarchy over the triangles.
+    pub prepare_seconds: f64,
+    /// Seconds for the light field.
+    pub bake_seconds: f64,
+    /// Seconds for the picture itself.
+    pub picture_seconds: f64,
+    /// Samples that see the whole aperture.
+    pub open_samples: usize,
+    /// Samples that see part of it.
+    pub partial_samples: usize,
+    /// Samples of the background, which are among the others.
+    pub background_samples: usize,
+    /// Bytes of all samples.
+    pub salf_bytes: usize,
+    /// How far outside the frame was sampled, px.
+    pub margin_px: u32,
+    /// Whether the picture was summed on a graphics card.
+    pub is_on_gpu: bool,
+}
+
+impl RenderCost {
+    fn count(&mut self, salf: &Salf) {
+        let SalfStatistics { open, partial, background, bytes, .. } = salf.statistics();
+        (self.open_samples, self.partial_samples) = (open, partial);
+        (self.background_samples, self.salf_bytes) = (background, bytes);
+        self.margin_px = salf.margin_px;
+    }
+}
+
+/// Renders a scene.
+pub fn render(
+    tracer: &Arc<Tracer>,
+    camera: &Camera,
+    focus: &Focus,
+    options: &RenderOptions,
+    steps: &dyn Steps,
+) -> Result<Rendered, SessionError> {
+    let start = Instant::now();
+    let mut cost = RenderCost::default();
+    let mut estimate = None;
+    let picture = match options.renderer {
+        Renderer::Splat | Renderer::Scatter => {
+            let salf = Arc::new(options.bake(tracer, camera, focus, steps)?);
+            let bake_seconds = start.elapsed().as_secs_f64();
+            let (drawn, cost) = draw_light_field(salf.clone(), &salf.camera, focus, options, steps)?;
+            let (picture, cost) = (drawn.averaged(options.cells_a_side), RenderCost { bake_seconds, ..cost });
+            let shot = Shot { tracer, camera, focus };
+            return finish(shot, options, Drawn { picture, estimate: None, cost }, steps);
+        }
+        Renderer::Truth => {
+            let light = light_for_many_points(tracer, camera);
+            let progress = steps.begin("tracing");
+            let found = trace::truth::render(tracer, &light, focus, camera, &options.truth, &*progress)?;
+            estimate.insert(found).picture.clone()
+        }
+        Renderer::Blur => {
+            let hits = first_hits(tracer, camera, focus, steps)?;
+            baselines::gather(&hits, camera, &*steps.begin("blurring"))?
+        }
+        Renderer::Layers => {
+            let hits = first_hits(tracer, camera, focus, steps)?;
+            baselines::layered(&hits, camera, &options.layered, &*steps.begin("blurring"))?
+        }
+        Renderer::Views => {
+            let radiance = light(tracer, camera);
+            let progress = steps.begin("views");
+            baselines::shift_and_add(tracer, &radiance, focus, camera, &options.views, &*progress)?
+        }
+    };
+    cost.picture_seconds = start.elapsed().as_secs_f64();
+    let shot = Shot { tracer, camera, focus };
+    finish(shot, options, Drawn { picture, estimate, cost }, steps)
+}
+
+/// Renders what was opened: a scene, a project, or (where the renderer draws one) a light field.
+pub fn render_input(
+    input: &Input,
+    camera: &Camera,
+    focus: &Focus,
+    options: &RenderOptions,
+    steps: &dyn Steps,
+) -> Result<Rendered, SessionError> {
+    camera.validate().map_err(|error| SessionError::bad(&input.path, error))?;
+    let start = Instant::now();
+    let tracer = Arc::new(Tracer::new(input.scene.clone()));
+    let prepare_seconds = start.elapsed().as_secs_f64();
+    let mut rendered = match input.salf.as_ref().filter(|_| options.renderer.draws_light_field()) {
+        None => render(&tracer, camera, focus, options, steps)?,
+        Some(salf) => {
+            if let Some(difference) = unlike(&salf.camera, camera) {
+                let what = format!("it was baked {difference} (bake it again for this camera)");
+                return Err(SessionError::bad(&input.path, what));
+            }
+            let mut rendered = sum_light_field(salf.clone(), &tracer, camera, focus, options, steps)?;
+            let needed = BakeOptions::for_focus(&tracer, camera, focus).margin_px;
+            if needed > salf.margin_px as f64 {
+                rendered.warnings.push(format!(
+                    "{}: paint spreads light from {needed:.0} px outside the frame, {} px were baked (bake it with --focus)",
+                    input.path.display(),
+                    salf.margin_px
+                ));
+            }
+            rendered
+        }
+    };
+    rendered.cost.prepare_seconds = prepare_seconds;
+    Ok(rendered)
+}
+
+/// What keeps a light field of `baked` from serving `camera`.
+fn unlike(baked: &Camera, camera: &Camera) -> Option<String> {
+    if serves(baked, camera) {
+        return None;
+    }
+    Some(if (baked.width, baked.height) != (camera.width, camera.height) {
+        format!("for {} × {} px, not {} × {}", baked.width, baked.height, camera.width, camera.height)
+    } else if camera.aperture_radius > baked.aperture_radius {
+        format!("for an aperture radius of {}, not {}", baked.aperture_radius, camera.aperture_radius)
+    } else {
+        "for another pose, angle of view, sensor or background".into()
+    })
+}
+
+/// Renders a light field.
+pub(crate) fn sum_light_field(
+    salf: Arc<Salf>,
+    tracer: &Arc<Tracer>,
+    camera: &Camera,
+    focus: &Focus,
+    options: &RenderOptions,
+    steps: &dyn Steps,
+) -> Result<Rendered, SessionError> {
+    let (picture, cost) = draw_light_field(salf, camera, focus, options, steps)?;
+    finish(Shot { tracer, camera, focus }, options, Drawn { picture, estimate: None, cost }, steps)
+}
+
+/// The picture of a light field, and what it cost.
+fn draw_light_field(
+    salf: Arc<Salf>,
+    camera: &Camera,
+    focus: &Focus,
+    options: &RenderOptions,
+    steps: &dyn Steps,
+) -> Result<(Picture, RenderCost), SessionError> {
+    let mut cost = RenderCost::default();
+    cost.count(&salf);
+    let start = Instant::now();
+    let picture = if options.renderer == Renderer::Scatter {
+        baselines::scatter(&salf, camera, focus, &options.scatter, &*steps.begin("scattering"))?
+    } else {
+        let mut splatter = Splatter::new(salf);
+        splatter.set_tolerance(options.splat_tolerance);
+        splatter.use_gpu(options.gpu.clone());
+        splatter.render(camera, focus, &*steps.begin("splatting"))?;
+        cost.is_on_gpu = splatter.gpu().is_some();
+        splatter.picture().clone()
+    };
+    cost.picture_seconds = start.elapsed().as_secs_f64();
+    Ok((picture, cost))
+}
+
+/// What is rendered.
+struct Shot<'a> {
+    tracer: &'a Arc<Tracer>,
+    camera: &'a Camera,
+    focus: &'a Focus,
+}
+
+/// A picture, before what comes along.
+struct Drawn {
+    picture: Picture,
+    /// What the ground truth knows of its error.
+    estimate: Option<Estimate>,
+    cost: RenderCost,
+}
+
+fn finish(
+    Shot { tracer, camera, focus }: Shot,
+    options: &RenderOptions,
+    Drawn { picture, estimate, cost }: Drawn,
+    steps: &dyn Steps,
+) -> Result<Rendered, SessionError> {
+    let asks = options.aovs.iter().any(|aov| aov.needs_first_hits());
+    let hits = asks.then(|| first_hits(tracer, camera, focus, steps)).transpose()?;
+    let known = Known { picture: &picture, hits: hits.as_ref(), estimate: estimate.as_ref(), camera };
+    let layers = options.aovs.iter().flat_map(|aov| aov.layers(&known)).collect();
+    Ok(Rendered { picture, layers, cost, warnings: Vec::new() })
+}
+
+fn first_hits(
+    tracer: &Arc<Tracer>,
+    camera: &Camera,
+    focus: &Focus,
+    steps: &dyn Steps,
+) -> Result<FirstHits, SessionError> {
+    Ok(FirstHits::trace(tracer, &light(tracer, camera), focus, camera, &*steps.begin("first hits"))?)
+}

@@ -1,0 +1,46 @@
+//! The sizes of the quick pictures that come before the one of full size.
+
+use lens::Camera;
+
+/// Sides of the coarse picture are this share of the preview's: a sixteenth of the work.
+const COARSE: f64 = 1.0 / 4.0;
+
+/// Where the coarse picture has more than twice as many pixels, one of so many comes before it: about a second's work.
+const ROUGH_PIXELS: f64 = 20_000.0;
+
+/// Below this longest side, px, a picture is quick enough to need no coarse one.
+const SMALLEST_COARSE: u32 = 48;
+
+/// The cameras of coarse pictures, the roughest first; none where the picture is small anyway.
+pub(super) fn coarse_of(camera: &Camera) -> Vec<Camera> {
+    let scaled = |share: f64| {
+        let [width, height] =
+            [camera.width, camera.height].map(|side| ((f64::from(side) * share).round() as u32).max(1));
+        Camera { width, height, ..camera.clone() }
+    };
+    let coarse = scaled(COARSE);
+    if coarse.width.max(coarse.height) < SMALLEST_COARSE {
+        return Vec::new();
+    }
+    let pixels = f64::from(coarse.width) * f64::from(coarse.height);
+    let rough = (pixels > 2.0 * ROUGH_PIXELS).then(|| scaled(COARSE * (ROUGH_PIXELS / pixels).sqrt()));
+    rough.into_iter().chain([coarse]).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn coarse_pictures_are_few_and_grow() {
+        let sizes = |width, height| {
+            let camera = Camera { width, height, ..Camera::default() };
+            let sizes: Vec<_> = coarse_of(&camera).iter().map(|small| [small.width, small.height]).collect();
+            sizes
+        };
+        assert!(sizes(120, 90).is_empty());
+        assert_eq!(sizes(640, 360), [[160, 90]]);
+        assert_eq!(sizes(1920, 1080), [[189, 106], [480, 270]]);
+        assert_eq!(sizes(16384, 1), [[4096, 1]]);
+    }
+}

@@ -1,0 +1,33 @@
+//! What the helpers of the preview's thread hand over to it.
+
+use crate::error::SessionError;
+use crate::light_field::LightField;
+use lens::Camera;
+
+/// The share of the work that the bake is; the rest is the first sum.
+pub(crate) const BAKE_SHARE: f32 = 0.7;
+
+/// What the maker of light fields hands over.
+pub(crate) struct Delivery {
+    /// The light field, summed; or why there is none.
+    pub made: Result<LightField, SessionError>,
+    /// The epoch in which it was asked for.
+    pub epoch: u64,
+}
+
+/// What comes of it.
+pub(crate) struct Refined {
+    /// The sum; none after a panic.
+    pub field: Option<LightField>,
+    pub outcome: Result<Exact, SessionError>,
+}
+
+/// An exact picture, beside the field that holds it.
+pub(crate) struct Exact {
+    pub map_serial: u64,
+    pub camera: Camera,
+    /// Seconds that it took.
+    pub seconds: f64,
+    /// PSNR, dB, of the picture that was worked with.
+    pub viewing_psnr: f64,
+}

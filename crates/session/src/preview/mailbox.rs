@@ -1,0 +1,251 @@
+//! What the session and the preview's threads share: one mailbox for wishes, one for news.
+
+use super::activity::PreviewActivity;
+use super::deliveries::{Delivery, Refined};
+use super::news::{News, Published};
+use super::picture::{PictureTimes, Preview, Quality};
+use super::wishes::{Stops, Wishes};
+use crate::display::Patch;
+use crate::jobs::{JobProgress, Waker};
+use crate::light_field::{BakedField, FieldWatch};
+use progress::{Cancelled, Progress};
+use splat::Gpu;
+use std::sync::atomic::{AtomicBool, AtomicU8, AtomicUsize, Ordering};
+use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, Instant};
+
+/// What the threads and the session share.
+pub(crate) struct Shared {
+    wishes: Mutex<Wishes>,
+    wake: Condvar,
+    /// Of what the thread itself does: short.
+    pub quick: JobProgress,
+    /// Of what its helper does: long.
+    pub progress: JobProgress,
+    /// Of the exact picture.
+    pub refining: JobProgress,
+    is_refining: AtomicBool,
+    /// Pictures that are being made for the user, which the exact one on screen waits for.
+    exports: AtomicUsize,
+    activity: AtomicU8,
+    helper: AtomicU8,
+    /// The light field that the helper makes.
+    pub field: FieldWatch,
+    published: Mutex<Published>,
+    gpu: Option<Gpu>,
+    waker: Waker,
+}
+
+/// A poisoned lock only means that a panic passed by; what it guards is replaced as a whole.
+fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+impl Shared {
+    /// Nothing wished, nothing told. `gpu`: what pictures are summed on; none: the processor.
+    pub fn new(waker: Waker, gpu: Option<Gpu>) -> Self {
+        Self {
+            gpu,
+            wishes: Mutex::default(),
+            wake: Condvar::new(),
+            quick: JobProgress::default(),
+            progress: JobProgress::default(),
+            refining: JobProgress::default(),
+            is_refining: AtomicBool::new(false),
+            exports: AtomicUsize::new(0),
+            activity: AtomicU8::new(PreviewActivity::Idle as u8),
+            helper: AtomicU8::new(PreviewActivity::Idle as u8),
+            field: FieldWatch::default(),
+            published: Mutex::default(),
+            waker,
+        }
+    }
+
+    /// Waits for the next wishes; none when the session goes. When there are none for as long as `patience`, that is told.
+    pub fn next(&self, patience: Option<Duration>) -> Option<Wishes> {
+        let mut wishes = lock(&self.wishes);
+        self.activity.store(PreviewActivity::Idle as u8, Ordering::Relaxed);
+        (self.waker)();
+        let until = patience.map(|patience| Instant::now() + patience);
+        while !wishes.is_posted {
+            let left = until.map(|until| until.saturating_duration_since(Instant::now()));
+            wishes = match left {
+                None => self.wake.wait(wishes).unwrap_or_else(PoisonError::into_inner),
+                Some(Duration::ZERO) => return Some(Wishes { is_idle: true, ..Wishes::default() }),
+                Some(left) => self.wake.wait_timeout(wishes, left).unwrap_or_else(PoisonError::into_inner).0,
+            };
+        }
+        // What was cancelled is over, and this is new.
+        self.quick.reset();
+        self.activity.store(PreviewActivity::Splatting as u8, Ordering::Relaxed);
+        if wishes.delivery.is_some() {
+            self.helper.store(PreviewActivity::Idle as u8, Ordering::Relaxed);
+        }
+        let wishes = std::mem::take(&mut *wishes);
+        (!wishes.quit).then_some(wishes)
+    }
+
+    /// Joins what `change` wishes to what is wished already, and stops what that makes useless.
+    pub fn post(&self, stops: Stops, change: impl FnOnce(&mut Wishes)) {
+        let mut wishes = lock(&self.wishes);
+        change(&mut wishes);
+        wishes.is_posted = true;
+        if stops != Stops::Nothing {
+            self.refining.cancel();
+        }
+        if stops == Stops::Everything {
+            wishes.stops = true;
+            self.quick.cancel();
+            self.progress.cancel();
+        }
+        self.wake.notify_one();
+    }
+
+    /// Notes what the thread does now, unless it was asked to stop.
+    pub fn begin(&self, activity: PreviewActivity) -> Result<(), Cancelled> {
+        self.quick.check()?;
+        self.quick.begin_step("", 0.0, 1.0);
+        self.activity.store(activity as u8, Ordering::Relaxed);
+        Ok(())
+    }
+
+    /// Notes that the helper begins; false if what it would do is already known to be useless.
+    pub fn begin_helper(&self) -> bool {
+        let wishes = lock(&self.wishes);
+        if wishes.stops {
+            return false;
+        }
+        self.progress.reset();
+        self.helper.store(PreviewActivity::Baking as u8, Ordering::Relaxed);
+        true
+    }
+
+    /// Notes that the exact picture is begun; false if something was wished meanwhile.
+    pub fn begin_refining(&self) -> bool {
+        let wishes = lock(&self.wishes);
+        if wishes.is_posted {
+            return false;
+        }
+        self.refining.reset();
+        self.is_refining.store(true, Ordering::Relaxed);
+        (self.waker)();
+        true
+    }
+
+    /// The exact picture is done, or given up.
+    pub fn refined(&self, refined: Refined) {
+        self.is_refining.store(false, Ordering::Relaxed);
+        self.post(Stops::Nothing, |wishes| wishes.refined = Some(refined));
+    }
+
+    /// Notes that the helper has baked and sums now.
+    pub fn helper_sums(&self) {
+        self.helper.store(PreviewActivity::Splatting as u8, Ordering::Relaxed);
+    }
+
+    /// The helper is done.
+    pub fn deliver(&self, delivery: Delivery) {
+        self.post(Stops::Nothing, |wishes| wishes.delivery = Some(delivery));
+    }
+
+    /// Shows a picture, and what is new on screen by it; its times, if it was made just now.
+    pub fn publish(&self, preview: Preview, patch: Option<Patch>, times: Option<PictureTimes>) {
+        let mut published = lock(&self.published);
+        if preview.quality > Quality::Coarse {
+            published.news.finished.extend(times);
+        }
+        if let Some(patch) = patch {
+            let is_whole = patch.is_whole();
+            let patches = &mut published.news.patches;
+            patches.retain(|_| !is_whole);
+            patches.push((preview.generation, patch));
+        }
+        published.latest = Some(preview);
+        drop(published);
+        (self.waker)();
+    }
+
+    /// What the user is to know of a card that was lost.
+    pub fn loss(&self) -> Option<String> {
+        let gpu = self.gpu.as_ref()?;
+        let why = gpu.why_lost()?.lines().next().unwrap_or_default();
+        Some(format!("{} was lost ({why}): the processor sums the picture now", gpu.name()))
+    }
+
+    /// What pictures are summed on; none, or none any more: the processor.
+    pub fn gpu(&self) -> Option<Gpu> {
+        self.gpu.clone().filter(|gpu| !gpu.is_lost())
+    }
+
+    /// Shows the light field that pictures are made of.
+    pub fn publish_field(&self, generation: u64, field: BakedField) {
+        lock(&self.published).news.field = Some((generation, field));
+    }
+
+    /// Tells the user of what is no failure.
+    pub fn notice(&self, what: String) {
+        lock(&self.published).news.notices.push(what);
+        (self.waker)();
+    }
+
+    /// Tells the user.
+    pub fn fail(&self, what: String) {
+        lock(&self.published).news.failures.push(what);
+        (self.waker)();
+    }
+
+    /// Whether a picture is being made that the user asked for.
+    pub fn is_exporting(&self) -> bool {
+        self.exports.load(Ordering::Relaxed) > 0
+    }
+
+    /// Whether there is anything to be done.
+    pub fn is_at_work(&self) -> bool {
+        let wishes = lock(&self.wishes);
+        let idle = [&self.activity, &self.helper]
+            .into_iter()
+            .all(|activity| PreviewActivity::load(activity) == PreviewActivity::Idle);
+        wishes.is_posted || !idle
+    }
+
+    /// A picture is being made that the user asked for: the exact one on screen waits.
+    pub fn begin_export(&self) {
+        self.exports.fetch_add(1, Ordering::Relaxed);
+        self.refining.cancel();
+    }
+
+    /// It is made: there is time again.
+    pub fn end_export(&self) {
+        self.exports.fetch_sub(1, Ordering::Relaxed);
+        self.post(Stops::Nothing, |_| {});
+    }
+
+    /// What is going on, and how far it is.
+    pub fn activity(&self) -> (PreviewActivity, &JobProgress) {
+        match PreviewActivity::load(&self.helper) {
+            PreviewActivity::Idle => (PreviewActivity::load(&self.activity), &self.quick),
+            helper => (helper, &self.progress),
+        }
+    }
+
+    /// How far the exact picture is, while it is drawn.
+    pub fn refining_fraction(&self) -> Option<f32> {
+        self.is_refining.load(Ordering::Relaxed).then(|| self.refining.fraction())
+    }
+
+    /// The newest picture, if there is one newer than `id`, and what happened meanwhile.
+    pub fn take(&self, id: u64) -> (Option<Preview>, News) {
+        let mut published = lock(&self.published);
+        let newer = published.latest.as_ref().filter(|preview| preview.id > id).cloned();
+        (newer, std::mem::take(&mut published.news))
+    }
+
+    /// Whether everything that was posted has been followed, and nothing newer than `id` waits to be taken.
+    pub fn is_settled(&self, id: u64) -> bool {
+        if self.is_at_work() {
+            return false;
+        }
+        let published = lock(&self.published);
+        published.news.failures.is_empty() && published.latest.as_ref().is_none_or(|p| p.id <= id)
+    }
+}

@@ -1,0 +1,25 @@
+//! What the preview's thread has to show and to tell, until the session takes it.
+
+use super::picture::{PictureTimes, Preview};
+use crate::display::Patch;
+use crate::light_field::BakedField;
+
+/// The newest picture, and what happened.
+#[derive(Default)]
+pub(crate) struct Published {
+    pub latest: Option<Preview>,
+    pub news: News,
+}
+
+/// What happened since it was taken last.
+#[derive(Default)]
+pub(crate) struct News {
+    /// What is new on screen, oldest first, and of which of the session's documents.
+    pub patches: Vec<(u64, Patch)>,
+    /// When the pictures were made that were finished, at their full size.
+    pub finished: Vec<PictureTimes>,
+    /// Another light field of full size, and of which of the session's documents.
+    pub field: Option<(u64, BakedField)>,
+    pub failures: Vec<String>,
+    pub notices: Vec<String>,
+}

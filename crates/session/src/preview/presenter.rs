@@ -1,0 +1,188 @@
+//! How pictures come to be shown: where one differs from the one before, in what tone, with which number.
+
+use super::mailbox::Shared;
+use super::picture::{DrawingCosts, PictureTimes, Preview, PreviewKind, Quality};
+use crate::display::{
+    Content, LivePicture, Patch, PictureRing, Rectangle, Source, Tone, rectangle_to_screen, whole,
+};
+use crate::light_field::Modelled;
+use lens::{Camera, Exposure, Picture};
+use splat::PictureOnCard;
+use std::sync::Arc;
+use std::time::Instant;
+
+/// A picture that was made.
+pub(crate) struct Made<'a> {
+    pub picture: Source<'a>,
+    pub camera: &'a Camera,
+    /// What it has to do with the one before.
+    pub relation: Relation,
+    pub kind: PreviewKind,
+    pub quality: Quality,
+    /// Seconds that it took.
+    pub seconds: f64,
+    pub modelled: Modelled,
+}
+
+/// What a picture has to do with the one that was followed before.
+pub(crate) enum Relation {
+    /// Nothing.
+    New,
+    /// It differs from it in this rectangle at most.
+    Changed(Rectangle),
+    /// It is a better picture of the same, to be laid over it.
+    Better,
+}
+
+/// Shows pictures, each with a number.
+pub(crate) struct Presenter {
+    shared: Arc<Shared>,
+    /// The newest picture.
+    shown: Option<Preview>,
+    /// It and those of before.
+    pictures: PictureRing,
+    /// It, if it is on a card.
+    on_card: Option<PictureOnCard>,
+    tone: Tone,
+    last_id: u64,
+    /// Which of the session's documents is shown.
+    pub generation: u64,
+    /// How many changes of the map the next picture has seen.
+    pub map_serial: u64,
+    /// When work on the next picture began.
+    pub begun: Instant,
+    /// What pictures cost, where that is known.
+    pub costs: DrawingCosts,
+}
+
+impl Presenter {
+    pub fn new(shared: Arc<Shared>) -> Self {
+        Self {
+            shared,
+            shown: None,
+            pictures: PictureRing::default(),
+            on_card: None,
+            tone: Tone::default(),
+            last_id: 0,
+            generation: 0,
+            map_serial: 0,
+            begun: Instant::now(),
+            costs: DrawingCosts::default(),
+        }
+    }
+
+    /// Another document: what was shown is not of it.
+    pub fn open(&mut self, generation: u64) {
+        self.generation = generation;
+        self.shown = None;
+        self.costs = DrawingCosts::default();
+    }
+
+    /// The newest picture.
+    pub fn shown(&self) -> Option<&Preview> {
+        self.shown.as_ref()
+    }
+
+    /// The picture that is worked with, beneath a better one that may lie over it; none of one on a card.
+    pub fn followed(&self) -> Option<Arc<Picture>> {
+        self.pictures.followed()
+    }
+
+    /// By which exposure pictures are shown.
+    pub fn exposure(&self) -> Exposure {
+        self.tone.exposure
+    }
+
+    /// Shows a picture.
+    pub fn show(&mut self, made: Made) {
+        let summed = Instant::now();
+        let is_new = matches!(made.relation, Relation::New);
+        let (picture, changed) = self.take_up(made.picture, made.relation);
+        self.last_id += 1;
+        let preview = Preview {
+            id: self.last_id,
+            picture,
+            kind: made.kind,
+            quality: made.quality,
+            costs: self.costs,
+            camera: made.camera.clone(),
+            seconds: made.seconds,
+            modelled: made.modelled,
+            map_serial: self.map_serial,
+            generation: self.generation,
+        };
+        self.shown = Some(preview.clone());
+        let patch = changed.map(|rectangle| self.patch(&preview.picture, rectangle));
+        let times =
+            PictureTimes { map_serial: self.map_serial, begun: self.begun, summed, finished: Instant::now() };
+        self.shared.publish(preview, patch, Some(times));
+        if is_new {
+            // The first dabs on it find room.
+            self.pictures.make_room();
+        }
+    }
+
+    /// Shows pictures in another tone from now on, the newest one at once.
+    pub fn set_tone(&mut self, tone: Tone) {
+        if tone == self.tone {
+            return;
+        }
+        self.tone = tone;
+        if let Some(mut preview) = self.shown.clone() {
+            self.last_id += 1;
+            preview.id = self.last_id;
+            let patch = self.patch(&preview.picture, preview.picture.size().map(|side| 0..side));
+            self.shared.publish(preview, Some(patch), None);
+        }
+    }
+
+    /// The picture that is shown from now on, and where it differs from the one before.
+    fn take_up(&mut self, picture: Source, relation: Relation) -> (LivePicture, Option<Rectangle>) {
+        let picture = match picture {
+            Source::Here(picture) => picture,
+            Source::There(picture) => return self.take_up_on_card(&picture, relation),
+        };
+        self.on_card = None;
+        let (picture, changed) = match relation {
+            Relation::New => (self.pictures.begin(picture), Some(whole(picture))),
+            Relation::Changed(rectangle) => self.pictures.follow(picture, &rectangle),
+            Relation::Better => self.pictures.overlay(picture),
+        };
+        (LivePicture::Here(picture), changed)
+    }
+
+    /// The same of one on a card: it does not come back.
+    fn take_up_on_card(
+        &mut self,
+        picture: &PictureOnCard,
+        relation: Relation,
+    ) -> (LivePicture, Option<Rectangle>) {
+        // What is kept of the processor's pictures is of before.
+        self.pictures = PictureRing::default();
+        let kept = self.on_card.take_if(|shown| shown.is_like(picture));
+        let (shown, changed) = match (kept, relation) {
+            (Some(shown), Relation::Changed(rectangle)) => (shown, rectangle),
+            // Where there is no room for another, what is summed is shown while it is.
+            (kept, _) => {
+                let shown = kept.or_else(|| PictureOnCard::like(picture)).unwrap_or_else(|| picture.clone());
+                (shown, picture.size().map(|side| 0..side))
+            }
+        };
+        if !shown.is_same(picture) {
+            shown.copy(picture, &changed);
+        }
+        self.on_card = Some(shown.clone());
+        (LivePicture::There(shown), Some(changed))
+    }
+
+    /// A rectangle of a picture, as the screen shows it.
+    fn patch(&self, picture: &LivePicture, rectangle: Rectangle) -> Patch {
+        let content = match picture {
+            LivePicture::Here(picture) => {
+                Content::Pixels(rectangle_to_screen(picture, self.tone, rectangle.clone()))
+            }
+            LivePicture::There(picture) => Content::OnCard(picture.clone(), self.tone),
+        };
+        Patch { size: picture.size(), rectangle, content }
+    }
+}

@@ -1,0 +1,138 @@
+//! The session's end of the preview's thread: wishes are posted, what was made is taken.
+
+use super::activity::PreviewActivity;
+use super::mailbox::Shared;
+use super::news::News;
+use super::picture::Preview;
+use super::wishes::Stops;
+use super::worker::Worker;
+use crate::display::Tone;
+use crate::document::Stage;
+use crate::error::SessionError;
+use crate::jobs::{JobProgress, Urgency, Waker, own_threads};
+use crate::light_field::{Changes, LightFieldStore};
+use focus::FocusMap;
+use lens::Camera;
+use splat::{Gpu, Tolerance};
+use std::sync::Arc;
+use std::time::Duration;
+
+/// The session's end of the preview thread.
+pub(crate) struct PreviewThread {
+    shared: Arc<Shared>,
+    thread: Option<std::thread::JoinHandle<()>>,
+}
+
+impl PreviewThread {
+    /// Starts the thread. `exact_after`: for how long nothing must change until the exact picture is drawn; none: never.
+    /// `store`: where light fields are kept. `gpu`: what pictures are summed on; none: the processor.
+    pub fn start(
+        waker: Waker,
+        exact_after: Option<Duration>,
+        store: Option<LightFieldStore>,
+        gpu: Option<Gpu>,
+    ) -> Result<Self, SessionError> {
+        let shared = Arc::new(Shared::new(waker, gpu));
+        let (theirs, pool) = (shared.clone(), own_threads(Urgency::Now)?);
+        let thread = std::thread::Builder::new()
+            .name("preview".into())
+            .stack_size(16 << 20)
+            .spawn(move || pool.install(|| Worker::new(theirs, exact_after, store).run()))
+            .map_err(|e| SessionError::TryAgain(format!("no preview thread: {e} (try again)")))?;
+        Ok(Self { shared, thread: Some(thread) })
+    }
+
+    /// Another scene, with its focus.
+    pub fn set_stage(&self, stage: (Arc<Stage>, u64), map: (FocusMap, u64), camera: Camera) {
+        self.shared.post(Stops::Everything, |wishes| {
+            wishes.stage = Some(stage);
+            (wishes.camera, wishes.map) = (Some(camera), Some(map));
+            wishes.changed = Changes::Everything;
+            wishes.hold = false;
+        });
+    }
+
+    /// Another camera, at the preview's size. `light_field_stays` where the old light field serves it.
+    pub fn set_camera(&self, camera: Camera, light_field_stays: bool) {
+        let stops = if light_field_stays { Stops::Refining } else { Stops::Everything };
+        self.shared.post(stops, |wishes| {
+            wishes.camera = Some(camera);
+            wishes.settle = true;
+            wishes.hold = false;
+        });
+    }
+
+    /// Another state of the map, with how many changes it holds; `changed` is what is new in it.
+    pub fn set_map(&self, map: (FocusMap, u64), changed: &Changes) {
+        self.shared.post(Stops::Refining, |wishes| {
+            wishes.map = Some(map);
+            wishes.changed.join(changed);
+        });
+    }
+
+    /// A stroke or another edit is complete.
+    pub fn settle(&self) {
+        self.shared.post(Stops::Nothing, |wishes| wishes.settle = true);
+    }
+
+    /// Makes the light field anew.
+    pub fn bake(&self) {
+        self.shared.post(Stops::Everything, |wishes| {
+            wishes.bake = true;
+            wishes.hold = false;
+        });
+    }
+
+    /// Stops what is going on; the last picture stays.
+    pub fn cancel(&self) {
+        self.shared.post(Stops::Everything, |wishes| wishes.hold = true);
+    }
+
+    /// What is going on, and how far it is.
+    pub fn activity(&self) -> (PreviewActivity, &JobProgress) {
+        self.shared.activity()
+    }
+
+    /// The newest picture, if there is one newer than `id`, and what happened meanwhile.
+    pub fn take(&self, id: u64) -> (Option<Preview>, News) {
+        self.shared.take(id)
+    }
+
+    /// Puts pictures on screen in another way.
+    pub fn set_tone(&self, tone: Tone) {
+        self.shared.post(Stops::Nothing, |wishes| wishes.tone = Some(tone));
+    }
+
+    /// What others need of its work.
+    pub fn shared(&self) -> Arc<Shared> {
+        self.shared.clone()
+    }
+
+    /// Sets how coarse pictures may be while one works.
+    pub fn set_tolerance(&self, tolerance: Tolerance) {
+        self.shared.post(Stops::Refining, |wishes| {
+            wishes.tolerance = Some(tolerance);
+            wishes.hold = false;
+        });
+    }
+
+    /// How far the exact picture is, while it is drawn.
+    pub fn refining(&self) -> Option<f32> {
+        self.shared.refining_fraction()
+    }
+
+    /// Whether everything that was posted has been followed, and nothing newer than `id` waits to be taken.
+    pub fn is_settled(&self, id: u64) -> bool {
+        self.shared.is_settled(id)
+    }
+}
+
+impl Drop for PreviewThread {
+    fn drop(&mut self) {
+        self.shared.post(Stops::Everything, |wishes| wishes.quit = true);
+        if let Some(thread) = self.thread.take() {
+            // A thread that panicked has nothing left to hand over.
+            let _ = thread.join();
+        }
+    }
+}

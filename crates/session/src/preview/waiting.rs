@@ -1,0 +1,60 @@
+//! How others wait for the preview's work, or have it wait for theirs.
+
+use super::deliveries::BAKE_SHARE;
+use super::mailbox::Shared;
+use crate::document::Stage;
+use crate::light_field::Standing;
+use lens::Camera;
+use progress::{Cancelled, Progress};
+use salf::Salf;
+use std::sync::Arc;
+use std::time::Duration;
+
+/// How often it is looked whether the preview is still at work on a light field that others need.
+const LOOK_EVERY: Duration = Duration::from_millis(50);
+
+impl Shared {
+    /// The light field that the preview makes now, if it serves `camera` in `stage`: it is waited for. None is another bake's time
+    /// to begin: the preview's own is over by then, and has the processors for itself as long as it takes.
+    pub fn wait_for_field(
+        &self,
+        stage: &Arc<Stage>,
+        camera: &Camera,
+        progress: &dyn Progress,
+    ) -> Result<Option<Arc<Salf>>, Cancelled> {
+        // What is left of the bake when the wait begins.
+        let mut begun = None;
+        loop {
+            progress.check()?;
+            match self.field.look(stage, camera, LOOK_EVERY) {
+                Standing::Made(salf) => return Ok(Some(salf)),
+                Standing::Underway => {
+                    let baked = self.progress.fraction() / BAKE_SHARE;
+                    let first = *begun.get_or_insert(baked);
+                    progress.report((baked - first) / (1.0 - first).max(f32::EPSILON));
+                }
+                // What the thread does now may end in making one.
+                Standing::Absent if self.is_at_work() => std::thread::sleep(LOOK_EVERY),
+                Standing::Absent => return Ok(None),
+            }
+        }
+    }
+}
+
+/// While there is one, a picture is being made that the user asked for: that comes first, and the exact picture on screen, which
+/// nobody asked for, after it.
+pub(crate) struct Exporting(Arc<Shared>);
+
+impl Exporting {
+    /// Begins.
+    pub fn new(shared: &Arc<Shared>) -> Self {
+        shared.begin_export();
+        Self(shared.clone())
+    }
+}
+
+impl Drop for Exporting {
+    fn drop(&mut self) {
+        self.0.end_export();
+    }
+}

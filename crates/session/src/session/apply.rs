@@ -1,0 +1,116 @@
+//! Commands, and what each sets going.
+
+use super::state::{PREVIEW_JOB, Session};
+use crate::commands::{Command, Event};
+use crate::document::CameraEdit;
+use crate::error::SessionError;
+use focus::FillTarget;
+
+impl Session {
+    /// Does what `command` asks, or starts doing it.
+    pub fn apply(&mut self, command: Command) -> Result<(), SessionError> {
+        match command {
+            Command::Open(path) => self.open(path),
+            Command::OpenTemplate(path) => self.open_template(path),
+            Command::Undo => self.step_back(),
+            Command::Redo => self.step_forward(),
+            Command::GoTo(steps) => self.go_to(steps),
+            Command::Do(step) => self.do_step(&step),
+            Command::Camera(edit) => self.edit_camera(edit),
+            Command::FinishEdit => {
+                self.opened()?.undo.finish_run();
+                Ok(())
+            }
+            Command::SetView(view) => {
+                self.opened()?.view = view;
+                Ok(())
+            }
+            Command::SetExposure(exposure) => {
+                self.opened()?.exposure = exposure;
+                self.show_tone();
+                Ok(())
+            }
+            Command::SetDisplay(display) => {
+                self.display = display;
+                self.show_tone();
+                Ok(())
+            }
+            Command::SetPreviewSize(size) => {
+                self.options.preview_size = size.max(1);
+                self.show_camera();
+                Ok(())
+            }
+            Command::SetTolerance(tolerance) => {
+                self.tolerance = tolerance;
+                self.preview_thread.set_tolerance(tolerance);
+                Ok(())
+            }
+            Command::SetBrush(brush) => match brush.problem() {
+                Some(problem) => Err(SessionError::BadInput(format!("brush: {problem}"))),
+                None => {
+                    self.opened()?.brush = brush;
+                    Ok(())
+                }
+            },
+            Command::BeginStroke(point) => self.begin_stroke(point),
+            Command::ExtendStroke(point) => self.extend_stroke(point),
+            Command::CommitStroke => self.commit_stroke(),
+            Command::AbortStroke => self.abort_stroke(),
+            Command::Layer(edit) => self.edit_layers(edit),
+            Command::ActivateLayer(index) => self.activate_layer(index),
+            Command::Fill(region, focus) => self.fill(region, focus),
+            Command::ResetMap => self.reset_map(),
+            Command::SetBackgroundFocus(focus) => self.fill_targets(vec![FillTarget::Background], focus),
+            Command::DragGradient(gradient) => self.drag_gradient(gradient),
+            Command::Select(shape, combine) => self.select(shape, combine),
+            Command::MaskFromSelection => self.mask_selected(),
+            Command::SelectRegion(region, combine) => self.select_region(region, combine),
+            Command::FocusHere(hit) => {
+                let depth = self.opened()?.camera.camera_from_world(hit.position).z;
+                self.edit_camera(CameraEdit::FocusDistance(depth))?;
+                self.opened()?.undo.finish_run();
+                Ok(())
+            }
+            Command::Pick(hit) => {
+                let Some(focus) = self.focus_at(&hit) else { return Err(SessionError::NothingOpen) };
+                self.opened()?.brush.target = focus;
+                self.events.push(Event::BrushChanged);
+                Ok(())
+            }
+            Command::Bake => {
+                self.opened()?;
+                self.preview_thread.bake();
+                Ok(())
+            }
+            Command::Cancel(PREVIEW_JOB) => {
+                self.preview_thread.cancel();
+                Ok(())
+            }
+            Command::Cancel(id) => {
+                self.jobs.iter().filter(|job| job.id == id).for_each(|job| job.progress.cancel());
+                Ok(())
+            }
+            Command::CancelAll => {
+                self.preview_thread.cancel();
+                self.jobs.iter().for_each(|job| job.progress.cancel());
+                Ok(())
+            }
+            Command::Save => self.save(None),
+            Command::SaveAs(path) => self.save(Some(path)),
+            Command::ExportPicture(path) => self.export_picture(path),
+            Command::ExportShown(path) => self.export_shown(path),
+            Command::ExportFocusMap(path) => self.export_focus_map(path),
+            Command::ExportScene(path) => self.export_scene(path),
+            Command::ExportStrokes(path) => self.export_strokes(&path),
+            Command::ImportFocusMap(path) => self.import_focus_map(path),
+            Command::VerifyRegion(corners) => self.verify(corners),
+            Command::EndVerification => {
+                self.end_verification();
+                Ok(())
+            }
+            Command::MakeReference { kind, samples_per_pixel } => {
+                self.make_reference(kind, samples_per_pixel)
+            }
+        }
+    }
+}

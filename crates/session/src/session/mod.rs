@@ -1,0 +1,21 @@
+//! An open document and the work on it: commands in, events out.
+//!
+//! [`Session`] holds the state; each file beside it does one kind of work on that state, in the background where it takes
+//! long. The window sees nothing below.
+
+mod apply;
+mod asking;
+mod comparing;
+mod exporting;
+mod files;
+mod history;
+mod outcome;
+mod painting;
+mod polling;
+mod recovery;
+mod showing;
+mod state;
+mod verifying;
+
+pub use exporting::FullSize;
+pub use state::{Session, SessionOptions};

@@ -1,0 +1,26 @@
+//! What background work hands to the session.
+
+use crate::document::Document;
+use crate::output::Reference;
+use std::path::PathBuf;
+use trace::truth::Estimate;
+
+/// What a finished job hands to the session.
+pub(super) enum Outcome {
+    Opened(Box<Document>),
+    /// A project file that holds this revision of this document.
+    Saved {
+        path: PathBuf,
+        revision: u64,
+        generation: u64,
+    },
+    /// A recovery file that holds this revision.
+    Kept {
+        path: PathBuf,
+        revision: u64,
+    },
+    Written(PathBuf, Vec<String>),
+    Reference(Box<Reference>),
+    /// What is known after another pass of the verification of this number.
+    Verified(u64, Box<Estimate>),
+}

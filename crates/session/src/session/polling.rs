@@ -1,0 +1,102 @@
+//! What background work brings, taken up once a frame.
+
+use super::outcome::Outcome;
+use super::recovery::Recovery;
+use super::state::Session;
+use crate::commands::Event;
+use crate::document::Undo;
+use crate::error::SessionError;
+
+impl Session {
+    /// What happened since the last call. To be called once a frame.
+    pub fn poll(&mut self) -> Vec<Event> {
+        while let Ok((id, outcome)) = self.outcomes.try_recv() {
+            self.jobs.retain(|job| Some(job.id) != id);
+            self.reference_jobs.retain(|(job, _)| Some(*job) != id);
+            match outcome {
+                Ok(outcome) => self.take(outcome),
+                Err(SessionError::Cancelled) => {}
+                Err(error) => self.events.push(Event::Failed(error.to_string())),
+            }
+        }
+        let (newer, news) = self.preview_thread.take(self.seen_preview);
+        for (_, patch) in news.patches.into_iter().filter(|(generation, _)| *generation == self.generation) {
+            self.screen.take(patch);
+        }
+        self.finished = news.finished;
+        if let Some((_, field)) = news.field.filter(|(generation, _)| *generation == self.generation) {
+            self.field = Some(field);
+            self.fields += 1;
+        }
+        if let Some(preview) = newer {
+            self.seen_preview = preview.id;
+            if preview.generation == self.generation {
+                self.events.push(Event::PreviewReady(preview.id));
+                self.preview = Some(preview);
+            }
+        }
+        self.events.extend(news.failures.into_iter().map(Event::Failed));
+        self.events.extend(news.notices.into_iter().map(Event::Notice));
+        let jobs = self.jobs();
+        let moved = jobs.iter().filter(|job| !self.reported.contains(job)).cloned();
+        self.events.extend(moved.map(Event::Progress));
+        self.reported = jobs;
+        self.keep_unsaved_work();
+        if !self.map_changes.is_empty() {
+            let rectangles = std::mem::take(&mut self.map_changes).into_values().collect();
+            self.events.push(Event::MapChanged(rectangles));
+        }
+        std::mem::take(&mut self.events)
+    }
+
+    fn take(&mut self, outcome: Outcome) {
+        match outcome {
+            Outcome::Opened(mut document) => {
+                document.undo = Undo::new(self.options.undo_budget_bytes);
+                self.forget_recovery();
+                self.generation += 1;
+                (self.underway, self.preview, self.field) = (None, None, None);
+                self.references.clear();
+                self.map_changes.clear();
+                self.end_verification();
+                let camera = self.scaled_camera(&document.camera);
+                self.preview_camera = Some(camera.clone());
+                let stage = (document.stage.clone(), self.generation);
+                self.preview_thread.set_stage(stage, (document.map.clone(), self.map_serial), camera);
+                self.screen.clear();
+                self.events.push(Event::Opened);
+                self.events.extend(document.selection.is_some().then_some(Event::SelectionChanged));
+                self.events.extend(document.warnings.iter().cloned().map(Event::Notice));
+                // What was restored is in its file already; a document as saved has none.
+                self.recovery = Recovery {
+                    file: document.is_unsaved().then(|| document.recovery_path()),
+                    kept: document.revision,
+                    changed: None,
+                };
+                self.document = Some(*document);
+                self.show_tone();
+            }
+            Outcome::Saved { path, revision, generation } => {
+                if generation == self.generation {
+                    self.forget_recovery();
+                    if let Some(document) = &mut self.document {
+                        document.saved = revision;
+                        document.path = Some(path.clone());
+                    }
+                    self.recovery.kept = revision;
+                }
+                self.events.push(Event::Written(path));
+            }
+            Outcome::Kept { path, revision } => {
+                self.recovery.file = Some(path);
+                self.recovery.kept = revision;
+            }
+            Outcome::Written(path, notices) => {
+                self.events.extend(notices.into_iter().map(Event::Notice));
+                self.events.push(Event::Written(path));
+            }
+            Outcome::Reference(reference) => self.take_reference(*reference),
+            Outcome::Verified(number, estimate) => self.take_verified(number, *estimate),
+        }
+    }
+}

@@ -1,0 +1,241 @@
+//! The state of a session, one document open at a time.
+
+use super::outcome::Outcome;
+use super::recovery::Recovery;
+use crate::commands::Event;
+use crate::display::{Display, Screen};
+use crate::document::Document;
+use crate::editing::Underway;
+use crate::error::SessionError;
+use crate::jobs::{Job, JobId, JobProgress, JobStatus, Waker};
+use crate::light_field::{BakedField, LightFieldStore};
+use crate::output::{Reference, ReferenceKind, Verification};
+use crate::preview::{PictureTimes, Preview, PreviewActivity, PreviewThread};
+
+use atlas::UnwrapOptions;
+use lens::Camera;
+use splat::{Gpu, Tolerance};
+use std::collections::BTreeMap;
+use std::ops::Range;
+use std::sync::{Arc, mpsc};
+use std::time::Duration;
+
+/// How a session works.
+#[derive(Clone)]
+pub struct SessionOptions {
+    /// How scenes are unwrapped.
+    pub unwrap: UnwrapOptions,
+    /// The longest side that the preview is drawn at, px.
+    pub preview_size: u32,
+    /// Memory that steps of undo may keep alive, in bytes; the oldest are forgotten beyond it.
+    pub undo_budget_bytes: usize,
+    /// How long after a change unsaved work is written to its recovery file. With the time that writing takes, it
+    /// is what a crash may cost.
+    pub keep_after: Duration,
+    /// For how long nothing must change until the exact picture is drawn; none: the one within the tolerance is enough.
+    pub exact_after: Option<Duration>,
+    /// Where light fields are kept from one run to the next; none: they are baked every time.
+    pub light_fields: Option<LightFieldStore>,
+    /// The graphics card that the preview is summed on, and shown from; none: the processor sums.
+    pub gpu: Option<Gpu>,
+    /// Called from any thread when there is something to poll.
+    pub waker: Waker,
+}
+
+impl Default for SessionOptions {
+    fn default() -> Self {
+        Self {
+            unwrap: UnwrapOptions::default(),
+            preview_size: 960,
+            undo_budget_bytes: Document::UNDO_BUDGET_BYTES,
+            keep_after: Duration::from_secs(15),
+            exact_after: None,
+            light_fields: None,
+            gpu: None,
+            waker: Arc::new(|| {}),
+        }
+    }
+}
+
+/// The job id of the preview's own work.
+pub(super) const PREVIEW_JOB: JobId = JobId(0);
+
+/// An open document and the work on it. See the crate's documentation.
+pub struct Session {
+    pub(super) options: SessionOptions,
+    pub(super) document: Option<Document>,
+    /// Counts opened documents.
+    pub(super) generation: u64,
+    pub(super) underway: Option<Underway>,
+    pub(super) preview_thread: PreviewThread,
+    pub(super) preview: Option<Preview>,
+    /// The preview as it is shown.
+    pub(super) screen: Screen,
+    pub(super) display: Display,
+    pub(super) tolerance: Tolerance,
+    /// The light field that the preview is made of.
+    pub(super) field: Option<BakedField>,
+    /// Counts them.
+    pub(super) fields: u64,
+    /// The pictures that were finished between the last two polls.
+    pub(super) finished: Vec<PictureTimes>,
+    /// The camera that the preview was asked to show last.
+    pub(super) preview_camera: Option<Camera>,
+    /// The newest preview that was seen, of whatever document.
+    pub(super) seen_preview: u64,
+    /// Counts changes of the map that were shown to the preview.
+    pub(super) map_serial: u64,
+    pub(super) recovery: Recovery,
+    /// The pictures to compare with, one of a kind.
+    pub(super) references: Vec<Reference>,
+    /// Which of the jobs make such pictures.
+    pub(super) reference_jobs: Vec<(JobId, ReferenceKind)>,
+    pub(super) verification: Option<Verification>,
+    pub(super) verification_job: Option<JobId>,
+    /// Counts verifications.
+    pub(super) verifications: u64,
+    pub(super) jobs: Vec<Job>,
+    pub(super) last_job: u64,
+    /// What jobs hand over: with their id when they are done, without it on the way.
+    pub(super) outcomes: mpsc::Receiver<(Option<JobId>, Result<Outcome, SessionError>)>,
+    pub(super) sender: mpsc::Sender<(Option<JobId>, Result<Outcome, SessionError>)>,
+    pub(super) events: Vec<Event>,
+    /// Rectangles of the map that changed since the last poll, by squares of the atlas.
+    pub(super) map_changes: BTreeMap<[u32; 2], [Range<u32>; 2]>,
+    pub(super) reported: Vec<JobStatus>,
+}
+
+impl Session {
+    /// A session with nothing open.
+    pub fn new(options: SessionOptions) -> Result<Self, SessionError> {
+        let (sender, outcomes) = mpsc::channel();
+        Ok(Self {
+            preview_thread: PreviewThread::start(
+                options.waker.clone(),
+                options.exact_after,
+                options.light_fields.clone(),
+                options.gpu.clone(),
+            )?,
+            options,
+            document: None,
+            generation: 0,
+            underway: None,
+            preview: None,
+            screen: Screen::default(),
+            display: Display::default(),
+            tolerance: Tolerance::VIEWING,
+            field: None,
+            fields: 0,
+            finished: Vec::new(),
+            preview_camera: None,
+            seen_preview: 0,
+            map_serial: 0,
+            recovery: Recovery::default(),
+            references: Vec::new(),
+            reference_jobs: Vec::new(),
+            verification: None,
+            verification_job: None,
+            verifications: 0,
+            jobs: Vec::new(),
+            last_job: PREVIEW_JOB.0,
+            outcomes,
+            sender,
+            events: Vec::new(),
+            map_changes: BTreeMap::new(),
+            reported: Vec::new(),
+        })
+    }
+
+    /// The open document.
+    pub fn document(&self) -> Option<&Document> {
+        self.document.as_ref()
+    }
+
+    /// The last good picture.
+    pub fn preview(&self) -> Option<&Preview> {
+        self.preview.as_ref()
+    }
+
+    /// How the screen shows any picture.
+    pub fn display(&self) -> Display {
+        self.display
+    }
+
+    /// How coarse the live picture may be.
+    pub fn tolerance(&self) -> Tolerance {
+        self.tolerance
+    }
+
+    /// The live picture as the screen shows it.
+    pub fn screen(&self) -> &Screen {
+        &self.screen
+    }
+
+    /// When the pictures of full size were made that were finished between the last two calls of [`Self::poll`].
+    pub fn finished_pictures(&self) -> &[PictureTimes] {
+        &self.finished
+    }
+
+    /// How many changes of the map there were: a preview that has seen as many shows it as it is.
+    pub fn map_serial(&self) -> u64 {
+        self.map_serial
+    }
+
+    /// What the preview is being drawn as.
+    pub fn preview_activity(&self) -> PreviewActivity {
+        self.preview_thread.activity().0
+    }
+
+    /// How far the exact picture is, in [0, 1], while it is drawn.
+    pub fn drawing_exactly(&self) -> Option<f32> {
+        self.preview_thread.refining()
+    }
+
+    /// Whether a stroke or a gradient is going on.
+    pub fn is_painting(&self) -> bool {
+        self.underway.is_some()
+    }
+
+    /// Whether all background work is done and the preview shows the document as it is, within the tolerance.
+    pub fn is_settled(&self) -> bool {
+        self.jobs.is_empty() && self.preview_thread.is_settled(self.seen_preview)
+    }
+
+    /// All background work that is going on.
+    pub fn jobs(&self) -> Vec<JobStatus> {
+        let (activity, progress) = self.preview_thread.activity();
+        let label = match activity {
+            PreviewActivity::RoughBaking => Some("baking roughly"),
+            PreviewActivity::Baking => Some("baking"),
+            _ => None,
+        };
+        let baking = label.map(|label| {
+            let (step, seconds_left) = progress.standing();
+            let (label, fraction) = (label.into(), progress.fraction());
+            JobStatus { id: PREVIEW_JOB, label, step, fraction, seconds_left, can_cancel: true }
+        });
+        baking.into_iter().chain(self.jobs.iter().map(Job::status)).collect()
+    }
+
+    /// The document, to be changed.
+    pub(super) fn opened(&mut self) -> Result<&mut Document, SessionError> {
+        self.document.as_mut().ok_or(SessionError::NothingOpen)
+    }
+
+    /// Starts background work; its id.
+    pub(super) fn start(
+        &mut self,
+        label: String,
+        work: impl FnOnce(&JobProgress) -> Result<Outcome, SessionError> + Send + 'static,
+    ) -> Result<JobId, SessionError> {
+        self.last_job += 1;
+        let (sender, waker) = (self.sender.clone(), self.options.waker.clone());
+        let job = Job::start(JobId(self.last_job), label, work, move |id, outcome| {
+            // A session that is gone wants nothing.
+            let _ = sender.send((Some(id), outcome));
+            waker();
+        })?;
+        self.jobs.push(job);
+        Ok(JobId(self.last_job))
+    }
+}
