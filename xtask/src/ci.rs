@@ -2,12 +2,13 @@
 
 use crate::chore::{Failure, cargo, execute};
 use crate::packages::{TO_BUILD, TO_RUN, install_missing};
-use crate::{crate_directions, licences, shared_build};
+use crate::{crate_directions, licences, module_circles, shared_build};
 
 /// Runs every check and stops at the first that fails.
 pub fn ci() -> Result<(), Failure> {
     install_missing(&[TO_BUILD, TO_RUN])?;
     crate_directions::check()?;
+    module_circles::check()?;
     licences::check()?;
     shared_build::check()?;
     execute(cargo("fmt").args(["--all", "--check"]))?;

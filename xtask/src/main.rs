@@ -4,7 +4,8 @@
 //!   demo to a picture.
 //! * `test [ARG…]` installs what is missing and runs the whole test suite.
 //! * `window` acts on the real window by mouse and keys, under Xvfb.
-//! * `ci` is everything that must be green: crate directions, licences, formatting, lints, docs, tests.
+//! * `circles [CRATE…]` names the modules of a crate that use one another; there must be none.
+//! * `ci` is everything that must be green: crate directions, circles of modules, licences, formatting, lints, docs, tests.
 //! * `demo` makes the demo scene in `assets/demo` anew.
 //!
 //! Pure Rust without build scripts of its own, so that it runs where only Rust and a C linker are.
@@ -14,6 +15,7 @@ mod ci;
 mod crate_directions;
 mod demo;
 mod licences;
+mod module_circles;
 mod packages;
 mod run;
 mod shared_build;
@@ -28,7 +30,9 @@ usage: cargo xtask CHORE
   test [ARG…]   install what is missing and run all tests; ARGs go to cargo test
   demo          make the demo scene in assets/demo anew
   window [ARG…] act on the real window under Xvfb, with a screenshot of every step
-  ci            crate directions, licences, formatting, lints, docs, tests";
+  circles [CRATE…]
+                modules of a crate that use one another, and by which names
+  ci            crate directions, circles of modules, licences, formatting, lints, docs, tests";
 
 /// Rays a texel for `demo`: the one argument it takes, for drafts.
 fn sky_rays(arguments: &[std::ffi::OsString]) -> usize {
@@ -43,6 +47,7 @@ fn main() -> std::process::ExitCode {
         "run" => run::run(&rest),
         "test" => run::test(&rest),
         "window" => run::window(&rest),
+        "circles" => module_circles::circles(&rest),
         "ci" => ci::ci(),
         "demo" => demo::demo(sky_rays(&rest)),
         "" | "help" | "-h" | "--help" => {

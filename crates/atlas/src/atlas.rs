@@ -1,7 +1,7 @@
 //! The atlas itself.
 
 use glam::{DVec2, Vec2};
-use scene::{Scene, SurfacePoint};
+use scene::SurfacePoint;
 use sha2::{Digest, Sha256};
 use std::fmt::Write;
 use std::ops::Range;
@@ -38,20 +38,6 @@ pub struct Chart {
     pub part: u32,
     /// Its box in texels, x and y.
     pub bounds: [Range<u32>; 2],
-}
-
-/// What a texel covers.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct AtlasTexel {
-    /// Column.
-    pub x: u32,
-    /// Row.
-    pub y: u32,
-    /// Exact world area of texel ∩ surface.
-    pub area: f64,
-    /// The surface point at the centroid of what it covers (of its largest piece, where it covers several and
-    /// the common centroid does not lie on that piece's triangle).
-    pub centroid: SurfacePoint,
 }
 
 impl Atlas {
@@ -95,11 +81,6 @@ impl Atlas {
         let [a, b, c] = self.corners[point.triangle as usize].map(Vec2::as_dvec2);
         let [wa, wb, wc] = point.weights();
         a * wa + b * wb + c * wc
-    }
-
-    /// Every texel that covers some surface, in row order. Their areas sum to the mesh's (promise P1).
-    pub fn texels(&self, scene: &Scene) -> Vec<AtlasTexel> {
-        crate::coverage::covered_texels(self, scene)
     }
 }
 

@@ -8,7 +8,8 @@
 //! *with a deadline and a cancel* is not in the standard library otherwise. This is the one place below
 //! `session` that reads a clock.
 
-use crate::engine::{Engine, Flattened, Patch};
+use crate::engine::Engine;
+use crate::flattening::{Flattened, Patch};
 use progress::{Cancelled, Progress};
 use std::ffi::OsString;
 use std::fs::File;

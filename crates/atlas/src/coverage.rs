@@ -7,14 +7,28 @@
 //! A triangle whose place has no area though the triangle has (a needle thinner than f32 can tell apart at its
 //! place) gives its whole area to the texel at its place's middle, at its own centroid.
 
+use crate::Atlas;
 use crate::clip::Polygon;
-use crate::{Atlas, AtlasTexel};
 use glam::{DVec2, Vec2};
 use rayon::prelude::*;
 use scene::{Scene, SurfacePoint};
 
 /// Rows of a band: enough that few triangles fall into two, few enough that a band's cells stay in cache.
 const BAND_ROWS: u32 = 8;
+
+/// What a texel covers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AtlasTexel {
+    /// Column.
+    pub x: u32,
+    /// Row.
+    pub y: u32,
+    /// Exact world area of texel ∩ surface.
+    pub area: f64,
+    /// The surface point at the centroid of what it covers (of its largest piece, where it covers several and
+    /// the common centroid does not lie on that piece's triangle).
+    pub centroid: SurfacePoint,
+}
 
 /// What is summed for a texel.
 #[derive(Clone, Copy)]
@@ -32,12 +46,14 @@ struct Cell {
 const NOTHING: Cell =
     Cell { area: 0.0, moment: DVec2::ZERO, largest: 0.0, triangle: u32::MAX, centroid: DVec2::ZERO };
 
-/// Every texel that covers some surface, in row order.
-pub(crate) fn covered_texels(atlas: &Atlas, scene: &Scene) -> Vec<AtlasTexel> {
-    let bands = Bands::new(atlas, scene);
-    let rows: Vec<Vec<AtlasTexel>> =
-        (0..bands.count).into_par_iter().map(|band| bands.texels(band)).collect();
-    rows.concat()
+impl Atlas {
+    /// Every texel that covers some surface, in row order. Their areas sum to the mesh's (promise P1).
+    pub fn texels(&self, scene: &Scene) -> Vec<AtlasTexel> {
+        let bands = Bands::new(self, scene);
+        let rows: Vec<Vec<AtlasTexel>> =
+            (0..bands.count).into_par_iter().map(|band| bands.texels(band)).collect();
+        rows.concat()
+    }
 }
 
 /// The triangles of every band.

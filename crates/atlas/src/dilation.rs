@@ -1,7 +1,6 @@
 //! Filling the gutter: texels beside a chart take the value of the nearest covered texel, so that bilinear
 //! lookups, mip levels and image editors find no foreign colour at a chart's border.
 
-use crate::{NO_TEXEL, TexelMap};
 use rayon::prelude::*;
 use std::sync::LazyLock;
 
@@ -29,11 +28,12 @@ static STEPS: LazyLock<Vec<(i32, i32)>> = LazyLock::new(|| {
     steps
 });
 
-/// Every gutter texel within [`DILATION_RADIUS`] of a covered one, sorted by source, then texel.
-pub(crate) fn dilations(width: u32, height: u32, index: &[u32]) -> Vec<Dilation> {
+/// Every gutter texel within [`DILATION_RADIUS`] of a covered one, sorted by source, then texel. `covers` tells whether
+/// the texel `y · width + x` is covered.
+pub(crate) fn dilations(width: u32, height: u32, covers: impl Fn(usize) -> bool + Sync) -> Vec<Dilation> {
     let is_covered = |x: i32, y: i32| {
         let inside = (0..width as i32).contains(&x) && (0..height as i32).contains(&y);
-        inside && index[y as usize * width as usize + x as usize] != NO_TEXEL
+        inside && covers(y as usize * width as usize + x as usize)
     };
     let row = |y: u32| {
         (0..width).filter_map(move |x| {
@@ -49,14 +49,4 @@ pub(crate) fn dilations(width: u32, height: u32, index: &[u32]) -> Vec<Dilation>
     let mut list: Vec<Dilation> = (0..height).into_par_iter().flat_map_iter(row).collect();
     list.par_sort_unstable_by_key(|d| (d.source, d.texel));
     list
-}
-
-impl TexelMap {
-    /// The gutter texels that take their value from a covered texel (`y · width + x`): what to update after
-    /// painting it.
-    pub fn gutter_of(&self, source: u32) -> &[Dilation] {
-        let start = self.dilations.partition_point(|d| d.source < source);
-        let len = self.dilations[start..].partition_point(|d| d.source == source);
-        &self.dilations[start..start + len]
-    }
 }

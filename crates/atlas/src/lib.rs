@@ -24,6 +24,7 @@ mod dilation;
 mod engine;
 mod error;
 mod export_glb;
+mod flattening;
 mod glb_materials;
 mod islands;
 mod options;
@@ -38,7 +39,8 @@ mod texel_map;
 mod unwrap;
 mod xatlas;
 
-pub use atlas::{Atlas, AtlasTexel, Chart};
+pub use atlas::{Atlas, Chart};
+pub use coverage::AtlasTexel;
 pub use dilation::{DILATION_RADIUS, Dilation};
 pub use error::AtlasError;
 pub use export_glb::{glb_bytes, write_glb};

@@ -36,6 +36,14 @@ impl TexelMap {
         }
         self.texels.get(self.index[y as usize * self.width as usize + x as usize] as usize)
     }
+
+    /// The gutter texels that take their value from a covered texel (`y · width + x`): what to update after
+    /// painting it.
+    pub fn gutter_of(&self, source: u32) -> &[Dilation] {
+        let start = self.dilations.partition_point(|d| d.source < source);
+        let len = self.dilations[start..].partition_point(|d| d.source == source);
+        &self.dilations[start..start + len]
+    }
 }
 
 impl Atlas {
@@ -52,7 +60,7 @@ impl Atlas {
             (texel.centroid.position(scene), normal.as_vec3())
         };
         let (positions, normals) = texels.par_iter().map(surface).unzip();
-        let dilations = dilations(width, height, &index);
+        let dilations = dilations(width, height, |at| index[at] != NO_TEXEL);
         TexelMap { width, height, texels, index, positions, normals, dilations }
     }
 

@@ -2,7 +2,8 @@
 
 use crate::chart::{LooseChart, area};
 use crate::child::{self, ChildError};
-use crate::engine::{Engine, Flattened, Patch, UNPLACED, uvunwrap};
+use crate::engine::{Engine, uvunwrap};
+use crate::flattening::{Flattened, Patch, UNPLACED};
 use crate::islands::is_badly_stretched;
 use crate::overlap::overlaps;
 use crate::pack::{Packed, pack};

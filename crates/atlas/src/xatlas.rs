@@ -5,7 +5,7 @@
 //! the `Xatlas` value; `face_ignore_data` is mistyped and the progress closure is called from threads it was
 //! not made for, so neither is used.
 
-use crate::engine::{Flattened, Patch, UNPLACED};
+use crate::flattening::{Flattened, Patch, UNPLACED};
 use xatlas_rs_v2::{ChartOptions, IndexData, MeshData, MeshDecl, PackOptions, Xatlas};
 
 /// Texels a unit of length for xatlas's packing; a mean triangle has an area of 1.

@@ -196,6 +196,22 @@ impl Canvas {
         }
     }
 
+    /// The same for the touched channels alone, where that changes anything.
+    pub(crate) fn write_channels(
+        &self,
+        map: &mut FocusMap,
+        index: usize,
+        value: [f32; 3],
+        touches: [bool; 3],
+        changed: &mut Vec<[u32; 2]>,
+    ) {
+        let now = self.value(map, index);
+        let kept = [0, 1, 2].map(|k| if touches[k] { value[k] } else { now[k] });
+        if kept != now {
+            self.write(map, index, kept, changed);
+        }
+    }
+
     /// Copies every covered texel into its gutters.
     pub fn dilate(&self, map: &mut FocusMap) -> Changed {
         let mut changed = Vec::new();

@@ -1,6 +1,5 @@
 //! The same value over a whole piece of the scene.
 
-use crate::dab::write_channels;
 use crate::focus_map::texel_of;
 use crate::{Canvas, CanvasTexel, Changed, Channels, FocusError, FocusMap, Selection};
 use lens::FocusOffset;
@@ -77,7 +76,7 @@ pub fn fill_selected(
     for (index, texel) in canvas.texels().iter().enumerate() {
         let is_inside = targets.iter().any(|target| target.contains(canvas, texel));
         if is_inside && selection.is_none_or(|selection| selection.contains(index)) {
-            write_channels(canvas, map, index, [t, anchor, 1.0], touches, &mut changed);
+            canvas.write_channels(map, index, [t, anchor, 1.0], touches, &mut changed);
         }
     }
     Ok(Changed::new(changed))

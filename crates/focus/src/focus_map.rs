@@ -1,7 +1,6 @@
 //! A focus offset a texel of the atlas, and on a layer how much each counts.
 
 use crate::tile_grid::TileGrid;
-use crate::{Canvas, Selection};
 use glam::{DVec2, UVec2};
 use lens::FocusOffset;
 use std::sync::Arc;
@@ -82,19 +81,6 @@ impl FocusMap {
     /// Takes the mask away: the map counts everywhere.
     pub fn remove_mask(&mut self) {
         (self.mask, self.background_mask) = (None, 1.0);
-    }
-
-    /// Gives the map a mask that counts where it is selected; not in the background.
-    pub fn mask_selected(&mut self, canvas: &Canvas, selection: &Selection) {
-        let [width, height] = self.size();
-        let mut mask = TileGrid::new(width, height, 0.0);
-        for (index, texel) in canvas.texels().iter().enumerate() {
-            if selection.contains(index) {
-                mask.set(texel.x, texel.y, 1.0);
-                canvas.gutters_of(index).iter().for_each(|&[x, y]| mask.set(x, y, 1.0));
-            }
-        }
-        (self.mask, self.background_mask) = (Some(mask), 0.0);
     }
 
     /// Makes the map count where it did not, and the other way round.

@@ -1,8 +1,8 @@
 //! Gradients: a focus that changes evenly along a line, over everything that may be painted.
 
 use crate::brush::FocusOffsetFields;
-use crate::dab::{over, write_channels};
 use crate::focus_map::texel_of;
+use crate::wash::over;
 use crate::{Canvas, Changed, Channels, FocusError, FocusMap, Selection, Symmetry, ViewFrame};
 use glam::{DVec2, DVec3};
 use lens::FocusOffset;
@@ -128,7 +128,7 @@ pub fn draw_gradient(
                 [t as f32, anchor as f32, 1.0]
             }
         };
-        write_channels(canvas, map, index, value, channels.touches(), &mut changed);
+        canvas.write_channels(map, index, value, channels.touches(), &mut changed);
     }
     Ok(Changed::new(changed))
 }

@@ -39,6 +39,7 @@ mod texel_tree;
 mod thumbnail;
 mod tile_grid;
 mod view_frame;
+mod wash;
 
 pub use blend::Blend;
 pub use brush::{Brush, BrushMode, Channels, FocusOffsetFields, PenSample};

@@ -1,6 +1,7 @@
 //! What may be painted: a set of texels; all others are frozen.
 
-use crate::{Canvas, CanvasTexel};
+use crate::tile_grid::TileGrid;
+use crate::{Canvas, CanvasTexel, FocusMap};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
@@ -72,6 +73,21 @@ impl Selection {
     /// Memory, in bytes.
     pub fn bytes(&self) -> usize {
         size_of_val(&*self.words)
+    }
+}
+
+impl FocusMap {
+    /// Gives the map a mask that counts where it is selected; not in the background.
+    pub fn mask_selected(&mut self, canvas: &Canvas, selection: &Selection) {
+        let [width, height] = self.size();
+        let mut mask = TileGrid::new(width, height, 0.0);
+        for (index, texel) in canvas.texels().iter().enumerate() {
+            if selection.contains(index) {
+                mask.set(texel.x, texel.y, 1.0);
+                canvas.gutters_of(index).iter().for_each(|&[x, y]| mask.set(x, y, 1.0));
+            }
+        }
+        (self.mask, self.background_mask) = (Some(mask), 0.0);
     }
 }
 

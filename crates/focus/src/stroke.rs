@@ -1,6 +1,7 @@
 //! A stroke: dabs along the pen's path, as one transaction.
 
-use crate::dab::{Dab, Wash};
+use crate::dab::Dab;
+use crate::wash::Wash;
 use crate::{Brush, Canvas, Changed, Edit, FocusError, FocusMap, PenSample, Selection, SymmetryImage};
 use glam::{DVec3, Vec3};
 use std::sync::Arc;
@@ -135,7 +136,7 @@ impl Stroke {
                 coverage: &mut self.coverage,
                 selection: self.selection.as_ref(),
             };
-            dab.paint(&self.brush, &self.canvas, &mut wash, map, changed);
+            wash.paint(&dab, &self.brush, &self.canvas, map, changed);
         }
     }
 }

@@ -1,6 +1,6 @@
 //! The camera: what is saved, and its checks.
 
-use crate::{Aperture, Optics};
+use crate::{Aperture, CameraError, Optics};
 use glam::{DMat3, DMat4, DVec2, DVec3};
 
 /// A wide-aperture camera. Lengths in scene units, angles in radians.
@@ -25,23 +25,6 @@ pub struct Camera {
     /// The aperture's shape.
     pub aperture: Aperture,
 }
-
-/// What is wrong with a camera.
-#[derive(Clone, Debug, PartialEq)]
-pub struct CameraError {
-    /// The field.
-    pub field: &'static str,
-    /// What it must be.
-    pub must: &'static str,
-}
-
-impl std::fmt::Display for CameraError {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "camera: {} must be {}", self.field, self.must)
-    }
-}
-
-impl std::error::Error for CameraError {}
 
 impl Default for Camera {
     /// A 50 mm lens at f/2 on a 24 mm high sensor, focused at 3, 960 × 540.

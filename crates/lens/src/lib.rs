@@ -15,12 +15,14 @@
 mod aperture;
 mod camera;
 mod coarse_mask;
+mod error;
 mod focus_offset;
 mod optics;
 mod picture;
 
 pub use aperture::{Aperture, ApertureMask, ApertureRow, ApertureRows, ApertureSampler, ApertureShape, Run};
-pub use camera::{Camera, CameraError};
+pub use camera::Camera;
+pub use error::CameraError;
 pub use focus_offset::FocusOffset;
 pub use optics::Optics;
 pub use picture::{Exposure, Picture};

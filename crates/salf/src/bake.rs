@@ -10,56 +10,23 @@
 
 use crate::domain::{Cell, Density, Domain};
 use crate::layers::{Group, Layers, trace_cell};
-use crate::margin::{painted_margin_px, standard_margin_px};
+use crate::margin::standard_margin_px;
 use crate::occluders::{Depths, Footprint, Occluders};
+use crate::options::BakeOptions;
 use crate::placement::Placement;
-use crate::sample::{Salf, Sample, Visibility};
+use crate::salf::Salf;
+use crate::sample::{Sample, Visibility};
 use crate::samples::{Found, Packer, Samples, block_corner};
 use crate::surface_patches;
 use crate::view::View;
 use crate::visibility::{self, Fineness, Patterns};
 use glam::{DVec2, IVec2};
-use lens::{Camera, FocusOffset};
+use lens::Camera;
 use progress::{Cancelled, Progress, Stage};
 use rayon::prelude::*;
-use scene::SurfaceField;
 use std::collections::{HashMap, HashSet};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use trace::{Radiance, Tracer, Viewpoint};
-
-/// How the light field is sampled.
-#[derive(Clone, Copy, Debug)]
-pub struct BakeOptions {
-    /// How far outside the frame to sample at least, px: the radius of the largest circle of confusion that paint
-    /// may give. What the standard picture needs is always sampled.
-    pub margin_px: f64,
-    /// How large a cell of a partly visible aperture may be on the picture, px, where 16 cells a side allow it: up to
-    /// this circle of confusion, samples have 8 cells a side. A pixel of a surface whose radiance varies by more
-    /// than [`Self::EVEN_PER_PX`] times this is a sample a quadrant. Smaller is more exact and takes more memory.
-    pub tolerance_px: f64,
-    /// Whether samples are packed ([`Samples`]). It is right unless what that loses is to be measured.
-    pub packs: bool,
-}
-
-impl Default for BakeOptions {
-    fn default() -> Self {
-        Self { margin_px: 0.0, tolerance_px: Self::TOLERANCE_PX, packs: true }
-    }
-}
-
-impl BakeOptions {
-    /// The tolerance unless another one is asked for, px.
-    pub const TOLERANCE_PX: f64 = 2.0;
-
-    /// The mean radiances of the quadrants of a pixel that is one sample differ by at most this share of the largest, for
-    /// each px of tolerance.
-    pub const EVEN_PER_PX: f64 = 0.05;
-
-    /// Sampled as far outside the frame as `focus` needs.
-    pub fn for_focus(tracer: &Tracer, camera: &Camera, focus: &dyn SurfaceField<FocusOffset>) -> Self {
-        Self { margin_px: painted_margin_px(tracer, &View::new(camera), focus), ..Self::default() }
-    }
-}
 
 /// A surface of a cell, before it is known what it sees of the aperture.
 struct Candidate {
@@ -90,8 +57,7 @@ pub fn bake(
     options: &BakeOptions,
     progress: &dyn Progress,
 ) -> Result<Salf, Cancelled> {
-    let mut view = View::new(camera);
-    view.tolerance_px = options.tolerance_px;
+    let view = View::new(camera, options.tolerance_px);
     let margin = standard_margin_px(tracer.scene(), &view).max(options.margin_px);
     let domain = Domain::new(camera.width, camera.height, margin);
     let placement = Placement::new(tracer.scene(), &view);

@@ -29,21 +29,21 @@
 //! A text is its length in bytes (u32) and UTF-8. What the packed samples mean is told in `samples.rs` and below it.
 
 mod camera;
+mod error;
+mod little_endian;
 mod samples;
 
 use crate::Salf;
 use camera::{read_camera, write_camera};
+pub use error::SalfFileError;
+use error::VERSION;
+use little_endian::{bytes, read_text, write_text};
 use samples::{read_samples, write_samples};
 use sha2::{Digest, Sha256};
 use std::io::{self, Read, Write};
 use std::sync::Arc;
 
 const MAGIC: &[u8; 8] = b"FBSALF\r\n";
-const VERSION: u32 = 4;
-/// More than any path takes.
-const LONGEST_TEXT: u32 = 1 << 16;
-/// Room made for samples before they are read: a wrong count must not take the memory.
-const FIRST_CAPACITY: u64 = 1 << 20;
 
 /// A light field and what it was baked from.
 #[derive(Clone, Debug)]
@@ -54,26 +54,6 @@ pub struct SalfFile {
     pub triangles: u32,
     /// The light field.
     pub salf: Arc<Salf>,
-}
-
-/// Why a `.salf` file cannot be used.
-#[derive(Debug, thiserror::Error)]
-pub enum SalfFileError {
-    /// It cannot be read to its end.
-    #[error("cannot be read: {0} (check the path, or bake it again)")]
-    Io(#[from] io::Error),
-    /// It is something else.
-    #[error("not a .salf file (bake one with `focus-brush bake`)")]
-    NotSalf,
-    /// It is of another version.
-    #[error("version {0} of the .salf format is not known, only version {VERSION} (bake it again)")]
-    Version(u32),
-    /// It ends early.
-    #[error("cut short (copy it again, or bake it again)")]
-    CutShort,
-    /// A value in it makes no sense.
-    #[error("damaged: {0} (copy it again, or bake it again)")]
-    Damaged(String),
 }
 
 impl SalfFile {
@@ -141,54 +121,6 @@ impl<T: Read> Read for Hashing<T> {
         self.hash.update(&buffer[..read]);
         Ok(read)
     }
-}
-
-fn bytes<const N: usize>(from: &mut impl Read) -> Result<[u8; N], SalfFileError> {
-    let mut buffer = [0; N];
-    from.read_exact(&mut buffer).map_err(|error| match error.kind() {
-        io::ErrorKind::UnexpectedEof => SalfFileError::CutShort,
-        _ => SalfFileError::Io(error),
-    })?;
-    Ok(buffer)
-}
-
-fn write_text(to: &mut impl Write, text: &str) -> io::Result<()> {
-    to.write_all(&(text.len() as u32).to_le_bytes())?;
-    to.write_all(text.as_bytes())
-}
-
-fn read_text(from: &mut impl Read) -> Result<String, SalfFileError> {
-    let length = u32::from_le_bytes(bytes(from)?);
-    if length > LONGEST_TEXT {
-        return Err(SalfFileError::Damaged(format!("a text of {length} bytes")));
-    }
-    let mut text = vec![0; length as usize];
-    from.read_exact(&mut text).map_err(|_| SalfFileError::CutShort)?;
-    String::from_utf8(text).map_err(|_| SalfFileError::Damaged("a text that is not UTF-8".into()))
-}
-
-fn write_f64s(to: &mut impl Write, values: &[f64]) -> io::Result<()> {
-    values.iter().try_for_each(|value| to.write_all(&value.to_le_bytes()))
-}
-
-fn read_f64s<const N: usize>(from: &mut impl Read) -> Result<[f64; N], SalfFileError> {
-    let mut values = [0.0; N];
-    for value in &mut values {
-        *value = f64::from_le_bytes(bytes(from)?);
-    }
-    Ok(values)
-}
-
-fn write_f32s(to: &mut impl Write, values: &[f32]) -> io::Result<()> {
-    values.iter().try_for_each(|value| to.write_all(&value.to_le_bytes()))
-}
-
-fn read_f32s<const N: usize>(from: &mut impl Read) -> Result<[f32; N], SalfFileError> {
-    let mut values = [0.0; N];
-    for value in &mut values {
-        *value = f32::from_le_bytes(bytes(from)?);
-    }
-    Ok(values)
 }
 
 #[cfg(test)]

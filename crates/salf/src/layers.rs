@@ -1,9 +1,9 @@
 //! The pinhole picture, one cell at a time: which surfaces lie along its chief rays.
 
-use crate::bake::BakeOptions;
 use crate::domain::{Cell, CellPart, Density};
 use crate::jitter::Net;
 use crate::occluders::{Depths, Occluders};
+use crate::options::BakeOptions;
 use crate::placement::Placement;
 use crate::sample::{Sample, Visibility};
 use crate::samples::Found;
@@ -297,7 +297,7 @@ mod tests {
     /// The samples of a cell of the background whose upright middle line is the picture's.
     fn samples(side: i32, light: [f32; 2]) -> Vec<Found> {
         let camera = Camera { width: 64, height: 64, ..Camera::default() };
-        let view = View::new(&camera);
+        let view = View::new(&camera, BakeOptions::TOLERANCE_PX);
         // Half a pixel further right, the middle is that of a cell of one pixel.
         let shift = if side == 1 { 0.5 } else { 0.0 };
         let cell = Cell { corner: IVec2::new(32 - side / 2, 8), side };

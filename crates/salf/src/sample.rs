@@ -1,22 +1,7 @@
 //! What the light field holds.
 
-use crate::samples::Samples;
 use glam::{Vec2, Vec3};
-use lens::Camera;
 use scene::SurfacePoint;
-use serde::{Deserialize, Serialize};
-
-/// The surface-aperture light field of one camera.
-#[derive(Clone, Debug)]
-pub struct Salf {
-    /// The camera it was baked for. Its focus distance and aperture shape may change afterwards, and its
-    /// aperture radius shrink; all else is fixed.
-    pub camera: Camera,
-    /// How far outside the frame it was sampled, px.
-    pub margin_px: u32,
-    /// Its samples.
-    pub samples: Samples,
-}
 
 /// A patch of surface as the aperture sees it.
 ///
@@ -73,32 +58,6 @@ impl Visibility {
         let side = Self::side_of(words);
         let rows_a_word = 64 / side;
         words[row / rows_a_word] >> (row % rows_a_word * side) & (u64::MAX >> (64 - side))
-    }
-}
-
-/// How many samples there are of each kind, and what they take.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct SalfStatistics {
-    /// Samples that see the whole aperture.
-    pub open: usize,
-    /// Samples that see part of it.
-    pub partial: usize,
-    /// Samples of the background, which are among the others.
-    pub background: usize,
-    /// Bytes of all samples.
-    pub bytes: usize,
-    /// Of these, what the open samples take.
-    pub open_bytes: usize,
-    /// Of these, what the partly occluded samples take, visibility included.
-    pub partial_bytes: usize,
-}
-
-impl Salf {
-    /// Counts the samples by kind.
-    pub fn statistics(&self) -> SalfStatistics {
-        let [open, partial, background] = self.samples.counts();
-        let [bytes, partial_bytes] = self.samples.bytes();
-        SalfStatistics { open, partial, background, bytes, open_bytes: bytes - partial_bytes, partial_bytes }
     }
 }
 

@@ -201,7 +201,7 @@ mod tests {
     #[test]
     fn glaring_lamps_are_cut_finely() {
         let camera = Camera { width: 64, height: 64, aperture_radius: 0.1, ..Camera::default() };
-        let (view, domain) = (View::new(&camera), Domain::new(64, 64, 0.0));
+        let (view, domain) = (View::new(&camera, 2.0), Domain::new(64, 64, 0.0));
         let side = 0.3 / (view.density(4.0) * 4.0).sqrt();
         let corners = [DVec3::ZERO, DVec3::X * side, DVec3::Y * side].map(|corner| corner + DVec3::Z * 4.0);
         let lamp = Piece { barycentric: [DVec2::ZERO, DVec2::X, DVec2::Y], corners };

@@ -1,6 +1,5 @@
 //! The baked camera, ready for rays: pixels to chief rays, aperture points to the world.
 
-use crate::bake::BakeOptions;
 use glam::{DVec2, DVec3};
 use lens::{Camera, Optics};
 use scene::Scene;
@@ -21,7 +20,7 @@ pub struct View<'a> {
 }
 
 impl<'a> View<'a> {
-    pub fn new(camera: &'a Camera) -> Self {
+    pub fn new(camera: &'a Camera, tolerance_px: f64) -> Self {
         let optics = camera.optics();
         Self {
             camera,
@@ -30,7 +29,7 @@ impl<'a> View<'a> {
             right: camera.world_direction(DVec3::X),
             up: camera.world_direction(DVec3::Y),
             radius_per_kappa_px: optics.splat_radius_px(1.0),
-            tolerance_px: BakeOptions::TOLERANCE_PX,
+            tolerance_px,
         }
     }
 

@@ -139,8 +139,7 @@ mod tests {
             aperture_radius: 0.05,
             ..Camera::default()
         };
-        let mut view = View::new(&camera);
-        view.tolerance_px = 2.0;
+        let view = View::new(&camera, 2.0);
         let of_circle = |px: f64| {
             let kappa = view.optics.kappa_for_circle_px(px).expect("there is an aperture");
             Fineness::of(&view, 1.0 - kappa)

@@ -46,8 +46,8 @@ impl Scene<'_> {
                 let placed = self.lens.place(node, &focus);
                 if node.is_leaf() || self.lens.may_merge(node, &focus, placed) {
                     // One by one, and so wherever nodes are many: what maps an array is not always inlined.
-                    let columns = node.reach(0, placed, self.size[0]);
-                    let rows = node.reach(1, placed, self.size[1]);
+                    let columns = placed.reach(node, 0, self.size[0]);
+                    let rows = placed.reach(node, 1, self.size[1]);
                     if !columns.is_empty() && !rows.is_empty() {
                         visit(index, node, placed, rows);
                     }
@@ -188,7 +188,7 @@ impl Changes {
     /// The rows, and the columns of a picture `width` px wide, that they change.
     pub fn window(&self, nodes: &Nodes, width: u32) -> [Range<u32>; 2] {
         let all = || self.0.iter().flat_map(|block| block.removed.iter().chain(&block.added));
-        let columns = |drawn: &Drawn| nodes.nodes[drawn.index as usize].reach(0, drawn.placed, width);
+        let columns = |drawn: &Drawn| drawn.placed.reach(&nodes.nodes[drawn.index as usize], 0, width);
         [self.rows(), hull(all().map(columns).filter(|columns| !columns.is_empty()))]
     }
 

@@ -3,6 +3,9 @@
 //! A shader has no wider integers. Everything between a placed node and the accumulators is made of these functions, and
 //! `gpu/fixed.wgsl` holds the same ones under the same names.
 
+/// One as a share.
+pub const ONE: i32 = 1 << 14;
+
 /// ⌊a·b / 2^`shift`⌋, its lower 32 bits; `shift` ≤ 63.
 #[inline(always)]
 pub fn mul_shift(a: u32, b: u32, shift: u32) -> u32 {

@@ -7,7 +7,10 @@
 //! Portable WGSL that needs no optional features: 64 bits are pairs of words, adders of 64 bits carry by atomics.
 
 mod adapter;
+mod buffers;
 mod device;
+mod error;
+mod layout;
 mod listing;
 mod passes;
 mod picture_on_card;
@@ -24,5 +27,6 @@ mod work;
 
 pub use adapter::{AdapterDescription, BackendChoice, GpuAbsent, adapters};
 pub use device::Gpu;
+pub(crate) use error::GpuError;
 pub use picture_on_card::PictureOnCard;
-pub(crate) use sums::{GpuError, GpuSums};
+pub(crate) use sums::GpuSums;

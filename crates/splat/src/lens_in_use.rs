@@ -1,10 +1,12 @@
 //! The lens that a picture is summed with, and what it makes of each node.
 
 use crate::canvas::POSITION_BITS;
-use crate::nodes::{CONTRASTS, ONE, SplatNode, wider_by_contrast};
+use crate::fixed::ONE;
+use crate::nodes::{CONTRASTS, SplatNode, wider_by_contrast};
 use crate::shape::Shape;
 use lens::{FocusOffset, Optics};
 use salf::tree::LEVELS;
+use std::ops::Range;
 
 /// How coarse the sum may be.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -90,6 +92,20 @@ pub struct Placed {
     /// The level that it is drawn on, the coarsest that its image is large enough for: a sample of a cell larger than that is
     /// drawn in pieces, a smaller one as coarsely as its neighbours would be if they were one.
     pub level: u8,
+}
+
+impl Placed {
+    /// The columns (`axis` 0) or rows (1) of a picture of `side` of them that the light of a node drawn so may reach.
+    #[inline(always)]
+    pub fn reach(self, node: &SplatNode, axis: usize, side: u32) -> Range<u32> {
+        // Coarse levels spread a little further.
+        let center = node.center[axis] >> POSITION_BITS;
+        let reach = (self.radius.abs() >> POSITION_BITS) * 65 / 64
+            + (node.half_size[axis] as i32 >> (POSITION_BITS - 1))
+            + (5 << self.level);
+        let within = |place: i32| place.clamp(0, side as i32) as u32;
+        within(center - reach)..within(center + reach + 1)
+    }
 }
 
 /// Larger aperture images, 1/4096 px, are taken as this large: next to none of their light is in the picture.

@@ -21,12 +21,13 @@ mod draw;
 mod drawn;
 mod fixed;
 mod gpu;
-
+mod knots;
 mod lens_in_use;
 mod marks;
 mod nodes;
 mod paint;
 mod partition;
+mod parts_to_pixels;
 mod resolve;
 mod seen;
 mod shape;

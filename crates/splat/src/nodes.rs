@@ -1,7 +1,7 @@
 //! The light field's hierarchy in the integers of the sum.
 
 use crate::canvas::{PIXEL, POSITION_BITS};
-use crate::lens_in_use::Placed;
+use crate::fixed::ONE;
 use rayon::prelude::*;
 use salf::Salf;
 use salf::tree::{Block, LEVELS, Node, each_block};
@@ -130,18 +130,6 @@ impl SplatNode {
         Self { first_child: self.first_child + nodes, cells, ..self }
     }
 
-    /// The columns (`axis` 0) or rows (1) of a picture of `side` of them that its light may reach.
-    #[inline(always)]
-    pub fn reach(&self, axis: usize, placed: Placed, side: u32) -> Range<u32> {
-        // Coarse levels spread a little further.
-        let center = self.center[axis] >> POSITION_BITS;
-        let reach = (placed.radius.abs() >> POSITION_BITS) * 65 / 64
-            + (self.half_size[axis] as i32 >> (POSITION_BITS - 1))
-            + (5 << placed.level);
-        let within = |place: i32| place.clamp(0, side as i32) as u32;
-        within(center - reach)..within(center + reach + 1)
-    }
-
     /// A sample of a large cell as samples of cells of `level`.
     pub fn pieces(&self, level: u8) -> impl Iterator<Item = Self> + '_ {
         let finer = self.level - level;
@@ -175,9 +163,6 @@ pub struct Nodes {
     pub brightest: f64,
     pub has_bright: bool,
 }
-
-/// One as a share.
-pub const ONE: i32 = 1 << 14;
 
 impl Nodes {
     /// Reads a light field. `None` if a sample is too bright to be summed.

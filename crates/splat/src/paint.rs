@@ -1,7 +1,8 @@
 //! What is painted on the nodes.
 
+use crate::fixed::ONE;
 use crate::lens_in_use::{LARGEST_OFFSET, NodeFocus};
-use crate::nodes::{Nodes, ONE};
+use crate::nodes::Nodes;
 use lens::FocusOffset;
 use rayon::prelude::*;
 use salf::Samples;

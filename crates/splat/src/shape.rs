@@ -1,7 +1,6 @@
 //! The aperture's shape, cut finely: what stencils are made from.
 
-use crate::fixed::mul_shift;
-use crate::nodes::ONE;
+use crate::fixed::{ONE, mul_shift};
 use glam::{DVec2, DVec4};
 use lens::{Aperture, ApertureShape, Run};
 

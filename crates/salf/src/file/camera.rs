@@ -1,7 +1,8 @@
 //! Cameras in a `.salf` file.
 
-use super::{
-    FIRST_CAPACITY, SalfFileError, bytes, read_f32s, read_f64s, read_text, write_f32s, write_f64s, write_text,
+use super::SalfFileError;
+use super::little_endian::{
+    FIRST_CAPACITY, bytes, read_f32s, read_f64s, read_text, write_f32s, write_f64s, write_text,
 };
 use glam::DMat4;
 use lens::{Aperture, ApertureMask, ApertureShape, Camera};

@@ -1,6 +1,7 @@
 //! Samples in a `.salf` file.
 
-use super::{FIRST_CAPACITY, SalfFileError, bytes, read_f32s, read_f64s, write_f32s, write_f64s};
+use super::SalfFileError;
+use super::little_endian::{FIRST_CAPACITY, bytes, read_f32s, read_f64s, write_f32s, write_f64s};
 use crate::samples::{Chunk, Patch, Plane, Record, Samples, Starts};
 use crate::{Sample, Visibility};
 use glam::{DVec2, IVec2, Vec2, Vec3};

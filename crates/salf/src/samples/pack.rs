@@ -3,10 +3,11 @@
 use crate::domain::{Cell, Domain};
 use crate::jitter::jitter;
 use crate::sample::{Sample, Visibility};
+use crate::samples::arrays::{Chunk, Samples, Starts};
 use crate::samples::masks::MaskWriter;
 use crate::samples::numbers::{Float24, Rgb40};
+use crate::samples::plane::Plane;
 use crate::samples::record::{Kind, Patch, Record, Shape};
-use crate::samples::{Chunk, Plane, Samples, Starts};
 use glam::{DVec2, IVec2, Vec2};
 use half::f16;
 use std::collections::HashMap;

@@ -1,12 +1,17 @@
 //! Reading packed samples: a run of them in order, or the surface addresses of any.
 
 use crate::sample::{Sample, Visibility};
+use crate::samples::arrays::{Samples, Starts};
 use crate::samples::masks::MaskReader;
+use crate::samples::plane::Plane;
 use crate::samples::record::{Kind, Record, Shape};
-use crate::samples::{Plane, Samples, Starts};
 use glam::{DVec2, IVec2, Vec2};
+use rayon::prelude::*;
 use scene::SurfacePoint;
 use std::ops::Range;
+
+/// Samples that are not packed go in runs of this many.
+const LOOSE_RUN: usize = 1024;
 
 /// Where a sample is: in the picture, in depth and on the surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,9 +27,9 @@ pub struct Spot {
 /// Samples that follow each other: of one block of the picture, or those that are not packed.
 #[derive(Clone, Debug)]
 pub struct Run<'a> {
-    pub(super) samples: &'a Samples,
+    samples: &'a Samples,
     /// None for those that are not packed.
-    pub(super) chunk: Option<usize>,
+    chunk: Option<usize>,
     /// The numbers of its samples.
     pub indices: Range<u32>,
 }
@@ -37,8 +42,8 @@ impl Spot {
 
 /// Looks up surface addresses, quickly where one sample is of the same block as the one before.
 pub struct Addresses<'a> {
-    pub(super) samples: &'a Samples,
-    pub(super) run: Option<Run<'a>>,
+    samples: &'a Samples,
+    run: Option<Run<'a>>,
 }
 
 impl Addresses<'_> {
@@ -76,7 +81,7 @@ impl<'a> Run<'a> {
     }
 
     /// The sample of this number. What others its visibility was coded with are decoded, too.
-    pub(super) fn sample(&self, index: u32) -> Option<Sample> {
+    fn sample(&self, index: u32) -> Option<Sample> {
         let place = (index - self.indices.start) as usize;
         if let Some(loose) = self.loose().get(place) {
             return Some(loose.clone());
@@ -85,7 +90,7 @@ impl<'a> Run<'a> {
     }
 
     /// Where the sample of this number is.
-    pub(super) fn spot(&self, index: u32) -> Option<Spot> {
+    fn spot(&self, index: u32) -> Option<Spot> {
         let place = (index - self.indices.start) as usize;
         let Some(chunk) = self.chunk else { return self.loose().get(place).map(Spot::of) };
         let mut decoder = Decoder::new(self.samples, chunk);
@@ -128,6 +133,66 @@ impl<'a> Run<'a> {
 }
 
 impl Samples {
+    /// How many runs they go in.
+    pub fn run_count(&self) -> usize {
+        self.chunks.len() + self.loose.len().div_ceil(LOOSE_RUN)
+    }
+
+    /// A run of them; together, in order, the runs have all samples in order.
+    pub fn run(&self, run: usize) -> Run<'_> {
+        if run < self.chunks.len() {
+            let [start, end] = [run, run + 1].map(|chunk| self.starts(chunk).records);
+            return Run { samples: self, chunk: Some(run), indices: start..end };
+        }
+        let [start, end] = [0, 1].map(|k| (run - self.chunks.len() + k) * LOOSE_RUN);
+        let [start, end] = [start, end.min(self.loose.len())].map(|k| (self.records.len() + k) as u32);
+        Run { samples: self, chunk: None, indices: start..end }
+    }
+
+    /// The runs.
+    pub fn runs(&self) -> impl Iterator<Item = Run<'_>> {
+        (0..self.run_count()).map(|run| self.run(run))
+    }
+
+    /// Every sample, in order.
+    pub fn iter(&self) -> impl Iterator<Item = Sample> {
+        self.runs().flat_map(|run| run.iter())
+    }
+
+    /// Every sample, not packed.
+    pub fn to_vec(&self) -> Vec<Sample> {
+        (0..self.run_count()).into_par_iter().flat_map_iter(|run| self.run(run).iter()).collect()
+    }
+
+    /// The samples with `change` made to each of them; they are not packed then.
+    pub fn changed(&self, mut change: impl FnMut(&mut Sample)) -> Self {
+        let mut samples = self.to_vec();
+        samples.iter_mut().for_each(&mut change);
+        Self::from(samples)
+    }
+
+    /// A sample. What others its visibility was coded with are decoded, too: for many samples ask for their runs.
+    pub fn get(&self, index: u32) -> Sample {
+        self.run(self.run_of(index)).sample(index).expect("the run that holds it")
+    }
+
+    /// Where a sample is.
+    pub fn spot(&self, index: u32) -> Spot {
+        self.run(self.run_of(index)).spot(index).expect("the run that holds it")
+    }
+
+    /// The surface addresses of samples.
+    pub fn addresses(&self) -> Addresses<'_> {
+        Addresses { samples: self, run: None }
+    }
+
+    fn run_of(&self, index: u32) -> usize {
+        match (index as usize).checked_sub(self.records.len()) {
+            Some(loose) => self.chunks.len() + loose / LOOSE_RUN,
+            None => self.chunks.partition_point(|chunk| chunk.starts.records <= index) - 1,
+        }
+    }
+
     fn masks(&self, chunk: usize) -> MaskReader<'_> {
         let [start, end] = [chunk, chunk + 1].map(|chunk| self.starts(chunk).codes as usize);
         MaskReader::new(&self.codes[start..end])

@@ -1,7 +1,10 @@
 use super::*;
 use crate::domain::Cell;
 use crate::jitter::jitter;
-use glam::{DVec2, Vec2, Vec3};
+use crate::sample::{Sample, Visibility};
+use glam::{DVec2, IVec2, Vec2, Vec3};
+use half::f16;
+use scene::SurfacePoint;
 
 /// Cells of all sizes and parts of them, patches of surface and the background, in one block.
 fn found(count: u32) -> Vec<Found> {

@@ -1,6 +1,7 @@
 //! Building the hierarchy, block by block.
 
-use crate::sample::{Salf, Sample, Visibility};
+use crate::salf::Salf;
+use crate::sample::{Sample, Visibility};
 use crate::tree::grid::{Content, Grid};
 use crate::tree::{BLOCK_PX, Block, LEVELS, Node};
 use glam::{IVec2, Vec2, Vec3};

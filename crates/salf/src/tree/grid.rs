@@ -1,7 +1,8 @@
 //! The blocks of a light field, and which samples lie in each.
 
 use crate::domain::Domain;
-use crate::sample::{Salf, Sample};
+use crate::salf::Salf;
+use crate::sample::Sample;
 use crate::samples::Samples;
 use crate::tree::BLOCK_PX;
 use glam::{IVec2, Vec2};

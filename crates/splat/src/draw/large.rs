@@ -1,11 +1,11 @@
 //! Images too large for stencils.
 
 use crate::canvas::{PIXEL, POSITION_BITS, Rows, Word};
-use crate::draw::Pen;
 use crate::draw::image::Image;
+use crate::draw::pen::Pen;
 use crate::draw::seen_runs::{Row, SeenRuns};
-use crate::fixed::{Divisor, mul_shift, signed_mul_shift};
-use crate::nodes::{Cells, ONE};
+use crate::fixed::{Divisor, ONE, mul_shift, signed_mul_shift};
+use crate::nodes::Cells;
 use crate::stencil::HEIGHT_BITS;
 
 /// The light of larger images, in pixel rows, is what their area says; that of smaller ones what their rows say.

@@ -1,8 +1,8 @@
 //! What is drawn on.
 
 use crate::canvas::{Rows, Word};
-use crate::draw::boxes::{UnsizedBox, too_blurred};
 use crate::draw::seen_runs::SeenRun;
+use crate::draw::sized_box::{UnsizedBox, too_blurred};
 use crate::draw::small::SmallBoxes;
 use crate::widest::with_widest_instructions;
 

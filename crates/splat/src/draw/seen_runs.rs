@@ -1,10 +1,10 @@
 //! What of a pixel row the occluders let through.
 
 use crate::canvas::POSITION_BITS;
-use crate::draw::Pen;
 use crate::draw::image::Image;
-use crate::fixed::{Divisor, signed_mul_shift};
-use crate::nodes::{Cells, ONE};
+use crate::draw::pen::Pen;
+use crate::fixed::{Divisor, ONE, signed_mul_shift};
+use crate::nodes::Cells;
 
 /// A part of a pixel row that is let through, of `height` a pixel.
 #[derive(Clone, Copy, Debug, Default)]

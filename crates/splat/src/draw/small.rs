@@ -1,8 +1,8 @@
 //! Small boxes, drawn many at once: what takes roots and divisions is done for several of them in one go.
 
 use crate::canvas::{Rows, Word};
-use crate::draw::boxes::{SMALLEST_HALF, SizedBox, UnsizedBox};
 use crate::draw::image::Light;
+use crate::draw::sized_box::{SMALLEST_HALF, SizedBox, UnsizedBox};
 use crate::fixed::{Reciprocal, floored};
 
 /// How many wait until they are drawn.

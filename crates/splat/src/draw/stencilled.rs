@@ -2,10 +2,11 @@
 
 use crate::canvas::{PIXEL, POSITION_BITS, Word};
 use crate::draw::image::Image;
+use crate::draw::paper::Paper;
+use crate::draw::pen::Pen;
 use crate::draw::seen_runs::{Row, SeenRun, SeenRuns};
-use crate::draw::{Paper, Pen};
-use crate::fixed::{mul_shift, ratio};
-use crate::nodes::{Cells, ONE};
+use crate::fixed::{ONE, mul_shift, ratio};
+use crate::nodes::Cells;
 use crate::stencil::{HEIGHT_BITS, Stencil, StencilSize};
 use crate::widest::with_widest_instructions;
 

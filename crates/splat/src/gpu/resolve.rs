@@ -1,16 +1,17 @@
 //! Accumulators to a picture, on the card.
 
-use crate::balance::{Gains, KnotSums, Knots, SharedSums};
+use crate::balance::Gains;
 use crate::gpu::Gpu;
 use crate::gpu::device::Lost;
+use crate::gpu::error::GpuError;
+use crate::gpu::layout::{Layout, Level};
 use crate::gpu::passes::Pass;
-use crate::gpu::sums::{Layout, Level};
 use crate::gpu::work::Work;
+use crate::knots::{KnotSums, Knots, SharedSums};
 use crate::nodes::{BRIGHT, Nodes};
 use crate::resolve::{MARGIN, Overflow, Quanta};
 use std::ops::Range;
-use std::sync::mpsc;
-use wgpu::{BindGroup, BindGroupLayout, Buffer, BufferBinding, BufferUsages, SubmissionIndex};
+use wgpu::{BindGroup, Buffer, BufferUsages, SubmissionIndex};
 
 /// Lines, shares and picture.
 pub struct Resolve {
@@ -195,7 +196,7 @@ impl Resolve {
     }
 
     /// Whether all integers held what they were given.
-    pub fn check(&self, gpu: &Gpu) -> Result<(), super::GpuError> {
+    pub fn check(&self, gpu: &Gpu) -> Result<(), GpuError> {
         match gpu.read(&self.overflow, 0..4)?.first() {
             Some(0) => Ok(()),
             Some(_) => Err(Overflow.into()),
@@ -242,54 +243,4 @@ fn words_of_level(k: usize, level: &Level, coarser: Option<&Level>) -> [u32; LEV
         0,
         0,
     ]
-}
-
-impl Gpu {
-    /// Buffers at their bindings.
-    pub(super) fn bind<'a>(
-        &self,
-        layout: &BindGroupLayout,
-        buffers: impl IntoIterator<Item = (u32, &'a Buffer)>,
-    ) -> BindGroup {
-        let whole = |(binding, buffer): (u32, &'a Buffer)| (binding, buffer.as_entire_buffer_binding());
-        self.bind_parts(layout, buffers.into_iter().map(whole))
-    }
-
-    /// Parts of buffers at their bindings.
-    pub(super) fn bind_parts<'a>(
-        &self,
-        layout: &BindGroupLayout,
-        parts: impl IntoIterator<Item = (u32, BufferBinding<'a>)>,
-    ) -> BindGroup {
-        let entries = parts.into_iter().map(|(binding, part)| wgpu::BindGroupEntry {
-            binding,
-            resource: wgpu::BindingResource::Buffer(part),
-        });
-        let entries: Vec<_> = entries.collect();
-        let descriptor = wgpu::BindGroupDescriptor { label: None, layout, entries: &entries };
-        self.device().create_bind_group(&descriptor)
-    }
-
-    /// The words of a range of bytes of a buffer.
-    pub(super) fn read(&self, buffer: &Buffer, range: Range<u64>) -> Result<Vec<u32>, Lost> {
-        self.check()?;
-        let size = range.end - range.start;
-        let usage = BufferUsages::MAP_READ | BufferUsages::COPY_DST;
-        let staging = self.buffer("read", size as usize / 4, usage)?;
-        let mut encoder = self.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        encoder.copy_buffer_to_buffer(buffer, range.start, &staging, 0, size);
-        let asked_for = self.queue().submit([encoder.finish()]);
-        let (sender, receiver) = mpsc::channel();
-        staging.map_async(wgpu::MapMode::Read, 0..size, move |result| {
-            // Nobody listens any more where the device was lost meanwhile.
-            let _ = sender.send(result.is_ok());
-        });
-        self.wait_for(asked_for)?;
-        if !self.answer(&receiver)? {
-            return Err(Lost);
-        }
-        let view = staging.get_mapped_range(0..size).map_err(|_| Lost)?;
-        self.check()?;
-        Ok(view.chunks_exact(4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect())
-    }
 }

@@ -1,4 +1,4 @@
-// Accumulators to a picture: the twin of ../resolve.rs, ../partition.rs and ../balance.rs.
+// Accumulators to a picture: the twin of ../resolve.rs, ../partition.rs, ../parts_to_pixels.rs, ../knots.rs and ../balance.rs.
 //
 // Read after scan.wgsl or scan_subgroups.wgsl. Floats are added and multiplied in the same order as there. A product that is added to something goes through `exact`,
 // for compilers like to round the two as one.

@@ -191,33 +191,3 @@ fn words_of_node(node: &SplatNode, cells: u32, parent: u32) -> [u32; WORDS] {
 fn words_of_focus(focus: &NodeFocus) -> [u32; FOCUS_WORDS] {
     [focus.t, focus.anchor, focus.t_apart, focus.anchor_apart].map(f32::to_bits)
 }
-
-impl Gpu {
-    /// A buffer of so many words (at least a few, for none can be bound that is empty).
-    pub(super) fn buffer(&self, label: &str, words: usize, usage: BufferUsages) -> Result<Buffer, Lost> {
-        let size = 4 * words.max(16) as u64;
-        if size > self.largest_binding() {
-            return Err(Lost);
-        }
-        let scope = self.device().push_error_scope(wgpu::ErrorFilter::OutOfMemory);
-        let descriptor =
-            wgpu::BufferDescriptor { label: Some(label), size, usage, mapped_at_creation: false };
-        let buffer = self.device().create_buffer(&descriptor);
-        match pollster::block_on(scope.pop()) {
-            Some(_) => Err(Lost),
-            None => Ok(buffer),
-        }
-    }
-
-    /// Writes words to a buffer's beginning.
-    pub(super) fn write(&self, buffer: &Buffer, words: &[u32]) {
-        self.write_at(buffer, 0, words);
-    }
-
-    /// Writes words, from the one at `first` on, to their places in a buffer.
-    pub(super) fn write_at(&self, buffer: &Buffer, first: usize, words: &[u32]) {
-        if first < words.len() {
-            self.queue().write_buffer(buffer, 4 * first as u64, bytemuck::cast_slice(&words[first..]));
-        }
-    }
-}

@@ -3,7 +3,7 @@
 use crate::draw::Pen;
 use crate::gpu::Gpu;
 use crate::gpu::device::Lost;
-use crate::gpu::sums::Layout;
+use crate::gpu::layout::Layout;
 use crate::nodes::Scale;
 use crate::stencil::{Place, Stencils};
 use wgpu::{Buffer, BufferUsages};

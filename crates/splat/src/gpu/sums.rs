@@ -1,10 +1,12 @@
 //! The sums on the card: accumulators, and what is drawn onto them.
 
-use crate::balance::{Gains, KnotSums, Knots, NO_REST, SharedSums};
+use crate::balance::{Gains, NO_REST};
 use crate::draw::Pen;
 use crate::drawn::{BlockChanges, Changes, Scene};
 use crate::gpu::Gpu;
 use crate::gpu::device::Lost;
+use crate::gpu::error::GpuError;
+use crate::gpu::layout::Layout;
 use crate::gpu::listing::{Listed, Listing};
 use crate::gpu::passes::KINDS;
 use crate::gpu::records::{self, LARGE, Records, complete_large};
@@ -13,44 +15,15 @@ use crate::gpu::scene::Scene as Uploaded;
 use crate::gpu::shapes::Shapes;
 use crate::gpu::stopwatch::Stopwatch;
 use crate::gpu::work::Work;
+use crate::knots::{KnotSums, Knots, SharedSums};
 use crate::nodes::Nodes;
-use crate::resolve::Overflow;
 use lens::Picture;
-use progress::{Cancelled, Progress};
+use progress::Progress;
 use salf::tree::LEVELS;
 use std::collections::VecDeque;
 use std::num::NonZeroU64;
 use std::ops::Range;
 use wgpu::{BindGroup, Buffer, BufferUsages, SubmissionIndex};
-
-/// Why a sum on the card failed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum GpuError {
-    /// The card no longer works, or does not hold the picture.
-    Lost,
-    /// A pixel holds more than its integers do.
-    Overflow,
-    /// Nobody wants it any more.
-    Cancelled,
-}
-
-impl From<Lost> for GpuError {
-    fn from(_: Lost) -> Self {
-        Self::Lost
-    }
-}
-
-impl From<Overflow> for GpuError {
-    fn from(_: Overflow) -> Self {
-        Self::Overflow
-    }
-}
-
-impl From<Cancelled> for GpuError {
-    fn from(_: Cancelled) -> Self {
-        Self::Cancelled
-    }
-}
 
 /// Records that are drawn at a time, by kind: few enough that no card takes a second.
 /// Tests' scenes have several, too.
@@ -79,49 +52,6 @@ impl Ahead {
             return Ok(());
         }
         self.0.pop_front().map_or(Ok(()), |first| gpu.wait_for(first))
-    }
-}
-
-/// What a row's total is split into, so that not all threads add to one word.
-pub const SLOTS: usize = 8;
-
-/// Where the levels of an accumulator lie in its buffer.
-pub struct Layout {
-    pub levels: Vec<Level>,
-    /// In all.
-    pub words: usize,
-    /// Pixels of its lines: all levels with their borders.
-    pub lines: usize,
-}
-
-/// A level of an accumulator.
-#[derive(Clone, Copy)]
-pub struct Level {
-    /// Without the border.
-    pub width: usize,
-    /// Without the border.
-    pub height: usize,
-    /// Words before its pixels, and before its totals.
-    pub pixels: u32,
-    /// See `pixels`.
-    pub totals: u32,
-    /// Pixels before its lines.
-    pub lines: u32,
-}
-
-impl Layout {
-    fn new([width, height]: [usize; 2], levels: usize, words_of_pixel: usize) -> Self {
-        let mut layout = Self { levels: Vec::new(), words: 0, lines: 0 };
-        for k in 0..levels {
-            let [width, height] = [width, height].map(|side| side.div_ceil(1 << k));
-            let pixels = layout.words;
-            let totals = pixels + (width + 3) * (height + 2) * words_of_pixel;
-            layout.words = totals + 2 * SLOTS * (height + 2);
-            let lines = layout.lines as u32;
-            layout.lines += (width + 2) * (height + 2);
-            layout.levels.push(Level { width, height, pixels: pixels as u32, totals: totals as u32, lines });
-        }
-        layout
     }
 }
 

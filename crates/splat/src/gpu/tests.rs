@@ -2,7 +2,7 @@
 //!
 //! Skipped, loudly, where no adapter is found; `mesa-vulkan-drivers` has one in software, which `./test` installs.
 
-use super::sums::Layout;
+use super::layout::Layout;
 use super::{BackendChoice, Gpu};
 use crate::Tolerance;
 use crate::canvas::{Accumulator, Word};
@@ -20,7 +20,7 @@ pub type Accumulated = Vec<(Vec<i64>, Vec<i64>)>;
 /// What a card's buffer holds.
 pub fn accumulated(words: &[u32], layout: &Layout, is_wide: bool) -> Accumulated {
     let wide = |pair: &[u32]| (pair[0] as u64 | (pair[1] as u64) << 32) as i64;
-    let of_level = |level: &super::sums::Level| {
+    let of_level = |level: &super::layout::Level| {
         let pixels = &words[level.pixels as usize..level.totals as usize];
         let pixels = if is_wide {
             pixels.chunks_exact(2).map(wide).collect()
@@ -28,8 +28,8 @@ pub fn accumulated(words: &[u32], layout: &Layout, is_wide: bool) -> Accumulated
             pixels.iter().map(|&word| word as i32 as i64).collect()
         };
         let of_row = |slots: &[u32]| slots.chunks_exact(2).map(wide).fold(0i64, i64::wrapping_add);
-        let totals = words[level.totals as usize..][..2 * super::sums::SLOTS * (level.height + 2)]
-            .chunks_exact(2 * super::sums::SLOTS);
+        let totals = words[level.totals as usize..][..2 * super::layout::SLOTS * (level.height + 2)]
+            .chunks_exact(2 * super::layout::SLOTS);
         (pixels, totals.map(of_row).collect())
     };
     layout.levels.iter().map(of_level).collect()

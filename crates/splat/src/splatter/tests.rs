@@ -458,7 +458,7 @@ fn light_stays_within_reach() {
         let node = &splatter.nodes.as_ref().unwrap().nodes[0];
         let placed = splatter.lens.place(node, &NodeFocus::of(offset));
         let [columns, rows] =
-            [(0, camera.width), (1, camera.height)].map(|(axis, side)| node.reach(axis, placed, side));
+            [(0, camera.width), (1, camera.height)].map(|(axis, side)| placed.reach(node, axis, side));
         for (at, &covered) in (0u32..).zip(&splatter.picture().coverage) {
             let (x, y) = (at % camera.width, at / camera.width);
             let is_within = columns.contains(&x) && rows.contains(&y);

@@ -1,6 +1,7 @@
 //! Places on a square.
 
-use crate::sight::{PlaceSet, Shadow};
+use crate::sight::PlaceSet;
+use crate::sight::shadow::Shadow;
 use glam::{DVec2, Vec4};
 
 /// Places on a square, up to [`PlaceSet::MOST`].

@@ -18,7 +18,7 @@
 use super::bright_surfaces::BrightSurfaces;
 use super::options::{Sampler, TruthOptions};
 use super::reach::Reach;
-use super::samples;
+use super::samples::{self, PixelSample};
 use super::sensor::{self, Sensor};
 use super::sheared::{Sheared, Spread};
 use super::survey::{self, Look, Survey};
@@ -46,15 +46,6 @@ pub(super) struct FromSensor {
     seed: u64,
     /// Which samples suit which pixel, and those samples; known from the first pass on.
     suited: OnceLock<(Survey, Sheared)>,
-}
-
-/// One sample of a pixel.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct PixelSample {
-    /// From the pixel's upper left corner, px.
-    pub within_px: DVec2,
-    /// The aperture point U, scene units.
-    pub u: DVec2,
 }
 
 /// Tells the seed of the rays that are looked at in advance from the samples'.

@@ -1,4 +1,4 @@
-//! The random numbers of samples: low-discrepancy or independent.
+//! Samples of a pixel, and their random numbers: low-discrepancy or independent.
 //!
 //! A set of samples is a sequence of points in [0, 1)⁴; passes take consecutive pieces of it. With
 //! [`Sampler::LowDiscrepancy`] all pixels whose light paint moves use the same sequence (others may have samples of
@@ -11,7 +11,17 @@
 
 use super::options::Sampler;
 use crate::random::{hash, mix, unit};
+use glam::DVec2;
 use std::ops::Range;
+
+/// One sample of a pixel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct PixelSample {
+    /// From the pixel's upper left corner, px.
+    pub within_px: DVec2,
+    /// The aperture point U, scene units.
+    pub u: DVec2,
+}
 
 /// Points of one Sobol' sequence: more are not defined.
 pub(super) const LONGEST_SEQUENCE: u64 = 1 << 16;

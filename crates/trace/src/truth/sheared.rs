@@ -23,9 +23,8 @@
 //! Every sample is evenly distributed over pixel and aperture whatever the order, so no choice makes a bias, if
 //! only it is made without regard to the samples' own values.
 
-use super::from_sensor::PixelSample;
 use super::options::Sampler;
-use super::samples::{self, LONGEST_SEQUENCE};
+use super::samples::{self, LONGEST_SEQUENCE, PixelSample};
 use crate::random::hash;
 use glam::DVec2;
 use rayon::prelude::*;

@@ -11,28 +11,20 @@
 //! construction (see [`super::samples`]). If nearly all that is there to decide is of one circle of confusion and moved
 //! alike, that sequence suits it ([`Survey::moved`]); where several paints meet, no sequence suits them all.
 
+mod look;
 mod paint;
 
-use super::from_sensor::PixelSample;
 use super::options::{Region, TruthOptions};
+use super::samples::PixelSample;
 use super::sheared::{self, Level, Spread};
 use glam::{DVec2, Vec3};
+pub(super) use look::Look;
+use look::{WITHIN, is_dull, scatter, widest_gap};
 use paint::Paint;
 use progress::{Cancelled, Progress};
 use rayon::prelude::*;
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicUsize, Ordering};
-
-/// What a ray meets.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Look {
-    /// The signed radius of its circle of confusion under the standard lens, px.
-    pub radius_px: f64,
-    /// What paint adds to it, px.
-    pub moved_px: f64,
-    /// The light that it brings.
-    pub light: Vec3,
-}
 
 /// Every pixel's samples.
 pub(super) struct Survey {
@@ -64,11 +56,6 @@ const FEWEST_RAYS: u32 = 16;
 const MOST_RAYS: u32 = 32;
 /// An order helps if the light along it is smoother than this share of what it is without order.
 const SMOOTHER: f32 = 0.8;
-/// How much of the light's variance may lie within what is in front and what is behind for the edge between them to
-/// be all that there is. With more, the rest costs as much as is gained.
-const WITHIN: f32 = 0.01;
-/// Radii farther apart than this, relative (absolute below 1 px), are two depths.
-const APART: f64 = 0.1;
 
 impl Survey {
     /// Of a region's pixels. `look` tells what the ray of a pixel with this upper left corner meets.
@@ -153,27 +140,6 @@ fn find<'a>(looks: &[Look], order: impl Fn(Level) -> &'a [u32]) -> Finding {
         scatter(front) + scatter(behind) < WITHIN * scatter(looks)
     };
     if suits { Finding::Level(level) } else { Finding::Plain }
-}
-
-/// Whether all bring the same light.
-fn is_dull(looks: &[Look]) -> bool {
-    looks.windows(2).all(|pair| pair[0].light == pair[1].light)
-}
-
-/// How many of those looks, in the order of their radii, lie in front of the widest gap between depths; all if there
-/// is one depth.
-fn widest_gap(by_radius: &[Look]) -> usize {
-    let radius = |k: usize| by_radius[k].radius_px;
-    let gap = (1..by_radius.len())
-        .max_by(|&a, &b| (radius(a) - radius(a - 1)).total_cmp(&(radius(b) - radius(b - 1))));
-    gap.filter(|&k| radius(k) - radius(k - 1) > APART * radius(k).abs().min(radius(k - 1).abs()).max(1.0))
-        .unwrap_or(by_radius.len())
-}
-
-/// The sum of the light's squared deviations from its mean.
-fn scatter(looks: &[Look]) -> f32 {
-    let mean = looks.iter().map(|look| look.light).sum::<Vec3>() / looks.len().max(1) as f32;
-    looks.iter().map(|look| (look.light - mean).length_squared()).sum()
 }
 
 /// The level that most of a pixel and its neighbours agree on, its own if it can: few rays err, and miss what the

@@ -1,7 +1,7 @@
 //! What the common samples of pixels whose light paint moves should suit.
 
 use super::super::sheared::{Level, Spread};
-use super::{Look, WITHIN, is_dull, scatter, widest_gap};
+use super::look::{Look, WITHIN, is_dull, scatter, widest_gap};
 use glam::Vec3;
 
 /// Which share of the pixels that paint decides something in must agree for the common samples to suit them: the others

@@ -1,0 +1,124 @@
+//! What a dab does to the texels under it.
+
+use crate::dab::Dab;
+use crate::focus_map::texel_of;
+use crate::smooth::Smoothed;
+use crate::{Brush, BrushMode, Canvas, Channels, FocusMap, Selection};
+use glam::DVec3;
+use lens::FocusOffset;
+
+/// What a stroke knows of the texels: their values when it began, and how strongly they were painted since.
+pub(crate) struct Wash<'a> {
+    /// The map when the stroke began.
+    pub before: &'a FocusMap,
+    /// How strongly each texel of the canvas has been painted since.
+    pub coverage: &'a mut [f32],
+    /// What may be painted; everything where there is none.
+    pub selection: Option<&'a Selection>,
+}
+
+impl Wash<'_> {
+    /// Paints a dab; what changes is noted in `changed`.
+    pub fn paint(
+        &mut self,
+        dab: &Dab,
+        brush: &Brush,
+        canvas: &Canvas,
+        map: &mut FocusMap,
+        changed: &mut Vec<[u32; 2]>,
+    ) {
+        let covered = dab.covered(brush, canvas, self.selection);
+        let touches = brush.channels.touches();
+        let mut write = |map: &mut FocusMap, index, value| {
+            canvas.write_channels(map, index, value, touches, changed);
+        };
+        match brush.mode {
+            BrushMode::Set | BrushMode::Reset => {
+                for (index, share) in covered {
+                    let ceiling = share * dab.strength as f32;
+                    let before = self.coverage[index];
+                    if ceiling > before {
+                        let share = before + (ceiling - before) * brush.flow as f32;
+                        self.coverage[index] = share;
+                        let from = canvas.value(self.before, index);
+                        write(map, index, washed(brush, map.has_mask(), from, share));
+                    }
+                }
+            }
+            BrushMode::Clone => {
+                let offset = DVec3::from_array(brush.clone_offset);
+                for (index, share) in covered {
+                    let ceiling = share * dab.strength as f32;
+                    let before = self.coverage[index];
+                    // The surface there may lie a little beside the place: it need not be parallel to the one here.
+                    let texel = &canvas.texels()[index];
+                    let source =
+                        canvas.nearest_within(texel.position + offset, texel.area.sqrt(), dab.radius);
+                    if let Some(source) = source.filter(|_| ceiling > before) {
+                        let share = before + (ceiling - before) * brush.flow as f32;
+                        self.coverage[index] = share;
+                        let [from, to] = [index, source].map(|index| canvas.value(self.before, index));
+                        write(map, index, [0, 1, 2].map(|k| toward(from[k], to[k], share)));
+                    }
+                }
+            }
+            BrushMode::Add | BrushMode::Subtract => {
+                let sign = if brush.mode == BrushMode::Add { 1.0 } else { -1.0 };
+                let step = [sign * (brush.target.t - 1.0), sign * brush.target.anchor];
+                for (index, share) in covered {
+                    let share = share * (dab.strength * brush.flow) as f32;
+                    let from = canvas.value(map, index);
+                    let limits = [brush.offset_limits, [0.0, 1.0]];
+                    let [t, anchor] = [0, 1].map(|k| {
+                        // What already lies outside the limits may stay, but not go further.
+                        let [low, high] = limits[k].map(|limit| limit as f32);
+                        let sum = (from[k] as f64 + step[k] * share as f64) as f32;
+                        sum.clamp(low.min(from[k]), high.max(from[k]))
+                    });
+                    write(map, index, [t, anchor, toward(from[2], 1.0, share)]);
+                }
+            }
+            BrushMode::Smooth | BrushMode::Sharpen => {
+                let smoothed = Smoothed::new(dab, brush, canvas, map);
+                let [low, high] = smoothed.bounds();
+                for (index, share) in covered {
+                    let share = share * (dab.strength * brush.flow) as f32;
+                    let from = canvas.value(map, index);
+                    let mean = smoothed.at(canvas.offset_from(index, dab.center), from);
+                    let moved = [0, 1, 2].map(|k| match brush.mode {
+                        // Away from the mean, but not beyond what is there: a ramp becomes a step, without a rim.
+                        BrushMode::Sharpen => (from[k] + (from[k] - mean[k]) * share).clamp(low[k], high[k]),
+                        _ => toward(from[k], mean[k], share),
+                    });
+                    write(map, index, moved);
+                }
+            }
+        }
+    }
+}
+
+/// [t, anchor, mask] of a texel that was `from` when the stroke began and is painted by `share`.
+///
+/// On a map with a mask the paint lies over what is there (Porter and Duff's *over*): the mask grows to
+/// m + s(1 − m), and the value moves toward the target by the share that the new paint has of it. Reset then takes
+/// the mask away; without one it gives the ordinary lens back.
+fn washed(brush: &Brush, has_mask: bool, from: [f32; 3], share: f32) -> [f32; 3] {
+    let [t, anchor, mask] = from;
+    let resets = brush.mode == BrushMode::Reset;
+    if resets && (has_mask || brush.channels == Channels::Mask) {
+        return [t, anchor, toward(mask, 0.0, share)];
+    }
+    over(from, texel_of(if resets { FocusOffset::STANDARD } else { brush.target }), share)
+}
+
+/// [t, anchor, mask] of a texel that was `from`, with `share` of a focus laid over it (Porter and Duff's *over*).
+pub(crate) fn over([t, anchor, mask]: [f32; 3], target: [f32; 2], share: f32) -> [f32; 3] {
+    let grown = toward(mask, 1.0, share);
+    let own = if grown > 0.0 { (share / grown).min(1.0) } else { 0.0 };
+    [toward(t, target[0], own), toward(anchor, target[1], own), grown]
+}
+
+/// `share` of the way from a to b; exactly b at 1, and exactly a where both are equal.
+fn toward(a: f32, b: f32, share: f32) -> f32 {
+    if share >= 1.0 { b } else { a + (b - a) * share }
+}

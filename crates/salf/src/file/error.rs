@@ -1,0 +1,26 @@
+//! What `.salf` files are refused for.
+
+use std::io;
+
+/// The version of the format that is written, and the only one that is read.
+pub const VERSION: u32 = 4;
+
+/// Why a `.salf` file cannot be used.
+#[derive(Debug, thiserror::Error)]
+pub enum SalfFileError {
+    /// It cannot be read to its end.
+    #[error("cannot be read: {0} (check the path, or bake it again)")]
+    Io(#[from] io::Error),
+    /// It is something else.
+    #[error("not a .salf file (bake one with `focus-brush bake`)")]
+    NotSalf,
+    /// It is of another version.
+    #[error("version {0} of the .salf format is not known, only version {VERSION} (bake it again)")]
+    Version(u32),
+    /// It ends early.
+    #[error("cut short (copy it again, or bake it again)")]
+    CutShort,
+    /// A value in it makes no sense.
+    #[error("damaged: {0} (copy it again, or bake it again)")]
+    Damaged(String),
+}

@@ -1,0 +1,57 @@
+//! Numbers and texts as they stand in a `.salf` file.
+
+use super::SalfFileError;
+use std::io::{self, Read, Write};
+
+/// More than any path takes.
+const LONGEST_TEXT: u32 = 1 << 16;
+/// Room made for samples before they are read: a wrong count must not take the memory.
+pub const FIRST_CAPACITY: u64 = 1 << 20;
+
+pub fn bytes<const N: usize>(from: &mut impl Read) -> Result<[u8; N], SalfFileError> {
+    let mut buffer = [0; N];
+    from.read_exact(&mut buffer).map_err(|error| match error.kind() {
+        io::ErrorKind::UnexpectedEof => SalfFileError::CutShort,
+        _ => SalfFileError::Io(error),
+    })?;
+    Ok(buffer)
+}
+
+pub fn write_text(to: &mut impl Write, text: &str) -> io::Result<()> {
+    to.write_all(&(text.len() as u32).to_le_bytes())?;
+    to.write_all(text.as_bytes())
+}
+
+pub fn read_text(from: &mut impl Read) -> Result<String, SalfFileError> {
+    let length = u32::from_le_bytes(bytes(from)?);
+    if length > LONGEST_TEXT {
+        return Err(SalfFileError::Damaged(format!("a text of {length} bytes")));
+    }
+    let mut text = vec![0; length as usize];
+    from.read_exact(&mut text).map_err(|_| SalfFileError::CutShort)?;
+    String::from_utf8(text).map_err(|_| SalfFileError::Damaged("a text that is not UTF-8".into()))
+}
+
+pub fn write_f64s(to: &mut impl Write, values: &[f64]) -> io::Result<()> {
+    values.iter().try_for_each(|value| to.write_all(&value.to_le_bytes()))
+}
+
+pub fn read_f64s<const N: usize>(from: &mut impl Read) -> Result<[f64; N], SalfFileError> {
+    let mut values = [0.0; N];
+    for value in &mut values {
+        *value = f64::from_le_bytes(bytes(from)?);
+    }
+    Ok(values)
+}
+
+pub fn write_f32s(to: &mut impl Write, values: &[f32]) -> io::Result<()> {
+    values.iter().try_for_each(|value| to.write_all(&value.to_le_bytes()))
+}
+
+pub fn read_f32s<const N: usize>(from: &mut impl Read) -> Result<[f32; N], SalfFileError> {
+    let mut values = [0.0; N];
+    for value in &mut values {
+        *value = f32::from_le_bytes(bytes(from)?);
+    }
+    Ok(values)
+}

@@ -1,0 +1,42 @@
+//! How a light field is baked.
+
+use crate::margin::painted_margin_px;
+use crate::view::View;
+use lens::{Camera, FocusOffset};
+use scene::SurfaceField;
+use trace::Tracer;
+
+/// How the light field is sampled.
+#[derive(Clone, Copy, Debug)]
+pub struct BakeOptions {
+    /// How far outside the frame to sample at least, px: the radius of the largest circle of confusion that paint
+    /// may give. What the standard picture needs is always sampled.
+    pub margin_px: f64,
+    /// How large a cell of a partly visible aperture may be on the picture, px, where 16 cells a side allow it: up to
+    /// this circle of confusion, samples have 8 cells a side. A pixel of a surface whose radiance varies by more
+    /// than [`Self::EVEN_PER_PX`] times this is a sample a quadrant. Smaller is more exact and takes more memory.
+    pub tolerance_px: f64,
+    /// Whether samples are packed ([`crate::Samples`]). It is right unless what that loses is to be measured.
+    pub packs: bool,
+}
+
+impl Default for BakeOptions {
+    fn default() -> Self {
+        Self { margin_px: 0.0, tolerance_px: Self::TOLERANCE_PX, packs: true }
+    }
+}
+
+impl BakeOptions {
+    /// The tolerance unless another one is asked for, px.
+    pub const TOLERANCE_PX: f64 = 2.0;
+
+    /// The mean radiances of the quadrants of a pixel that is one sample differ by at most this share of the largest, for
+    /// each px of tolerance.
+    pub const EVEN_PER_PX: f64 = 0.05;
+
+    /// Sampled as far outside the frame as `focus` needs.
+    pub fn for_focus(tracer: &Tracer, camera: &Camera, focus: &dyn SurfaceField<FocusOffset>) -> Self {
+        let view = View::new(camera, Self::TOLERANCE_PX);
+        Self { margin_px: painted_margin_px(tracer, &view, focus), ..Self::default() }
+    }
+}

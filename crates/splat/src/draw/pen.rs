@@ -1,0 +1,254 @@
+//! What nodes are drawn with, and in which form each is drawn.
+
+use crate::canvas::{PIXEL, POSITION_BITS};
+use crate::draw::image::{Image, Light, WHOLE, seed};
+use crate::fixed::{ONE, mul_shift};
+use crate::lens_in_use::{Detail, Placed};
+use crate::nodes::{Cells, Nodes, SplatNode};
+use crate::seen::Seen;
+use crate::stencil::Stencils;
+
+/// Aperture images of a smaller standard deviation, px, are boxes.
+const BOX_DEVIATION_PX: f64 = 0.75;
+
+/// Shapes of less variance are taken as of this share of it: so that products of it fit into 62 bits.
+const LARGEST_PER_VARIANCE: f64 = (1 << 28) as f64;
+
+/// x / 2^`times`, toward zero.
+#[inline(always)]
+fn halved(x: i32, times: u8) -> i32 {
+    (x + ((x >> 31) & ((1 << times) - 1))) >> times
+}
+
+/// What nodes are drawn with.
+pub struct Pen<'a> {
+    pub nodes: &'a Nodes,
+    pub stencils: &'a Stencils,
+    pub seen: &'a [Seen],
+    /// The lens's aperture radius as a share of the baked one, in 1/16384.
+    pub stop: i32,
+    /// Its reciprocal, in 1/16384.
+    pub per_stop: u32,
+    /// √3 standard deviations of the shape along each axis, times 65536: half a box as wide.
+    pub half: [u32; 2],
+    /// By what the tilt over the baked aperture moves the mean aperture point of the lens.
+    pub tilt_shift: [i32; 2],
+    pub mean: [i32; 2],
+    /// What levels blur too much, as squares of a stencil's radius: by level, (1/4096 px of the level)².
+    pub too_blurred: [i64; salf::tree::LEVELS],
+    /// 16384 over the mean variance.
+    pub per_variance: i64,
+    /// Images of partly occluded nodes of a smaller radius, 1/4096 px of their level, are boxes.
+    pub box_radius: u32,
+    /// Smaller changes of an open node's weight over the aperture, as a share of it in 1/16384, only move its image.
+    pub even_tilt: i32,
+    /// Changes of a partly occluded node's weight that are not larger do not count.
+    pub even_seen_tilt: i32,
+    /// Parts of the aperture whose images are boxes.
+    pub parts: Vec<BoxPart>,
+    /// Even images of a smaller radius, 1/4096 px, are one box; others one a part of the aperture.
+    pub one_box_radius: u32,
+    /// Images of partly occluded nodes of a smaller radius, 1/4096 px of their level, take of all rows of cells that a pixel row
+    /// lies across.
+    pub all_rows_radius: u32,
+    /// Whether what is drawn is drawn as exactly as it can be.
+    pub is_exact: bool,
+    /// From which |radius| on, 1/4096 px, stencils follow boxes; at twice that they are alone.
+    pub stencil_radius: u32,
+    /// 2³² over it.
+    pub per_stencil_radius: u32,
+}
+
+/// A part of the aperture: its share times 2²⁴, mean and variance times 16384, √3 deviations times 65536.
+#[derive(Clone, Copy)]
+pub struct BoxPart {
+    pub share: u32,
+    pub mean: [i32; 2],
+    pub variance: [i32; 2],
+    pub half: [u32; 2],
+}
+
+/// What a node sees that sees all.
+pub const ALL: Cells = [u16::MAX; 16];
+
+/// A form that a node, or a part of its light, is drawn in; shares are times 2²⁴.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Form {
+    /// One box, with this share of the light.
+    Box(u32),
+    /// A box for each part of the aperture, with this share of the light.
+    Parts(u32),
+    /// The aperture's image, with this share of the light.
+    Image(u32),
+    /// The same where the weight changes over the aperture.
+    Tilted(u32),
+    /// The box of what is seen of the aperture.
+    SeenBox,
+    /// The image of what is seen of it.
+    Seen,
+}
+
+impl<'a> Pen<'a> {
+    pub fn new(
+        nodes: &'a Nodes,
+        stencils: &'a Stencils,
+        seen: &'a [Seen],
+        stop: f64,
+        detail: Detail,
+    ) -> Self {
+        let shape = &stencils.shape;
+        let variance = (shape.variance.x + shape.variance.y) / 2.0;
+        let fixed = |x: f64| (x * ONE as f64).round() as i32;
+        let half = |variance: f64| ((3.0 * variance).sqrt() * 65536.0).round() as u32;
+        // On level ℓ the picture gets the variance σ²r'² + 4^ℓ/12 px² and should get σ²r² + footprint + 1/12.
+        let too_blurred = std::array::from_fn(|level| {
+            ((1.0 - 0.25f64.powi(level as i32)) / 12.0 / variance * (PIXEL as f64).powi(2)).round() as i64
+        });
+        let parts = stencils.parts[usize::from(detail == Detail::Exact)].iter().map(|part| BoxPart {
+            share: (part.share * WHOLE as f64).round() as u32,
+            mean: part.mean.to_array().map(fixed),
+            variance: part.variance.to_array().map(fixed),
+            half: part.variance.to_array().map(half),
+        });
+        let deviations =
+            |factor: f64| (factor * BOX_DEVIATION_PX / variance.sqrt() * PIXEL as f64).ceil() as u32;
+        let stop = fixed(stop);
+        // To look at, one box will do until the stencils take over.
+        let [stencil_radius, one_box_radius] = match detail {
+            Detail::Exact => [deviations(0.5), deviations(0.5)],
+            Detail::Fine | Detail::Sketch => [deviations(0.3), u32::MAX],
+        };
+        let [even_tilt, even_seen_tilt] = match detail {
+            Detail::Exact => [ONE / 40, 0],
+            Detail::Fine | Detail::Sketch => [ONE / 20, ONE / 20],
+        };
+        let box_radius = deviations(match detail {
+            Detail::Exact => 1.0,
+            Detail::Fine => 1.5,
+            Detail::Sketch => 2.0,
+        });
+        // Below 3 px one of three rows of cells, or of more, would stand for a pixel row.
+        let all_rows_radius = match detail {
+            Detail::Exact => u32::MAX,
+            Detail::Fine => 3 * PIXEL as u32,
+            Detail::Sketch => 0,
+        };
+        Self {
+            nodes,
+            stencils,
+            seen,
+            stop,
+            per_stop: (1 << 28) / stop.max(1) as u32,
+            half: shape.variance.to_array().map(half),
+            tilt_shift: (shape.variance * stop as f64 / ONE as f64).to_array().map(fixed),
+            mean: shape.mean.to_array().map(fixed),
+            too_blurred,
+            per_variance: (ONE as f64 / variance).round().min(LARGEST_PER_VARIANCE) as i64,
+            parts: parts.collect(),
+            is_exact: detail == Detail::Exact,
+            stencil_radius,
+            per_stencil_radius: u32::MAX / stencil_radius,
+            box_radius,
+            all_rows_radius,
+            one_box_radius,
+            even_tilt,
+            even_seen_tilt,
+        }
+    }
+
+    /// The image of a node that was placed.
+    #[inline(always)]
+    pub fn image<'n>(&self, node: &'n SplatNode, light: [f32; 4], placed: Placed) -> Image<'n> {
+        Image {
+            node,
+            level: placed.level,
+            center: [node.center[0] >> placed.level, node.center[1] >> placed.level],
+            radius: halved(placed.radius, placed.level),
+            light: Light::of(light).coarser(placed.level - node.level),
+            share: WHOLE,
+            dither: seed(node, placed.level, self.nodes.middle),
+        }
+    }
+
+    /// What a partly occluded node sees, and its share (times 2²⁴) of the light.
+    #[inline(always)]
+    pub fn seen_of<'n>(&'n self, node: &SplatNode) -> (&'n Cells, u32) {
+        match self.nodes.cells(node) {
+            Some(cells) => (cells, self.seen[node.cells as usize].share),
+            None => (&ALL, WHOLE),
+        }
+    }
+
+    /// About what it costs to draw a node, in nanoseconds.
+    #[inline(always)]
+    pub fn cost(&self, node: &SplatNode, placed: Placed) -> u64 {
+        let radius = placed.radius.unsigned_abs() >> placed.level;
+        let rows = (radius >> (POSITION_BITS - 1)) + 2;
+        let once = match node.is_open() {
+            true if !self.is_even(node) && placed.level == 0 => 150 + 30 * rows,
+            false if radius >= self.box_radius => 100 + 40 * rows,
+            _ => 50 + 10 * rows,
+        };
+        u64::from(if node.is_bright { 2 * once } else { once })
+    }
+
+    /// Calls `visit` with the forms that a node that was placed is drawn in.
+    #[inline(always)]
+    pub fn forms(&self, node: &SplatNode, placed: Placed, mut visit: impl FnMut(Form)) {
+        let radius = placed.radius.unsigned_abs();
+        if !node.is_open() {
+            let is_box = radius >> placed.level < self.box_radius;
+            return if is_box { visit(Form::SeenBox) } else { visit(Form::Seen) };
+        }
+        let is_even = self.is_even(node);
+        let far = match placed.level {
+            0 => self.part_drawn_as_stencil(node, radius),
+            _ => 1 << 16,
+        };
+        if far < 1 << 16 {
+            let share = WHOLE - (far << 8);
+            let is_one = is_even && radius < self.one_box_radius;
+            visit(if is_one { Form::Box(share) } else { Form::Parts(share) });
+        }
+        if far > 0 && is_even {
+            visit(Form::Image(far << 8));
+        } else if far > 0 {
+            let lean = node.tilt[0] as i32 * self.mean[0] + node.tilt[1] as i32 * self.mean[1];
+            let weight = (((node.base as i32) << 14) + lean).max(0);
+            visit(Form::Tilted(mul_shift(far << 8, weight as u32, 28)));
+        }
+    }
+
+    /// Whether an open node's weight hardly changes over the aperture.
+    #[inline(always)]
+    fn is_even(&self, node: &SplatNode) -> bool {
+        node.tilt[0].abs() as i32 + (node.tilt[1].abs() as i32) < self.even_tilt
+    }
+
+    /// How much of a node's light is drawn as a stencil, times 65536; the rest is boxes. To look at, all of it or nothing, by
+    /// chance: one form costs half of two.
+    #[inline(always)]
+    fn part_drawn_as_stencil(&self, node: &SplatNode, radius: u32) -> u32 {
+        let part = self.part_of_stencil(radius);
+        if self.is_exact || part.is_multiple_of(1 << 16) {
+            return part;
+        }
+        let chance = seed(node, 0, self.nodes.middle) >> 16;
+        u32::from(chance < part) << 16
+    }
+
+    /// How much of it is one on average. Where one form follows the other on a surface they mix, for they differ a little.
+    #[inline(always)]
+    fn part_of_stencil(&self, radius: u32) -> u32 {
+        const ONE: u32 = 1 << 16;
+        if radius <= self.stencil_radius {
+            return 0;
+        }
+        if radius - self.stencil_radius >= self.stencil_radius {
+            return ONE;
+        }
+        let part = mul_shift(radius - self.stencil_radius, self.per_stencil_radius, 16);
+        // Smoothly, or the coverage would show where it begins.
+        mul_shift(mul_shift(part, part, 16), 3 * ONE - 2 * part, 16)
+    }
+}

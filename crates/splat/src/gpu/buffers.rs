@@ -1,0 +1,85 @@
+//! Buffers in the card's memory: made, written, bound and read.
+
+use crate::gpu::Gpu;
+use crate::gpu::device::Lost;
+use std::ops::Range;
+use std::sync::mpsc;
+use wgpu::{BindGroup, BindGroupLayout, Buffer, BufferBinding, BufferUsages};
+
+impl Gpu {
+    /// A buffer of so many words (at least a few, for none can be bound that is empty).
+    pub(super) fn buffer(&self, label: &str, words: usize, usage: BufferUsages) -> Result<Buffer, Lost> {
+        let size = 4 * words.max(16) as u64;
+        if size > self.largest_binding() {
+            return Err(Lost);
+        }
+        let scope = self.device().push_error_scope(wgpu::ErrorFilter::OutOfMemory);
+        let descriptor =
+            wgpu::BufferDescriptor { label: Some(label), size, usage, mapped_at_creation: false };
+        let buffer = self.device().create_buffer(&descriptor);
+        match pollster::block_on(scope.pop()) {
+            Some(_) => Err(Lost),
+            None => Ok(buffer),
+        }
+    }
+
+    /// Writes words to a buffer's beginning.
+    pub(super) fn write(&self, buffer: &Buffer, words: &[u32]) {
+        self.write_at(buffer, 0, words);
+    }
+
+    /// Writes words, from the one at `first` on, to their places in a buffer.
+    pub(super) fn write_at(&self, buffer: &Buffer, first: usize, words: &[u32]) {
+        if first < words.len() {
+            self.queue().write_buffer(buffer, 4 * first as u64, bytemuck::cast_slice(&words[first..]));
+        }
+    }
+
+    /// Buffers at their bindings.
+    pub(super) fn bind<'a>(
+        &self,
+        layout: &BindGroupLayout,
+        buffers: impl IntoIterator<Item = (u32, &'a Buffer)>,
+    ) -> BindGroup {
+        let whole = |(binding, buffer): (u32, &'a Buffer)| (binding, buffer.as_entire_buffer_binding());
+        self.bind_parts(layout, buffers.into_iter().map(whole))
+    }
+
+    /// Parts of buffers at their bindings.
+    pub(super) fn bind_parts<'a>(
+        &self,
+        layout: &BindGroupLayout,
+        parts: impl IntoIterator<Item = (u32, BufferBinding<'a>)>,
+    ) -> BindGroup {
+        let entries = parts.into_iter().map(|(binding, part)| wgpu::BindGroupEntry {
+            binding,
+            resource: wgpu::BindingResource::Buffer(part),
+        });
+        let entries: Vec<_> = entries.collect();
+        let descriptor = wgpu::BindGroupDescriptor { label: None, layout, entries: &entries };
+        self.device().create_bind_group(&descriptor)
+    }
+
+    /// The words of a range of bytes of a buffer.
+    pub(super) fn read(&self, buffer: &Buffer, range: Range<u64>) -> Result<Vec<u32>, Lost> {
+        self.check()?;
+        let size = range.end - range.start;
+        let usage = BufferUsages::MAP_READ | BufferUsages::COPY_DST;
+        let staging = self.buffer("read", size as usize / 4, usage)?;
+        let mut encoder = self.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        encoder.copy_buffer_to_buffer(buffer, range.start, &staging, 0, size);
+        let asked_for = self.queue().submit([encoder.finish()]);
+        let (sender, receiver) = mpsc::channel();
+        staging.map_async(wgpu::MapMode::Read, 0..size, move |result| {
+            // Nobody listens any more where the device was lost meanwhile.
+            let _ = sender.send(result.is_ok());
+        });
+        self.wait_for(asked_for)?;
+        if !self.answer(&receiver)? {
+            return Err(Lost);
+        }
+        let view = staging.get_mapped_range(0..size).map_err(|_| Lost)?;
+        self.check()?;
+        Ok(view.chunks_exact(4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect())
+    }
+}

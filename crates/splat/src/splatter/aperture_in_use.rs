@@ -1,0 +1,44 @@
+//! The aperture that a picture is summed with.
+
+use crate::draw::Pen;
+use crate::drawn::Scene;
+use crate::lens_in_use::LensInUse;
+use crate::nodes::Nodes;
+use crate::paint::Paint;
+use crate::seen::{Seen, seen};
+use crate::shape::Shape;
+use crate::stencil::Stencils;
+use lens::{Aperture, Camera};
+
+/// What depends on the aperture's shape, and on how far it is stopped down from the baked one.
+pub struct ApertureInUse {
+    pub aperture: Aperture,
+    pub stop: f64,
+    pub stencils: Stencils,
+    seen: Vec<Seen>,
+}
+
+impl ApertureInUse {
+    pub fn new(aperture: &Aperture, stop: f64, nodes: Option<&Nodes>) -> Self {
+        let shape = Shape::new(aperture);
+        // A pinhole sees what its chief ray sees.
+        let seen = nodes.map_or_else(Vec::new, |nodes| seen(nodes, &shape, stop.max(1e-3)));
+        Self { aperture: aperture.clone(), stop, stencils: Stencils::new(shape), seen }
+    }
+
+    /// What nodes are drawn with.
+    pub fn pen<'a>(&'a self, nodes: &'a Nodes, lens: &LensInUse) -> Pen<'a> {
+        Pen::new(nodes, &self.stencils, &self.seen, self.stop, lens.detail)
+    }
+
+    /// What is summed of `camera`'s picture.
+    pub fn scene<'a>(
+        &'a self,
+        nodes: &'a Nodes,
+        lens: &'a LensInUse,
+        paint: &'a Paint,
+        camera: &Camera,
+    ) -> Scene<'a> {
+        Scene { pen: self.pen(nodes, lens), lens, paint, size: [camera.width, camera.height] }
+    }
+}

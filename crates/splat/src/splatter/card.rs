@@ -1,0 +1,181 @@
+//! The graphics card that a picture is summed on, until it is lost.
+
+use super::error::SplatError;
+use super::wanted::Finish;
+use crate::balance::{Gains, NO_REST, rest};
+use crate::draw::Pen;
+use crate::drawn::{Changes, Scene, hull};
+use crate::gpu::{Gpu, GpuError, GpuSums, PictureOnCard};
+use crate::nodes::Nodes;
+use lens::Picture;
+use progress::Progress;
+use std::ops::Range;
+
+/// The card that is used, if one is.
+#[derive(Default)]
+pub struct Card {
+    gpu: Option<Gpu>,
+    /// Its sums, from the first render on.
+    sums: Option<GpuSums>,
+    is_lost: bool,
+    /// Whether pictures stay there until they are asked for.
+    pub keeps: bool,
+    /// The rows that are newer there.
+    newer: Range<u32>,
+}
+
+impl Card {
+    /// Uses another card, or none.
+    pub fn replace(&mut self, gpu: Option<Gpu>) {
+        *self = Self { gpu, keeps: self.keeps, ..Self::default() };
+    }
+
+    /// The same card with other sums of the same nodes, which are there.
+    pub fn twin(&self) -> Self {
+        // Where it has no room, the next sum finds out.
+        let sums = self.sums.as_ref().and_then(|sums| sums.twin().ok());
+        Self { gpu: self.gpu.clone(), sums, keeps: self.keeps, ..Self::default() }
+    }
+
+    /// Uploads the nodes if that has not been done, for a picture of `size`.
+    pub fn take_up(&mut self, nodes: &Nodes, size: [usize; 2]) {
+        let (Some(gpu), None) = (&self.gpu, &self.sums) else { return };
+        match GpuSums::new(gpu, nodes, size) {
+            Ok(sums) => self.sums = Some(sums),
+            Err(_) => *self = Self::default(),
+        }
+    }
+
+    /// The next picture is of another aperture.
+    pub fn forget_aperture(&mut self) {
+        if let Some(sums) = &mut self.sums {
+            sums.forget_aperture();
+        }
+    }
+
+    /// Work on another picture begins.
+    pub fn begin(&self) {
+        if let Some(sums) = &self.sums {
+            sums.begin();
+        }
+    }
+
+    /// The next picture is painted otherwise.
+    pub fn forget_paint(&mut self) {
+        if let Some(sums) = &mut self.sums {
+            sums.forget_paint();
+        }
+    }
+
+    /// Whether the sums are on it.
+    pub fn has_sums(&self) -> bool {
+        self.sums.is_some()
+    }
+
+    /// Whether it was lost.
+    pub fn is_lost(&self) -> bool {
+        self.is_lost
+    }
+
+    /// The card itself.
+    pub fn gpu(&self) -> Option<&Gpu> {
+        self.gpu.as_ref()
+    }
+
+    /// Bytes of the hierarchy and of the sums.
+    pub fn bytes(&self) -> [usize; 2] {
+        self.sums.as_ref().map_or([0; 2], GpuSums::bytes)
+    }
+
+    /// See [`Splatter::seconds_on_card`](crate::Splatter::seconds_on_card).
+    pub fn seconds(&self) -> Option<f64> {
+        self.sums.as_ref()?.seconds()
+    }
+
+    /// The picture on it, of this width and height.
+    pub fn picture(&self, size: [u32; 2]) -> Option<PictureOnCard> {
+        let (gpu, sums) = (self.gpu.as_ref()?, self.sums.as_ref()?);
+        Some(PictureOnCard::of(gpu, sums.picture(), size))
+    }
+
+    /// Sums what a scene sends; `None` where the sums are not on a card.
+    pub fn sum(&mut self, scene: &Scene, progress: &dyn Progress) -> Option<Result<(), SplatError>> {
+        let set = self.sums.as_mut()?.set(scene, progress);
+        Some(self.came_of(set))
+    }
+
+    /// Takes nodes away and adds others; `None` where the sums are not on a card.
+    pub fn change(&mut self, pen: &Pen, changes: &Changes) -> Option<Result<(), SplatError>> {
+        let changed = self.sums.as_mut()?.change(pen, changes);
+        Some(self.came_of(changed))
+    }
+
+    /// Finds the shares of a standard picture, which stay there, and the gains.
+    pub fn find_shares(&mut self, nodes: &Nodes) -> Result<Gains, SplatError> {
+        let gains = match &mut self.sums {
+            Some(sums) => sums.find_shares(nodes),
+            None => Err(GpuError::Lost),
+        };
+        self.came_of(gains)
+    }
+
+    /// Makes pixel rows of a picture, and brings them back unless they are kept.
+    pub fn make_picture(
+        &mut self,
+        nodes: &Nodes,
+        rows: Range<u32>,
+        finish: Finish,
+        gains: &Gains,
+        picture: &mut Picture,
+    ) -> Result<(), SplatError> {
+        let made = self.try_make_picture(nodes, rows, finish, gains, picture);
+        self.came_of(made)
+    }
+
+    fn try_make_picture(
+        &mut self,
+        nodes: &Nodes,
+        rows: Range<u32>,
+        finish: Finish,
+        gains: &Gains,
+        picture: &mut Picture,
+    ) -> Result<(), GpuError> {
+        let sums = self.sums.as_ref().ok_or(GpuError::Lost)?;
+        sums.integrate(nodes, &rows, finish == Finish::Evened)?;
+        let is_balanced = finish == Finish::Balanced;
+        let rest = if is_balanced { rest(&sums.shared_sums(gains)?) } else { NO_REST };
+        let asked_for = sums.make_picture(gains, rest, &rows);
+        if !self.keeps {
+            return sums.read_picture(rows, picture);
+        }
+        let newer = std::mem::take(&mut self.newer);
+        self.newer = hull([newer, rows].into_iter().filter(|rows| !rows.is_empty()));
+        sums.wait_for(asked_for)
+    }
+
+    /// Brings back what of the picture is newer here; `None` where nothing is.
+    pub fn fetch(&mut self, picture: &mut Picture) -> Option<Result<(), SplatError>> {
+        let rows = std::mem::take(&mut self.newer);
+        let sums = self.sums.as_ref().filter(|_| !rows.is_empty())?;
+        let read = sums.read_picture(rows, picture);
+        Some(self.came_of(read))
+    }
+
+    /// What came of work on the card. The loss of the card stops all work on it.
+    fn came_of<T>(&mut self, result: Result<T, GpuError>) -> Result<T, SplatError> {
+        result.map_err(|error| match error {
+            GpuError::Overflow => SplatError::Overflow,
+            GpuError::Cancelled => SplatError::Cancelled,
+            GpuError::Lost => {
+                self.is_lost = true;
+                SplatError::Cancelled
+            }
+        })
+    }
+
+    /// The sums on it.
+    #[cfg(test)]
+    pub fn sums(&self) -> Option<&GpuSums> {
+        self.sums.as_ref()
+    }
+}

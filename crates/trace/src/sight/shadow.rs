@@ -1,0 +1,79 @@
+//! The shadow of a triangle on a square.
+//!
+//! From a point P the place U of the square lies behind a triangle q₀q₁q₂ if
+//!
+//! ```text
+//! s·(U − P)·(q₁×q₂) ≥ 0,  s·(U − P)·(q₂×q₀) ≥ 0,  s·(U − P)·(q₀×q₁) ≥ 0,  s·((U − P)·n − n·q₀) > 0
+//! ```
+//!
+//! with corners relative to P, n the triangle's normal and s the sign of n·q₀: the ray passes within its three edges, and
+//! U lies beyond its plane. All four are linear in U, and so in the coordinates u, v of the square: a triangle is set up
+//! once and tried on all places with two multiplications each. Two triangles that share an edge have exactly opposite
+//! functions there, so that no ray passes between them. Toward a point at infinity the same holds with its direction.
+
+use crate::sight::{Eye, Square};
+use glam::{DVec3, Vec4};
+
+/// A linear function of u and v.
+#[derive(Clone, Copy)]
+pub(super) struct Linear([f32; 3]);
+
+impl Linear {
+    /// a·u + b·v + c, scaled.
+    fn new(a: f64, b: f64, c: f64) -> Self {
+        // A power of two, that of the function with the opposite sign too.
+        let largest = a.abs().max(b.abs()).max(c.abs());
+        let exponent = (largest.to_bits() >> 52).min(2045);
+        let scale = f64::from_bits((2046 - exponent) << 52);
+        Self([a, b, c].map(|part| (part * scale) as f32))
+    }
+
+    #[inline(always)]
+    pub fn of(self, [u, v]: [Vec4; 2]) -> Vec4 {
+        let [a, b, c] = self.0.map(Vec4::splat);
+        (a * u + b * v) + c
+    }
+}
+
+/// The places behind a triangle: where its edges' functions are not negative, and that of its plane is positive.
+pub(super) struct Shadow {
+    pub edges: [Linear; 3],
+    pub beyond: Linear,
+}
+
+impl Shadow {
+    /// Of the triangle with these corners on a square that is looked at from `eye`; `None` if it throws none: it is seen along
+    /// its plane.
+    #[inline(always)]
+    pub fn of(corners: &[DVec3; 3], eye: Eye, square: &Square) -> Option<Self> {
+        let Square { center, right, up } = *square;
+        match eye {
+            Eye::At(point) => {
+                let [a, b, c] = corners.map(|corner| corner - point);
+                let to_square = center - point;
+                let normal = (b - a).cross(c - a);
+                let height = normal.dot(a);
+                let sign = height.signum();
+                let linear = |n: DVec3, offset: f64| {
+                    Linear::new(sign * n.dot(right), sign * n.dot(up), sign * (n.dot(to_square) - offset))
+                };
+                let edges = [linear(b.cross(c), 0.0), linear(c.cross(a), 0.0), linear(a.cross(b), 0.0)];
+                (height != 0.0).then(|| Self { edges, beyond: linear(normal, height) })
+            }
+            Eye::Toward(direction) => {
+                let [a, b, c] = corners.map(|corner| corner - center);
+                let normal = (b - a).cross(c - a);
+                let facing = normal.dot(direction);
+                let sign = facing.signum();
+                let edge = |from: DVec3, to: DVec3| {
+                    let along = direction.cross(to - from);
+                    let offset = direction.dot(from.cross(to));
+                    Linear::new(sign * along.dot(right), sign * along.dot(up), sign * offset)
+                };
+                let beyond =
+                    Linear::new(-sign * normal.dot(right), -sign * normal.dot(up), sign * normal.dot(a));
+                (facing != 0.0).then(|| Self { edges: [edge(b, c), edge(c, a), edge(a, b)], beyond })
+            }
+        }
+    }
+}

@@ -1,0 +1,87 @@
+//! No circle of modules: within a crate, what two modules need of each other stands below both.
+//!
+//! A module here is a source file. It leads to another when its code names something that the other *defines*, in a
+//! `use` or by a path: `tokens` reads the text (without tests), `source` what each module declares and names,
+//! `crate_modules` follows every name through `pub use` and `*` to the file that defines it, `circle` finds the files
+//! that lead to one another. `mod x;` leads nowhere, nor does passing on what a module below defines.
+//!
+//! It reads text, not types. What is used by no name is not seen: methods and fields, and so `impl`s of one type in
+//! several files.
+
+mod circle;
+mod crate_modules;
+mod source;
+#[cfg(test)]
+mod tests;
+mod tokens;
+
+use crate::chore::{Failure, cargo, output_of};
+use circle::{Circle, circles_of};
+use crate_modules::CrateModules;
+use serde_json::Value;
+use std::ffi::OsString;
+use std::path::{Path, PathBuf};
+
+/// Checks the workspace as it is.
+pub fn check() -> Result<(), Failure> {
+    circles(&[])
+}
+
+/// Checks the crates that are named, or all.
+///
+/// # Errors
+/// When modules lead to one another: each circle, with the names that tie it.
+pub fn circles(crates: &[OsString]) -> Result<(), Failure> {
+    let metadata = output_of(cargo("metadata").args(["--no-deps", "--format-version", "1"]))?;
+    let metadata: Value =
+        serde_json::from_slice(&metadata).map_err(|e| Failure::new(format!("cargo metadata: {e}")))?;
+    let mut told = Vec::new();
+    for (name, root) in roots(&metadata) {
+        if crates.is_empty() || crates.iter().any(|chosen| *chosen == *name) {
+            let found =
+                circles_in(&root, &|file| std::fs::read_to_string(file).ok()).map_err(Failure::new)?;
+            told.extend(found.iter().map(|circle| format!("{name}: {circle}")));
+        }
+    }
+    if told.is_empty() {
+        return Ok(());
+    }
+    Err(Failure::new(format!("circles of modules:\n\n{}", told.join("\n"))))
+}
+
+/// The libraries and programs in the output of `cargo metadata --no-deps`: the package's name and the root file.
+fn roots(metadata: &Value) -> Vec<(String, PathBuf)> {
+    let mut roots = Vec::new();
+    for package in metadata["packages"].as_array().into_iter().flatten() {
+        for target in package["targets"].as_array().into_iter().flatten() {
+            let kinds = target["kind"].as_array().into_iter().flatten();
+            let counts = kinds.filter_map(Value::as_str).any(|kind| ["lib", "bin"].contains(&kind));
+            if let (true, Some(root)) = (counts, target["src_path"].as_str()) {
+                roots.push((package["name"].as_str().unwrap_or_default().to_string(), root.into()));
+            }
+        }
+    }
+    roots
+}
+
+/// The circles of the crate whose root is the file `root`, each as a person would want to read it.
+fn circles_in(root: &Path, read: &dyn Fn(&Path) -> Option<String>) -> Result<Vec<String>, String> {
+    let modules = CrateModules::read(root, read)?;
+    let folder = root.parent().unwrap_or(Path::new(""));
+    let shown = |file: usize| {
+        let file = &modules.files()[file];
+        file.strip_prefix(folder).unwrap_or(file).display().to_string()
+    };
+    Ok(circles_of(&modules.arrows()).iter().map(|circle| told(circle, &shown)).collect())
+}
+
+/// A circle in words: how many modules, then a line for every arrow.
+fn told(circle: &Circle, shown: &dyn Fn(usize) -> String) -> String {
+    let mut lines = vec![format!("{} modules in a circle", circle.files.len())];
+    for arrows in circle.arrows.chunk_by(|a, b| (a.from, a.to) == (b.from, b.to)) {
+        let names: Vec<_> = arrows.iter().map(|arrow| arrow.name.as_str()).collect();
+        lines.push(format!("  {} -> {}: {}", shown(arrows[0].from), shown(arrows[0].to), names.join(", ")));
+    }
+    lines.push(String::new());
+    lines.join("\n")
+}

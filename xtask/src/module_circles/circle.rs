@@ -1,0 +1,43 @@
+//! Circles of arrows: files that all lead to one another.
+
+use super::crate_modules::Arrow;
+use std::collections::BTreeSet;
+
+/// Files each of which uses every other, by whatever detour.
+#[derive(Debug, PartialEq, Eq)]
+pub struct Circle {
+    /// The files, in order.
+    pub files: Vec<usize>,
+    /// The arrows between them.
+    pub arrows: Vec<Arrow>,
+}
+
+/// All circles among `arrows`; no file is in two of them.
+pub fn circles_of(arrows: &[Arrow]) -> Vec<Circle> {
+    let files: BTreeSet<usize> = arrows.iter().map(|arrow| arrow.from).collect();
+    let mut circles: Vec<Circle> = Vec::new();
+    for file in files {
+        let known = circles.iter().any(|circle| circle.files.contains(&file));
+        let reached = reached_from(file, arrows);
+        if known || !reached.contains(&file) {
+            continue;
+        }
+        let files: Vec<usize> =
+            reached.iter().copied().filter(|other| reached_from(*other, arrows).contains(&file)).collect();
+        let within = |arrow: &&Arrow| files.contains(&arrow.from) && files.contains(&arrow.to);
+        let arrows = arrows.iter().filter(within).cloned().collect();
+        circles.push(Circle { files, arrows });
+    }
+    circles
+}
+
+/// The files that arrows lead to from `start`, in one step or more.
+fn reached_from(start: usize, arrows: &[Arrow]) -> BTreeSet<usize> {
+    let mut reached = BTreeSet::new();
+    let mut open = vec![start];
+    while let Some(file) = open.pop() {
+        let next = arrows.iter().filter(|arrow| arrow.from == file).map(|arrow| arrow.to);
+        open.extend(next.filter(|next| reached.insert(*next)));
+    }
+    reached
+}

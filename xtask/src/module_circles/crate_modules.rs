@@ -1,0 +1,226 @@
+//! The modules of one crate, and which module it is that a path ends in.
+
+use super::source::{Import, Source, source_of};
+use super::tokens::{tokens_of, without_tests};
+use std::path::{Path, PathBuf};
+
+/// A crate: its modules, the root first.
+pub struct CrateModules {
+    modules: Vec<Module>,
+    files: Vec<PathBuf>,
+}
+
+struct Module {
+    /// Which of the files it stands in.
+    file: usize,
+    parent: Option<usize>,
+    children: Vec<(String, usize)>,
+    source: Source,
+}
+
+/// What a path names.
+#[derive(Clone, Debug, PartialEq, Eq)]
+enum Named {
+    Module(usize),
+    Item { module: usize, name: String },
+}
+
+/// That the code of one file names what another defines.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Arrow {
+    /// The file that uses, by its place in [`CrateModules::files`].
+    pub from: usize,
+    /// The file that is used.
+    pub to: usize,
+    /// What is used; `*` for all that a module has.
+    pub name: String,
+}
+
+impl CrateModules {
+    /// Reads the crate whose root is the file `root`; `read` gives the text of a file, or nothing where none is.
+    ///
+    /// # Errors
+    /// A sentence, when a module has no file.
+    pub fn read(root: &Path, read: &dyn Fn(&Path) -> Option<String>) -> Result<Self, String> {
+        let mut this = Self { modules: Vec::new(), files: Vec::new() };
+        let text = read(root).ok_or_else(|| format!("{}: cannot be read", root.display()))?;
+        let folder = root.parent().unwrap_or(Path::new(""));
+        this.add_file(None, root, folder, &text, read)?;
+        Ok(this)
+    }
+
+    /// The files of the crate.
+    pub fn files(&self) -> &[PathBuf] {
+        &self.files
+    }
+
+    /// Adds the module in `file`, whose children stand in `folder`.
+    fn add_file(
+        &mut self,
+        parent: Option<usize>,
+        file: &Path,
+        folder: &Path,
+        text: &str,
+        read: &dyn Fn(&Path) -> Option<String>,
+    ) -> Result<usize, String> {
+        self.files.push(file.to_path_buf());
+        let source = source_of(&without_tests(&tokens_of(text)));
+        self.add(parent, self.files.len() - 1, folder, source, read)
+    }
+
+    fn add(
+        &mut self,
+        parent: Option<usize>,
+        file: usize,
+        folder: &Path,
+        mut source: Source,
+        read: &dyn Fn(&Path) -> Option<String>,
+    ) -> Result<usize, String> {
+        let inline = std::mem::take(&mut source.inline);
+        let child_files = source.child_files.clone();
+        let this = self.modules.len();
+        self.modules.push(Module { file, parent, children: Vec::new(), source });
+        for (name, source) in inline {
+            let child = self.add(Some(this), file, &folder.join(&name), source, read)?;
+            self.modules[this].children.push((name, child));
+        }
+        for name in child_files {
+            let inner = folder.join(&name);
+            let places = [folder.join(format!("{name}.rs")), inner.join("mod.rs")];
+            let found = places.iter().find_map(|place| Some((place, read(place)?)));
+            let Some((place, text)) = found else {
+                return Err(format!("{}: module {name} has no file", self.files[file].display()));
+            };
+            let child = self.add_file(Some(this), place, &inner, &text, read)?;
+            self.modules[this].children.push((name, child));
+        }
+        Ok(this)
+    }
+
+    /// Which file uses what of which other, in order and each once.
+    pub fn arrows(&self) -> Vec<Arrow> {
+        let mut arrows = Vec::new();
+        for (index, module) in self.modules.iter().enumerate() {
+            let imports = module.source.imports.iter().filter_map(|import| self.imported(index, import));
+            let walked =
+                module.source.paths.iter().filter_map(|path| self.resolve(index, path, &mut Vec::new()));
+            for named in imports.chain(walked) {
+                // A module's name alone is only the way to what is in it.
+                let Named::Item { module: to, name } = named else { continue };
+                let (from, to) = (module.file, self.modules[to].file);
+                if from != to {
+                    arrows.push(Arrow { from, to, name });
+                }
+            }
+        }
+        arrows.sort();
+        arrows.dedup();
+        arrows
+    }
+
+    /// What an import of a module brings to its own code.
+    fn imported(&self, module: usize, import: &Import) -> Option<Named> {
+        let named = self.resolve(module, &import.path, &mut Vec::new())?;
+        let defining = match &named {
+            Named::Module(defining) | Named::Item { module: defining, .. } => *defining,
+        };
+        // Passing on what a module below has is not using it.
+        let passed_on = import.public && self.is_below(defining, module);
+        match &import.name {
+            None if passed_on => None,
+            None => Some(match named {
+                Named::Module(module) => Named::Item { module, name: "*".to_string() },
+                Named::Item { module, name } => Named::Item { module, name: format!("{name}::*") },
+            }),
+            Some(name) if passed_on && !self.modules[module].source.words.contains(name) => None,
+            Some(_) => Some(named),
+        }
+    }
+
+    fn is_below(&self, module: usize, above: usize) -> bool {
+        std::iter::successors(Some(module), |m| self.modules[*m].parent).skip(1).any(|m| m == above)
+    }
+
+    /// What `path`, written in `module`, names within this crate. `asked` are the names that wait for this answer.
+    fn resolve(
+        &self,
+        module: usize,
+        path: &[String],
+        asked: &mut Vec<(usize, String, bool)>,
+    ) -> Option<Named> {
+        let mut at = module;
+        let mut rest = path;
+        while let [first, further @ ..] = rest {
+            match first.as_str() {
+                "crate" => at = 0,
+                "super" => at = self.modules[at].parent?,
+                "self" => {}
+                _ => break,
+            }
+            rest = further;
+        }
+        let anchored = rest.len() < path.len();
+        for (index, name) in rest.iter().enumerate() {
+            let leads_on = index + 1 < rest.len();
+            match self.look_up(at, name, leads_on, asked) {
+                Some(Named::Module(inner)) => at = inner,
+                Some(item) => return Some(item),
+                // A name that leads to another crate, or a local one.
+                None if index == 0 && !anchored => return None,
+                // Nothing that is seen here; whatever it is, this module has it.
+                None => return Some(Named::Item { module: at, name: name.clone() }),
+            }
+        }
+        Some(Named::Module(at))
+    }
+
+    /// What `name` means within `module`. Where it leads on to another name, a module goes before a function of its name.
+    fn look_up(
+        &self,
+        module: usize,
+        name: &str,
+        leads_on: bool,
+        asked: &mut Vec<(usize, String, bool)>,
+    ) -> Option<Named> {
+        let question = (module, name.to_string(), leads_on);
+        if asked.contains(&question) {
+            return None;
+        }
+        asked.push(question);
+        let answer = self.answer(module, name, leads_on, asked);
+        asked.pop();
+        answer
+    }
+
+    fn answer(
+        &self,
+        module: usize,
+        name: &str,
+        leads_on: bool,
+        asked: &mut Vec<(usize, String, bool)>,
+    ) -> Option<Named> {
+        let here = &self.modules[module];
+        let child =
+            here.children.iter().find(|(child, _)| child == name).map(|(_, child)| Named::Module(*child));
+        if leads_on && child.is_some() {
+            return child;
+        }
+        if here.source.items.contains(name) {
+            return Some(Named::Item { module, name: name.to_string() });
+        }
+        let imports = &here.source.imports;
+        let mut by_name = imports.iter().filter(|import| import.name.as_deref() == Some(name));
+        if let Some(named) = by_name.find_map(|import| self.resolve(module, &import.path, asked)) {
+            return Some(named);
+        }
+        if child.is_some() {
+            return child;
+        }
+        imports.iter().filter(|import| import.name.is_none()).find_map(|glob| {
+            match self.resolve(module, &glob.path, asked)? {
+                Named::Module(of) => self.look_up(of, name, leads_on, asked),
+                Named::Item { .. } => None,
+            }
+        })
+    }
+}
