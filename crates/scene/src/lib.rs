@@ -19,6 +19,7 @@
 mod accessor;
 mod assembly;
 mod attribute_name;
+mod budget;
 mod container;
 mod document;
 mod error;

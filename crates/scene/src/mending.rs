@@ -7,7 +7,7 @@
 //! [`Fault`] at its place: whoever needs that place asks [`Faults`] first, and nobody else is bothered.
 
 use crate::attribute_name::AttributeName;
-use crate::document::Budget;
+use crate::budget::Budget;
 use crate::error::Fault;
 use crate::json_object::integer;
 use crate::schema::{Kind, ROOT, Spec};
