@@ -5,6 +5,7 @@ use crate::budget::Budget;
 use crate::container::{self, Container};
 use crate::error::Fault;
 use crate::json_object::{Object, integer};
+use crate::json_text;
 use crate::mending::{self, Faults};
 use serde_json::Value;
 use std::cell::{OnceCell, RefCell};
@@ -40,18 +41,9 @@ impl<'a> Document<'a> {
         let budget = Budget::new(options);
         budget.memory(bytes.len() as u64, "the file")?;
         let mut warnings = Vec::new();
-        let Container { json, chunk, is_glb } =
-            container::split(bytes, &mut |warning| warnings.push(warning))?;
-        let size = container::parsed_size(json);
-        budget.memory(2 * size, "the parsed document")?;
-        let root: Value = serde_json::from_slice(json).map_err(|error| {
-            let known = is_glb || json.iter().find(|b| !b.is_ascii_whitespace()) == Some(&b'{');
-            Fault::NotGltf(if known {
-                format!("its JSON is invalid: {error}")
-            } else {
-                "it is neither GLB nor JSON".into()
-            })
-        })?;
+        let mut warn = |warning| warnings.push(warning);
+        let Container { json, chunk, is_glb } = container::split(bytes, &mut warn)?;
+        let root = json_text::parse(json, is_glb, &budget, &mut warn)?;
         if !root.is_object() {
             return Err(Fault::NotGltf("its JSON is not an object".into()));
         }

@@ -12,7 +12,7 @@
 //! folder are opened. The document is read through the `gltf` crate, which gets a mended copy of the JSON: integers
 //! written as floats are legal, and a flaw in something the picture does not need must not keep the rest from opening.
 //!
-//! The road of a file: `container` (GLB chunks, JSON text) → `mending` (typed by the `gltf` crate) → `document` → `hierarchy` (which nodes, where) →
+//! The road of a file: `container` (GLB chunks), `json_text` → `mending` (typed by the `gltf` crate) → `document` → `hierarchy` (which nodes, where) →
 //! `primitive` (checked `accessor`s to triangles, morphed) → `assembly` (instances and skins into the world) →
 //! `material_file` (materials, images) → `view`, `punctual_light` (what is missing is made up). `flaws` tells authors what else is out of order.
 
@@ -30,6 +30,7 @@ mod image_file;
 mod inspection;
 mod instancing;
 mod json_object;
+mod json_text;
 mod load;
 mod load_options;
 mod material_file;
