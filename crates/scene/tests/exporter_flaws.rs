@@ -3,7 +3,11 @@
 mod handmade;
 
 use handmade::{Glb, load_bytes};
-use scene::LoadOptions;
+use progress::Unwatched;
+use scene::{LoadOptions, Scene, SceneError, load};
+use serde_json::json;
+use std::path::Path;
+use tempfile::TempDir;
 
 /// A .glb of these chunks.
 fn glb_of(chunks: &[(&[u8], &[u8])]) -> Vec<u8> {
@@ -43,5 +47,149 @@ fn chunks_may_be_more_and_files_longer() {
     assert_eq!(scene.triangles.len(), 1);
     for what in ["byte order mark", "unknown type", "the GLB header declares", "after the last GLB chunk"] {
         assert!(scene.warnings.iter().any(|warning| warning.contains(what)), "{what}: {:?}", scene.warnings);
+    }
+}
+
+/// Loads `folder/scene.gltf`, whose buffer is `uri`.
+fn with_buffer(folder: &Path, uri: &str) -> Result<Scene, SceneError> {
+    let mut glb = Glb::triangle();
+    glb.json["buffers"][0]["uri"] = json!(uri);
+    let file = folder.join("scene.gltf");
+    std::fs::write(&file, glb.json.to_string()).unwrap();
+    load(&file, &LoadOptions::default(), &Unwatched)
+}
+
+/// (the URI, the only file there is besides the scene, whether the URI is how that file is to be named)
+const NAMES: &[(&str, &str, bool)] = &[
+    ("a%20b.bin", "a b.bin", true),
+    ("a b.bin", "a b.bin", true),
+    ("100%25.bin", "100%.bin", true),
+    ("%23%3F.bin", "#?.bin", true),
+    ("caf%C3%A9/a+b.bin", "café/a+b.bin", true),
+    ("a%20b.bin", "a%20b.bin", false),
+    ("example 10%.bin", "example 10%.bin", false),
+    ("example%2010%.bin", "example 10%.bin", false),
+    ("%zz.bin", "%zz.bin", false),
+    ("100%", "100%", false),
+    ("%", "%", false),
+    ("50%ab.bin", "50%ab.bin", false),
+    ("caf%e9.bin", "caf%e9.bin", false),
+    ("caf%e9.bin", "café.bin", false),
+    ("a#1.bin", "a#1.bin", false),
+    ("a?.bin", "a?.bin", false),
+    ("a.bin?v=2", "a.bin", false),
+    ("a%20b.bin#part", "a b.bin", false),
+    ("a+b.bin", "a b.bin", false),
+    ("a%2Bb+c.bin", "a+b c.bin", false),
+    ("data\\a%20b.bin", "data/a b.bin", false),
+    (".\\data\\100%.bin", "data/100%.bin", false),
+];
+
+#[test]
+fn buffers_are_found_by_the_names_that_exporters_write() {
+    for &(uri, name, is_proper) in NAMES {
+        let folder = TempDir::new().unwrap();
+        let file = folder.path().join(name);
+        std::fs::create_dir_all(file.parent().unwrap()).unwrap();
+        // Windows has no such names.
+        let written = std::fs::write(&file, &Glb::triangle().bin);
+        if cfg!(windows) && written.is_err() {
+            continue;
+        }
+        let scene = with_buffer(folder.path(), uri).unwrap_or_else(|error| panic!("{uri}: {error}"));
+        let told = scene.warnings.iter().any(|warning| warning.contains("/buffers/0/uri"));
+        assert_eq!((scene.triangles.len(), told), (1, !is_proper), "{uri}: {:?}", scene.warnings);
+    }
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn names_in_other_encodings_are_found() {
+    use std::os::unix::ffi::OsStrExt;
+    for (uri, name) in [("caf%e9.bin", &b"caf\xe9.bin"[..]), ("data\\a.bin", b"data\\a.bin")] {
+        let folder = TempDir::new().unwrap();
+        let file = folder.path().join(std::ffi::OsStr::from_bytes(name));
+        std::fs::write(file, &Glb::triangle().bin).unwrap();
+        let scene = with_buffer(folder.path(), uri).unwrap();
+        assert!(scene.warnings[0].contains("is no proper URI"), "{uri}: {:?}", scene.warnings);
+    }
+}
+
+#[test]
+fn the_proper_reading_wins() {
+    let folder = TempDir::new().unwrap();
+    std::fs::write(folder.path().join("a b.bin"), &Glb::triangle().bin).unwrap();
+    std::fs::write(folder.path().join("a%20b.bin"), b"").unwrap();
+    let scene = with_buffer(folder.path(), "a%20b.bin").unwrap();
+    assert_eq!((scene.triangles.len(), scene.warnings), (1, vec![]));
+}
+
+#[test]
+fn images_are_found_as_buffers_are() {
+    let mut glb = Glb::triangle();
+    let uv = glb.accessor(&[0.0; 6], "VEC2");
+    let primitive = &mut glb.json["meshes"][0]["primitives"][0];
+    primitive["attributes"]["TEXCOORD_0"] = json!(uv);
+    primitive["material"] = json!(0);
+    glb.json["materials"] = json!([{"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}]);
+    glb.json["textures"] = json!([{"source": 0}]);
+    glb.json["images"] = json!([{"uri": "wood 10%.png"}]);
+    let folder = TempDir::new().unwrap();
+    image::RgbaImage::from_pixel(1, 1, image::Rgba([255, 0, 0, 255]))
+        .save(folder.path().join("wood 10%.png"))
+        .unwrap();
+    let file = folder.path().join("scene.glb");
+    std::fs::write(&file, glb.bytes()).unwrap();
+    let scene = load(&file, &LoadOptions::default(), &Unwatched).unwrap();
+    assert_eq!((scene.images.len(), scene.warnings.len()), (1, 1), "{:?}", scene.warnings);
+    assert!(scene.warnings[0].contains("/images/0/uri: wood 10%.png"), "{:?}", scene.warnings);
+}
+
+#[test]
+fn no_reading_of_a_name_leaves_the_folder() {
+    let outer = TempDir::new().unwrap();
+    let inner = outer.path().join("inner");
+    std::fs::create_dir(&inner).unwrap();
+    for name in ["outside.bin", "out side.bin", "100%.bin"] {
+        std::fs::write(outer.path().join(name), &Glb::triangle().bin).unwrap();
+    }
+    let absolute = outer.path().join("outside.bin").display().to_string();
+    let encoded = absolute.replace('/', "%2F");
+    for uri in [
+        "../outside.bin",
+        "..%2foutside.bin",
+        "%2e%2e/outside.bin",
+        "%2E%2E%2Foutside.bin",
+        "..\\outside.bin",
+        "..%5coutside.bin",
+        ".%2e/100%.bin",
+        "../100%.bin",
+        "..%2f100%.bin",
+        "../out+side.bin",
+        "..%2fout+side.bin",
+        "../outside.bin?v=1",
+        "..%2foutside.bin#x",
+        "x/..%2f..%2foutside.bin",
+        "%252e%252e/outside.bin",
+        "..%c0%afoutside.bin",
+        "%e9/../../outside.bin",
+        &absolute,
+        &encoded,
+        &format!("file://{absolute}"),
+        &format!("{absolute}?100%"),
+    ] {
+        let error = with_buffer(&inner, uri).unwrap_err().to_string();
+        assert!(error.contains("/buffers/0/uri"), "{uri}: {error}");
+    }
+    #[cfg(unix)]
+    for (link, uri) in [("100%.bin", "100%.bin"), ("a%20b.bin", "a%20b.bin"), ("a b.bin", "a+b.bin")] {
+        std::os::unix::fs::symlink(outer.path().join("outside.bin"), inner.join(link)).unwrap();
+        assert!(with_buffer(&inner, uri).is_err(), "{uri}");
+    }
+    // What only looks like the way out is a name inside.
+    #[cfg(unix)]
+    {
+        std::fs::write(inner.join("..%2foutside.bin"), &Glb::triangle().bin).unwrap();
+        assert!(with_buffer(&inner, "..%2foutside.bin").unwrap().warnings[0].contains("is no proper URI"));
     }
 }
