@@ -4,7 +4,7 @@ use crate::document::Document;
 use crate::error::Fault;
 
 /// Read and honoured.
-pub(crate) const SUPPORTED: [&str; 8] = [
+pub(crate) const SUPPORTED: [&str; 9] = [
     "EXT_mesh_gpu_instancing",
     "EXT_texture_webp",
     "KHR_lights_punctual",
@@ -12,16 +12,18 @@ pub(crate) const SUPPORTED: [&str; 8] = [
     "KHR_materials_specular",
     "KHR_materials_unlit",
     "KHR_mesh_quantization",
+    "KHR_node_visibility",
     "KHR_texture_transform",
 ];
 
 /// Without influence on the default picture.
-const HARMLESS: [&str; 5] = [
+const HARMLESS: [&str; 6] = [
     "KHR_animation_pointer",
     "KHR_materials_variants",
+    "KHR_node_hoverability",
+    "KHR_node_selectability",
     "KHR_xmp",
     "KHR_xmp_json_ld",
-    "KHR_node_hoverability",
 ];
 
 /// The names in `extensionsUsed`.

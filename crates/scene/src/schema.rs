@@ -308,12 +308,18 @@ static NODE: Spec = Spec {
         ("translation", numbers(3, 3)),
         ("weights", numbers(1, usize::MAX)),
     ],
-    extensions: &[("KHR_lights_punctual", &NODE_LIGHT), ("EXT_mesh_gpu_instancing", &INSTANCING)],
+    extensions: &[
+        ("KHR_lights_punctual", &NODE_LIGHT),
+        ("EXT_mesh_gpu_instancing", &INSTANCING),
+        ("KHR_node_visibility", &VISIBILITY),
+    ],
     needs: &[("skin", "mesh"), ("weights", "mesh")],
     ..NONE
 };
 
 static INSTANCING: Spec = Spec { required: &[("attributes", Accessors)], ..NONE };
+
+static VISIBILITY: Spec = Spec { optional: &[("visible", Flag)], ..NONE };
 
 static SAMPLER: Spec = Spec {
     optional: &[
