@@ -100,7 +100,7 @@ fn read(path: &Path, options: &LoadOptions, progress: &dyn Progress) -> Result<(
     used.fill(&mut scene, &document, &mut materials)?;
     scene.images = materials.images;
     scene.normals.iter_mut().for_each(|normal| *normal = normal.normalize_or_zero());
-    complete(&mut scene);
+    complete(&document, &mut scene);
     flaws::check(&document);
     scene.warnings = document.warnings();
     let inspection = inspection(&document, &hierarchy, &scene);
@@ -253,7 +253,7 @@ impl MeshNode<'_> {
 }
 
 /// Gives the scene what the file lacks: a camera, light where some is needed.
-fn complete(scene: &mut Scene) {
+fn complete(document: &Document<'_>, scene: &mut Scene) {
     if scene.triangles.is_empty() {
         return;
     }
@@ -270,6 +270,10 @@ fn complete(scene: &mut Scene) {
     if scene.lights.is_empty() && needs_light && !shines {
         scene.lights = punctual_light::invented_lights();
         scene.lights_are_invented = true;
+    } else if needs_light && !shines && scene.lights.iter().all(|light| light.intensity == Vec3::ZERO) {
+        document.warn(
+            "none of its lights shines, because of an intensity of 0; surfaces that need light are black",
+        );
     }
 }
 

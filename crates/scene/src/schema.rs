@@ -61,6 +61,8 @@ const COUNT: Kind = Integer(1, u64::MAX);
 const OFFSET: Kind = Integer(0, u64::MAX);
 const SET: Kind = Integer(0, u32::MAX as u64);
 const UNIT: Kind = Number(0.0, 1.0);
+/// π/2 as exporters write it, in f32, where it is rounded up.
+const RIGHT_ANGLE: f64 = std::f32::consts::FRAC_PI_2 as f64;
 const COLOR: Kind = Numbers(3, 3, 0.0, 1.0);
 const fn numbers(least: usize, most: usize) -> Kind {
     Numbers(least, most, ANY.0, ANY.1)
@@ -365,10 +367,7 @@ static LIGHT: Spec = Spec {
 };
 
 static SPOT: Spec = Spec {
-    optional: &[
-        ("innerConeAngle", Number(0.0, std::f64::consts::FRAC_PI_2)),
-        ("outerConeAngle", Number(0.0, std::f64::consts::FRAC_PI_2)),
-    ],
+    optional: &[("innerConeAngle", Number(0.0, RIGHT_ANGLE)), ("outerConeAngle", Number(0.0, RIGHT_ANGLE))],
     ..NONE
 };
 

@@ -2,9 +2,10 @@
 
 mod handmade;
 
+use glam::Vec3;
 use handmade::{Glb, load_bytes};
 use progress::Unwatched;
-use scene::{LoadOptions, Scene, SceneError, load};
+use scene::{LightKind, LoadOptions, Scene, SceneError, load};
 use serde_json::json;
 use std::path::Path;
 use tempfile::TempDir;
@@ -192,4 +193,99 @@ fn no_reading_of_a_name_leaves_the_folder() {
         std::fs::write(inner.join("..%2foutside.bin"), &Glb::triangle().bin).unwrap();
         assert!(with_buffer(&inner, "..%2foutside.bin").unwrap().warnings[0].contains("is no proper URI"));
     }
+}
+
+/// A triangle under one light with these properties.
+fn lit_by(light: serde_json::Value) -> Glb {
+    let mut glb = Glb::triangle();
+    glb.json["nodes"]
+        .as_array_mut()
+        .unwrap()
+        .push(json!({"extensions": {"KHR_lights_punctual": {"light": 0}}}));
+    glb.json["scenes"][0]["nodes"] = json!([0, 1]);
+    glb.json["extensionsUsed"] = json!(["KHR_lights_punctual"]);
+    glb.json["extensions"] = json!({"KHR_lights_punctual": {"lights": [light]}});
+    glb
+}
+
+#[test]
+fn a_range_that_is_none_has_no_end() {
+    assert_eq!(lit_by(json!({"type": "point", "range": 5})).clean().lights[0].range, 5.0);
+    assert_eq!(lit_by(json!({"type": "point"})).clean().lights[0].range, f64::INFINITY);
+    for kind in ["point", "spot"] {
+        for range in [json!(0), json!(-0.0), json!(-3), json!("none"), json!(null), json!([]), json!(1e300)] {
+            let glb = lit_by(json!({"type": kind, "spot": {}, "range": range}));
+            let scene = glb.load().unwrap_or_else(|error| panic!("{kind} {range}: {error}"));
+            assert_eq!(scene.lights[0].range, f64::INFINITY, "{kind} {range}");
+            // A large number is a range.
+            let told = scene.warnings.iter().any(|warning| warning.contains("/lights/0/range"));
+            assert_eq!(told, range != json!(1e300), "{kind} {range}: {:?}", scene.warnings);
+        }
+    }
+    // Light from infinity has no range to be wrong.
+    let sun = lit_by(json!({"type": "directional", "range": 0})).load().unwrap();
+    assert_eq!((sun.lights.len(), sun.lights_are_invented), (1, false));
+    // As Python and others write it, JSON or not.
+    for number in ["NaN", "Infinity", "-Infinity"] {
+        let glb = lit_by(json!({"type": "point", "range": "RANGE"}));
+        let text = glb.json.to_string().replace("\"RANGE\"", number);
+        let scene =
+            load_bytes(&glb_of(&[(b"JSON", text.as_bytes()), (b"BIN\0", &glb.bin)]), &LoadOptions::default());
+        let scene = scene.unwrap_or_else(|error| panic!("{number}: {error}"));
+        assert_eq!(scene.lights[0].range, f64::INFINITY);
+        assert!(
+            scene.warnings.iter().any(|warning| warning.contains("NaN or Infinity")),
+            "{:?}",
+            scene.warnings
+        );
+    }
+}
+
+#[test]
+fn cones_are_cones() {
+    let right = std::f64::consts::FRAC_PI_2;
+    for (inner, outer, expected, is_sound) in [
+        (json!(0.25), json!(0.5), (0.25, 0.5), true),
+        (json!(null), json!(std::f32::consts::FRAC_PI_2), (0.0, right), false),
+        (json!(0), json!(std::f32::consts::FRAC_PI_2), (0.0, right), true),
+        (json!(0.5), json!(0.5), (0.5, 0.5), false),
+        (json!(0.75), json!(0.5), (0.5, 0.5), false),
+        (json!(-1), json!(0.5), (0.0, 0.5), false),
+        (json!(0), json!(0), (0.0, right / 2.0), false),
+        (json!(0), json!(-0.5), (0.0, right / 2.0), false),
+        (json!(0), json!("wide"), (0.0, right / 2.0), false),
+        (json!("narrow"), json!(0.5), (0.0, 0.5), false),
+        (json!(0.5), json!(3), (0.5, right), false),
+        (json!(9), json!(9), (right, right), false),
+    ] {
+        let spot = json!({"innerConeAngle": inner, "outerConeAngle": outer});
+        let scene = lit_by(json!({"type": "spot", "spot": spot})).load().unwrap();
+        let LightKind::Spot { inner, outer } = scene.lights[0].kind else { panic!("{:?}", scene.lights) };
+        assert!((inner - expected.0).abs() + (outer - expected.1).abs() < 1e-6, "{spot}: {inner} {outer}");
+        assert!((0.0..=outer).contains(&inner) && outer <= right, "{spot}: {inner} {outer}");
+        assert_eq!(scene.warnings.is_empty(), is_sound, "{spot}: {:?}", scene.warnings);
+    }
+    for spot in [json!(null), json!({}), json!(3)] {
+        let scene = lit_by(json!({"type": "spot", "spot": spot})).load().unwrap();
+        assert_eq!(
+            scene.lights[0].kind,
+            LightKind::Spot { inner: 0.0, outer: f64::from(std::f32::consts::FRAC_PI_4) }
+        );
+    }
+}
+
+#[test]
+fn light_is_not_negative() {
+    for (light, expected) in [
+        (json!({"type": "point", "intensity": 0}), Vec3::ZERO),
+        (json!({"type": "point", "intensity": -2}), Vec3::ZERO),
+        (json!({"type": "point", "intensity": 2, "color": [1, -1, 0.5]}), Vec3::new(2.0, 0.0, 1.0)),
+    ] {
+        let scene = lit_by(light.clone()).load().unwrap();
+        assert_eq!((scene.lights[0].intensity, scene.lights_are_invented), (expected, false), "{light}");
+        let is_dark = scene.warnings.iter().any(|warning| warning.contains("none of its lights shines"));
+        assert_eq!(is_dark, expected == Vec3::ZERO, "{light}: {:?}", scene.warnings);
+    }
+    let endless = lit_by(json!({"type": "point", "intensity": 1e300})).load().unwrap();
+    assert!(endless.warnings.iter().any(|warning| warning.contains("is not finite; the light is left out")));
 }
