@@ -14,7 +14,7 @@
 //!
 //! The road of a file: `container` (GLB chunks), `json_text` → `mending` (typed by the `gltf` crate) → `document` → `hierarchy` (which nodes, where) →
 //! `primitive` (checked `accessor`s to triangles, morphed) → `assembly` (instances and skins into the world) →
-//! `material_file` (materials, images) → `view`, `punctual_light` (what is missing is made up). `flaws` tells authors what else is out of order.
+//! `material_textures`, `material_file` (materials, images) → `view`, `punctual_light` (what is missing is made up). `flaws` tells authors what else is out of order.
 
 mod accessor;
 mod assembly;
@@ -36,6 +36,7 @@ mod json_text;
 mod load;
 mod load_options;
 mod material_file;
+mod material_textures;
 mod mending;
 mod mesh_health;
 mod model;

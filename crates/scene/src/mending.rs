@@ -15,9 +15,10 @@ use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
 
 /// Properties that no picture depends on, so that they are not copied.
-const UNUSED: [&str; 20] = [
+const UNUSED: [&str; 22] = [
     "animations",
     "copyright",
+    "glossinessFactor",
     "max",
     "metallicRoughnessTexture",
     "mimeType",
@@ -30,6 +31,7 @@ const UNUSED: [&str; 20] = [
     "skeleton",
     "specularColorFactor",
     "specularColorTexture",
+    "specularGlossinessTexture",
     "specularTexture",
     "target",
     "xmag",

@@ -219,6 +219,7 @@ static MATERIAL: Spec = Spec {
     ],
     extensions: &[
         ("KHR_materials_emissive_strength", &EMISSIVE_STRENGTH),
+        ("KHR_materials_pbrSpecularGlossiness", &SPECULAR_GLOSSINESS),
         ("KHR_materials_specular", &SPECULAR),
         ("KHR_materials_unlit", &NONE),
     ],
@@ -237,6 +238,17 @@ static METALLIC_ROUGHNESS: Spec = Spec {
 };
 
 static EMISSIVE_STRENGTH: Spec = Spec { optional: &[("emissiveStrength", Number(0.0, ANY.1))], ..NONE };
+
+static SPECULAR_GLOSSINESS: Spec = Spec {
+    optional: &[
+        ("diffuseFactor", Numbers(4, 4, 0.0, 1.0)),
+        ("diffuseTexture", Object(&TEXTURE_INFO)),
+        ("specularFactor", COLOR),
+        ("glossinessFactor", UNIT),
+        ("specularGlossinessTexture", Object(&TEXTURE_INFO)),
+    ],
+    ..NONE
+};
 
 static SPECULAR: Spec = Spec {
     optional: &[

@@ -60,6 +60,39 @@ impl Glb {
         accessors.len() - 1
     }
 
+    /// A texture, whose index is returned: one row of texels.
+    pub fn texture(&mut self, texels: &[[u8; 4]]) -> usize {
+        let mut png = Vec::new();
+        image::RgbaImage::from_vec(texels.len() as u32, 1, texels.as_flattened().to_vec())
+            .unwrap()
+            .write_to(&mut std::io::Cursor::new(&mut png), image::ImageFormat::Png)
+            .unwrap();
+        let view = json!({"buffer": 0, "byteOffset": self.bin.len(), "byteLength": png.len()});
+        self.bin.extend(&png);
+        self.bin.resize(self.bin.len().next_multiple_of(4), 0);
+        self.json["buffers"][0]["byteLength"] = json!(self.bin.len());
+        self.json["bufferViews"].as_array_mut().unwrap().push(view);
+        let view = self.json["bufferViews"].as_array().unwrap().len() - 1;
+        let list = |value: &Value| value.as_array().cloned().unwrap_or_default();
+        let (mut images, mut textures) = (list(&self.json["images"]), list(&self.json["textures"]));
+        images.push(json!({"bufferView": view, "mimeType": "image/png"}));
+        textures.push(json!({"source": images.len() - 1}));
+        (self.json["images"], self.json["textures"]) = (json!(images), json!(textures));
+        textures.len() - 1
+    }
+
+    /// Puts all corners of the triangle at one place of UV set `set`.
+    pub fn put_uv(&mut self, set: u32, u: f32, v: f32) {
+        let accessor = self.accessor(&[u, v].repeat(3), "VEC2");
+        self.json["meshes"][0]["primitives"][0]["attributes"][format!("TEXCOORD_{set}")] = json!(accessor);
+    }
+
+    /// Gives the triangle a material, the only one.
+    pub fn paint(&mut self, material: Value) {
+        self.json["materials"] = json!([material]);
+        self.json["meshes"][0]["primitives"][0]["material"] = json!(0);
+    }
+
     /// The file.
     pub fn bytes(&self) -> Vec<u8> {
         let mut json = self.json.to_string().into_bytes();
