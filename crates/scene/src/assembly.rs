@@ -6,6 +6,7 @@ use crate::primitive::{Primitive, compact};
 use crate::skin::blended;
 use crate::{Part, Scene, Triangle};
 use glam::{DMat3, DMat4, DVec3, Vec2, Vec3, Vec4};
+use std::iter::repeat;
 
 /// How a primitive gets into the world.
 pub(crate) enum Placement<'a> {
@@ -20,6 +21,8 @@ const MAX_COORDINATE: f64 = 1e15;
 
 /// Bytes that a vertex takes in the scene, twice because growing arrays keep room.
 const VERTEX_BYTES: u64 = 2 * (24 + 12 + 8 + 8 + 16);
+/// The same of a further UV set.
+const UV_BYTES: u64 = 2 * 8;
 
 /// Appends `primitive` as a part of scene node `node` with scene material `material`.
 pub(crate) fn append(
@@ -32,7 +35,11 @@ pub(crate) fn append(
 ) -> Result<(), Fault> {
     let vertices = primitive.positions.len();
     let passing = vertices as u64 * if matches!(placement, Placement::Skinned(_)) { 128 + 32 } else { 32 };
-    let lasting = vertices as u64 * VERTEX_BYTES + primitive.triangles.len() as u64 * 32;
+    let further_sets = scene.further_uv.len().max(primitive.further_uv.len());
+    // A set that is new to the scene takes room for the vertices before it, too.
+    let padding = (further_sets - scene.further_uv.len()) as u64 * UV_BYTES * scene.positions.len() as u64;
+    let vertex_bytes = VERTEX_BYTES + further_sets as u64 * UV_BYTES;
+    let lasting = vertices as u64 * vertex_bytes + primitive.triangles.len() as u64 * 32 + padding;
     document.budget.memory(passing + lasting, &primitive.place)?;
     document.budget.work(16 * vertices as u64, &primitive.place)?;
     let matrices: Vec<DMat4> = match placement {
@@ -74,8 +81,10 @@ pub(crate) fn append(
     let end = scene.positions.len();
     let normal = |v: usize| world_normal(matrix(v), primitive.normals[v]);
     extend(&mut scene.normals, !primitive.normals.is_empty(), Vec3::ZERO, base, end, &used, normal);
-    for (set, uv) in scene.uv.iter_mut().enumerate() {
-        let source = &primitive.uv[set];
+    scene.further_uv.resize(further_sets, Vec::new());
+    let none = Vec::new();
+    let further = scene.further_uv.iter_mut().zip(primitive.further_uv.iter().chain(repeat(&none)));
+    for (uv, source) in scene.uv.iter_mut().zip(&primitive.uv).chain(further) {
         extend(uv, !source.is_empty(), Vec2::ZERO, base, end, &used, |v| source[v]);
     }
     let colors = &primitive.colors;

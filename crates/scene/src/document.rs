@@ -1,12 +1,14 @@
 //! The parsed document with everything reading it needs: its folder, its budget, its warnings.
 
 use crate::LoadOptions;
+use crate::budget::Budget;
 use crate::container::{self, Container};
 use crate::error::Fault;
 use crate::json_object::{Object, integer};
+use crate::json_text;
 use crate::mending::{self, Faults};
 use serde_json::Value;
-use std::cell::{Cell, OnceCell, RefCell};
+use std::cell::{OnceCell, RefCell};
 use std::path::{Path, PathBuf};
 
 /// A glTF document.
@@ -39,18 +41,9 @@ impl<'a> Document<'a> {
         let budget = Budget::new(options);
         budget.memory(bytes.len() as u64, "the file")?;
         let mut warnings = Vec::new();
-        let Container { json, chunk, is_glb } =
-            container::split(bytes, &mut |warning| warnings.push(warning))?;
-        let size = container::parsed_size(json);
-        budget.memory(2 * size, "the parsed document")?;
-        let root: Value = serde_json::from_slice(json).map_err(|error| {
-            let known = is_glb || json.iter().find(|b| !b.is_ascii_whitespace()) == Some(&b'{');
-            Fault::NotGltf(if known {
-                format!("its JSON is invalid: {error}")
-            } else {
-                "it is neither GLB nor JSON".into()
-            })
-        })?;
+        let mut warn = |warning| warnings.push(warning);
+        let Container { json, chunk, is_glb } = container::split(bytes, &mut warn)?;
+        let root = json_text::parse(json, is_glb, &budget, &mut warn)?;
         if !root.is_object() {
             return Err(Fault::NotGltf("its JSON is not an object".into()));
         }
@@ -163,74 +156,6 @@ fn check_version(root: &Object<'_>) -> Result<(), Fault> {
     if version.split('.').next() != Some("2") {
         return Err(Fault::NotGltf(format!("it is glTF {version:?}")));
     }
-    Ok(())
-}
-
-/// What loading may still use.
-pub(crate) struct Budget {
-    memory: Cell<u64>,
-    triangles: Cell<u64>,
-    work: Cell<u64>,
-    checks: Cell<u64>,
-    pub options: LoadOptions,
-}
-
-/// Values that may be read or computed in all: some seconds' worth.
-const MAX_WORK: u64 = 1 << 30;
-
-/// Values that may be looked at only to tell of flaws: some tenths of a second's worth.
-const MAX_CHECKS: u64 = 1 << 27;
-
-impl Budget {
-    pub fn new(options: &LoadOptions) -> Self {
-        Self {
-            memory: Cell::new(options.max_memory),
-            triangles: Cell::new(options.max_triangles),
-            work: Cell::new(MAX_WORK),
-            checks: Cell::new(MAX_CHECKS),
-            options: *options,
-        }
-    }
-
-    /// Takes `bytes` for `what`.
-    pub fn memory(&self, bytes: u64, what: &str) -> Result<(), Fault> {
-        let limit = self.options.max_memory >> 20;
-        take(&self.memory, bytes, || {
-            format!("{what} takes {} MiB of a limit of {limit} MiB in all", bytes >> 20)
-        })
-    }
-
-    /// What is left.
-    pub fn memory_left(&self) -> u64 {
-        self.memory.get()
-    }
-
-    /// Gives `bytes` back.
-    pub fn release(&self, bytes: u64) {
-        self.memory.set(self.memory.get() + bytes);
-    }
-
-    /// Takes `count` triangles.
-    pub fn triangles(&self, count: u64) -> Result<(), Fault> {
-        take(&self.triangles, count, || format!("it has more than {} triangles", self.options.max_triangles))
-    }
-
-    /// Takes the time for `count` values, for `place`.
-    pub fn work(&self, count: u64, place: &str) -> Result<(), Fault> {
-        take(&self.work, count, || format!("{place}: reading the scene takes too many steps"))
-    }
-
-    /// Takes the time to look at `count` values for flaws; false if it is used up and they are to be passed over.
-    pub fn check(&self, count: usize) -> bool {
-        let left = self.checks.get().checked_sub(count as u64);
-        self.checks.set(left.unwrap_or(self.checks.get()));
-        left.is_some()
-    }
-}
-
-fn take(cell: &Cell<u64>, amount: u64, what: impl Fn() -> String) -> Result<(), Fault> {
-    let left = cell.get().checked_sub(amount).ok_or_else(|| Fault::TooBig { what: what() })?;
-    cell.set(left);
     Ok(())
 }
 

@@ -3,25 +3,30 @@
 use crate::document::Document;
 use crate::error::Fault;
 
+const SPECULAR_GLOSSINESS: &str = "KHR_materials_pbrSpecularGlossiness";
+
 /// Read and honoured.
-pub(crate) const SUPPORTED: [&str; 8] = [
+pub(crate) const SUPPORTED: [&str; 10] = [
     "EXT_mesh_gpu_instancing",
     "EXT_texture_webp",
     "KHR_lights_punctual",
     "KHR_materials_emissive_strength",
+    SPECULAR_GLOSSINESS,
     "KHR_materials_specular",
     "KHR_materials_unlit",
     "KHR_mesh_quantization",
+    "KHR_node_visibility",
     "KHR_texture_transform",
 ];
 
 /// Without influence on the default picture.
-const HARMLESS: [&str; 5] = [
+const HARMLESS: [&str; 6] = [
     "KHR_animation_pointer",
     "KHR_materials_variants",
+    "KHR_node_hoverability",
+    "KHR_node_selectability",
     "KHR_xmp",
     "KHR_xmp_json_ld",
-    "KHR_node_hoverability",
 ];
 
 /// The names in `extensionsUsed`.
@@ -44,6 +49,11 @@ pub(crate) fn check(document: &Document<'_>) -> Result<(), Fault> {
         document
             .warn(format!("the extension {extension} is ignored; the picture may differ from other viewers"));
     }
+    if used(document).chain(required(document)).any(|extension| extension == SPECULAR_GLOSSINESS) {
+        document.warn(format!(
+            "of the extension {SPECULAR_GLOSSINESS} the diffuse colour is read; specular colour and glossiness are ignored"
+        ));
+    }
     Ok(())
 }
 
@@ -56,9 +66,6 @@ fn cure(extension: &str) -> &'static str {
             "export without meshopt compression, or decompress with: gltf-transform copy IN OUT"
         }
         "KHR_texture_basisu" => "export with PNG, JPEG or WebP textures",
-        "KHR_materials_pbrSpecularGlossiness" => {
-            "convert it with: gltf-transform metalrough IN OUT, or export metal-rough materials"
-        }
         _ => "export the scene without it",
     }
 }

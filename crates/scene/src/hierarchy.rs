@@ -2,6 +2,9 @@
 //!
 //! Walked without recursion, every node once: a node with two parents belongs to the first, a cycle among the
 //! shown nodes is an error.
+//!
+//! KHR_node_visibility hides a node and all below it, whatever those say: their meshes and lights are not there.
+//! Cameras are no part of the picture and stay, as the extension says; so do the places of joints.
 
 use crate::document::Document;
 use crate::error::Fault;
@@ -9,8 +12,10 @@ use glam::{DMat4, DQuat, DVec3};
 
 /// The nodes of a document, placed.
 pub(crate) struct Hierarchy {
-    /// The shown nodes, parents before children, in file order.
+    /// The nodes of the shown scene, parents before children, in file order; the hidden ones too.
     pub shown: Vec<usize>,
+    /// Whether a node, by its index, or one that it hangs on is hidden.
+    pub hidden: Vec<bool>,
     /// World from node, of all nodes that hang on a root; shown or not.
     pub world: Vec<Option<DMat4>>,
 }
@@ -21,7 +26,8 @@ impl Hierarchy {
         let count = document.len("nodes");
         let roots = scene_roots(document)?;
         let mut world = vec![None; count];
-        let shown = walk(document, &roots, &mut world, Walk::Strict)?;
+        let mut hidden = vec![false; count];
+        let shown = walk(document, &roots, &mut world, &mut hidden, Walk::Strict)?;
         // Joints of a skin may hang beside the scene.
         let mut is_child = vec![false; count];
         for node in 0..count {
@@ -29,8 +35,8 @@ impl Hierarchy {
         }
         let others: Vec<usize> =
             (0..count).filter(|&node| !is_child[node] && world[node].is_none()).collect();
-        walk(document, &others, &mut world, Walk::Lenient)?;
-        Ok(Self { shown, world })
+        walk(document, &others, &mut world, &mut hidden, Walk::Lenient)?;
+        Ok(Self { shown, hidden, world })
     }
 }
 
@@ -80,6 +86,7 @@ fn walk(
     document: &Document<'_>,
     roots: &[usize],
     world: &mut [Option<DMat4>],
+    hidden: &mut [bool],
     mode: Walk,
 ) -> Result<Vec<usize>, Fault> {
     enum Step {
@@ -118,8 +125,9 @@ fn walk(
             (Err(fault), Walk::Strict) => return Err(fault),
             (Err(_), Walk::Lenient) => continue,
         };
-        let parent = parent.and_then(|parent| world[parent]).unwrap_or(DMat4::IDENTITY);
-        world[node] = Some(parent * local);
+        let parent_world = parent.and_then(|parent| world[parent]).unwrap_or(DMat4::IDENTITY);
+        world[node] = Some(parent_world * local);
+        hidden[node] = parent.is_some_and(|parent| hidden[parent]) || hides(document, node);
         on_path[node] = true;
         order.push(node);
         stack.push(Step::Leave(node));
@@ -127,6 +135,17 @@ fn walk(
         stack.extend(children.map(|child| Step::Enter { node: child, parent: Some(node) }));
     }
     Ok(order)
+}
+
+/// Whether KHR_node_visibility hides a node by itself. A flaw there hides nothing.
+fn hides(document: &Document<'_>, node: usize) -> bool {
+    const EXTENSION: &str = "KHR_node_visibility";
+    if let Err(fault) = document.sound_below(&format!("/nodes/{node}/extensions/{EXTENSION}")) {
+        document.warn(format!("{fault}; the node is shown"));
+    }
+    let node = document.typed().as_json().nodes.get(node);
+    let extension = node.and_then(|node| node.extensions.as_ref()?.others.get(EXTENSION));
+    extension.and_then(|extension| extension.get("visible")?.as_bool()) == Some(false)
 }
 
 /// A node's own transform: its matrix, else translation · rotation · scale. The typed document has these numbers

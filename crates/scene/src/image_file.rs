@@ -87,7 +87,7 @@ impl Document<'_> {
         }
         let file = self.typed().as_json().images.get(index);
         let uri = file.and_then(|file| file.uri.clone());
-        let uri = uri.filter(|uri| crate::resource::data_uri(uri).is_none());
+        let uri = uri.filter(|uri| crate::data_uri::data_uri(uri).is_none());
         let name = file.and_then(|file| named(file.name.as_deref())).or(uri);
         let name = name.unwrap_or_else(|| format!("image {index}"));
         Ok(Image { name, width, height, texels })

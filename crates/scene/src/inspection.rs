@@ -9,6 +9,8 @@ pub struct Inspection {
     pub generator: Option<String>,
     /// Nodes of the file.
     pub nodes: usize,
+    /// Nodes of the shown scene that KHR_node_visibility hides, those below included.
+    pub hidden_nodes: usize,
     /// Meshes of the file.
     pub meshes: usize,
     /// Primitives of the file by mode: points, lines, line loops, line strips, triangles, strips, fans.

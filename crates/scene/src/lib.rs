@@ -12,29 +12,35 @@
 //! folder are opened. The document is read through the `gltf` crate, which gets a mended copy of the JSON: integers
 //! written as floats are legal, and a flaw in something the picture does not need must not keep the rest from opening.
 //!
-//! The road of a file: `container` (GLB chunks, JSON text) → `mending` (typed by the `gltf` crate) → `document` → `hierarchy` (which nodes, where) →
+//! The road of a file: `container` (GLB chunks), `json_text` → `mending` (typed by the `gltf` crate) → `document` → `hierarchy` (which nodes, where) →
 //! `primitive` (checked `accessor`s to triangles, morphed) → `assembly` (instances and skins into the world) →
-//! `material_file` (materials, images) → `view`, `punctual_light` (what is missing is made up). `flaws` tells authors what else is out of order.
+//! `material_textures`, `material_file` (materials, images) → `view`, `punctual_light` (what is missing is made up). `flaws` tells authors what else is out of order.
 
 mod accessor;
 mod assembly;
 mod attribute_name;
+mod budget;
 mod container;
+mod data_uri;
 mod document;
 mod error;
 mod extension;
+mod file_reference;
 mod flaws;
 mod hierarchy;
 mod image_file;
 mod inspection;
 mod instancing;
 mod json_object;
+mod json_text;
 mod load;
 mod load_options;
 mod material_file;
+mod material_textures;
 mod mending;
 mod mesh_health;
 mod model;
+mod percent_encoding;
 mod primitive;
 mod punctual_light;
 mod resource;

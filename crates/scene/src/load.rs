@@ -29,6 +29,9 @@ pub fn load(path: &Path, options: &LoadOptions, progress: &dyn Progress) -> Resu
             .collect();
         let why = match (inspection.meshes, others.is_empty()) {
             (0, _) => "the file has no mesh".into(),
+            _ if inspection.hidden_nodes > 0 => {
+                format!("{} of its nodes are hidden (KHR_node_visibility)", inspection.hidden_nodes)
+            }
             (_, true) => "its meshes are empty".into(),
             (_, false) => format!("the file has {}, none of which shows a triangle", others.join(", ")),
         };
@@ -86,18 +89,21 @@ fn read(path: &Path, options: &LoadOptions, progress: &dyn Progress) -> Result<(
         progress.report(i as f32 / hierarchy.shown.len() as f32);
         let Some(node) = document.typed().nodes().nth(index) else { continue };
         let Some(world) = hierarchy.world[index] else { continue };
-        scene.lights.extend(punctual_light::node_light(&document, &node, world)?);
         scene.cameras.extend(view::node_camera(&document, &node, world)?);
+        if hierarchy.hidden[index] {
+            continue;
+        }
+        scene.lights.extend(punctual_light::node_light(&document, &node, world)?);
         let mesh = MeshNode { document: &document, hierarchy: &hierarchy, node, world };
         mesh.read(&mut scene, &mut used, progress)?;
     }
     used.fill(&mut scene, &document, &mut materials)?;
     scene.images = materials.images;
     scene.normals.iter_mut().for_each(|normal| *normal = normal.normalize_or_zero());
-    complete(&mut scene);
+    complete(&document, &mut scene);
     flaws::check(&document);
     scene.warnings = document.warnings();
-    let inspection = inspection(&document, &scene);
+    let inspection = inspection(&document, &hierarchy, &scene);
     Ok((scene, inspection))
 }
 
@@ -247,7 +253,7 @@ impl MeshNode<'_> {
 }
 
 /// Gives the scene what the file lacks: a camera, light where some is needed.
-fn complete(scene: &mut Scene) {
+fn complete(document: &Document<'_>, scene: &mut Scene) {
     if scene.triangles.is_empty() {
         return;
     }
@@ -264,11 +270,15 @@ fn complete(scene: &mut Scene) {
     if scene.lights.is_empty() && needs_light && !shines {
         scene.lights = punctual_light::invented_lights();
         scene.lights_are_invented = true;
+    } else if needs_light && !shines && scene.lights.iter().all(|light| light.intensity == Vec3::ZERO) {
+        document.warn(
+            "none of its lights shines, because of an intensity of 0; surfaces that need light are black",
+        );
     }
 }
 
 /// Counts what the file holds.
-fn inspection(document: &Document<'_>, scene: &Scene) -> Inspection {
+fn inspection(document: &Document<'_>, hierarchy: &Hierarchy, scene: &Scene) -> Inspection {
     let mut primitives = [0; 7];
     for mesh in document.typed().meshes() {
         for primitive in mesh.primitives() {
@@ -281,6 +291,7 @@ fn inspection(document: &Document<'_>, scene: &Scene) -> Inspection {
     Inspection {
         generator: document.typed().as_json().asset.generator.clone(),
         nodes: document.len("nodes"),
+        hidden_nodes: hierarchy.shown.iter().filter(|&&node| hierarchy.hidden[node]).count(),
         meshes: document.len("meshes"),
         primitives,
         materials: document.len("materials"),

@@ -3,6 +3,7 @@
 use crate::document::{Document, named};
 use crate::error::Fault;
 use crate::json_object::integer;
+use crate::material_textures::{BaseColor, emission, uv_set};
 use crate::{AlphaMode, Image, Material, TextureRef, Wrap};
 use glam::{Mat3, Vec2, Vec3, Vec4};
 use gltf::texture::{MagFilter, TextureTransform, WrappingMode};
@@ -53,28 +54,20 @@ impl<'a> MaterialReader<'a> {
             return Ok(Material { name, ..default_material() });
         };
         document.sound(&place)?;
-        for key in ["pbrMetallicRoughness", "emissiveFactor", "doubleSided", "extensions"] {
+        for key in ["pbrMetallicRoughness", "emissiveFactor", "doubleSided"] {
             document.sound_below(&format!("{place}/{key}"))?;
         }
-        let pbr = file.pbr_metallic_roughness();
-        let strength = file.emissive_strength().unwrap_or(1.0);
-        let base_color = Vec4::from_array(pbr.base_color_factor());
-        let emissive = strength * Vec3::from_array(file.emissive_factor());
-        if !base_color.is_finite() || !emissive.is_finite() {
+        extensions_are_sound(document, &format!("{place}/extensions"))?;
+        let base = BaseColor::of(&file);
+        let (emissive, emission) = emission(&file);
+        if !base.factor.is_finite() || !emissive.is_finite() {
             return Err(Fault::Malformed { place, what: "its colours are not finite".into() });
         }
-        let base_color_texture = match pbr.base_color_texture() {
-            Some(info) => self.texture(&info, &format!("{place}/pbrMetallicRoughness/baseColorTexture"))?,
-            None => None,
-        };
-        let mut emissive_texture = None;
         if emissive != Vec3::ZERO {
-            let place = format!("{place}/emissiveTexture");
-            document.sound_below(&place)?;
-            if let Some(info) = file.emissive_texture() {
-                emissive_texture = self.texture(&info, &place)?;
-            }
+            document.sound_below(&format!("{place}/emissiveTexture"))?;
         }
+        let base_color_texture = self.texture(&file, base.texture.as_ref())?;
+        let emissive_texture = self.texture(&file, emission.as_ref())?;
         let alpha = match file.alpha_mode() {
             gltf::material::AlphaMode::Opaque => AlphaMode::Opaque,
             gltf::material::AlphaMode::Mask => {
@@ -85,12 +78,12 @@ impl<'a> MaterialReader<'a> {
         };
         Ok(Material {
             name,
-            base_color,
+            base_color: base.factor,
             base_color_texture,
             emissive,
             emissive_texture,
-            metallic: pbr.metallic_factor().clamp(0.0, 1.0),
-            roughness: pbr.roughness_factor().clamp(0.0, 1.0),
+            metallic: base.metallic.clamp(0.0, 1.0),
+            roughness: base.roughness.clamp(0.0, 1.0),
             specular: file.specular().map_or(1.0, |specular| specular.specular_factor()).clamp(0.0, 1.0),
             unlit: file.unlit(),
             alpha,
@@ -98,18 +91,13 @@ impl<'a> MaterialReader<'a> {
         })
     }
 
-    /// The texture of a property; nothing (which is white) with a warning if its image cannot be had.
-    fn texture(&mut self, info: &gltf::texture::Info<'_>, place: &str) -> Result<Option<TextureRef>, Fault> {
-        let transform = info.texture_transform();
-        let own_set = transform.as_ref().and_then(|transform| transform.tex_coord());
-        let uv_set = match own_set.unwrap_or(info.tex_coord()) {
-            set @ (0 | 1) => set as u8,
-            set => {
-                self.document
-                    .warn(format!("{place}: needs TEXCOORD_{set}; sets 0 and 1 are read, so it is white"));
-                return Ok(None);
-            }
-        };
+    /// The texture of a property of `material`; nothing (which is white) with a warning if its image cannot be had.
+    fn texture(
+        &mut self,
+        material: &gltf::Material<'_>,
+        info: Option<&gltf::texture::Info<'_>>,
+    ) -> Result<Option<TextureRef>, Fault> {
+        let Some(info) = info else { return Ok(None) };
         let texture = info.texture();
         let texture_place = format!("/textures/{}", texture.index());
         self.document.sound(&texture_place)?;
@@ -118,8 +106,8 @@ impl<'a> MaterialReader<'a> {
         let sampler = texture.sampler();
         Ok(Some(TextureRef {
             image,
-            uv_set,
-            transform: transform.map_or(Mat3::IDENTITY, |transform| texture_transform(&transform)),
+            uv_set: uv_set(material, info),
+            transform: info.texture_transform().map_or(Mat3::IDENTITY, |own| texture_transform(&own)),
             wrap: [sampler.wrap_s(), sampler.wrap_t()].map(wrap),
             nearest: sampler.mag_filter() == Some(MagFilter::Nearest),
         }))
@@ -167,6 +155,18 @@ impl<'a> MaterialReader<'a> {
         self.known.insert(index, image);
         image
     }
+}
+
+/// An error if something is wrong with what is read of a material's `extensions`.
+fn extensions_are_sound(document: &Document<'_>, place: &str) -> Result<(), Fault> {
+    document.sound(place)?;
+    for name in ["emissive_strength", "specular", "unlit"] {
+        document.sound_below(&format!("{place}/KHR_materials_{name}"))?;
+    }
+    let glossy = format!("{place}/KHR_materials_pbrSpecularGlossiness");
+    document.sound(&glossy)?;
+    document.sound_below(&format!("{glossy}/diffuseFactor"))?;
+    document.sound_below(&format!("{glossy}/diffuseTexture"))
 }
 
 fn wrap(mode: WrappingMode) -> Wrap {

@@ -7,7 +7,7 @@
 //! [`Fault`] at its place: whoever needs that place asks [`Faults`] first, and nobody else is bothered.
 
 use crate::attribute_name::AttributeName;
-use crate::document::Budget;
+use crate::budget::Budget;
 use crate::error::Fault;
 use crate::json_object::integer;
 use crate::schema::{Kind, ROOT, Spec};
@@ -15,9 +15,10 @@ use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
 
 /// Properties that no picture depends on, so that they are not copied.
-const UNUSED: [&str; 20] = [
+const UNUSED: [&str; 22] = [
     "animations",
     "copyright",
+    "glossinessFactor",
     "max",
     "metallicRoughnessTexture",
     "mimeType",
@@ -30,6 +31,7 @@ const UNUSED: [&str; 20] = [
     "skeleton",
     "specularColorFactor",
     "specularColorTexture",
+    "specularGlossinessTexture",
     "specularTexture",
     "target",
     "xmag",

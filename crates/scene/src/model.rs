@@ -19,6 +19,9 @@ pub struct Scene {
     pub normals: Vec<Vec3>,
     /// Texture coordinates of sets 0 and 1 (glTF: origin at the image's upper left).
     pub uv: [Vec<Vec2>; 2],
+    /// Texture coordinates of further sets, as far as textures lie in them: entry k is what [`TextureRef::uv_set`]
+    /// k + 2 means, for each part that of its own material.
+    pub further_uv: Vec<Vec<Vec2>>,
     /// Linear vertex colours, multiplied into the base colour; 1 where the file gives none.
     pub colors: Vec<Vec4>,
     /// Counter-clockwise seen from the front, negative scales already undone.
@@ -61,7 +64,7 @@ pub struct Part {
     pub material: u32,
     /// Its triangles.
     pub triangles: Range<u32>,
-    /// Which of the two UV sets the primitive has.
+    /// Which of UV sets 0 and 1 the primitive has.
     pub has_uv: [bool; 2],
     /// Whether the transform mirrored it (its UVs then run the other way round).
     pub mirrored: bool,
@@ -121,7 +124,7 @@ pub enum AlphaMode {
 pub struct TextureRef {
     /// Index into [`Scene::images`].
     pub image: u32,
-    /// UV set, 0 or 1.
+    /// UV set: an index into [`Scene::uv`], from 2 on into [`Scene::further_uv`]. See [`Scene::uv_set`].
     pub uv_set: u8,
     /// KHR_texture_transform: uv' = transform · (u, v, 1).
     pub transform: Mat3,
@@ -231,9 +234,16 @@ impl Scene {
         &self.materials[self.part_of(triangle).material as usize]
     }
 
+    /// The texture coordinates of all vertices in a set ([`TextureRef::uv_set`]); empty if no part has it.
+    #[inline]
+    pub fn uv_set(&self, set: u8) -> &[Vec2] {
+        let set = set as usize;
+        self.uv.get(set).or_else(|| self.further_uv.get(set - self.uv.len())).map_or(&[], Vec::as_slice)
+    }
+
     /// The texture coordinates of a triangle's corners; zero where the part has none.
     pub fn corner_uv(&self, triangle: u32, set: u8) -> [Vec2; 3] {
-        let uv = &self.uv[set as usize];
+        let uv = self.uv_set(set);
         self.triangles[triangle as usize].vertices.map(|v| uv.get(v as usize).copied().unwrap_or_default())
     }
 

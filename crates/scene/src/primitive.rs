@@ -3,6 +3,7 @@
 use crate::accessor::{Accessor, Component};
 use crate::document::Document;
 use crate::error::Fault;
+use crate::material_textures::further_uv_sets;
 use crate::triangulation::{triangle, triangle_count};
 use glam::{DVec3, Vec2, Vec4};
 use gltf::mesh::{Mode, Semantic};
@@ -18,6 +19,8 @@ pub(crate) struct Primitive {
     /// Empty if there are none, as the following.
     pub normals: Vec<DVec3>,
     pub uv: [Vec<Vec2>; 2],
+    /// Of the further sets that its material asks for, in that order.
+    pub further_uv: Vec<Vec<Vec2>>,
     pub colors: Vec<Vec4>,
     /// For each vertex `influences_per_vertex` joints and their weights.
     pub influences: Vec<(u32, f64)>,
@@ -67,7 +70,9 @@ impl Primitive {
         if triangles.is_empty() {
             return Ok(None);
         }
-        let memory = triangles.len() as u64 * 12 + vertices.len() as u64 * VERTEX_BYTES;
+        let further_sets = further_uv_sets(&file.material());
+        let vertex_bytes = VERTEX_BYTES + 8 * further_sets.len() as u64;
+        let memory = triangles.len() as u64 * 12 + vertices.len() as u64 * vertex_bytes;
         document.budget.memory(memory, place)?;
         let mut primitive = Self {
             place: place.into(),
@@ -76,14 +81,16 @@ impl Primitive {
             positions: vertices.iter().map(|&v| DVec3::from_array(position.doubles(v as usize))).collect(),
             normals: Vec::new(),
             uv: [Vec::new(), Vec::new()],
+            further_uv: vec![Vec::new(); further_sets.len()],
             colors: Vec::new(),
             influences: Vec::new(),
             influences_per_vertex: 0,
             memory,
         };
         primitive.read_attributes(&attributes, &vertices, position.count)?;
+        primitive.read_uv(&attributes, &further_sets, &vertices, position.count)?;
         primitive.read_influences(&attributes, &vertices, position.count)?;
-        primitive.morph(document, file, &vertices, position.count, weights)?;
+        primitive.morph(document, file, &further_sets, &vertices, position.count, weights)?;
         Ok(Some(primitive))
     }
 
@@ -92,7 +99,7 @@ impl Primitive {
         document.budget.release(self.memory);
     }
 
-    /// Normals, texture coordinates and colours. What is broken about them is left out with a warning.
+    /// Normals and colours. What is broken about them is left out with a warning.
     fn read_attributes(
         &mut self,
         attributes: &Attributes<'_>,
@@ -100,15 +107,9 @@ impl Primitive {
         count: usize,
     ) -> Result<(), Fault> {
         let open = |semantic, components: &[usize]| attributes.open(&semantic, components, count);
-        attributes.document.budget.work(12 * vertices.len() as u64, &attributes.place)?;
+        attributes.document.budget.work(8 * vertices.len() as u64, &attributes.place)?;
         if let Some(normal) = open(Semantic::Normals, &[3]) {
             self.normals = vertices.iter().map(|&v| DVec3::from_array(normal.doubles(v as usize))).collect();
-        }
-        for (set, uvs) in self.uv.iter_mut().enumerate() {
-            if let Some(uv) = open(Semantic::TexCoords(set as u32), &[2]) {
-                let finite = |uv: Vec2| if uv.is_finite() { uv } else { Vec2::ZERO };
-                *uvs = vertices.iter().map(|&v| finite(Vec2::from_array(uv.floats(v as usize)))).collect();
-            }
         }
         if let Some(color) = open(Semantic::Colors(0), &[3, 4]) {
             let opaque = color.shape.components() == 3;
@@ -122,6 +123,33 @@ impl Primitive {
             self.colors = vertices.iter().map(read).collect();
         }
         Ok(())
+    }
+
+    /// Texture coordinates. A set that is broken is left out with a warning.
+    fn read_uv(
+        &mut self,
+        attributes: &Attributes<'_>,
+        further_sets: &[u32],
+        vertices: &[u32],
+        count: usize,
+    ) -> Result<(), Fault> {
+        let work = 2 * (2 + further_sets.len()) as u64 * vertices.len() as u64;
+        attributes.document.budget.work(work, &attributes.place)?;
+        for (set, uvs) in self.uv_sets(further_sets) {
+            if let Some(uv) = attributes.open(&Semantic::TexCoords(set), &[2], count) {
+                let finite = |uv: Vec2| if uv.is_finite() { uv } else { Vec2::ZERO };
+                *uvs = vertices.iter().map(|&v| finite(Vec2::from_array(uv.floats(v as usize)))).collect();
+            }
+        }
+        Ok(())
+    }
+
+    /// The texture coordinates by the numbers of their sets.
+    fn uv_sets(&mut self, further_sets: &[u32]) -> impl Iterator<Item = (u32, &mut Vec<Vec2>)> {
+        [0, 1]
+            .into_iter()
+            .chain(further_sets.iter().copied())
+            .zip(self.uv.iter_mut().chain(&mut self.further_uv))
     }
 
     /// JOINTS_n and WEIGHTS_n, weights summing to 1.
@@ -179,6 +207,7 @@ impl Primitive {
         &mut self,
         document: &Document<'_>,
         file: &gltf::Primitive<'_>,
+        further_sets: &[u32],
         vertices: &[u32],
         count: usize,
         weights: &[f64],
@@ -191,7 +220,7 @@ impl Primitive {
             if weight == 0.0 {
                 continue;
             }
-            document.budget.work(12 * vertices.len() as u64, &place)?;
+            document.budget.work((12 + 2 * further_sets.len() as u64) * vertices.len() as u64, &place)?;
             let open = |name: &str, components: &[usize]| {
                 // Typed targets know neither texture coordinates nor colours.
                 let place = format!("{place}/{name}");
@@ -216,9 +245,9 @@ impl Primitive {
                     *normal += weight * DVec3::from_array(delta.doubles(v as usize));
                 }
             }
-            for (set, name) in ["TEXCOORD_0", "TEXCOORD_1"].into_iter().enumerate() {
-                if let Some(delta) = open(name, &[2]) {
-                    for (uv, &v) in self.uv[set].iter_mut().zip(vertices) {
+            for (set, uvs) in self.uv_sets(further_sets) {
+                if let Some(delta) = open(&format!("TEXCOORD_{set}"), &[2]) {
+                    for (uv, &v) in uvs.iter_mut().zip(vertices) {
                         *uv += weight as f32 * Vec2::from_array(delta.floats(v as usize));
                     }
                 }

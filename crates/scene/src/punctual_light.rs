@@ -5,7 +5,7 @@ use crate::error::Fault;
 use crate::{Light, LightKind};
 use glam::{DMat4, DVec3, Vec3};
 use gltf::khr_lights_punctual::Kind;
-use std::f64::consts::{FRAC_PI_2, PI};
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 
 const EXTENSION: &str = "KHR_lights_punctual";
 
@@ -25,22 +25,30 @@ pub(crate) fn node_light(
         document.warn(format!("{fault}; the light is left out"));
         return Ok(None);
     }
-    document.sound_below(&place)?;
+    for key in ["color", "intensity"] {
+        document.sound_below(&format!("{place}/{key}"))?;
+    }
     let kind = match light.kind() {
         Kind::Point => LightKind::Point,
         Kind::Directional => LightKind::Directional,
         Kind::Spot { inner_cone_angle, outer_cone_angle } => {
-            let outer = f64::from(outer_cone_angle).clamp(0.0, FRAC_PI_2);
-            LightKind::Spot { inner: f64::from(inner_cone_angle).clamp(0.0, outer), outer }
+            cone(document, &format!("{place}/spot"), inner_cone_angle.into(), outer_cone_angle.into())
         }
     };
-    let range = light.range().map_or(f64::INFINITY, f64::from);
+    let range = match kind {
+        // It has no end whatever the file says.
+        LightKind::Directional => f64::INFINITY,
+        _ => range(document, &format!("{place}/range"), light.range()),
+    };
     let intensity = light.intensity() * Vec3::from_array(light.color());
-    if !intensity.is_finite() || intensity.min_element() < 0.0 || range <= 0.0 {
-        document
-            .warn(format!("{place}: its intensity, colour or range is not positive; the light is left out"));
+    if !intensity.is_finite() {
+        document.warn(format!("{place}: its intensity or colour is not finite; the light is left out"));
         return Ok(None);
     }
+    if intensity.min_element() < 0.0 {
+        document.warn(format!("{place}: its intensity or colour is negative, which counts as 0"));
+    }
+    let intensity = intensity.max(Vec3::ZERO);
     let direction = (-world.z_axis.truncate()).try_normalize();
     let position = world.w_axis.truncate();
     let (Some(direction), true) = (direction.or(Some(DVec3::NEG_Z)), position.is_finite()) else {
@@ -49,6 +57,39 @@ pub(crate) fn node_light(
     };
     let name = named(light.name()).or(named(node.name())).unwrap_or_else(|| format!("light {index}"));
     Ok(Some(Light { name, kind, intensity, position, direction, range }))
+}
+
+/// How far a light reaches. Exporters write 0 for a light without an end; a range that glTF does not know counts as
+/// none, for a light that goes out is hardly meant.
+fn range(document: &Document<'_>, place: &str, range: Option<f32>) -> f64 {
+    if let Err(fault) = document.sound(place) {
+        document.warn(format!("{fault}; the light reaches any distance"));
+    }
+    match range {
+        Some(range) if range <= 0.0 => {
+            document.warn(format!("{place}: {range} is no range; the light reaches any distance"));
+            f64::INFINITY
+        }
+        range => range.map_or(f64::INFINITY, f64::from),
+    }
+}
+
+/// A spot light's cone, its angles brought to 0 ≤ inner ≤ outer ≤ π/2. Equal ones are a sharp edge; an outer angle
+/// of 0 or less would let no light out at all, so that glTF's default takes its place.
+fn cone(document: &Document<'_>, place: &str, inner: f64, outer: f64) -> LightKind {
+    for place in [place, &format!("{place}/innerConeAngle"), &format!("{place}/outerConeAngle")] {
+        if let Err(fault) = document.sound(place) {
+            document.warn(format!("{fault}; the default takes its place"));
+        }
+    }
+    let mended = if outer > 0.0 { outer.min(FRAC_PI_2) } else { FRAC_PI_4 };
+    // Half of the numbers that stand for π/2 are rounded up.
+    if (mended - outer).abs() > 1e-6 {
+        document.warn(format!(
+            "{place}/outerConeAngle: {outer:.6} is no half angle of a cone; it is taken for {mended:.6}"
+        ));
+    }
+    LightKind::Spot { inner: inner.clamp(0.0, mended), outer: mended }
 }
 
 /// The light of a scene that needs some and has none: a sun from the upper left front, and a sky. A white wall

@@ -3,10 +3,11 @@
 //! A reference is a data URI or a relative path inside the scene's folder. Everything else (absolute paths,
 //! `..`, schemes, links that lead outside) is refused: opening a scene must not read the rest of the disk.
 
+use crate::data_uri::{data_uri, decode_data};
 use crate::document::Document;
 use crate::error::Fault;
+use crate::file_reference::{Reading, readings};
 use gltf::buffer::Source;
-use std::borrow::Cow;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
@@ -22,8 +23,7 @@ impl<'a> Document<'a> {
             self.budget.memory(data.len() as u64, owner)?;
             return decode_data(data).ok_or_else(|| refuse("is not valid data (export the scene again)"));
         }
-        let path = inner_path(uri).map_err(refuse)?;
-        let path = resolve(&self.folder, &path).map_err(|what| refuse(&what))?;
+        let path = self.inner_file(owner, uri).map_err(|what| refuse(&what))?;
         let size = path.metadata().map_err(|error| refuse(&unreadable(&error)))?.len();
         self.budget.memory(size, &shortened(uri))?;
         let mut bytes = Vec::with_capacity(size as usize);
@@ -31,6 +31,29 @@ impl<'a> Document<'a> {
         let read = std::fs::File::open(&path).and_then(|file| file.take(size).read_to_end(&mut bytes));
         read.map_err(|error| refuse(&unreadable(&error)))?;
         Ok(bytes)
+    }
+
+    /// The file inside the scene's folder that the `uri` at `owner` means, or what is wrong with its first reading.
+    fn inner_file(&self, owner: &str, uri: &str) -> Result<PathBuf, String> {
+        let mut wrong = None;
+        for reading in readings(uri) {
+            let found = reading
+                .map_err(String::from)
+                .and_then(|Reading { path, is_proper }| Ok((resolve(&self.folder, &path)?, path, is_proper)));
+            match found {
+                Ok((file, path, is_proper)) => {
+                    if !is_proper {
+                        let (uri, path) = (shortened(uri), shortened(&path.display().to_string()));
+                        self.warn(format!(
+                            "{owner}/uri: {uri}: is no proper URI of the file {path}, which is read"
+                        ));
+                    }
+                    return Ok(file);
+                }
+                Err(what) => drop(wrong.get_or_insert(what)),
+            }
+        }
+        Err(wrong.unwrap_or_default())
     }
 
     /// The bytes of a buffer, as far as they are declared and there. They are read once.
@@ -98,88 +121,6 @@ fn shortened(uri: &str) -> String {
     text
 }
 
-/// What follows `data:`.
-pub(crate) fn data_uri(uri: &str) -> Option<&str> {
-    let (scheme, data) = uri.split_at_checked(5)?;
-    scheme.eq_ignore_ascii_case("data:").then_some(data)
-}
-
-/// Decodes the part of a data URI behind `data:`.
-pub(crate) fn decode_data(data: &str) -> Option<Vec<u8>> {
-    let (header, body) = data.split_once(',')?;
-    if header.rsplit(';').next().is_some_and(|last| last.eq_ignore_ascii_case("base64")) {
-        decode_base64(&percent_decoded(body)?)
-    } else {
-        Some(percent_decoded(body)?.into_owned())
-    }
-}
-
-/// RFC 4648 §4; padding may be missing, whitespace and other characters may not occur.
-fn decode_base64(text: &[u8]) -> Option<Vec<u8>> {
-    let text = text.strip_suffix(b"==").or_else(|| text.strip_suffix(b"=")).unwrap_or(text);
-    if text.len() % 4 == 1 {
-        return None;
-    }
-    let digit = |byte: u8| match byte {
-        b'A'..=b'Z' => Some(byte - b'A'),
-        b'a'..=b'z' => Some(byte - b'a' + 26),
-        b'0'..=b'9' => Some(byte - b'0' + 52),
-        b'+' => Some(62),
-        b'/' => Some(63),
-        _ => None,
-    };
-    let mut bytes = Vec::with_capacity(text.len() * 3 / 4);
-    for group in text.chunks(4) {
-        let mut bits = 0u32;
-        for (i, &byte) in group.iter().enumerate() {
-            bits |= u32::from(digit(byte)?) << (18 - 6 * i);
-        }
-        bytes.extend_from_slice(&bits.to_be_bytes()[1..group.len()]);
-    }
-    Some(bytes)
-}
-
-/// Undoes %XX.
-fn percent_decoded(text: &str) -> Option<Cow<'_, [u8]>> {
-    if !text.contains('%') {
-        return Some(Cow::Borrowed(text.as_bytes()));
-    }
-    let (mut bytes, mut rest) = (Vec::with_capacity(text.len()), text.as_bytes());
-    while let [first, tail @ ..] = rest {
-        rest = tail;
-        if *first != b'%' {
-            bytes.push(*first);
-            continue;
-        }
-        let (high, low) = (char::from(*rest.first()?).to_digit(16)?, char::from(*rest.get(1)?).to_digit(16)?);
-        bytes.push((high * 16 + low) as u8);
-        rest = &rest[2..];
-    }
-    Some(Cow::Owned(bytes))
-}
-
-/// The relative path that a URI means, or what is wrong with it.
-fn inner_path(uri: &str) -> Result<PathBuf, &'static str> {
-    const OUTSIDE: &str = "leads outside the scene's folder (keep the file beside the scene and refer to it by a relative path)";
-    let bytes = percent_decoded(uri).ok_or("is not a valid URI (export the scene again)")?;
-    let text = std::str::from_utf8(&bytes).map_err(|_| "is not a valid URI (export the scene again)")?;
-    if text.is_empty() || text.contains('\0') {
-        return Err("is not a file name (export the scene again)");
-    }
-    let mut path = PathBuf::new();
-    // Some exporters on Windows write backslashes; a colon is a scheme or a drive.
-    for (i, part) in text.split(['/', '\\']).enumerate() {
-        match part {
-            "" if i == 0 => return Err(OUTSIDE),
-            "" | "." => {}
-            ".." => return Err(OUTSIDE),
-            part if part.contains(':') => return Err(OUTSIDE),
-            part => path.push(part),
-        }
-    }
-    Ok(path)
-}
-
 /// The regular file at `path` inside `folder`, links followed.
 fn resolve(folder: &Path, path: &Path) -> Result<PathBuf, String> {
     let real = folder.join(path).canonicalize().map_err(|error| unreadable(&error))?;
@@ -190,53 +131,4 @@ fn resolve(folder: &Path, path: &Path) -> Result<PathBuf, String> {
         return Err("is not a file (put the file back beside the scene file)".into());
     }
     Ok(real)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn base64_by_the_book() {
-        for (text, bytes) in [
-            ("", ""),
-            ("Zg==", "f"),
-            ("Zm8=", "fo"),
-            ("Zm9v", "foo"),
-            ("Zm9vYg", "foob"),
-            ("Zm9vYmE=", "fooba"),
-        ] {
-            assert_eq!(decode_base64(text.as_bytes()).unwrap(), bytes.as_bytes());
-        }
-        for text in ["Z", "Zg=v", "Zm 9v", "Zm9v!"] {
-            assert_eq!(decode_base64(text.as_bytes()), None, "{text}");
-        }
-    }
-
-    #[test]
-    fn data_uris() {
-        assert_eq!(data_uri("DATA:text/plain;base64,Zg==").and_then(decode_data), Some(b"f".to_vec()));
-        assert_eq!(data_uri("data:,a%20b").and_then(decode_data), Some(b"a b".to_vec()));
-        assert_eq!(data_uri("data:").and_then(decode_data), None);
-        assert_eq!(data_uri("dat"), None);
-    }
-
-    #[test]
-    fn only_inner_paths() {
-        assert_eq!(inner_path("a%20b/c.png"), Ok("a b/c.png".into()));
-        assert_eq!(inner_path("./textures\\c.png"), Ok("textures/c.png".into()));
-        let outside = [
-            "../a",
-            "a/../../b",
-            "/etc/passwd",
-            "\\\\host\\share",
-            "file:///etc/passwd",
-            "http://x/y",
-            "C:\\x",
-        ];
-        for uri in outside.into_iter().chain(["%2e%2e/a", "%2Fetc/passwd", "a/..%5Cb", "", "%00", "%zz", "%"])
-        {
-            assert!(inner_path(uri).is_err(), "{uri}");
-        }
-    }
 }

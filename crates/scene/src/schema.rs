@@ -61,6 +61,8 @@ const COUNT: Kind = Integer(1, u64::MAX);
 const OFFSET: Kind = Integer(0, u64::MAX);
 const SET: Kind = Integer(0, u32::MAX as u64);
 const UNIT: Kind = Number(0.0, 1.0);
+/// π/2 as exporters write it, in f32, where it is rounded up.
+const RIGHT_ANGLE: f64 = std::f32::consts::FRAC_PI_2 as f64;
 const COLOR: Kind = Numbers(3, 3, 0.0, 1.0);
 const fn numbers(least: usize, most: usize) -> Kind {
     Numbers(least, most, ANY.0, ANY.1)
@@ -217,6 +219,7 @@ static MATERIAL: Spec = Spec {
     ],
     extensions: &[
         ("KHR_materials_emissive_strength", &EMISSIVE_STRENGTH),
+        ("KHR_materials_pbrSpecularGlossiness", &SPECULAR_GLOSSINESS),
         ("KHR_materials_specular", &SPECULAR),
         ("KHR_materials_unlit", &NONE),
     ],
@@ -235,6 +238,17 @@ static METALLIC_ROUGHNESS: Spec = Spec {
 };
 
 static EMISSIVE_STRENGTH: Spec = Spec { optional: &[("emissiveStrength", Number(0.0, ANY.1))], ..NONE };
+
+static SPECULAR_GLOSSINESS: Spec = Spec {
+    optional: &[
+        ("diffuseFactor", Numbers(4, 4, 0.0, 1.0)),
+        ("diffuseTexture", Object(&TEXTURE_INFO)),
+        ("specularFactor", COLOR),
+        ("glossinessFactor", UNIT),
+        ("specularGlossinessTexture", Object(&TEXTURE_INFO)),
+    ],
+    ..NONE
+};
 
 static SPECULAR: Spec = Spec {
     optional: &[
@@ -308,12 +322,18 @@ static NODE: Spec = Spec {
         ("translation", numbers(3, 3)),
         ("weights", numbers(1, usize::MAX)),
     ],
-    extensions: &[("KHR_lights_punctual", &NODE_LIGHT), ("EXT_mesh_gpu_instancing", &INSTANCING)],
+    extensions: &[
+        ("KHR_lights_punctual", &NODE_LIGHT),
+        ("EXT_mesh_gpu_instancing", &INSTANCING),
+        ("KHR_node_visibility", &VISIBILITY),
+    ],
     needs: &[("skin", "mesh"), ("weights", "mesh")],
     ..NONE
 };
 
 static INSTANCING: Spec = Spec { required: &[("attributes", Accessors)], ..NONE };
+
+static VISIBILITY: Spec = Spec { optional: &[("visible", Flag)], ..NONE };
 
 static SAMPLER: Spec = Spec {
     optional: &[
@@ -359,10 +379,7 @@ static LIGHT: Spec = Spec {
 };
 
 static SPOT: Spec = Spec {
-    optional: &[
-        ("innerConeAngle", Number(0.0, std::f64::consts::FRAC_PI_2)),
-        ("outerConeAngle", Number(0.0, std::f64::consts::FRAC_PI_2)),
-    ],
+    optional: &[("innerConeAngle", Number(0.0, RIGHT_ANGLE)), ("outerConeAngle", Number(0.0, RIGHT_ANGLE))],
     ..NONE
 };
 

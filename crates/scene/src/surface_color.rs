@@ -16,10 +16,10 @@ impl Material {
 }
 
 impl Scene {
-    /// The texture coordinates of set 0 or 1 at a point; zero where the part has none.
+    /// The texture coordinates of a set ([`TextureRef::uv_set`]) at a point; zero where the part has none.
     #[inline]
     pub fn uv_at(&self, point: SurfacePoint, set: u8) -> Vec2 {
-        let uv = &self.uv[set as usize];
+        let uv = self.uv_set(set);
         if uv.is_empty() {
             return Vec2::ZERO;
         }

@@ -1,10 +1,10 @@
 //! Images and the textures that use them: formats, declared and real.
 
+use crate::data_uri::data_uri;
 use crate::document::Document;
 use crate::extension;
 use crate::image_file::mime_type;
 use crate::json_object::Object;
-use crate::resource::data_uri;
 use image::ImageReader;
 use std::borrow::Cow;
 use std::io::Cursor;

@@ -1,0 +1,73 @@
+//! What loading a file may still use of the machine: memory, triangles, time.
+
+use crate::LoadOptions;
+use crate::error::Fault;
+use std::cell::Cell;
+
+/// What loading may still use.
+pub(crate) struct Budget {
+    memory: Cell<u64>,
+    triangles: Cell<u64>,
+    work: Cell<u64>,
+    checks: Cell<u64>,
+    pub options: LoadOptions,
+}
+
+/// Values that may be read or computed in all: some seconds' worth.
+const MAX_WORK: u64 = 1 << 30;
+
+/// Values that may be looked at only to tell of flaws: some tenths of a second's worth.
+const MAX_CHECKS: u64 = 1 << 27;
+
+impl Budget {
+    pub fn new(options: &LoadOptions) -> Self {
+        Self {
+            memory: Cell::new(options.max_memory),
+            triangles: Cell::new(options.max_triangles),
+            work: Cell::new(MAX_WORK),
+            checks: Cell::new(MAX_CHECKS),
+            options: *options,
+        }
+    }
+
+    /// Takes `bytes` for `what`.
+    pub fn memory(&self, bytes: u64, what: &str) -> Result<(), Fault> {
+        let limit = self.options.max_memory >> 20;
+        take(&self.memory, bytes, || {
+            format!("{what} takes {} MiB of a limit of {limit} MiB in all", bytes >> 20)
+        })
+    }
+
+    /// What is left.
+    pub fn memory_left(&self) -> u64 {
+        self.memory.get()
+    }
+
+    /// Gives `bytes` back.
+    pub fn release(&self, bytes: u64) {
+        self.memory.set(self.memory.get() + bytes);
+    }
+
+    /// Takes `count` triangles.
+    pub fn triangles(&self, count: u64) -> Result<(), Fault> {
+        take(&self.triangles, count, || format!("it has more than {} triangles", self.options.max_triangles))
+    }
+
+    /// Takes the time for `count` values, for `place`.
+    pub fn work(&self, count: u64, place: &str) -> Result<(), Fault> {
+        take(&self.work, count, || format!("{place}: reading the scene takes too many steps"))
+    }
+
+    /// Takes the time to look at `count` values for flaws; false if it is used up and they are to be passed over.
+    pub fn check(&self, count: usize) -> bool {
+        let left = self.checks.get().checked_sub(count as u64);
+        self.checks.set(left.unwrap_or(self.checks.get()));
+        left.is_some()
+    }
+}
+
+fn take(cell: &Cell<u64>, amount: u64, what: impl Fn() -> String) -> Result<(), Fault> {
+    let left = cell.get().checked_sub(amount).ok_or_else(|| Fault::TooBig { what: what() })?;
+    cell.set(left);
+    Ok(())
+}
