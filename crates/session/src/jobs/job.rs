@@ -74,6 +74,7 @@ impl Job {
 mod tests {
     use super::*;
     use std::sync::mpsc;
+    use std::time::Duration;
 
     #[test]
     fn a_panic_is_an_error_and_a_result_arrives() {
