@@ -1,8 +1,8 @@
 //! The scene with its atlas as a self-contained GLB: TEXCOORD_1 is the atlas in [0, 1].
 //!
 //! The scene is exported as it is in memory: world space, instances flattened, a mesh for each node and a primitive
-//! for each part. Vertices are split where charts part. A UV set 1 of the file becomes TEXCOORD_2. glTF wants UV
-//! sets numbered from 0, so a part without a set 0 has the atlas there too.
+//! for each part. Vertices are split where charts part. The scene's UV sets from 1 on become TEXCOORD_2 and so on. glTF
+//! wants UV sets numbered without gaps, so a part that lacks a set below others has the atlas there too.
 
 use crate::glb_materials;
 use crate::{Atlas, AtlasError};
@@ -231,17 +231,18 @@ fn primitive(glb: &mut Glb, scene: &Scene, part: &scene::Part, split: &SplitVert
     let places: Vec<[f32; 2]> = split.vertices.iter().map(|(_, place)| place.to_array()).collect();
     let atlas = glb.add_floats(&places);
     attributes.insert("TEXCOORD_1".into(), atlas.into());
-    let mut uv = |glb: &mut Glb, set: usize, number: u32| {
-        let has = part.has_uv[set] && !scene.uv[set].is_empty();
-        let values = has.then(|| split.values(&scene.uv[set], |c: Vec2| c.to_array()));
-        let sound = values.filter(|values| values.as_flattened().iter().all(|x| x.is_finite()));
-        if let Some(values) = sound {
+    let mut highest = 1;
+    for set in uv_sets(scene, part) {
+        let values = split.values(scene.uv_set(set), |c: Vec2| c.to_array());
+        if values.as_flattened().iter().all(|x| x.is_finite()) {
+            let number = glb_materials::tex_coord(set);
             attributes.insert(format!("TEXCOORD_{number}"), glb.add_floats(&values).into());
+            highest = highest.max(number);
         }
-    };
-    uv(glb, 0, 0);
-    uv(glb, 1, glb_materials::SECOND_SET);
-    attributes.entry("TEXCOORD_0").or_insert(atlas.into());
+    }
+    for number in 0..highest {
+        attributes.entry(format!("TEXCOORD_{number}")).or_insert(atlas.into());
+    }
     let colored =
         |&(vertex, _): &(u32, Vec2)| scene.colors.get(vertex as usize).is_some_and(|c| *c != Vec4::ONE);
     if split.vertices.iter().any(colored) {
@@ -252,6 +253,18 @@ fn primitive(glb: &mut Glb, scene: &Scene, part: &scene::Part, split: &SplitVert
     let indices =
         glb.add_accessor(&indices, ELEMENT_ARRAY_BUFFER, UNSIGNED_INT, "SCALAR", split.indices.len());
     json!({ "attributes": attributes, "indices": indices, "material": part.material })
+}
+
+/// The UV sets that a part has: those of the file, and what the textures of its material lie in besides.
+fn uv_sets(scene: &Scene, part: &scene::Part) -> Vec<u8> {
+    let material = scene.materials.get(part.material as usize);
+    let textures = material.into_iter().flat_map(|m| [m.base_color_texture, m.emissive_texture]).flatten();
+    let mut sets: Vec<u8> = [0, 1].into_iter().filter(|&set| part.has_uv[set as usize]).collect();
+    sets.extend(textures.map(|texture| texture.uv_set).filter(|&set| set > 1));
+    sets.sort_unstable();
+    sets.dedup();
+    sets.retain(|&set| !scene.uv_set(set).is_empty());
+    sets
 }
 
 fn write_cameras(glb: &mut Glb, scene: &Scene) {

@@ -7,8 +7,10 @@ use scene::{AlphaMode, Image, ImageLevel, Material, Scene, TextureRef, Wrap};
 use serde_json::{Map, Value, json};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// The TEXCOORD number of the scene's UV set 1, as the atlas takes TEXCOORD_1.
-pub(crate) const SECOND_SET: u32 = 2;
+/// The TEXCOORD number of a UV set of the scene ([`TextureRef::uv_set`]): the atlas takes TEXCOORD_1.
+pub(crate) fn tex_coord(uv_set: u8) -> u32 {
+    u32::from(uv_set) + u32::from(uv_set > 0)
+}
 
 /// Adds `materials`, `textures`, `samplers` and `images`.
 pub(crate) fn write(glb: &mut Glb, scene: &Scene, progress: &dyn Progress) -> Result<(), AtlasError> {
@@ -60,8 +62,7 @@ impl Textures {
             self.list.push(key);
             self.list.len() - 1
         });
-        let tex_coord = if texture.uv_set == 0 { 0 } else { SECOND_SET };
-        let mut value = json!({ "index": index, "texCoord": tex_coord });
+        let mut value = json!({ "index": index, "texCoord": tex_coord(texture.uv_set) });
         // Columns (cos·sx, −sin·sx), (sin·sy, cos·sy), offset.
         let [x, y, offset] = [texture.transform.x_axis, texture.transform.y_axis, texture.transform.z_axis];
         if texture.transform != glam::Mat3::IDENTITY {

@@ -49,6 +49,9 @@ pub fn of_scene(scene: &Scene) -> String {
         .add_debug(&scene.nodes)
         .add_debug(&scene.materials)
         .add_debug(&scene.lights);
+    for uv in &scene.further_uv {
+        fingerprint = fingerprint.add(bytemuck::cast_slice(uv));
+    }
     for image in &scene.images {
         let texels = match &image.texels {
             ImageLevel::Bits8(texels) => texels.as_slice(),

@@ -17,8 +17,9 @@ pub fn subdivided(scene: &Scene) -> Option<Scene> {
         let index = u32::try_from(fine.positions.len()).ok().filter(|&index| index < u32::MAX)?;
         push_middle(&mut fine.positions, side, |a, b| 0.5 * (a + b));
         push_middle(&mut fine.normals, side, |a, b| 0.5 * (a + b));
-        push_middle(&mut fine.uv[0], side, |a, b| 0.5 * (a + b));
-        push_middle(&mut fine.uv[1], side, |a, b| 0.5 * (a + b));
+        for uv in fine.uv.iter_mut().chain(&mut fine.further_uv) {
+            push_middle(uv, side, |a, b| 0.5 * (a + b));
+        }
         push_middle(&mut fine.colors, side, |a, b| 0.5 * (a + b));
         middles.insert(side, index);
         Some(index)
@@ -46,7 +47,7 @@ fn push_middle<T: Copy>(values: &mut Vec<T>, [a, b]: [u32; 2], mean: impl Fn(T, 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use glam::{DVec3, Vec2, Vec3};
+    use glam::{DVec3, Vec2, Vec2Swizzles, Vec3};
 
     fn square() -> Scene {
         let corners = [[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0]];
@@ -54,6 +55,7 @@ mod tests {
             positions: corners.map(|[x, y]| DVec3::new(x, y, -3.0)).to_vec(),
             normals: vec![Vec3::Z; 4],
             uv: [corners.map(|[x, y]| Vec2::new(x as f32, y as f32) / 2.0).to_vec(), Vec::new()],
+            further_uv: vec![corners.map(|[x, y]| Vec2::new(y as f32, x as f32)).to_vec()],
             triangles: [[0, 1, 2], [0, 2, 3]].map(|vertices| Triangle { vertices, part: 0 }).to_vec(),
             parts: vec![scene::Part {
                 node: 0,
@@ -83,5 +85,9 @@ mod tests {
             assert_eq!((position.truncate() / 2.0).as_vec2(), *uv);
         }
         assert!(fine.uv[1].is_empty());
+        for (position, uv) in fine.positions.iter().zip(&fine.further_uv[0]) {
+            assert_eq!(position.truncate().yx().as_vec2(), *uv);
+        }
+        assert_eq!(fine.further_uv[0].len(), fine.positions.len());
     }
 }

@@ -11,14 +11,15 @@ fn document() -> Value {
     let uri = format!("data:;base64,{}", "A".repeat(512));
     json!({
         "asset": {"version": "2.0", "generator": "hand"},
-        "extensionsUsed": ["KHR_lights_punctual", "EXT_texture_webp"], "extensionsRequired": [],
+        "extensionsUsed": ["KHR_lights_punctual", "EXT_texture_webp", "KHR_node_visibility"], "extensionsRequired": [],
         "scene": 0, "scenes": [{"nodes": [0, 2]}],
         "nodes": [
             {"name": "root", "children": [1], "translation": [1, 2, 3], "rotation": [0, 0, 0, 1],
              "scale": [1, 1, 1], "camera": 0, "extensions": {"KHR_lights_punctual": {"light": 0}}},
             {"mesh": 0, "skin": 0, "weights": [0.5]},
             {"mesh": 0, "matrix": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1],
-             "extensions": {"EXT_mesh_gpu_instancing": {"attributes": {"TRANSLATION": 0, "ROTATION": 3}}}}
+             "extensions": {"KHR_node_visibility": {"visible": true},
+                "EXT_mesh_gpu_instancing": {"attributes": {"TRANSLATION": 0, "ROTATION": 3}}}}
         ],
         "cameras": [{"type": "perspective", "perspective": {"yfov": 0.7, "znear": 0.1, "aspectRatio": 1.5}},
             {"type": "orthographic", "orthographic": {"xmag": 1, "ymag": 1, "znear": 0, "zfar": 1}}],
@@ -28,7 +29,8 @@ fn document() -> Value {
         "meshes": [{"weights": [0.1], "primitives": [{
             "attributes": {"POSITION": 0, "NORMAL": 0, "TEXCOORD_0": 1, "COLOR_0": 3, "JOINTS_0": 5, "WEIGHTS_0": 3},
             "indices": 2, "material": 0, "mode": 4,
-            "targets": [{"POSITION": 0, "NORMAL": 0, "TEXCOORD_0": 1, "COLOR_0": 3}]}]}],
+            "targets": [{"POSITION": 0, "NORMAL": 0, "TEXCOORD_0": 1, "COLOR_0": 3}]},
+            {"attributes": {"POSITION": 0, "TEXCOORD_2": 1}, "material": 1}]}],
         "materials": [{"name": "paint", "alphaMode": "MASK", "alphaCutoff": 0.1, "doubleSided": true,
             "pbrMetallicRoughness": {"baseColorFactor": [1, 1, 1, 1], "metallicFactor": 0, "roughnessFactor": 1,
                 "baseColorTexture": {"index": 0, "texCoord": 0, "extensions":
@@ -36,7 +38,10 @@ fn document() -> Value {
             "normalTexture": {"index": 0, "scale": 1}, "occlusionTexture": {"index": 0, "strength": 1},
             "emissiveFactor": [1, 1, 1], "emissiveTexture": {"index": 1},
             "extensions": {"KHR_materials_unlit": {}, "KHR_materials_specular": {"specularFactor": 0.5},
-                "KHR_materials_emissive_strength": {"emissiveStrength": 2}}}],
+                "KHR_materials_emissive_strength": {"emissiveStrength": 2}}},
+            {"extensions": {"KHR_materials_pbrSpecularGlossiness": {"diffuseFactor": [1, 1, 1, 1],
+                "diffuseTexture": {"index": 1, "texCoord": 2}, "specularFactor": [0, 0, 0], "glossinessFactor": 0,
+                "specularGlossinessTexture": {"index": 0}}}}],
         "textures": [{"source": 0, "sampler": 0}, {"extensions": {"EXT_texture_webp": {"source": 1}}}],
         "samplers": [{"magFilter": 9728, "minFilter": 9729, "wrapS": 33071, "wrapT": 33648}],
         "images": [{"uri": "absent.png", "name": "a"}, {"bufferView": 0, "mimeType": "image/webp"}],

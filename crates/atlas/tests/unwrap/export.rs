@@ -34,6 +34,8 @@ fn rich_scene() -> Scene {
     shiny.base_color = Vec4::new(0.1, 0.2, 0.3, 0.5);
     shiny.base_color_texture = Some(texture);
     shiny.emissive = Vec3::new(1.0, 4.0, 0.0);
+    shiny.emissive_texture = Some(TextureRef { uv_set: 2, ..texture });
+    scene.further_uv = vec![(0..scene.positions.len()).map(|i| Vec2::new(i as f32, 0.25)).collect()];
     shiny.alpha = AlphaMode::Mask(0.25);
     shiny.unlit = true;
     shiny.double_sided = true;
@@ -72,6 +74,10 @@ fn what_is_written_reads_back() {
     let (texture, had) = (shiny.base_color_texture.unwrap(), was.base_color_texture.unwrap());
     assert!(texture.transform.abs_diff_eq(had.transform, 1e-5), "{} {}", texture.transform, had.transform);
     assert_eq!((texture.wrap, texture.nearest), (had.wrap, had.nearest));
+    let glow = shiny.emissive_texture.unwrap();
+    for t in again.parts[1].triangles.clone() {
+        assert_eq!(again.corner_uv(t, glow.uv_set), scene.corner_uv(t, 2));
+    }
     let ImageLevel::Bits8(texels) = &again.images[texture.image as usize].texels else { panic!("8 bits") };
     assert_eq!(*texels, [1, 2, 3, 4, 250, 251, 252, 253]);
 }

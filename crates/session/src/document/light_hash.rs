@@ -12,7 +12,7 @@ pub(crate) fn light_hash(scene: &Scene) -> [u8; 32] {
     };
     arrays(bytemuck::cast_slice(&scene.positions));
     arrays(bytemuck::cast_slice(&scene.normals));
-    scene.uv.iter().for_each(|uv| arrays(bytemuck::cast_slice(uv)));
+    scene.uv.iter().chain(&scene.further_uv).for_each(|uv| arrays(bytemuck::cast_slice(uv)));
     arrays(bytemuck::cast_slice(&scene.colors));
     for triangle in &scene.triangles {
         arrays(bytemuck::cast_slice(&triangle.vertices));
@@ -47,5 +47,7 @@ mod tests {
         let uv = Scene { uv: [vec![glam::Vec2::ONE], Vec::new()], ..Scene::default() };
         let other = Scene { uv: [Vec::new(), vec![glam::Vec2::ONE]], ..Scene::default() };
         assert_ne!(light_hash(&uv), light_hash(&other));
+        let further = |u: f32| Scene { further_uv: vec![vec![glam::Vec2::splat(u)]], ..Scene::default() };
+        assert_ne!(light_hash(&further(0.0)), light_hash(&further(1.0)));
     }
 }
