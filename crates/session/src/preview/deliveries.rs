@@ -4,7 +4,7 @@ use crate::error::SessionError;
 use crate::light_field::LightField;
 use lens::Camera;
 
-/// The share of the work that the bake is; the rest is the first sum.
+/// The share of making a light field that the bake is; the rest is the first sum.
 pub(crate) const BAKE_SHARE: f32 = 0.7;
 
 /// What the maker of light fields hands over.
@@ -15,7 +15,7 @@ pub(crate) struct Delivery {
     pub epoch: u64,
 }
 
-/// What comes of it.
+/// What becomes of the exact picture.
 pub(crate) struct Refined {
     /// The sum; none after a panic.
     pub field: Option<LightField>,
