@@ -5,7 +5,7 @@
 //! ```text
 //! magic        8 bytes   "FBSALF\r\n"
 //! version      u32       4
-//! source       text      the scene or project it was baked from, as a path
+//! source       path      the scene or project it was baked from
 //! triangles    u32       of that scene: what surface addresses count in
 //! camera       see `write_camera`
 //! margin       u32       px sampled outside the frame
@@ -26,7 +26,7 @@
 //! checksum     32 bytes  SHA-256 of everything before
 //! ```
 //!
-//! A text is its length in bytes (u32) and UTF-8. What the packed samples mean is told in `samples.rs` and below it.
+//! A text is its length in bytes (u32) and UTF-8; a path may have other bytes where the system lets it. What the packed samples mean is told in `samples.rs` and below it.
 
 mod camera;
 mod samples;
@@ -36,6 +36,7 @@ use camera::{read_camera, write_camera};
 use samples::{read_samples, write_samples};
 use sha2::{Digest, Sha256};
 use std::io::{self, Read, Write};
+use std::path::PathBuf;
 use std::sync::Arc;
 
 const MAGIC: &[u8; 8] = b"FBSALF\r\n";
@@ -48,8 +49,8 @@ const FIRST_CAPACITY: u64 = 1 << 20;
 /// A light field and what it was baked from.
 #[derive(Clone, Debug)]
 pub struct SalfFile {
-    /// The scene or project, as a path.
-    pub source: String,
+    /// The scene or project.
+    pub source: PathBuf,
     /// How many triangles that scene has.
     pub triangles: u32,
     /// The light field.
@@ -82,7 +83,7 @@ impl SalfFile {
         let mut to = Hashing { inner: to, hash: Sha256::new() };
         to.write_all(MAGIC)?;
         to.write_all(&VERSION.to_le_bytes())?;
-        write_text(&mut to, &self.source)?;
+        write_text(&mut to, self.source.as_os_str().as_encoded_bytes())?;
         to.write_all(&self.triangles.to_le_bytes())?;
         write_camera(&mut to, &self.salf.camera)?;
         to.write_all(&self.salf.margin_px.to_le_bytes())?;
@@ -103,7 +104,7 @@ impl SalfFile {
         if version != VERSION {
             return Err(SalfFileError::Version(version));
         }
-        let source = read_text(&mut from)?;
+        let source = read_path(&mut from)?;
         let triangles = u32::from_le_bytes(bytes(&mut from)?);
         let camera = read_camera(&mut from)?;
         camera.validate().map_err(|error| SalfFileError::Damaged(error.to_string()))?;
@@ -152,19 +153,35 @@ fn bytes<const N: usize>(from: &mut impl Read) -> Result<[u8; N], SalfFileError>
     Ok(buffer)
 }
 
-fn write_text(to: &mut impl Write, text: &str) -> io::Result<()> {
+fn write_text(to: &mut impl Write, text: &[u8]) -> io::Result<()> {
     to.write_all(&(text.len() as u32).to_le_bytes())?;
-    to.write_all(text.as_bytes())
+    to.write_all(text)
 }
 
 fn read_text(from: &mut impl Read) -> Result<String, SalfFileError> {
+    String::from_utf8(read_text_bytes(from)?)
+        .map_err(|_| SalfFileError::Damaged("a text that is not UTF-8".into()))
+}
+
+#[cfg(unix)]
+fn read_path(from: &mut impl Read) -> Result<PathBuf, SalfFileError> {
+    use std::os::unix::ffi::OsStringExt;
+    Ok(std::ffi::OsString::from_vec(read_text_bytes(from)?).into())
+}
+
+#[cfg(not(unix))]
+fn read_path(from: &mut impl Read) -> Result<PathBuf, SalfFileError> {
+    read_text(from).map(PathBuf::from)
+}
+
+fn read_text_bytes(from: &mut impl Read) -> Result<Vec<u8>, SalfFileError> {
     let length = u32::from_le_bytes(bytes(from)?);
     if length > LONGEST_TEXT {
         return Err(SalfFileError::Damaged(format!("a text of {length} bytes")));
     }
     let mut text = vec![0; length as usize];
     from.read_exact(&mut text).map_err(|_| SalfFileError::CutShort)?;
-    String::from_utf8(text).map_err(|_| SalfFileError::Damaged("a text that is not UTF-8".into()))
+    Ok(text)
 }
 
 fn write_f64s(to: &mut impl Write, values: &[f64]) -> io::Result<()> {
@@ -232,9 +249,18 @@ mod tests {
     fn what_is_written_is_read() {
         let file = file();
         let read = SalfFile::read(written(&file).as_slice()).unwrap();
-        assert_eq!((read.source.as_str(), read.triangles), ("garden.glb", 7));
+        assert_eq!((read.source.to_str(), read.triangles), (Some("garden.glb"), 7));
         assert_eq!(read.salf.camera, file.salf.camera);
         assert_eq!((read.salf.margin_px, &read.salf.samples), (32, &file.salf.samples));
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_source_that_is_not_utf8_is_kept() {
+        use std::os::unix::ffi::OsStrExt;
+        let source = PathBuf::from(std::ffi::OsStr::from_bytes(b"caf\xe9/\xff.glb"));
+        let read = SalfFile::read(written(&SalfFile { source: source.clone(), ..file() }).as_slice());
+        assert_eq!(read.unwrap().source, source);
     }
 
     #[test]

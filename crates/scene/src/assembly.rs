@@ -21,7 +21,8 @@ const MAX_COORDINATE: f64 = 1e15;
 /// Bytes that a vertex takes in the scene, twice because growing arrays keep room.
 const VERTEX_BYTES: u64 = 2 * (24 + 12 + 8 + 8 + 16);
 
-/// Appends `primitive` as a part of scene node `node` with scene material `material`.
+/// Appends `primitive` as a part of scene node `node` with scene material `material`, and says which of its vertices the
+/// part has; none if there is nothing to see.
 pub(crate) fn append(
     scene: &mut Scene,
     document: &Document<'_>,
@@ -29,7 +30,7 @@ pub(crate) fn append(
     placement: &Placement<'_>,
     node: u32,
     material: u32,
-) -> Result<(), Fault> {
+) -> Result<Vec<u32>, Fault> {
     let vertices = primitive.positions.len();
     let passing = vertices as u64 * if matches!(placement, Placement::Skinned(_)) { 128 + 32 } else { 32 };
     let lasting = vertices as u64 * VERTEX_BYTES + primitive.triangles.len() as u64 * 32;
@@ -62,7 +63,7 @@ pub(crate) fn append(
     };
     if triangles.is_empty() {
         document.budget.release(passing + lasting);
-        return Ok(());
+        return Ok(Vec::new());
     }
 
     let mirrors = |matrix: &DMat4| matrix.determinant() < 0.0;
@@ -92,7 +93,7 @@ pub(crate) fn append(
         mirrored,
     });
     document.budget.release(passing);
-    Ok(())
+    Ok(used)
 }
 
 /// Appends an attribute of the used vertices, or its default. An attribute that no part has so far stays empty.
