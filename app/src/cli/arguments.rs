@@ -1,8 +1,9 @@
 //! What can be typed.
 
-use clap::builder::{PossibleValuesParser, TypedValueParser};
+use clap::builder::{OsStringValueParser, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, ValueEnum};
 use session::{Aov, CameraChoice, Renderer};
+use std::ffi::OsStr;
 use std::path::PathBuf;
 
 /// Paint onto a 3D scene how it is focused.
@@ -81,7 +82,7 @@ pub struct NewArguments {
     #[arg(short, long, value_name = "PROJECT.fbrush")]
     pub output: PathBuf,
     /// A camera file, or the name of a camera in the scene (default: the scene's first)
-    #[arg(long, value_name = "CAM.json|NAME", value_parser = camera_choice)]
+    #[arg(long, value_name = "CAM.json|NAME", value_parser = camera_parser())]
     pub camera: Option<CameraChoice>,
     /// How it is focused to begin with: a recipe (.json) or a focus map (.exr, .png) (default: the ordinary lens)
     #[arg(long, value_name = "RECIPE.json|MAP.exr|png")]
@@ -152,7 +153,7 @@ pub struct BakeArguments {
 #[derive(Debug, Args)]
 pub struct ShotArguments {
     /// A camera file, or the name of a camera in the scene (default: the project's, or the scene's first)
-    #[arg(long, value_name = "CAM.json|NAME", value_parser = camera_choice)]
+    #[arg(long, value_name = "CAM.json|NAME", value_parser = camera_parser())]
     pub camera: Option<CameraChoice>,
     /// How it is focused: a recipe (.json) or a focus map (.exr, .png) (default: as the project is painted, or the
     /// ordinary lens)
@@ -182,7 +183,7 @@ pub struct RenderArguments {
     #[arg(long, value_enum, default_value_t = BackendName::Auto)]
     pub backend: BackendName,
     /// Only a graphics adapter whose name contains this, also one in software (focus-brush doctor lists them)
-    #[arg(long, value_name = "NAME")]
+    #[arg(long, value_name = "NAME", value_parser = name_parser())]
     pub adapter: Option<String>,
     /// How coarse, in pixels, the light field may be: what partly hidden points see of the aperture, and which samples
     /// are joined where they are out of focus. Smaller is more exact and slower; 0 joins none, and takes 3 cells (default: 2
@@ -274,7 +275,7 @@ pub struct ReportArguments {
     #[arg(long, value_enum, requires = "engine", default_value_t = BackendName::Auto)]
     pub backend: BackendName,
     /// Only a graphics adapter whose name contains this, also one in software (focus-brush doctor lists them)
-    #[arg(long, value_name = "NAME", requires = "engine")]
+    #[arg(long, value_name = "NAME", requires = "engine", value_parser = name_parser())]
     pub adapter: Option<String>,
     /// Write what was done as JSON to stdout
     #[arg(long)]
@@ -353,9 +354,19 @@ pub enum ExposureName {
     Normalise,
 }
 
-fn camera_choice(text: &str) -> Result<CameraChoice, String> {
-    let is_file = text.to_lowercase().ends_with(".json");
-    Ok(if is_file { CameraChoice::File(text.into()) } else { CameraChoice::Named(text.into()) })
+/// A name inside a file, which is UTF-8 there: other bytes make a name that nothing has.
+fn name_parser() -> impl TypedValueParser<Value = String> {
+    OsStringValueParser::new().map(|text| text.to_string_lossy().into_owned())
+}
+
+fn camera_parser() -> impl TypedValueParser<Value = CameraChoice> {
+    OsStringValueParser::new().map(|text| camera_choice(&text))
+}
+
+/// A path may be any bytes, so it is not made text.
+fn camera_choice(text: &OsStr) -> CameraChoice {
+    let is_file = text.as_encoded_bytes().to_ascii_lowercase().ends_with(b".json");
+    if is_file { CameraChoice::File(text.into()) } else { CameraChoice::Named(text.to_string_lossy().into()) }
 }
 
 fn size(text: &str) -> Result<[u32; 2], String> {
@@ -404,8 +415,8 @@ mod tests {
     fn values_are_checked() {
         assert_eq!(size("960x540"), Ok([960, 540]));
         assert!(size("960").is_err() && size("0x5").is_err() && size("99999x1").is_err());
-        assert_eq!(camera_choice("a.JSON"), Ok(CameraChoice::File("a.JSON".into())));
-        assert_eq!(camera_choice("front"), Ok(CameraChoice::Named("front".into())));
+        assert_eq!(camera_choice("a.JSON".as_ref()), CameraChoice::File("a.JSON".into()));
+        assert_eq!(camera_choice("front".as_ref()), CameraChoice::Named("front".into()));
         assert!(aov("depth").is_ok() && aov("z").is_err());
         assert!(positive("0").is_err() && positive("nan").is_err() && not_negative("0").is_ok());
     }

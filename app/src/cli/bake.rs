@@ -1,7 +1,7 @@
 //! `focus-brush bake`.
 
 use super::arguments::BakeArguments;
-use super::console::{Console, say_json};
+use super::console::{Console, path_text, say_json};
 use super::failure::Failure;
 use super::shot::{check_folder, shot};
 use serde_json::json;
@@ -30,8 +30,8 @@ pub fn run(arguments: &BakeArguments, console: &Console) -> Result<(), Failure> 
     let statistics = salf.statistics();
     if arguments.json {
         say_json(&json!({
-            "input": arguments.file,
-            "files": [arguments.output],
+            "input": path_text(&arguments.file),
+            "files": [path_text(&arguments.output)],
             "width": camera.width,
             "height": camera.height,
             "threads": rayon::current_num_threads(),

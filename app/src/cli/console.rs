@@ -4,7 +4,9 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use progress::Progress;
 use serde_json::Value;
 use session::Steps;
+use std::borrow::Cow;
 use std::io::{IsTerminal, Write};
+use std::path::Path;
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
@@ -36,6 +38,16 @@ impl Console {
 /// A line of the result on stdout. A reader that has gone is no error.
 pub fn say(line: impl AsRef<str>) {
     let _ = writeln!(std::io::stdout(), "{}", line.as_ref());
+}
+
+/// A path in the result for a script. JSON is UTF-8: bytes of a path that are not become U+FFFD.
+pub fn path_text(path: &Path) -> Cow<'_, str> {
+    path.to_string_lossy()
+}
+
+/// The same of several paths.
+pub fn path_texts<T: AsRef<Path>>(paths: &[T]) -> Vec<Cow<'_, str>> {
+    paths.iter().map(|path| path_text(path.as_ref())).collect()
 }
 
 /// The result for a script.

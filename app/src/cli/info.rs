@@ -1,7 +1,7 @@
 //! `focus-brush info`.
 
 use super::arguments::InfoArguments;
-use super::console::{Console, say, say_json};
+use super::console::{Console, path_text, say, say_json};
 use super::failure::Failure;
 use super::shot::unwrap_options;
 use lens::Camera;
@@ -31,7 +31,7 @@ pub fn run(arguments: &InfoArguments, console: &Console) -> Result<(), Failure> 
     let modelled = modelled(&input, arguments.bake, console)?;
     if arguments.json {
         say_json(&json!({
-            "file": file,
+            "file": path_text(file),
             "kind": match kind {
                 InputKind::Scene => "scene",
                 InputKind::Project => "project",
@@ -77,7 +77,8 @@ fn without_triangles(
 ) -> Result<(), Failure> {
     console.warn(&inspection.warnings);
     if arguments.json {
-        say_json(&json!({ "file": arguments.file, "kind": "scene", "contents": inspection, "note": note }));
+        let file = path_text(&arguments.file);
+        say_json(&json!({ "file": file, "kind": "scene", "contents": inspection, "note": note }));
     } else {
         say(format!("{}", arguments.file.display()));
         contents(inspection);
@@ -115,7 +116,7 @@ fn project_lines(project: &ProjectFile) {
 
 fn project_json(project: &ProjectFile) -> Value {
     json!({
-        "scene": project.scene,
+        "scene": path_text(&project.scene),
         "scene_state": format!("{:?}", project.scene_state()).to_lowercase(),
         "cameras": project.cameras.iter().map(|camera| &camera.name).collect::<Vec<_>>(),
         "active_camera": project.active_camera,
@@ -215,7 +216,7 @@ fn modelled_lines(BakedField { modelled, size }: &BakedField) {
 
 fn scene_json(scene: &Scene) -> Value {
     json!({
-        "path": scene.path,
+        "path": path_text(&scene.path),
         "triangles": scene.triangles.len(),
         "parts": scene.parts.len(),
         "nodes": scene.nodes.iter().map(|node| &node.name).collect::<Vec<_>>(),

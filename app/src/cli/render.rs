@@ -1,7 +1,7 @@
 //! `focus-brush render`.
 
 use super::arguments::{BackendName, EstimatorName, ExposureName, RenderArguments, SamplerName};
-use super::console::{Console, say_json};
+use super::console::{Console, path_text, path_texts, say_json};
 use super::failure::Failure;
 use super::shot::{check_picture_output, shot};
 use lens::Exposure;
@@ -67,8 +67,8 @@ pub fn run(arguments: &RenderArguments, console: &Console) -> Result<(), Failure
     let write_seconds = writing.elapsed().as_secs_f64();
     if arguments.json {
         say_json(&json!({
-            "input": arguments.file,
-            "files": files,
+            "input": path_text(&arguments.file),
+            "files": path_texts(&files),
             "renderer": renderer.name(),
             "backend": if card.is_some() { "gpu" } else { "cpu" },
             "adapter": card,

@@ -1,7 +1,7 @@
 //! `focus-brush replay`.
 
 use super::arguments::ReplayArguments;
-use super::console::{Console, say_json};
+use super::console::{Console, path_text, say_json};
 use super::failure::Failure;
 use super::new::check_project_name;
 use super::shot::{check_folder, unwrap_options};
@@ -28,8 +28,8 @@ pub fn run(arguments: &ReplayArguments, console: &Console) -> Result<(), Failure
     document.to_project().save(&arguments.output)?;
     if arguments.json {
         say_json(&json!({
-            "input": arguments.file,
-            "files": [arguments.output],
+            "input": path_text(&arguments.file),
+            "files": [path_text(&arguments.output)],
             "steps": steps.len(),
             "painted": painted,
             "points": steps.iter().map(points).sum::<usize>(),

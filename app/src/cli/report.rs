@@ -1,7 +1,7 @@
 //! `focus-brush report`.
 
 use super::arguments::{BackendName, ReportArguments};
-use super::console::{Console, say_json};
+use super::console::{Console, path_texts, say_json};
 use super::failure::Failure;
 use super::render::open_gpu;
 use super::shot::unwrap_options;
@@ -37,7 +37,7 @@ pub fn run(arguments: &ReportArguments, console: &Console) -> Result<(), Failure
     let failed: Vec<&str> = wrong.map(|outcome| outcome.case.as_str()).collect();
     if arguments.json {
         say_json(&json!({
-            "files": report.files,
+            "files": path_texts(&report.files),
             "measurements": report.measured.len(),
             "new": report.new,
             "hard_cases": report.hard.as_ref().map(Vec::len),
@@ -71,7 +71,7 @@ fn run_engine(
     let broken: Vec<_> = report.checks.iter().filter(|check| !check.holds).collect();
     if arguments.json {
         say_json(&json!({
-            "files": report.files,
+            "files": path_texts(&report.files),
             "measurements": report.records.len(),
             "checks": report.checks,
             "machine": report.machine,

@@ -1,7 +1,7 @@
 //! `focus-brush unwrap`.
 
 use super::arguments::UnwrapArguments;
-use super::console::{Console, say_json};
+use super::console::{Console, path_text, say_json};
 use super::failure::Failure;
 use super::shot::{check_folder, unwrap_options};
 use serde_json::json;
@@ -25,8 +25,8 @@ pub fn run(arguments: &UnwrapArguments, console: &Console) -> Result<(), Failure
     write_unwrapped(&arguments.output, &input.scene, &atlas, console)?;
     if arguments.json {
         say_json(&json!({
-            "input": arguments.scene,
-            "files": [arguments.output],
+            "input": path_text(&arguments.scene),
+            "files": [path_text(&arguments.output)],
             "triangles": input.scene.triangles.len(),
             "width": atlas.width,
             "height": atlas.height,

@@ -1,6 +1,7 @@
 //! What can go wrong between a scene and its atlas.
 
 use progress::Cancelled;
+use scene::SceneError;
 use std::path::PathBuf;
 
 /// Why there is no atlas, or why one cannot be used.
@@ -28,13 +29,14 @@ pub enum AtlasError {
         /// What is wrong with them.
         reason: String,
     },
-    /// A texture of the scene could not be encoded.
-    #[error("image {name}: cannot be written as PNG: {source} (check its size)")]
-    Texture {
-        /// The image's name.
-        name: String,
-        /// Why.
-        source: png::EncodingError,
+    /// The scene's file cannot be read again.
+    #[error(transparent)]
+    Scene(SceneError),
+    /// The scene's file is not what it was when the scene was read.
+    #[error("{}: has changed since it was opened (open it again)", path.display())]
+    SceneChanged {
+        /// The scene's file.
+        path: PathBuf,
     },
     /// The exported file would be larger than the format allows.
     #[error(
@@ -57,5 +59,14 @@ pub enum AtlasError {
 impl From<Cancelled> for AtlasError {
     fn from(_: Cancelled) -> Self {
         AtlasError::Cancelled
+    }
+}
+
+impl From<SceneError> for AtlasError {
+    fn from(error: SceneError) -> Self {
+        match error {
+            SceneError::Cancelled(_) => AtlasError::Cancelled,
+            other => AtlasError::Scene(other),
+        }
     }
 }

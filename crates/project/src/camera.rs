@@ -11,6 +11,7 @@
 //! camera_to_world has glTF axes (looks down −Z, +Y up). Any field may be missing.
 
 use crate::ProjectError;
+use crate::aperture_mask_file::read_aperture_mask;
 use crate::disk::write_bytes;
 use crate::json::{Field, Fields, Json};
 use glam::{DMat4, DVec4};
@@ -130,14 +131,6 @@ fn aperture_from_json(
         (_, _, None) => unreachable!("a missing shape is a disc"),
     };
     Ok(Aperture { shape, ratio })
-}
-
-/// Reads a picture as an aperture mask: the mean of red, green and blue as stored (no sRGB decoding) is the
-/// transmission. `name` is kept as the mask's file.
-pub fn read_aperture_mask(file: &Path, name: &str) -> Result<ApertureMask, ProjectError> {
-    let (width, height, texels) = crate::png_file::stored_rgb(file)?;
-    let transmission = texels.iter().map(|[r, g, b]| (r + g + b) / 3.0).collect();
-    Ok(ApertureMask { width, height, transmission, file: name.to_string() })
 }
 
 /// Writes a camera file. A mask is named as the camera names it, and not copied.

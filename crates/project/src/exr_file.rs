@@ -2,6 +2,8 @@
 
 use crate::ProjectError;
 use crate::disk::{read_bytes, write_bytes};
+use crate::exr_header;
+use crate::exr_window::Window;
 use exr::meta::attribute::{AttributeValue, Text};
 use exr::prelude as ox;
 use exr::prelude::{ReadChannels, ReadLayers, WritableImage};
@@ -17,12 +19,16 @@ const LARGEST_SIDE: usize = 32768;
 /// The most samples of all channels together that are read: 4 GiB as floats.
 const MOST_SAMPLES: usize = 1 << 30;
 
+/// The most samples of all channels together that the display window has and the file does not: 1 GiB as floats, which
+/// a file of a few bytes can ask for.
+const MOST_ABSENT_SAMPLES: usize = 1 << 28;
+
 /// An image as OpenEXR holds it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct ExrImage {
     pub width: u32,
     pub height: u32,
-    /// Samples by channel name, row 0 on top; channels of a named layer are called `layer.channel`.
+    /// Samples by channel name, row 0 on top; channels of a part but the first are called `part.channel`.
     pub channels: BTreeMap<String, Vec<f32>>,
     /// The attributes that are no part of the format, as far as they are text or numbers.
     pub attributes: BTreeMap<String, ExrAttribute>,
@@ -42,9 +48,10 @@ pub(crate) enum ExrSamples {
     Half,
 }
 
-/// Reads an image.
-pub(crate) fn read_exr(file: &Path) -> Result<ExrImage, ProjectError> {
-    decode(&read_bytes(file)?).map_err(|problem| {
+/// Reads an image by its display window: what the file holds outside of it is left out, and where the file holds
+/// nothing a channel has the value `absent` gives for its name.
+pub(crate) fn read_exr(file: &Path, absent: fn(&str) -> f32) -> Result<ExrImage, ProjectError> {
+    decode(&read_bytes(file)?, absent).map_err(|problem| {
         ProjectError::content(
             file,
             format!("is not a readable EXR: {problem}"),
@@ -62,60 +69,85 @@ pub(crate) fn write_exr(file: &Path, image: &ExrImage, samples: ExrSamples) -> R
     write_bytes(file, &bytes)
 }
 
-fn decode(bytes: &[u8]) -> Result<ExrImage, String> {
+fn decode(bytes: &[u8], absent: fn(&str) -> f32) -> Result<ExrImage, String> {
     // The decoder is not ours: should it panic on a damaged file, that is an error like any other.
-    std::panic::catch_unwind(AssertUnwindSafe(|| decode_unguarded(bytes)))
+    std::panic::catch_unwind(AssertUnwindSafe(|| decode_unguarded(bytes, absent)))
         .unwrap_or_else(|_| Err("its content contradicts itself".to_string()))
 }
 
-fn decode_unguarded(bytes: &[u8]) -> Result<ExrImage, String> {
+fn decode_unguarded(bytes: &[u8], absent: fn(&str) -> f32) -> Result<ExrImage, String> {
     let text = |error: exr::error::Error| error.to_string();
     let meta = exr::meta::MetaData::read_from_buffered(Cursor::new(bytes), false).map_err(text)?;
-    let mut samples = 0usize;
+    if let Some(window) = exr_header::empty_window(bytes) {
+        return Err(format!("its {window} holds no pixel"));
+    }
+    check_size(&meta)?;
+    // Not in parallel: a panic on a worker thread could not be caught.
+    let reader = ox::read().no_deep_data().largest_resolution_level().all_channels().all_layers();
+    let read = reader.all_attributes().non_parallel().from_buffered(Cursor::new(bytes)).map_err(text)?;
+    let display = Window::of(read.attributes.display_window);
+    let [width, height] = display.size;
+    let mut image = ExrImage { width: width as u32, height: height as u32, ..ExrImage::default() };
+    let of_parts = read.layer_data.iter().flat_map(|part| &part.attributes.other);
+    for (name, value) in read.attributes.other.iter().chain(of_parts) {
+        if let Some(value) = attribute(value) {
+            image.attributes.entry(name.to_string()).or_insert(value);
+        }
+    }
+    for (index, part) in read.layer_data.into_iter().enumerate() {
+        let data = Window {
+            corner: [part.attributes.layer_position.x(), part.attributes.layer_position.y()],
+            size: [part.size.width(), part.size.height()],
+        };
+        for channel in part.channel_data.list {
+            let values: Vec<f32> = channel.sample_data.values_as_f32().collect();
+            if values.len() != part.size.area() {
+                return Err(format!("channel {} is incomplete", channel.name));
+            }
+            let name = match &part.attributes.layer_name {
+                Some(part) if index > 0 => full_name(&part.to_string(), &channel.name.to_string()),
+                _ => channel.name.to_string(),
+            };
+            let absent = absent(&name);
+            image.channels.entry(name).or_insert_with(|| display.cut_out(data, values, absent));
+        }
+    }
+    Ok(image)
+}
+
+/// The name of a part's channel among those of all parts. Some programs write it in full, others leave the part's out.
+fn full_name(part: &str, channel: &str) -> String {
+    if channel.contains('.') { channel.to_string() } else { format!("{part}.{channel}") }
+}
+
+/// What is too large, or is not there for every pixel.
+fn check_size(meta: &exr::meta::MetaData) -> Result<(), String> {
+    let (mut samples, mut absent) = (0, 0);
     for header in &meta.headers {
-        let size = header.layer_size;
-        if size.width() > LARGEST_SIDE || size.height() > LARGEST_SIDE {
-            return Err(format!(
-                "it has {}×{} pixels, more than {LARGEST_SIDE} a side",
-                size.width(),
-                size.height()
-            ));
+        let (data, display) =
+            (Window::of(header.data_window()), Window::of(header.shared_attributes.display_window));
+        for window in [data, display] {
+            let [width, height] = window.size;
+            if width.max(height) > LARGEST_SIDE {
+                return Err(format!(
+                    "it has a window of {width}×{height} pixels, more than {LARGEST_SIDE} a side"
+                ));
+            }
         }
-        if header.channels.list.iter().any(|channel| channel.sampling != ox::Vec2(1, 1)) {
-            return Err("a channel is subsampled".to_string());
+        if let Some(channel) = header.channels.list.iter().find(|c| c.sampling != ox::Vec2(1, 1)) {
+            return Err(format!("channel {} is subsampled", channel.name));
         }
-        samples = samples.saturating_add(size.area().saturating_mul(header.channels.list.len()));
+        let channels = header.channels.list.len();
+        samples += channels.saturating_mul(data.area().max(display.area()));
+        absent += channels.saturating_mul(display.area().saturating_sub(display.shared_area(data)));
     }
     if samples > MOST_SAMPLES {
         return Err("it is larger than 4 GiB".to_string());
     }
-    // Not in parallel: a panic on a worker thread could not be caught.
-    let reader = ox::read().no_deep_data().largest_resolution_level().all_channels().all_layers();
-    let read = reader.all_attributes().non_parallel().from_buffered(Cursor::new(bytes)).map_err(text)?;
-    let first = read.layer_data.first().ok_or("it has no layer")?;
-    let size = first.size;
-    let mut image =
-        ExrImage { width: size.width() as u32, height: size.height() as u32, ..ExrImage::default() };
-    let attributes = read.attributes.other.iter().chain(&first.attributes.other);
-    image.attributes =
-        attributes.filter_map(|(name, value)| Some((name.to_string(), attribute(value)?))).collect();
-    for (index, layer) in read.layer_data.iter().enumerate() {
-        if layer.size != size {
-            continue;
-        }
-        let prefix = match &layer.attributes.layer_name {
-            Some(name) if index > 0 => format!("{name}."),
-            _ => String::new(),
-        };
-        for channel in &layer.channel_data.list {
-            let values: Vec<f32> = channel.sample_data.values_as_f32().collect();
-            if values.len() != size.area() {
-                return Err(format!("channel {} is incomplete", channel.name));
-            }
-            image.channels.entry(format!("{prefix}{}", channel.name)).or_insert(values);
-        }
+    if absent > MOST_ABSENT_SAMPLES {
+        return Err("nearly all of its display window lies outside its data window".to_string());
     }
-    Ok(image)
+    Ok(())
 }
 
 fn attribute(value: &AttributeValue) -> Option<ExrAttribute> {
@@ -150,5 +182,7 @@ fn encode(image: &ExrImage, samples: ExrSamples) -> Result<Vec<u8>, String> {
     let layer = ox::Layer::new(size, attributes, ox::Encoding::SMALL_LOSSLESS, channels);
     let mut bytes = Cursor::new(Vec::new());
     ox::Image::from_layer(layer).write().to_buffered(&mut bytes).map_err(|error| error.to_string())?;
-    Ok(bytes.into_inner())
+    let mut bytes = bytes.into_inner();
+    exr_header::sort_attributes(&mut bytes);
+    Ok(bytes)
 }

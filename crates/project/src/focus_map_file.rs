@@ -3,7 +3,8 @@
 //! **EXR**, float: channels `focus.t` and `focus.anchor`. Attributes: `focusBrush.version` (1),
 //! `focusBrush.uvSet` (the UV set that the map lies in: 0 is the mesh's first, 1 the atlas), for a map over an
 //! atlas `focusBrush.atlasHash`, and `focusBrush.backgroundT` and `focusBrush.backgroundAnchor`. A file without
-//! attributes is a map in the mesh's first UV set.
+//! attributes is a map in the mesh's first UV set. Its display window is the map: texels outside the data window are
+//! unpainted, those outside the display window are left out.
 //!
 //! **PNG**, 16-bit RGB without a colour profile: red = t·32768 (32768 is exactly t = 1), green = anchor·65535,
 //! blue 0. t is kept within [0, 65535/32768]. What the EXR has as attributes stands in `NAME.png.json`.
@@ -22,6 +23,10 @@ use std::path::Path;
 
 /// The version of the form that is written.
 const VERSION: u32 = 1;
+
+/// The channels of an EXR.
+const T: &str = "focus.t";
+const ANCHOR: &str = "focus.anchor";
 
 /// Red of t = 1.
 const PNG_UNIT_OFFSET: f64 = 32768.0;
@@ -74,7 +79,7 @@ impl FocusMapFile {
     /// Reads an EXR or PNG focus map, by extension.
     pub fn read(file: &Path) -> Result<Self, ProjectError> {
         let map = match extension(file).as_str() {
-            "exr" => from_exr(file, read_exr(file)?)?,
+            "exr" => from_exr(file, read_exr(file, unpainted)?)?,
             "png" => from_png(file)?,
             _ => {
                 return Err(ProjectError::content(
@@ -120,7 +125,7 @@ fn uv_set(map: &FocusMapFile) -> u32 {
 
 fn to_exr(map: &FocusMapFile) -> ExrImage {
     let channel = |k: usize| map.image.texels.iter().map(|texel| texel[k]).collect();
-    let channels = [("focus.t".to_string(), channel(0)), ("focus.anchor".to_string(), channel(1))];
+    let channels = [(T.to_string(), channel(0)), (ANCHOR.to_string(), channel(1))];
     let mut attributes = BTreeMap::new();
     let mut put = |name: &str, value| attributes.insert(format!("focusBrush.{name}"), value);
     put("version", ExrAttribute::Number(VERSION as f64));
@@ -135,6 +140,12 @@ fn to_exr(map: &FocusMapFile) -> ExrImage {
     ExrImage { width: map.image.width, height: map.image.height, channels: channels.into(), attributes }
 }
 
+/// What a channel has where the file has no texel: the focus of the ordinary lens.
+fn unpainted(channel: &str) -> f32 {
+    let FocusOffset { t, anchor } = FocusOffset::STANDARD;
+    if channel == T { t as f32 } else { anchor as f32 }
+}
+
 fn from_exr(file: &Path, mut exr: ExrImage) -> Result<FocusMapFile, ProjectError> {
     let mut channel = |name: &str| {
         let found: Vec<_> = exr.channels.keys().cloned().collect();
@@ -143,7 +154,7 @@ fn from_exr(file: &Path, mut exr: ExrImage) -> Result<FocusMapFile, ProjectError
             ProjectError::content(file, problem, "give an EXR with channels focus.t and focus.anchor")
         })
     };
-    let (t, anchor) = (channel("focus.t")?, channel("focus.anchor")?);
+    let (t, anchor) = (channel(T)?, channel(ANCHOR)?);
     let number = |name: &str| match exr.attributes.get(&format!("focusBrush.{name}")) {
         Some(ExrAttribute::Number(number)) => Some(*number),
         _ => None,

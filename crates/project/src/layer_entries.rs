@@ -6,43 +6,15 @@
 
 use crate::ProjectError;
 use crate::container::Container;
+use crate::layer_rows::{LayerRow, LayerRows};
 use crate::manifest::{MANIFEST, Manifest, MapEntry};
 use crate::texel_bytes::{floats, pairs};
-use focus::{Blend, DepthCurve, FocusLayer, FocusMap, LayerStack};
+use focus::{FocusLayer, FocusMap, LayerStack};
 use lens::FocusOffset;
-use serde::{Deserialize, Serialize};
 use std::path::Path;
 
-/// The layers' part of the manifest.
-#[derive(Debug, Serialize, Deserialize)]
-pub(crate) struct LayerEntries {
-    /// Which one is painted on, counted from the bottom.
-    pub active: usize,
-    /// Bottom to top.
-    pub layers: Vec<LayerEntry>,
-}
-
-/// A layer.
-#[derive(Debug, Serialize, Deserialize)]
-pub(crate) struct LayerEntry {
-    pub name: String,
-    pub visible: bool,
-    pub opacity: f64,
-    pub blend: Blend,
-    /// Of the background: t, anchor, mask.
-    pub background: [f64; 3],
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub curve: Option<DepthCurve>,
-    /// Entry of the values: t and anchor of every texel.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub values: Option<String>,
-    /// Entry of the mask: a number a texel.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub mask: Option<String>,
-}
-
 /// The manifest's rows for the layers; their entries are added to `entries`.
-pub(crate) fn write(layers: &LayerStack, entries: &mut Vec<(String, Vec<u8>)>) -> LayerEntries {
+pub(crate) fn write(layers: &LayerStack, entries: &mut Vec<(String, Vec<u8>)>) -> LayerRows {
     let mut put = |name: String, bytes: Vec<u8>| {
         entries.push((name.clone(), bytes));
         name
@@ -57,7 +29,7 @@ pub(crate) fn write(layers: &LayerStack, entries: &mut Vec<(String, Vec<u8>)>) -
             put(format!("layers/{index}.mask.f32"), bytes)
         });
         let FocusOffset { t, anchor } = layer.map.background;
-        LayerEntry {
+        LayerRow {
             name: layer.name.clone(),
             visible: layer.is_visible,
             opacity: layer.opacity,
@@ -68,16 +40,13 @@ pub(crate) fn write(layers: &LayerStack, entries: &mut Vec<(String, Vec<u8>)>) -
             mask,
         }
     };
-    LayerEntries {
-        active: layers.active_index(),
-        layers: layers.layers().iter().enumerate().map(row).collect(),
-    }
+    LayerRows { active: layers.active_index(), layers: layers.layers().iter().enumerate().map(row).collect() }
 }
 
 /// Reads the layers; `size` is the focus map's. The values of adjustment layers are still to be evaluated.
 pub(crate) fn read(
     file: &Path,
-    rows: &LayerEntries,
+    rows: &LayerRows,
     size: &MapEntry,
     manifest: &Manifest,
     container: &mut Container<'_>,

@@ -10,6 +10,7 @@
 //!
 //! Everything is written atomically: the old file stays until the new one is complete.
 
+mod aperture_mask_file;
 mod camera;
 mod compare;
 mod container;
@@ -17,21 +18,26 @@ mod disk;
 mod error;
 mod error_map_file;
 mod exr_file;
+mod exr_header;
+mod exr_window;
 mod focus_map_file;
 mod json;
 mod layer_entries;
+mod layer_rows;
 mod manifest;
 mod picture_file;
 mod png_file;
 mod project_file;
 mod recipe;
 mod recovery;
+mod scene_path;
 mod strokes_file;
 mod texel_bytes;
 mod texel_set;
 mod z_test;
 
-pub use camera::{camera_from_json, camera_to_json, read_aperture_mask, read_camera, write_camera};
+pub use aperture_mask_file::read_aperture_mask;
+pub use camera::{camera_from_json, camera_to_json, read_camera, write_camera};
 pub use compare::{Comparison, ErrorMaps, compare, error_maps, psnr};
 pub use error::ProjectError;
 pub use error_map_file::{error_colours, write_error_map};

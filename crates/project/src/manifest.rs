@@ -2,7 +2,8 @@
 
 use crate::ProjectError;
 use crate::container::{Container, DAMAGED_CURE};
-use crate::layer_entries::LayerEntries;
+use crate::layer_rows::LayerRows;
+use crate::scene_path::ScenePath;
 use focus::Brush;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -48,7 +49,7 @@ pub(crate) struct Manifest {
     #[serde(default)]
     pub focus_map: Option<MapEntry>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub layers: Option<LayerEntries>,
+    pub layers: Option<LayerRows>,
     /// What may be painted, where that is not everything. A program that does not know it lets everything be painted.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub selection: Option<MapEntry>,
@@ -60,8 +61,8 @@ pub(crate) struct Manifest {
 /// Where the scene is.
 #[derive(Debug, Serialize, Deserialize)]
 pub(crate) struct SceneReference {
-    /// Relative to the project's folder where that is possible, with forward slashes.
-    pub path: String,
+    #[serde(flatten)]
+    pub path: ScenePath,
     /// Hex SHA-256 of the scene file.
     pub sha256: String,
 }

@@ -158,11 +158,11 @@ impl LinearPicture {
     }
 }
 
-/// Reads a picture as linear RGB: EXR (R, G, B of any precision; else a single grey channel), Radiance HDR,
-/// or an sRGB picture of 8 or 16 bits (PNG, JPEG, WebP).
+/// Reads a picture as linear RGB: EXR (its display window, 0 where it has no pixels; R, G, B of any precision, else a
+/// single grey channel), Radiance HDR, or an sRGB picture of 8 or 16 bits (PNG, JPEG, WebP).
 pub fn read_picture(file: &Path) -> Result<LinearPicture, ProjectError> {
     match extension(file).as_str() {
-        "exr" => from_exr(file, read_exr(file)?),
+        "exr" => from_exr(file, read_exr(file, |_| 0.0)?),
         "hdr" => {
             let image = read_image(file)?.into_rgb32f();
             let rgb = image.pixels().map(|p| p.0).collect();

@@ -36,14 +36,8 @@ pub(crate) fn read_image(file: &Path) -> Result<DynamicImage, ProjectError> {
     decoded.unwrap_or_else(|_| Err("its content contradicts itself".to_string())).map_err(error)
 }
 
-/// Columns, rows and the stored red, green and blue of a picture, in [0, 1], not decoded from sRGB. An EXR's
-/// values are clipped to [0, 1].
+/// Columns, rows and the stored red, green and blue of a picture, in [0, 1], not decoded from sRGB.
 pub(crate) fn stored_rgb(file: &Path) -> Result<(u32, u32, Vec<[f32; 3]>), ProjectError> {
-    if crate::disk::extension(file) == "exr" {
-        let picture = crate::read_picture(file)?;
-        let clipped = picture.rgb.iter().map(|rgb| rgb.map(|c| c.clamp(0.0, 1.0))).collect();
-        return Ok((picture.width, picture.height, clipped));
-    }
     let image = read_image(file)?;
     let (width, height) = (image.width(), image.height());
     let deep = image.color().bytes_per_pixel() / image.color().channel_count() > 1;

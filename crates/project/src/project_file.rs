@@ -21,12 +21,13 @@ use crate::container::{Container, DAMAGED_CURE, pack};
 use crate::disk::{read_bytes, write_verified};
 use crate::layer_entries;
 use crate::manifest::{CameraEntry, MANIFEST, Manifest, MapEntry, SceneReference, sha256_hex};
+use crate::scene_path::ScenePath;
 use crate::texel_bytes::pairs;
 use crate::texel_set::TexelSet;
 use focus::{Brush, FocusLayer, FocusMap, LayerStack};
 use lens::{ApertureMask, ApertureShape, Camera, Exposure, FocusOffset};
 use serde_json::Value;
-use std::path::{Component, Path, PathBuf};
+use std::path::{Path, PathBuf};
 
 const ATLAS: &str = "atlas.bin";
 const FOCUS_MAP: &str = "focus.f32";
@@ -222,7 +223,7 @@ impl ProjectFile {
             version,
             written_by: format!("Focus Brush {}", env!("CARGO_PKG_VERSION")),
             scene: SceneReference {
-                path: relative_path(&self.scene, file),
+                path: ScenePath::new(&self.scene, file),
                 sha256: self.scene_sha256.clone(),
             },
             cameras,
@@ -298,8 +299,9 @@ impl ProjectFile {
         {
             return Err(error("has a selection of another size than its focus map".to_string()));
         }
+        let scene = manifest.scene.path.from(file);
         Ok(Self {
-            scene: absolute_path(&manifest.scene.path, file),
+            scene: scene.ok_or_else(|| error("scene.path_bytes is not in hex".to_string()))?,
             scene_sha256: manifest.scene.sha256.clone(),
             cameras,
             active_camera: manifest.active_camera,
@@ -398,42 +400,4 @@ fn mask_from_bytes(bytes: &[u8], file: String) -> Option<ApertureMask> {
     let whole = rest.is_empty() && width as u64 * height as u64 == transmission.len() as u64;
     let transmission = transmission.iter().map(|word| f32::from_le_bytes(*word)).collect();
     whole.then_some(ApertureMask { width, height, transmission, file })
-}
-
-/// The path from the project's folder to the scene, with forward slashes; absolute if they share no root.
-fn relative_path(scene: &Path, project: &Path) -> String {
-    let scene = std::path::absolute(scene).unwrap_or_else(|_| scene.to_owned());
-    let project = std::path::absolute(project).unwrap_or_else(|_| project.to_owned());
-    let folder = project.parent().unwrap_or(Path::new(""));
-    let (from, to): (Vec<_>, Vec<_>) = (folder.components().collect(), scene.components().collect());
-    let shared = from.iter().zip(&to).take_while(|(a, b)| a == b).count();
-    // Only the root in common (or not even a drive): moving both together is not what anyone does.
-    let is_near = to[..shared].iter().any(|component| matches!(component, Component::Normal(_)));
-    let components: Vec<String> = match is_near {
-        true => {
-            let up = std::iter::repeat_n("..".to_string(), from.len() - shared);
-            up.chain(to[shared..].iter().map(|c| c.as_os_str().to_string_lossy().into_owned())).collect()
-        }
-        false => return scene.to_string_lossy().replace('\\', "/"),
-    };
-    components.join("/")
-}
-
-/// The path that the manifest's means, from where the project lies.
-fn absolute_path(scene: &str, project: &Path) -> PathBuf {
-    let project = std::path::absolute(project).unwrap_or_else(|_| project.to_owned());
-    let joined = project.parent().unwrap_or(Path::new("")).join(scene);
-    // `..` is taken out by name, so that the path reads well; where that is not the same file (through a
-    // link), it is kept.
-    let mut plain = PathBuf::new();
-    for component in joined.components() {
-        match component {
-            Component::ParentDir => {
-                plain.pop();
-            }
-            Component::CurDir => {}
-            other => plain.push(other),
-        }
-    }
-    if plain.exists() || !joined.exists() { plain } else { joined }
 }

@@ -5,7 +5,7 @@
 //! ```text
 //! magic        8 bytes   "FBSALF\r\n"
 //! version      u32       4
-//! source       text      the scene or project it was baked from, as a path
+//! source       path      the scene or project it was baked from
 //! triangles    u32       of that scene: what surface addresses count in
 //! camera       see `write_camera`
 //! margin       u32       px sampled outside the frame
@@ -26,7 +26,8 @@
 //! checksum     32 bytes  SHA-256 of everything before
 //! ```
 //!
-//! A text is its length in bytes (u32) and UTF-8. What the packed samples mean is told in `samples.rs` and below it.
+//! A text is its length in bytes (u32) and UTF-8; a path may have other bytes where the system lets it. What the packed
+//! samples mean is told in `samples.rs` and below it.
 
 mod camera;
 mod error;
@@ -37,10 +38,11 @@ use crate::Salf;
 use camera::{read_camera, write_camera};
 pub use error::SalfFileError;
 use error::VERSION;
-use little_endian::{bytes, read_text, write_text};
+use little_endian::{bytes, read_path, write_text};
 use samples::{read_samples, write_samples};
 use sha2::{Digest, Sha256};
 use std::io::{self, Read, Write};
+use std::path::PathBuf;
 use std::sync::Arc;
 
 const MAGIC: &[u8; 8] = b"FBSALF\r\n";
@@ -48,8 +50,8 @@ const MAGIC: &[u8; 8] = b"FBSALF\r\n";
 /// A light field and what it was baked from.
 #[derive(Clone, Debug)]
 pub struct SalfFile {
-    /// The scene or project, as a path.
-    pub source: String,
+    /// The scene or project.
+    pub source: PathBuf,
     /// How many triangles that scene has.
     pub triangles: u32,
     /// The light field.
@@ -62,7 +64,7 @@ impl SalfFile {
         let mut to = Hashing { inner: to, hash: Sha256::new() };
         to.write_all(MAGIC)?;
         to.write_all(&VERSION.to_le_bytes())?;
-        write_text(&mut to, &self.source)?;
+        write_text(&mut to, self.source.as_os_str().as_encoded_bytes())?;
         to.write_all(&self.triangles.to_le_bytes())?;
         write_camera(&mut to, &self.salf.camera)?;
         to.write_all(&self.salf.margin_px.to_le_bytes())?;
@@ -83,7 +85,7 @@ impl SalfFile {
         if version != VERSION {
             return Err(SalfFileError::Version(version));
         }
-        let source = read_text(&mut from)?;
+        let source = read_path(&mut from)?;
         let triangles = u32::from_le_bytes(bytes(&mut from)?);
         let camera = read_camera(&mut from)?;
         camera.validate().map_err(|error| SalfFileError::Damaged(error.to_string()))?;
@@ -164,9 +166,18 @@ mod tests {
     fn what_is_written_is_read() {
         let file = file();
         let read = SalfFile::read(written(&file).as_slice()).unwrap();
-        assert_eq!((read.source.as_str(), read.triangles), ("garden.glb", 7));
+        assert_eq!((read.source.to_str(), read.triangles), (Some("garden.glb"), 7));
         assert_eq!(read.salf.camera, file.salf.camera);
         assert_eq!((read.salf.margin_px, &read.salf.samples), (32, &file.salf.samples));
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_source_that_is_not_utf8_is_kept() {
+        use std::os::unix::ffi::OsStrExt;
+        let source = PathBuf::from(std::ffi::OsStr::from_bytes(b"caf\xe9/\xff.glb"));
+        let read = SalfFile::read(written(&SalfFile { source: source.clone(), ..file() }).as_slice());
+        assert_eq!(read.unwrap().source, source);
     }
 
     #[test]

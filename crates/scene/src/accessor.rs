@@ -231,8 +231,8 @@ impl<'a> Accessor<'a> {
         }
     }
 
-    /// The bytes of an element, or nothing if it is zero.
-    fn element(&self, index: usize) -> Option<&'a [u8]> {
+    /// The bytes from the start of an element on, or nothing if it is zero; `index` must be below `count`.
+    pub fn element(&self, index: usize) -> Option<&'a [u8]> {
         if let Some(values) = &self.values {
             // Of several replacements of one element the last counts.
             let after = self.replaced.partition_point(|&(element, _)| element as usize <= index);

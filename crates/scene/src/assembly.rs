@@ -24,7 +24,8 @@ const VERTEX_BYTES: u64 = 2 * (24 + 12 + 8 + 8 + 16);
 /// The same of a further UV set.
 const UV_BYTES: u64 = 2 * 8;
 
-/// Appends `primitive` as a part of scene node `node` with scene material `material`.
+/// Appends `primitive` as a part of scene node `node` with scene material `material`, and says which of its vertices the
+/// part has; none if there is nothing to see.
 pub(crate) fn append(
     scene: &mut Scene,
     document: &Document<'_>,
@@ -32,7 +33,7 @@ pub(crate) fn append(
     placement: &Placement<'_>,
     node: u32,
     material: u32,
-) -> Result<(), Fault> {
+) -> Result<Vec<u32>, Fault> {
     let vertices = primitive.positions.len();
     let passing = vertices as u64 * if matches!(placement, Placement::Skinned(_)) { 128 + 32 } else { 32 };
     let further_sets = scene.further_uv.len().max(primitive.further_uv.len());
@@ -69,7 +70,7 @@ pub(crate) fn append(
     };
     if triangles.is_empty() {
         document.budget.release(passing + lasting);
-        return Ok(());
+        return Ok(Vec::new());
     }
 
     let mirrors = |matrix: &DMat4| matrix.determinant() < 0.0;
@@ -101,7 +102,7 @@ pub(crate) fn append(
         mirrored,
     });
     document.budget.release(passing);
-    Ok(())
+    Ok(used)
 }
 
 /// Appends an attribute of the used vertices, or its default. An attribute that no part has so far stays empty.

@@ -6,7 +6,8 @@ use crate::error::Fault;
 use crate::json_object::integer;
 use glam::{DMat4, DQuat, DVec3};
 
-const EXTENSION: &str = "EXT_mesh_gpu_instancing";
+/// The extension.
+pub(crate) const EXTENSION: &str = "EXT_mesh_gpu_instancing";
 
 /// Node-from-instance matrices; one identity for a node that is not instanced.
 pub(crate) fn instances(document: &Document<'_>, node: &gltf::Node<'_>) -> Result<Vec<DMat4>, Fault> {

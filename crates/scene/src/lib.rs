@@ -1,6 +1,7 @@
 //! A glTF scene, read safely and flattened to world-space triangles.
 //!
-//! * [`load`] reads a file; [`inspect`] says what is in one, even if it has no triangle.
+//! * [`load`] reads a file; [`inspect`] says what is in one, even if it has no triangle;
+//!   [`with_source`] gives it as it is, to be written again.
 //! * [`Scene`]: what everything else works on.
 //! * [`SurfacePoint`]: an address on the surface: triangle and barycentrics. What the surface looks like there:
 //!   [`Scene::base_color`], [`Scene::emitted`], [`Scene::opacity`], [`Scene::shading_normal`].
@@ -46,6 +47,7 @@ mod punctual_light;
 mod resource;
 mod schema;
 mod skin;
+mod source;
 mod surface_color;
 mod surface_point;
 mod texture_lookup;
@@ -54,11 +56,12 @@ mod view;
 
 pub use error::{Fault, SceneError};
 pub use inspection::Inspection;
-pub use load::{inspect, load};
+pub use load::{inspect, load, with_source};
 pub use load_options::LoadOptions;
 pub use mesh_health::MeshHealth;
 pub use model::{
     AlphaMode, Image, ImageLevel, Light, LightKind, Material, Node, Part, Scene, SceneCamera, TextureRef,
     Triangle, Wrap,
 };
+pub use source::{PartSource, Source, StoredElements};
 pub use surface_point::{SurfaceField, SurfacePoint};

@@ -6,6 +6,7 @@ use crate::error::{Fault, Stop};
 use crate::hierarchy::Hierarchy;
 use crate::material_file::{MaterialReader, default_material};
 use crate::primitive::Primitive;
+use crate::source::{PartSource, Source};
 use crate::triangulation::MODE_NAMES;
 use crate::{Inspection, LoadOptions, Material, Node, Scene, SceneError};
 use crate::{extension, flaws, instancing, punctual_light, skin, view};
@@ -52,13 +53,37 @@ pub fn inspect(path: &Path) -> Result<Inspection, SceneError> {
     Ok(open(path, &LoadOptions::default(), &Unwatched)?.1)
 }
 
-/// Reads a file; panics of decoders become errors.
+/// Reads a .glb or .gltf file to be written again, and gives it to `work`, which has it for as long as it takes.
+///
+/// # Errors
+/// As [`load`], but for [`SceneError::NoTriangles`].
+pub fn with_source<T>(
+    path: &Path,
+    options: &LoadOptions,
+    progress: &dyn Progress,
+    work: impl FnOnce(&Source<'_>) -> T,
+) -> Result<T, SceneError> {
+    guarded(path, || {
+        let bytes = read_file(path, options)?;
+        let document = parse(path, &bytes, options)?;
+        let mut parts = Some(Vec::new());
+        let (scene, ..) = geometry(path, &document, &mut parts, progress)?;
+        Ok(work(&Source { document: &document, scene, parts: parts.unwrap_or_default() }))
+    })
+}
+
+/// Reads a file.
 fn open(
     path: &Path,
     options: &LoadOptions,
     progress: &dyn Progress,
 ) -> Result<(Scene, Inspection), SceneError> {
-    let result = std::panic::catch_unwind(AssertUnwindSafe(|| read(path, options, progress)));
+    guarded(path, || read(path, options, progress))
+}
+
+/// Does work on the file at `path`; panics of decoders become errors.
+fn guarded<T>(path: &Path, work: impl FnOnce() -> Result<T, Stop>) -> Result<T, SceneError> {
+    let result = std::panic::catch_unwind(AssertUnwindSafe(work));
     let stop = match result {
         Ok(Ok(read)) => return Ok(read),
         Ok(Err(stop)) => stop,
@@ -76,27 +101,11 @@ fn open(
 
 fn read(path: &Path, options: &LoadOptions, progress: &dyn Progress) -> Result<(Scene, Inspection), Stop> {
     let bytes = read_file(path, options)?;
-    let folder = crate::document::folder_of(path).map_err(Fault::Unreadable)?;
-    let document = Document::parse(&bytes, folder, options)?;
-    extension::check(&document)?;
+    let document = parse(path, &bytes, options)?;
     progress.check()?;
 
-    let mut scene = Scene { path: path.into(), ..Scene::default() };
-    let hierarchy = Hierarchy::read(&document)?;
+    let (mut scene, hierarchy, used) = geometry(path, &document, &mut None, progress)?;
     let mut materials = MaterialReader::new(&document);
-    let mut used = UsedMaterials::default();
-    for (i, &index) in hierarchy.shown.iter().enumerate() {
-        progress.report(i as f32 / hierarchy.shown.len() as f32);
-        let Some(node) = document.typed().nodes().nth(index) else { continue };
-        let Some(world) = hierarchy.world[index] else { continue };
-        scene.cameras.extend(view::node_camera(&document, &node, world)?);
-        if hierarchy.hidden[index] {
-            continue;
-        }
-        scene.lights.extend(punctual_light::node_light(&document, &node, world)?);
-        let mesh = MeshNode { document: &document, hierarchy: &hierarchy, node, world };
-        mesh.read(&mut scene, &mut used, progress)?;
-    }
     used.fill(&mut scene, &document, &mut materials)?;
     scene.images = materials.images;
     scene.normals.iter_mut().for_each(|normal| *normal = normal.normalize_or_zero());
@@ -105,6 +114,39 @@ fn read(path: &Path, options: &LoadOptions, progress: &dyn Progress) -> Result<(
     scene.warnings = document.warnings();
     let inspection = inspection(&document, &hierarchy, &scene);
     Ok((scene, inspection))
+}
+
+fn parse<'a>(path: &Path, bytes: &'a [u8], options: &LoadOptions) -> Result<Document<'a>, Fault> {
+    let folder = crate::document::folder_of(path).map_err(Fault::Unreadable)?;
+    let document = Document::parse(bytes, folder, options)?;
+    extension::check(&document)?;
+    Ok(document)
+}
+
+/// What the nodes show, and which materials that uses. Where the parts stand in the file is noted in `sources`, if that
+/// is wanted.
+fn geometry(
+    path: &Path,
+    document: &Document<'_>,
+    sources: &mut Option<Vec<PartSource>>,
+    progress: &dyn Progress,
+) -> Result<(Scene, Hierarchy, UsedMaterials), Stop> {
+    let mut scene = Scene { path: path.into(), ..Scene::default() };
+    let hierarchy = Hierarchy::read(document)?;
+    let mut used = UsedMaterials::default();
+    for (i, &index) in hierarchy.shown.iter().enumerate() {
+        progress.report(i as f32 / hierarchy.shown.len() as f32);
+        let Some(node) = document.typed().nodes().nth(index) else { continue };
+        let Some(world) = hierarchy.world[index] else { continue };
+        scene.cameras.extend(view::node_camera(document, &node, world)?);
+        if hierarchy.hidden[index] {
+            continue;
+        }
+        scene.lights.extend(punctual_light::node_light(document, &node, world)?);
+        let mesh = MeshNode { document, hierarchy: &hierarchy, node, world };
+        mesh.read(&mut scene, &mut used, sources, progress)?;
+    }
+    Ok((scene, hierarchy, used))
 }
 
 /// The bytes of a regular file within the limit.
@@ -175,7 +217,13 @@ struct MeshNode<'a> {
 
 impl MeshNode<'_> {
     /// Appends every primitive of every instance of the node's mesh.
-    fn read(&self, scene: &mut Scene, used: &mut UsedMaterials, progress: &dyn Progress) -> Result<(), Stop> {
+    fn read(
+        &self,
+        scene: &mut Scene,
+        used: &mut UsedMaterials,
+        sources: &mut Option<Vec<PartSource>>,
+        progress: &dyn Progress,
+    ) -> Result<(), Stop> {
         let (document, node) = (self.document, &self.node);
         let place = format!("/nodes/{}", node.index());
         document.sound(&format!("{place}/mesh"))?;
@@ -197,9 +245,10 @@ impl MeshNode<'_> {
             Some(_) => vec![DMat4::IDENTITY],
             None => instancing::instances(document, node)?,
         };
+        let is_instanced = node.extension_value(instancing::EXTENSION).is_some() && instances.len() > 1;
         for (i, instance) in instances.into_iter().enumerate() {
             let first_part = scene.parts.len();
-            for (primitive, material) in &primitives {
+            for (index, primitive, material) in &primitives {
                 progress.check()?;
                 if i > 0 {
                     document.budget.triangles(primitive.triangles.len() as u64)?;
@@ -208,7 +257,17 @@ impl MeshNode<'_> {
                     Some(joints) if !primitive.influences.is_empty() => Placement::Skinned(joints),
                     _ => Placement::Rigid(self.world * instance),
                 };
-                append(scene, document, primitive, &placement, scene.nodes.len() as u32, *material)?;
+                let node_of_scene = scene.nodes.len() as u32;
+                let shown = append(scene, document, primitive, &placement, node_of_scene, *material)?;
+                if let Some(sources) = sources.as_mut().filter(|_| !shown.is_empty()) {
+                    sources.push(PartSource {
+                        node: node.index(),
+                        instance: is_instanced.then_some((i, instance)),
+                        mesh: mesh.index(),
+                        primitive: *index,
+                        vertices: shown.iter().map(|&v| primitive.elements[v as usize]).collect(),
+                    });
+                }
             }
             if scene.parts.len() > first_part {
                 let index = node.index();
@@ -216,18 +275,18 @@ impl MeshNode<'_> {
                 scene.nodes.push(Node { name, index: index as u32, world: self.world * instance });
             }
         }
-        primitives.into_iter().for_each(|(primitive, _)| primitive.release(document));
+        primitives.into_iter().for_each(|(_, primitive, _)| primitive.release(document));
         Ok(())
     }
 
-    /// The primitives of a mesh that have triangles, and their materials in the scene.
+    /// The primitives of a mesh that have triangles, with their index in it and their material in the scene.
     fn primitives(
         &self,
         mesh: &gltf::Mesh<'_>,
         weights: &[f64],
         used: &mut UsedMaterials,
         progress: &dyn Progress,
-    ) -> Result<Vec<(Primitive, u32)>, Stop> {
+    ) -> Result<Vec<(usize, Primitive, u32)>, Stop> {
         let document = self.document;
         let mut primitives = Vec::new();
         let place = format!("/meshes/{}", mesh.index());
@@ -239,7 +298,7 @@ impl MeshNode<'_> {
             match Primitive::read(document, &file, &place, weights) {
                 Ok(Some(primitive)) => {
                     let material = used.index(document, primitive.material, &primitive.place);
-                    primitives.push((primitive, material));
+                    primitives.push((file.index(), primitive, material));
                 }
                 Ok(None) => {}
                 Err(fault @ Fault::NoData { .. }) => {

@@ -15,6 +15,8 @@ pub(crate) struct Primitive {
     /// Index of the material in the file.
     pub material: Option<usize>,
     pub triangles: Vec<[u32; 3]>,
+    /// Which element of the accessors each vertex is.
+    pub elements: Vec<u32>,
     pub positions: Vec<DVec3>,
     /// Empty if there are none, as the following.
     pub normals: Vec<DVec3>,
@@ -78,6 +80,7 @@ impl Primitive {
             place: place.into(),
             material: file.material().index(),
             triangles,
+            elements: Vec::new(),
             positions: vertices.iter().map(|&v| DVec3::from_array(position.doubles(v as usize))).collect(),
             normals: Vec::new(),
             uv: [Vec::new(), Vec::new()],
@@ -91,6 +94,7 @@ impl Primitive {
         primitive.read_uv(&attributes, &further_sets, &vertices, position.count)?;
         primitive.read_influences(&attributes, &vertices, position.count)?;
         primitive.morph(document, file, &further_sets, &vertices, position.count, weights)?;
+        primitive.elements = vertices;
         Ok(Some(primitive))
     }
 
@@ -264,6 +268,20 @@ impl Primitive {
             }
         }
         Ok(())
+    }
+}
+
+/// All triangles of a primitive whose vertices exist, by the elements of its accessors that their corners are.
+pub(crate) fn triangles(
+    document: &Document<'_>,
+    file: &gltf::Primitive<'_>,
+    place: &str,
+) -> Result<Vec<[u32; 3]>, Fault> {
+    match file.get(&Semantic::Positions) {
+        Some(position) if triangle_count(file.mode(), 0).is_some() => {
+            corners(document, file, place, position.count())
+        }
+        _ => Ok(Vec::new()),
     }
 }
 

@@ -12,7 +12,12 @@ use std::time::Instant;
 pub const TESTS: &[Test] =
     &[("data::every_file_that_opens_gets_an_atlas", every_file_that_opens_gets_an_atlas)];
 
-fn gltf_files(folder: &Path, files: &mut Vec<PathBuf>) {
+/// Where the files lie.
+pub fn data_folder() -> PathBuf {
+    Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data")).to_owned()
+}
+
+pub fn gltf_files(folder: &Path, files: &mut Vec<PathBuf>) {
     for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
         let path = entry.path();
         if path.is_dir() {
@@ -25,12 +30,12 @@ fn gltf_files(folder: &Path, files: &mut Vec<PathBuf>) {
 }
 
 fn every_file_that_opens_gets_an_atlas() {
-    let data = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data");
+    let data = data_folder();
     let mut files = Vec::new();
-    gltf_files(&Path::new(data).join("gltf"), &mut files);
-    gltf_files(&Path::new(data).join("gltf-broken"), &mut files);
+    gltf_files(&data.join("gltf"), &mut files);
+    gltf_files(&data.join("gltf-broken"), &mut files);
     if files.is_empty() {
-        println!("SKIPPED: no test data at {data}");
+        println!("SKIPPED: no test data at {}", data.display());
     }
     for path in files {
         let Ok(scene) = scene::load(&path, &LoadOptions::default(), &Unwatched) else { continue };

@@ -3,11 +3,15 @@
 mod children;
 mod data;
 mod export;
+mod gltf_file;
 mod layout;
 mod meshes;
 mod nasty;
 mod storage;
 mod surface;
+#[allow(dead_code, reason = "only its container is needed here")]
+#[path = "../../../session/tests/tiny_glb/mod.rs"]
+mod tiny_glb;
 
 use std::panic::catch_unwind;
 use std::process::ExitCode;

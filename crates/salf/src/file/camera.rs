@@ -31,7 +31,7 @@ pub fn write_camera(to: &mut impl Write, camera: &Camera) -> io::Result<()> {
             to.write_all(&[3])?;
             to.write_all(&mask.width.to_le_bytes())?;
             to.write_all(&mask.height.to_le_bytes())?;
-            write_text(to, &mask.file)?;
+            write_text(to, mask.file.as_bytes())?;
             write_f32s(to, &mask.transmission)
         }
     }

@@ -2,6 +2,7 @@
 
 use super::SalfFileError;
 use std::io::{self, Read, Write};
+use std::path::PathBuf;
 
 /// More than any path takes.
 const LONGEST_TEXT: u32 = 1 << 16;
@@ -17,19 +18,35 @@ pub fn bytes<const N: usize>(from: &mut impl Read) -> Result<[u8; N], SalfFileEr
     Ok(buffer)
 }
 
-pub fn write_text(to: &mut impl Write, text: &str) -> io::Result<()> {
+pub fn write_text(to: &mut impl Write, text: &[u8]) -> io::Result<()> {
     to.write_all(&(text.len() as u32).to_le_bytes())?;
-    to.write_all(text.as_bytes())
+    to.write_all(text)
 }
 
 pub fn read_text(from: &mut impl Read) -> Result<String, SalfFileError> {
+    String::from_utf8(read_text_bytes(from)?)
+        .map_err(|_| SalfFileError::Damaged("a text that is not UTF-8".into()))
+}
+
+#[cfg(unix)]
+pub fn read_path(from: &mut impl Read) -> Result<PathBuf, SalfFileError> {
+    use std::os::unix::ffi::OsStringExt;
+    Ok(std::ffi::OsString::from_vec(read_text_bytes(from)?).into())
+}
+
+#[cfg(not(unix))]
+pub fn read_path(from: &mut impl Read) -> Result<PathBuf, SalfFileError> {
+    read_text(from).map(PathBuf::from)
+}
+
+fn read_text_bytes(from: &mut impl Read) -> Result<Vec<u8>, SalfFileError> {
     let length = u32::from_le_bytes(bytes(from)?);
     if length > LONGEST_TEXT {
         return Err(SalfFileError::Damaged(format!("a text of {length} bytes")));
     }
     let mut text = vec![0; length as usize];
     from.read_exact(&mut text).map_err(|_| SalfFileError::CutShort)?;
-    String::from_utf8(text).map_err(|_| SalfFileError::Damaged("a text that is not UTF-8".into()))
+    Ok(text)
 }
 
 pub fn write_f64s(to: &mut impl Write, values: &[f64]) -> io::Result<()> {

@@ -17,7 +17,7 @@ pub fn write_salf(
 ) -> Result<u64, SessionError> {
     let failed = |error: std::io::Error| SessionError::io(path, &error);
     let file = SalfFile {
-        source: relative_to(source, path).to_string_lossy().into_owned(),
+        source: relative_to(source, path),
         triangles: scene.triangles.len() as u32,
         salf: salf.clone(),
     };

@@ -1,0 +1,77 @@
+//! What is written follows from what is read: the same commands give the same bytes, in another process, at another time,
+//! with any number of threads.
+
+#[path = "../../crates/session/tests/tiny_glb/mod.rs"]
+mod tiny_glb;
+
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::process::Command;
+
+const CAMERA: &str =
+    r#"{"width": 64, "height": 40, "focus_distance": 2.0, "aperture_radius": 0.1, "sensor_height": 0.1}"#;
+const RECIPE: &str = r#"{"background": {"t": 0.9, "anchor": 0.5},
+    "nodes": {"card": {"t": 1.2, "anchor": 1}}, "materials": {"wall paint": {"t": 0.8, "anchor": 0.5}}}"#;
+const STROKES: &str = r#"{"format": "focus-brush strokes", "version": 3, "steps": [
+    {"fill": {"layer": "Paint", "targets": [{"node": 1}], "focus": {"t": 1.1, "anchor": 0.5}}}]}"#;
+
+const COMMANDS: [&str; 12] = [
+    "render scene.glb --camera camera.json --focus recipe.json -o picture.exr --aov coverage,coc,depth,t",
+    "render scene.glb --camera camera.json --focus recipe.json -o picture.png --aov coc",
+    "render scene.glb --camera camera.json -o truth.exr --renderer truth --spp 32 --aov stderr,coverage,depth",
+    "render scene.glb --camera camera.json -o scatter.exr --renderer scatter",
+    "new scene.glb --camera camera.json --focus recipe.json -o project.fbrush",
+    "replay project.fbrush strokes.json -o painted.fbrush",
+    "unwrap scene.glb -o unwrapped.glb --ignore-uv",
+    "bake scene.glb --camera camera.json -o field.salf",
+    "export painted.fbrush --focus-map map.exr --glb export.glb --layers layers.exr",
+    "export painted.fbrush --focus-map map.png",
+    "compare picture.exr truth.exr --error-map errors.exr",
+    "compare picture.exr truth.exr --error-map errors.png",
+];
+
+/// Every file that the commands write, in a folder of this name.
+fn written(name: &str, threads: usize) -> BTreeMap<String, Vec<u8>> {
+    let parent = tempfile::tempdir().unwrap();
+    let folder = parent.path().join(name);
+    std::fs::create_dir(&folder).unwrap();
+    let put = |name: &str, text: &str| std::fs::write(folder.join(name), text).unwrap();
+    tiny_glb::write(&folder.join("scene.glb"));
+    put("camera.json", CAMERA);
+    put("recipe.json", RECIPE);
+    put("strokes.json", STROKES);
+    let given = names(&folder);
+    for command in COMMANDS {
+        let output = Command::new(env!("CARGO_BIN_EXE_focus-brush"))
+            .args(command.split_whitespace())
+            .current_dir(&folder)
+            .env("XDG_RUNTIME_DIR", &folder)
+            .env("RAYON_NUM_THREADS", threads.to_string())
+            .output()
+            .unwrap();
+        let errors = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success(), "{command}: {errors}");
+    }
+    let files = names(&folder).into_iter().filter(|file| !given.contains(file));
+    files.map(|file| (file.clone(), std::fs::read(folder.join(file)).unwrap())).collect()
+}
+
+fn names(folder: &Path) -> Vec<String> {
+    let entries = std::fs::read_dir(folder).unwrap().map(Result::unwrap);
+    let files = entries.filter(|entry| entry.file_type().unwrap().is_file());
+    files.map(|entry| entry.file_name().into_string().unwrap()).collect()
+}
+
+#[test]
+fn the_same_commands_write_the_same_bytes() {
+    let first = written("one", 1);
+    assert_eq!(first.len(), 16, "{:?}", first.keys());
+    // More than once: what is in no order is in the same by chance now and then.
+    for threads in [1, 2, 5] {
+        let again = written("another", threads);
+        assert_eq!(first.keys().collect::<Vec<_>>(), again.keys().collect::<Vec<_>>());
+        for (file, bytes) in &first {
+            assert!(again[file] == *bytes, "{file} differs with {threads} threads");
+        }
+    }
+}

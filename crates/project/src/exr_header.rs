@@ -1,0 +1,133 @@
+//! The header of an OpenEXR file as bytes: what the decoder does not tell of it, and in what order it is written.
+//!
+//! ```text
+//! magic, version and flags    2 × u32
+//! for each part               attributes, then a 0
+//! of several parts            one more 0
+//! attribute                   name, 0, type, 0, length as i32, that many bytes
+//! ```
+
+/// Where the first attribute begins.
+const FIRST_ATTRIBUTE: usize = 8;
+
+/// Of the flags: there are several parts.
+const SEVERAL_PARTS: u32 = 1 << 12;
+
+/// The attributes of the parts, a list each; `None` if the bytes are cut short within them.
+fn parts(bytes: &[u8]) -> Option<Vec<Vec<&[u8]>>> {
+    let flags = u32::from_le_bytes(bytes.get(4..FIRST_ATTRIBUTE)?.try_into().ok()?);
+    let mut rest = &bytes[FIRST_ATTRIBUTE..];
+    let mut parts = Vec::new();
+    loop {
+        let mut attributes = Vec::new();
+        while *rest.first()? != 0 {
+            let (attribute, after) = rest.split_at_checked(length(rest)?)?;
+            attributes.push(attribute);
+            rest = after;
+        }
+        rest = &rest[1..];
+        let is_end = attributes.is_empty();
+        if !is_end {
+            parts.push(attributes);
+        }
+        if is_end || flags & SEVERAL_PARTS == 0 {
+            return Some(parts);
+        }
+    }
+}
+
+/// Bytes of the attribute that these begin with.
+fn length(bytes: &[u8]) -> Option<usize> {
+    let name = bytes.iter().position(|&byte| byte == 0)? + 1;
+    let value = name + bytes.get(name..)?.iter().position(|&byte| byte == 0)? + 1 + 4;
+    let length = i32::from_le_bytes(bytes.get(value - 4..value)?.try_into().ok()?);
+    value.checked_add(usize::try_from(length).ok()?)
+}
+
+fn name(attribute: &[u8]) -> &[u8] {
+    attribute.split(|&byte| byte == 0).next().unwrap_or_default()
+}
+
+/// Puts the attributes of each part in the order of their names: the encoder writes some of them as its hash map has
+/// them, which is another order each time.
+pub(crate) fn sort_attributes(bytes: &mut [u8]) {
+    let Some(mut parts) = parts(bytes) else { return };
+    let mut sorted = Vec::new();
+    for attributes in &mut parts {
+        attributes.sort_by_key(|attribute| name(attribute));
+        sorted.extend(attributes.concat());
+        sorted.push(0);
+    }
+    bytes[FIRST_ATTRIBUTE..][..sorted.len()].copy_from_slice(&sorted);
+}
+
+/// The first window of any part whose upper left corner does not lie above and left of its lower right one: it holds
+/// no pixel. The decoder takes it for one that is turned about.
+pub(crate) fn empty_window(bytes: &[u8]) -> Option<&'static str> {
+    let windows = [("dataWindow", "data window"), ("displayWindow", "display window")];
+    let attributes = parts(bytes)?.into_iter().flatten();
+    attributes
+        .filter_map(|attribute| {
+            let (_, said) = windows.into_iter().find(|(window, _)| window.as_bytes() == name(attribute))?;
+            let (words, _) = attribute.get(attribute.len().checked_sub(16)?..)?.as_chunks::<4>();
+            let [left, top, right, bottom] = words else { return None };
+            let [left, top, right, bottom] = [left, top, right, bottom].map(|word| i32::from_le_bytes(*word));
+            (left > right || top > bottom).then_some(said)
+        })
+        .next()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn attribute(name: &str, value: &[u8]) -> Vec<u8> {
+        let length = (value.len() as i32).to_le_bytes();
+        [name.as_bytes(), b"\0kind\0", &length, value].concat()
+    }
+
+    fn window(name: &str, corners: [i32; 4]) -> Vec<u8> {
+        attribute(name, &corners.map(i32::to_le_bytes).concat())
+    }
+
+    fn file(flags: u32, parts: &[&[Vec<u8>]]) -> Vec<u8> {
+        let parts = parts.iter().map(|attributes| [attributes.concat(), vec![0]].concat());
+        let end: &[u8] = if flags == 0 { b"pixels" } else { b"\0pixels" };
+        [&[0; 4], &flags.to_le_bytes()[..], &parts.collect::<Vec<_>>().concat(), end].concat()
+    }
+
+    #[test]
+    fn attributes_are_sorted_within_their_part_and_nothing_else_moves() {
+        let [a, b, c] = [attribute("a", b"\0\0"), attribute("b", b""), attribute("c", &[7; 300])];
+        let mut one = file(0, &[&[c.clone(), a.clone(), b.clone()]]);
+        sort_attributes(&mut one);
+        assert_eq!(one, file(0, &[&[a.clone(), b.clone(), c.clone()]]));
+        let mut two = file(SEVERAL_PARTS, &[&[b.clone(), a.clone()], &[c.clone(), b.clone()]]);
+        sort_attributes(&mut two);
+        assert_eq!(two, file(SEVERAL_PARTS, &[&[a, b.clone()], &[b, c]]));
+    }
+
+    #[test]
+    fn bytes_that_are_cut_short_stay_as_they_are() {
+        let whole = file(SEVERAL_PARTS, &[&[window("dataWindow", [9, 0, 0, 9]), attribute("b", b"12")]]);
+        for length in 0..whole.len() - b"\0pixels".len() {
+            let mut cut = whole[..length].to_vec();
+            sort_attributes(&mut cut);
+            assert_eq!(cut, &whole[..length]);
+            assert_eq!(empty_window(&cut), None);
+        }
+        let mut endless = whole.clone();
+        endless[FIRST_ATTRIBUTE + 16..][..4].copy_from_slice(&(-1i32).to_le_bytes());
+        assert!(parts(&endless).is_none());
+    }
+
+    #[test]
+    fn a_window_without_a_pixel_is_told_from_one_of_a_pixel() {
+        let [data, display] = ["dataWindow", "displayWindow"];
+        let empty = |data, display| empty_window(&file(0, &[&[data, display]]));
+        assert_eq!(empty(window(data, [-3, 5, -3, 5]), window(display, [0, 0, 0, 0])), None);
+        assert_eq!(empty(window(data, [1, 0, 0, 0]), window(display, [0, 0, 0, 0])), Some("data window"));
+        assert_eq!(empty(window(data, [0, 0, 0, 0]), window(display, [0, 0, 0, -1])), Some("display window"));
+        assert_eq!(empty(window("other", [1, 0, 0, 0]), attribute(display, b"1")), None);
+    }
+}
