@@ -10,6 +10,7 @@ use crate::options::{ReportOptions, SceneRequest};
 use crate::plan::{Setting, settings};
 use crate::record::{Record, Series};
 use crate::reference::{conserved, trace_reference};
+use crate::report::{Measured, Report};
 use crate::store::{Store, file_part};
 use crate::subdivision::subdivided;
 use crate::subject::{Subject, first_hits};
@@ -31,33 +32,6 @@ const FORM: &str = "3";
 
 /// The tolerance of the finest light field, px.
 const FINEST_TOLERANCE_PX: f64 = 0.0;
-
-/// A measurement, and the pictures of it.
-#[derive(Clone, Debug)]
-pub struct Measured {
-    /// The figures.
-    pub record: Record,
-    /// The picture and its FLIP error map; only where the knob was turned.
-    pub pictures: Option<[PathBuf; 2]>,
-}
-
-/// Everything that a report tells.
-pub struct Report {
-    /// The machine.
-    pub machine: Machine,
-    /// The scenes.
-    pub scenes: Vec<SceneSummary>,
-    /// The measurements, in the order of the plan.
-    pub measured: Vec<Measured>,
-    /// The hard cases, if they were asked for.
-    pub hard: Option<Vec<hard_cases::Outcome>>,
-    /// How many of the measurements were made in this run.
-    pub new: usize,
-    /// Files that were written for people and programs.
-    pub files: Vec<PathBuf>,
-    /// Seconds of this run.
-    pub seconds: f64,
-}
 
 /// Measures and writes the report to `folder`, which is made if it is not there. `note` is told of every measurement.
 ///

@@ -4,7 +4,7 @@ use crate::fields::Fields;
 use crate::findings::equal_errors;
 use crate::page;
 use crate::record::{Record, Series};
-use crate::run::Report;
+use crate::report::Report;
 use crate::store::{to_json, write_files};
 use crate::tables;
 use serde_json::{Value, json};

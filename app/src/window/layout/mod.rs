@@ -3,15 +3,16 @@
 //! What is docked is a tree of tiles. A panel that floats keeps its (hidden) tile: it is put back there. What is folded
 //! away has a hidden tile too.
 
+mod pane;
 mod panes;
 mod sizes;
 
+pub use pane::Pane;
 pub use panes::{Docked, Panes};
 
 use egui::{Rect, Ui, Vec2, pos2, vec2};
 use egui_tiles::{Container, Linear, LinearDir, Tile, TileId, Tiles, Tree};
 use serde::{Deserialize, Serialize};
-use session::CommandId;
 use sizes::NOMINAL;
 use std::collections::HashSet;
 
@@ -23,57 +24,6 @@ const DRAWER_HEIGHT: f32 = 210.0;
 
 /// Share of the views' width that the paint view has at first.
 const PAINT_SHARE: f32 = 0.46;
-
-/// A panel.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
-pub enum Pane {
-    /// The scene in 3D.
-    Paint,
-    /// The refocused picture.
-    Picture,
-    /// What the document is made of, section by section.
-    Inspector,
-    /// The focus map flat.
-    Atlas,
-    /// What of the aperture one point sees.
-    Aperture,
-    /// The circles of confusion of the picture.
-    Histogram,
-}
-
-impl Pane {
-    /// All.
-    pub const ALL: [Self; 6] =
-        [Self::Paint, Self::Picture, Self::Inspector, Self::Atlas, Self::Aperture, Self::Histogram];
-
-    /// What it is called.
-    pub fn title(self) -> &'static str {
-        match self {
-            Self::Paint => "Paint",
-            Self::Picture => "Picture",
-            Self::Inspector => "Inspector",
-            Self::Atlas => "Atlas",
-            Self::Aperture => "Aperture view",
-            Self::Histogram => "Blur histogram",
-        }
-    }
-
-    /// The command that shows it, or folds it away; none for the two views, one of which there always is.
-    pub fn command(self) -> Option<CommandId> {
-        match self {
-            Self::Paint | Self::Picture => None,
-            Self::Inspector => Some(CommandId::ShowInspector),
-            Self::Atlas => Some(CommandId::ShowAtlas),
-            Self::Aperture => Some(CommandId::ShowAperture),
-            Self::Histogram => Some(CommandId::ShowHistogram),
-        }
-    }
-
-    /// Whether it can be folded away.
-    pub fn is_foldable(self) -> bool {
-        self.command().is_some()
-    }
-}
 
 /// A panel over the others.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -260,7 +210,7 @@ impl Layout {
             return;
         }
         let size: Vec2 = ui.available_size();
-        self.fit(size.into());
+        sizes::fit(&mut self.tree, &mut self.size, size.into());
         let in_tabs = self.in_tabs();
         self.tree.ui(&mut panes::Tiling { panes, in_tabs }, ui);
         self.floating_ui(ui, panes);

@@ -1,6 +1,6 @@
 //! How the tiles look and what may be done with them.
 
-use super::Pane;
+use super::pane::Pane;
 use egui::accesskit::Role;
 use egui::{Ui, WidgetText};
 use egui_tiles::{Behavior, Container, SimplificationOptions, TileId, Tiles, UiResponse};

@@ -1,7 +1,7 @@
 //! Panels that can be folded away keep their size in points when the window's changes; the views take what is left.
 
-use super::{Layout, Pane};
-use egui_tiles::{Container, LinearDir, Tile, TileId, Tiles};
+use super::pane::Pane;
+use egui_tiles::{Container, LinearDir, Tile, TileId, Tiles, Tree};
 
 /// Width and height, points, for which the shares of the first layout are made.
 pub const NOMINAL: [f32; 2] = [1280.0, 640.0];
@@ -12,26 +12,24 @@ const LARGEST_SHARE: f32 = 0.5;
 /// A change by fewer points than this is none.
 const LEAST_CHANGE: f32 = 0.5;
 
-impl Layout {
-    /// Takes up another size of the whole.
-    pub(super) fn fit(&mut self, size: [f32; 2]) {
-        let growth = [0, 1].map(|axis| size[axis] / self.size[axis]);
-        let is_other = [0, 1].map(|axis| (size[axis] - self.size[axis]).abs() > LEAST_CHANGE);
-        if !(is_other[0] || is_other[1]) || size.iter().any(|side| *side < 1.0) {
-            return;
-        }
-        self.size = size;
-        let ids: Vec<TileId> = self.tree.tiles.tile_ids().collect();
-        for id in ids {
-            let Some(Tile::Container(Container::Linear(linear))) = self.tree.tiles.get(id) else { continue };
-            let axis = usize::from(linear.dir == LinearDir::Vertical);
-            let is_kept = |child: &TileId| keeps_size(&self.tree.tiles, *child);
-            let shares = linear.children.iter().map(|child| (linear.shares[*child], is_kept(child)));
-            let new = rescaled(&shares.collect::<Vec<_>>(), growth[axis]);
-            if let Some(Tile::Container(Container::Linear(linear))) = self.tree.tiles.get_mut(id) {
-                for (child, share) in linear.children.clone().into_iter().zip(new) {
-                    linear.shares.set_share(child, share);
-                }
+/// Takes up another `size` of the whole, points, in place of the one that it `had`.
+pub fn fit(tree: &mut Tree<Pane>, had: &mut [f32; 2], size: [f32; 2]) {
+    let growth = [0, 1].map(|axis| size[axis] / had[axis]);
+    let is_other = [0, 1].map(|axis| (size[axis] - had[axis]).abs() > LEAST_CHANGE);
+    if !(is_other[0] || is_other[1]) || size.iter().any(|side| *side < 1.0) {
+        return;
+    }
+    *had = size;
+    let ids: Vec<TileId> = tree.tiles.tile_ids().collect();
+    for id in ids {
+        let Some(Tile::Container(Container::Linear(linear))) = tree.tiles.get(id) else { continue };
+        let axis = usize::from(linear.dir == LinearDir::Vertical);
+        let is_kept = |child: &TileId| keeps_size(&tree.tiles, *child);
+        let shares = linear.children.iter().map(|child| (linear.shares[*child], is_kept(child)));
+        let new = rescaled(&shares.collect::<Vec<_>>(), growth[axis]);
+        if let Some(Tile::Container(Container::Linear(linear))) = tree.tiles.get_mut(id) {
+            for (child, share) in linear.children.clone().into_iter().zip(new) {
+                linear.shares.set_share(child, share);
             }
         }
     }
@@ -63,6 +61,7 @@ fn rescaled(shares: &[(f32, bool)], growth: f32) -> Vec<f32> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::Layout;
     use super::*;
 
     #[test]
@@ -90,7 +89,7 @@ mod tests {
             linear.shares[tile] / total * layout.size[0]
         };
         for size in [[1440.0, 800.0], [800.0, 450.0], [1920.0, 1000.0]] {
-            layout.fit(size);
+            fit(&mut layout.tree, &mut layout.size, size);
             assert!((width(&layout) - 300.0).abs() < 0.1, "{} at {size:?}", width(&layout));
         }
     }

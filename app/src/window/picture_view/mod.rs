@@ -171,8 +171,8 @@ impl PictureView {
         let frame =
             ViewFrame { camera_to_world: shot.camera_to_world, yfov: shot.yfov, aspect: shot.aspect() };
         let is_selecting = self.verify.is_selecting();
-        self.verify.select(ui, &response, image, actions);
         let position = |at: Pos2| picture_position(image, at);
+        self.verify.select(ui, &response, image, position, actions);
         if !(is_wiping || is_selecting) || session.is_painting() {
             actions.extend(self.stroke.update(ui, &response, session, hand, frame, position));
         }

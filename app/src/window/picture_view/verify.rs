@@ -1,11 +1,11 @@
 //! A rectangle of the picture, checked by rays: drawn, shown, and how far the picture is off.
 
-use super::picture_position;
 use crate::window::{Action, controls};
 use egui::{
     Color32, ColorImage, Key, PointerButton, Pos2, Rect, Response, Stroke, StrokeKind, TextureHandle,
     TextureOptions, Ui, UiBuilder, pos2, vec2,
 };
+use glam::DVec2;
 use session::{Command, Session, Tone, VerifiedError, to_screen};
 
 /// What is shown in the rectangle.
@@ -43,8 +43,15 @@ impl Verify {
         self.selecting.is_some()
     }
 
-    /// Draws the rectangle by the pointer.
-    pub fn select(&mut self, ui: &Ui, response: &Response, image: Rect, actions: &mut Vec<Action>) {
+    /// Draws the rectangle by the pointer; `position` tells where in the picture, in [0, 1]², a place of the screen is.
+    pub fn select(
+        &mut self,
+        ui: &Ui,
+        response: &Response,
+        image: Rect,
+        position: impl Fn(Pos2) -> DVec2,
+        actions: &mut Vec<Action>,
+    ) {
         let Some(start) = self.selecting else { return };
         if ui.input(|input| input.key_pressed(Key::Escape)) {
             self.selecting = None;
@@ -67,7 +74,7 @@ impl Verify {
                 let end = end.map_or(from, |at| image.clamp(at));
                 self.selecting = None;
                 if from.distance(end) > 3.0 {
-                    let corners = [from, end].map(|at| picture_position(image, at));
+                    let corners = [from, end].map(position);
                     actions.push(Command::VerifyRegion(corners).into());
                 }
             }

@@ -9,12 +9,14 @@ mod dab;
 mod dense;
 mod field;
 mod frame_copy;
+mod measured;
 mod plots;
 mod ray_tracer;
 mod record;
 mod synthetic;
 mod write;
 
+pub use measured::{Check, EngineReport};
 pub use record::EngineRecord;
 
 use crate::band::{Band, inverse_depths};
@@ -24,36 +26,13 @@ use crate::options::{ReportOptions, SceneRequest};
 use crate::subject::Subject;
 use field::{Field, Truth};
 use frame_copy::FrameCopy;
+use measured::Measured;
 use ray_tracer::RayTracer;
 use session::{RenderOptions, SessionError, Steps, bake};
 use splat::Gpu;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
-
-/// What was measured of the engine.
-#[derive(Clone, Debug)]
-pub struct EngineReport {
-    /// The measurements.
-    pub records: Vec<EngineRecord>,
-    /// What must hold whatever the speed, and whether it does.
-    pub checks: Vec<Check>,
-    /// Where it ran.
-    pub machine: Machine,
-    /// Files that were written.
-    pub files: Vec<PathBuf>,
-}
-
-/// Something that must hold.
-#[derive(Clone, Debug, PartialEq, serde::Serialize)]
-pub struct Check {
-    /// The scene.
-    pub scene: String,
-    /// What must hold.
-    pub what: String,
-    /// Whether it does.
-    pub holds: bool,
-}
 
 /// Measures pictures of `size`, summed on each of `backends` (none: the processor), and writes `report.json`, `engine.md` and
 /// `about.json` into `folder`.
@@ -87,15 +66,6 @@ pub fn run_engine(
     let mut report = EngineReport { records, checks, machine: Machine::here(), files: Vec::new() };
     report.files = write::write(&report, frame.seconds(), folder)?;
     Ok(report)
-}
-
-/// What has been found so far.
-struct Measured {
-    frame: FrameCopy,
-    records: Vec<EngineRecord>,
-    checks: Vec<Check>,
-    /// What pictures are summed on; none: the processor.
-    gpu: Option<Gpu>,
 }
 
 /// Bakes a scene's light field and measures it and the ray tracer under each focus.

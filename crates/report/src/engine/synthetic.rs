@@ -1,8 +1,9 @@
 //! Light fields that are made up: a case each, whose circles of confusion are known.
 
 use crate::band::Band;
+use crate::engine::EngineRecord;
 use crate::engine::field::{Field, other_lenses};
-use crate::engine::{EngineRecord, Measured};
+use crate::engine::measured::Measured;
 use glam::{Vec2, Vec3};
 use lens::{Camera, FocusOffset};
 use salf::{Cell, Domain, Salf, Sample, Visibility};

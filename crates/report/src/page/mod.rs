@@ -9,7 +9,7 @@ use crate::markup::escaped;
 use crate::plan::cost_note;
 use crate::plot::{Chart, bytes, significant};
 use crate::record::{Record, Series};
-use crate::run::{Measured, Report};
+use crate::report::{Measured, Report};
 use crate::summary::{ModelledScene, SceneSummary};
 use crate::tables;
 use hard_cases::Outcome;

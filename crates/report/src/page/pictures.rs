@@ -4,7 +4,7 @@ use crate::contender::Contender;
 use crate::markup::escaped;
 use crate::plot::{seconds, significant};
 use crate::record::Record;
-use crate::run::Measured;
+use crate::report::Measured;
 use crate::summary::{FocusSummary, SceneSummary};
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD;
