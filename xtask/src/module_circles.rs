@@ -22,17 +22,9 @@ use serde_json::Value;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
-/// Crates that still have circles; one that has none left must go from here.
-const TIED: &[&str] = &["report", "focus-brush"];
-
-/// Checks the workspace as it is, but for the crates that are [`TIED`].
+/// Checks the workspace as it is.
 pub fn check() -> Result<(), Failure> {
-    let names = roots()?.into_iter().map(|(name, _)| name);
-    let (tied, free): (Vec<_>, Vec<_>) = names.partition(|name| TIED.contains(&name.as_str()));
-    if let Some(name) = tied.iter().find(|name| circles(&[OsString::from(name)]).is_ok()) {
-        return Err(Failure::new(format!("{name} has no circle of modules any more (take it from TIED)")));
-    }
-    circles(&free.into_iter().map(OsString::from).collect::<Vec<_>>())
+    circles(&[])
 }
 
 /// Checks the crates that are named, or all.
@@ -40,8 +32,11 @@ pub fn check() -> Result<(), Failure> {
 /// # Errors
 /// When modules lead to one another: each circle, with the names that tie it.
 pub fn circles(crates: &[OsString]) -> Result<(), Failure> {
+    let metadata = output_of(cargo("metadata").args(["--no-deps", "--format-version", "1"]))?;
+    let metadata: Value =
+        serde_json::from_slice(&metadata).map_err(|e| Failure::new(format!("cargo metadata: {e}")))?;
     let mut told = Vec::new();
-    for (name, root) in roots()? {
+    for (name, root) in roots(&metadata) {
         if crates.is_empty() || crates.iter().any(|chosen| *chosen == *name) {
             let found =
                 circles_in(&root, &|file| std::fs::read_to_string(file).ok()).map_err(Failure::new)?;
@@ -55,10 +50,7 @@ pub fn circles(crates: &[OsString]) -> Result<(), Failure> {
 }
 
 /// The libraries and programs in the output of `cargo metadata --no-deps`: the package's name and the root file.
-fn roots() -> Result<Vec<(String, PathBuf)>, Failure> {
-    let metadata = output_of(cargo("metadata").args(["--no-deps", "--format-version", "1"]))?;
-    let metadata: Value =
-        serde_json::from_slice(&metadata).map_err(|e| Failure::new(format!("cargo metadata: {e}")))?;
+fn roots(metadata: &Value) -> Vec<(String, PathBuf)> {
     let mut roots = Vec::new();
     for package in metadata["packages"].as_array().into_iter().flatten() {
         for target in package["targets"].as_array().into_iter().flatten() {
@@ -69,7 +61,7 @@ fn roots() -> Result<Vec<(String, PathBuf)>, Failure> {
             }
         }
     }
-    Ok(roots)
+    roots
 }
 
 /// The circles of the crate whose root is the file `root`, each as a person would want to read it.
