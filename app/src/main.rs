@@ -1,9 +1,12 @@
 //! `focus-brush`: the window and the command line.
 
+mod bare_session;
+
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
     // Unwrapping runs its engines in children of this very program.
     atlas::child::run_if_asked();
+    bare_session::begin_anew_if_bare();
     focus_brush::cli::run()
 }

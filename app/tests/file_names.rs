@@ -59,7 +59,7 @@ impl Place {
         });
         Command::new(env!("CARGO_BIN_EXE_focus-brush"))
             .args(words)
-            .env("XDG_RUNTIME_DIR", self.parent.path())
+            .env_remove("XDG_RUNTIME_DIR")
             .output()
             .unwrap()
     }

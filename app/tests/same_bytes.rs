@@ -45,7 +45,7 @@ fn written(name: &str, threads: usize) -> BTreeMap<String, Vec<u8>> {
         let output = Command::new(env!("CARGO_BIN_EXE_focus-brush"))
             .args(command.split_whitespace())
             .current_dir(&folder)
-            .env("XDG_RUNTIME_DIR", &folder)
+            .env_remove("XDG_RUNTIME_DIR")
             .env("RAYON_NUM_THREADS", threads.to_string())
             .output()
             .unwrap();

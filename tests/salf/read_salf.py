@@ -59,14 +59,18 @@ class Bytes:
         form = struct.Struct("<" + form)
         return list(form.iter_unpack(self.take(form.size * count)))
 
-    def text(self):
+    def text(self, errors="strict"):
         length = self.number("I")
         if length > LONGEST_TEXT:
             raise Damaged(f"a text of {length} bytes")
         try:
-            return self.take(length).decode("utf-8")
+            return self.take(length).decode("utf-8", errors)
         except UnicodeDecodeError:
             raise Damaged("a text that is not UTF-8") from None
+
+    def path(self):
+        """A name as the system has it, which need not be UTF-8."""
+        return self.text("surrogateescape")
 
 
 def require(is_so, what):
@@ -232,7 +236,7 @@ class Salf:
         file.take(len(MAGIC))
         self.version = file.number("I")
         require(self.version == VERSION, f"version {self.version} is not known, only version {VERSION}")
-        self.source = file.text()
+        self.source = file.path()
         self.triangles = file.number("I")
         self.camera = read_camera(file)
         self.margin = file.number("I")
