@@ -96,7 +96,10 @@ impl Written {
                     if let Some(view) = accessor.get("bufferView") {
                         let view = &self.document["bufferViews"][number(view)];
                         let stride = view["byteStride"].as_u64().unwrap_or(element_size(accessor) as u64);
-                        assert!(stride % 4 == 0 && view["target"] != 34963, "{name}: {accessor} in {view}");
+                        assert!(
+                            stride.is_multiple_of(4) && view["target"] != 34963,
+                            "{name}: {accessor} in {view}"
+                        );
                     }
                 }
             }
