@@ -44,8 +44,13 @@ fn length(bytes: &[u8]) -> Option<usize> {
     value.checked_add(usize::try_from(length).ok()?)
 }
 
+/// Name, type, and length with value of an attribute.
+fn fields(attribute: &[u8]) -> impl Iterator<Item = &[u8]> {
+    attribute.splitn(3, |&byte| byte == 0)
+}
+
 fn name(attribute: &[u8]) -> &[u8] {
-    attribute.split(|&byte| byte == 0).next().unwrap_or_default()
+    fields(attribute).next().unwrap_or_default()
 }
 
 /// Puts the attributes of each part in the order of their names: the encoder writes some of them as its hash map has
@@ -69,8 +74,8 @@ pub(crate) fn empty_window(bytes: &[u8]) -> Option<&'static str> {
     attributes
         .filter_map(|attribute| {
             let (_, said) = windows.into_iter().find(|(window, _)| window.as_bytes() == name(attribute))?;
-            let (words, _) = attribute.get(attribute.len().checked_sub(16)?..)?.as_chunks::<4>();
-            let [left, top, right, bottom] = words else { return None };
+            let (words, _) = fields(attribute).nth(2)?.as_chunks::<4>();
+            let [_length, left, top, right, bottom] = words else { return None };
             let [left, top, right, bottom] = [left, top, right, bottom].map(|word| i32::from_le_bytes(*word));
             (left > right || top > bottom).then_some(said)
         })

@@ -335,7 +335,7 @@ fn a_malformed_file_is_told_in_one_line() {
     // What a checksum does not tell: place and value, by what is wrong then.
     for (at, value, why) in [
         (8, 5, "version 5"),
-        (12, 0xFF, "UTF-8"),
+        (12, 0xFF, "picture without a size"),
         (14, 0xFF, "a text of"),
         (24, 1, "triangle"),
         (28 + 2, 0xFF, "picture without a size"),
