@@ -2,6 +2,7 @@
 
 use clap::builder::{OsStringValueParser, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, ValueEnum};
+use scene::BackFaces;
 use session::{Aov, CameraChoice, Renderer};
 use std::ffi::OsStr;
 use std::path::PathBuf;
@@ -68,6 +69,10 @@ pub struct InfoArguments {
     /// Bake a small picture's light field and count what of the scene is modelled
     #[arg(long)]
     pub bake: bool,
+    /// Whether faces that are not double sided are seen from behind (default: the project's, or hide, as glTF asks for). show:
+    /// for files whose faces are turned, and to compare with renderers that show them
+    #[arg(long, value_name = "show|hide", value_parser = back_faces_parser())]
+    pub back_faces: Option<BackFaces>,
     /// Write JSON to stdout
     #[arg(long)]
     pub json: bool,
@@ -87,6 +92,10 @@ pub struct NewArguments {
     /// How it is focused to begin with: a recipe (.json) or a focus map (.exr, .png) (default: the ordinary lens)
     #[arg(long, value_name = "RECIPE.json|MAP.exr|png")]
     pub focus: Option<PathBuf>,
+    /// Whether faces that are not double sided are seen from behind (default: the project's, or hide, as glTF asks for). show:
+    /// for files whose faces are turned, and to compare with renderers that show them
+    #[arg(long, value_name = "show|hide", value_parser = back_faces_parser())]
+    pub back_faces: Option<BackFaces>,
 }
 
 /// `replay`.
@@ -162,6 +171,10 @@ pub struct ShotArguments {
     /// Picture size in pixels instead of the camera's
     #[arg(long, value_name = "WxH", value_parser = size)]
     pub size: Option<[u32; 2]>,
+    /// Whether faces that are not double sided are seen from behind (default: the project's, or hide, as glTF asks for). show:
+    /// for files whose faces are turned, and to compare with renderers that show them
+    #[arg(long, value_name = "show|hide", value_parser = back_faces_parser())]
+    pub back_faces: Option<BackFaces>,
 }
 
 /// `render`.
@@ -382,6 +395,11 @@ fn size(text: &str) -> Result<[u32; 2], String> {
 fn renderer_parser() -> impl TypedValueParser<Value = Renderer> {
     let names = PossibleValuesParser::new(Renderer::ALL.map(|(name, _)| name));
     names.try_map(|name| Renderer::named(&name).ok_or("not a renderer"))
+}
+
+fn back_faces_parser() -> impl TypedValueParser<Value = BackFaces> {
+    let names = PossibleValuesParser::new(BackFaces::ALL.map(|(name, _)| name));
+    names.try_map(|name| BackFaces::named(&name).ok_or("neither show nor hide"))
 }
 
 fn aov(name: &str) -> Result<Aov, String> {

@@ -3,9 +3,9 @@
 use super::arguments::BakeArguments;
 use super::console::{Console, path_text, say_json};
 use super::failure::Failure;
-use super::shot::{check_folder, shot};
+use super::shot::{check_folder, opened, shot};
 use serde_json::json;
-use session::{Input, InputKind, RenderOptions, bake, write_salf};
+use session::{InputKind, RenderOptions, bake, write_salf};
 use std::sync::Arc;
 use std::time::Instant;
 use trace::Tracer;
@@ -18,7 +18,7 @@ pub fn run(arguments: &BakeArguments, console: &Console) -> Result<(), Failure> 
     }
     check_folder(&arguments.output)?;
     let start = Instant::now();
-    let input = Input::open(&arguments.file, console)?;
+    let input = opened(&arguments.file, arguments.shot.back_faces, console)?;
     console.warn(&input.warnings);
     let (camera, focus) = shot(&input, &arguments.shot, console)?;
     let open_seconds = start.elapsed().as_secs_f64();

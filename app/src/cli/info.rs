@@ -3,7 +3,7 @@
 use super::arguments::InfoArguments;
 use super::console::{Console, path_text, say, say_json};
 use super::failure::Failure;
-use super::shot::unwrap_options;
+use super::shot::{opened, unwrap_options};
 use lens::Camera;
 use progress::Unwatched;
 use project::{ProjectFile, camera_to_json};
@@ -25,7 +25,7 @@ pub fn run(arguments: &InfoArguments, console: &Console) -> Result<(), Failure> 
         let note = format!("{}: no triangle, so there is nothing to render", file.display());
         return without_triangles(arguments, inspection, &note, console);
     }
-    let input = Input::open(file, &Unwatched)?;
+    let input = opened(file, arguments.back_faces, &Unwatched)?;
     console.warn(&input.warnings);
     let health = MeshHealth::of(&input.scene);
     let modelled = modelled(&input, arguments.bake, console)?;
@@ -146,6 +146,7 @@ fn mesh_sentence(health: &MeshHealth) -> String {
     let counts = [
         (health.degenerate, "degenerate triangles"),
         (health.duplicates, "duplicate triangles"),
+        (health.turned, "triangles that face away from the outside of a closed mesh (--back-faces show)"),
         (health.non_manifold_edges, "edges of more than two triangles"),
         (health.boundary_edges, "open edges"),
         (health.without_uv, "triangles without texture coordinates"),

@@ -16,7 +16,9 @@ pub fn run(arguments: &NewArguments, console: &Console) -> Result<(), Failure> {
     let (camera, focus) = (arguments.camera.as_ref(), arguments.focus.as_deref());
     let document = Document::begin(&arguments.scene, camera, focus, &unwrap_options(None), console)?;
     console.warn(&document.warnings);
-    document.to_project().save(output)?;
+    let mut project = document.to_project();
+    project.back_faces = arguments.back_faces.unwrap_or(project.back_faces);
+    project.save(output)?;
     console.note(&format!("wrote {}", output.display()));
     Ok(())
 }

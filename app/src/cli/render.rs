@@ -3,13 +3,13 @@
 use super::arguments::{BackendName, EstimatorName, ExposureName, RenderArguments, SamplerName};
 use super::console::{Console, path_text, path_texts, say_json};
 use super::failure::Failure;
-use super::shot::{check_picture_output, shot};
+use super::shot::{check_picture_output, opened, shot};
 use lens::Exposure;
 use project::{PictureOptions, write_picture};
 use serde_json::json;
 use session::{
-    Aov, Input, LayeredOptions, RenderOptions, Rendered, Renderer, ScatterOptions, SessionError,
-    ViewsOptions, render_input,
+    Aov, LayeredOptions, RenderOptions, Rendered, Renderer, ScatterOptions, SessionError, ViewsOptions,
+    render_input,
 };
 use splat::Gpu;
 use std::time::Instant;
@@ -23,7 +23,7 @@ pub fn run(arguments: &RenderArguments, console: &Console) -> Result<(), Failure
     check_output(arguments)?;
 
     let start = Instant::now();
-    let input = Input::open(&arguments.file, console)?;
+    let input = opened(&arguments.file, arguments.shot.back_faces, console)?;
     console.warn(&input.warnings);
     let (camera, focus) = shot(&input, &arguments.shot, console)?;
     let open_seconds = start.elapsed().as_secs_f64();

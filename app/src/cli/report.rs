@@ -108,6 +108,7 @@ fn requests(arguments: &ReportArguments) -> Result<Vec<SceneRequest>, Failure> {
         file: file.clone(),
         camera: shot.camera.clone(),
         focus: shot.focus.clone(),
+        back_faces: shot.back_faces,
     };
     if !arguments.scenes.is_empty() {
         return Ok(arguments.scenes.iter().map(request).collect());

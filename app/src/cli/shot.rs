@@ -6,7 +6,8 @@ use super::failure::Failure;
 use atlas::{Density, UnwrapOptions, UvPolicy};
 use focus::Focus;
 use lens::Camera;
-use session::Input;
+use scene::BackFaces;
+use session::{Input, Steps};
 use std::path::Path;
 
 /// How scenes are unwrapped: by the engines of this program in child processes.
@@ -23,6 +24,15 @@ pub fn unwrap_options(arguments: Option<&AtlasArguments>) -> UnwrapOptions {
         child: std::env::current_exe().ok(),
         ..UnwrapOptions::default()
     }
+}
+
+/// Opens what is to be shown, with faces seen from behind or not as asked for.
+pub fn opened(file: &Path, back_faces: Option<BackFaces>, steps: &dyn Steps) -> Result<Input, Failure> {
+    let mut input = Input::open(file, steps)?;
+    if let Some(back_faces) = back_faces {
+        input.set_back_faces(back_faces);
+    }
+    Ok(input)
 }
 
 /// The camera and the focus that were asked for.

@@ -42,6 +42,9 @@ pub(crate) struct Manifest {
     pub cameras: Vec<CameraEntry>,
     pub active_camera: usize,
     pub exposure: String,
+    /// Whether faces are seen from behind, where that is told.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub back_faces: Option<String>,
     pub background_focus: [f64; 2],
     pub brush: Brush,
     #[serde(default)]

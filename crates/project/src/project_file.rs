@@ -26,6 +26,7 @@ use crate::texel_bytes::pairs;
 use crate::texel_set::TexelSet;
 use focus::{Brush, FocusLayer, FocusMap, LayerStack};
 use lens::{ApertureMask, ApertureShape, Camera, Exposure, FocusOffset};
+use scene::BackFaces;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 
@@ -64,6 +65,8 @@ pub struct ProjectFile {
     pub active_camera: usize,
     /// How the sum becomes the picture.
     pub exposure: Exposure,
+    /// Whether faces that are not double sided are seen from behind.
+    pub back_faces: BackFaces,
     /// The brush.
     pub brush: Brush,
     /// Layout and viewpoint, as the window wants them; any JSON.
@@ -104,6 +107,7 @@ impl ProjectFile {
             cameras,
             active_camera: 0,
             exposure: Exposure::default(),
+            back_faces: BackFaces::default(),
             brush: Brush::default(),
             view: Value::Null,
             atlas: None,
@@ -229,6 +233,7 @@ impl ProjectFile {
             cameras,
             active_camera: self.active_camera,
             exposure: exposure_name(self.exposure).to_string(),
+            back_faces: (self.back_faces != BackFaces::default()).then(|| self.back_faces.name().to_string()),
             background_focus: [background.t, background.anchor],
             brush: self.brush.clone(),
             view: self.view.clone(),
@@ -266,6 +271,11 @@ impl ProjectFile {
             "conserve" => Exposure::Conserve,
             "normalise" => Exposure::Normalise,
             other => return Err(error(format!("\"{other}\" is no exposure"))),
+        };
+        let back_faces = match manifest.back_faces.as_deref() {
+            None => BackFaces::default(),
+            Some(name) => BackFaces::named(name)
+                .ok_or_else(|| error(format!("\"{name}\" says nothing of back faces")))?,
         };
         if let Some(problem) = manifest.brush.problem() {
             return Err(error(format!("brush: {problem}")));
@@ -306,6 +316,7 @@ impl ProjectFile {
             cameras,
             active_camera: manifest.active_camera,
             exposure,
+            back_faces,
             brush: manifest.brush,
             view: manifest.view,
             atlas,

@@ -48,7 +48,8 @@ pub fn of_scene(scene: &Scene) -> String {
         .add_debug(&scene.parts)
         .add_debug(&scene.nodes)
         .add_debug(&scene.materials)
-        .add_debug(&scene.lights);
+        .add_debug(&scene.lights)
+        .add_debug(&scene.back_faces);
     for uv in &scene.further_uv {
         fingerprint = fingerprint.add(bytemuck::cast_slice(uv));
     }

@@ -1,5 +1,6 @@
 //! What is asked of a report.
 
+use scene::BackFaces;
 use session::CameraChoice;
 use std::path::PathBuf;
 
@@ -12,6 +13,8 @@ pub struct SceneRequest {
     pub camera: Option<CameraChoice>,
     /// A recipe or focus map; without one the project's paint, or a focus made up from the scene's materials.
     pub focus: Option<PathBuf>,
+    /// Whether faces that are not double sided are seen from behind; without one as the project says.
+    pub back_faces: Option<BackFaces>,
 }
 
 /// How much is measured.

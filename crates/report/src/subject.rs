@@ -58,7 +58,10 @@ impl Subject {
             let what = "is baked for one size and tolerance, a report bakes many (give its scene or project)";
             return Err(SessionError::bad(&request.file, what));
         }
-        let input = Input::open(&request.file, steps)?;
+        let mut input = Input::open(&request.file, steps)?;
+        if let Some(back_faces) = request.back_faces {
+            input.set_back_faces(back_faces);
+        }
         let mut camera = input.camera(request.camera.as_ref())?;
         let [width, height] = options.size.unwrap_or_else(|| {
             let width = (ReportOptions::HEIGHT as f64 * camera.aspect()).round().max(1.0) as u32;

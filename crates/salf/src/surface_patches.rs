@@ -3,7 +3,7 @@
 //! A triangle whose plane passes through or close by the aperture covers next to nothing of the pinhole picture, yet the
 //! rim of the aperture sees it: the weight |n·(P − U)|/|n·P| of pinhole samples has no bound there. And a small lamp may
 //! lie between the pinhole's rays. Such triangles ([`crate::placement`]) are cut into patches of about a pixel, and each
-//! side of a patch is a sample.
+//! side of a patch that can be seen is a sample.
 
 use crate::domain::Domain;
 use crate::jitter::jitter;
@@ -86,7 +86,8 @@ pub fn samples(
     let brightness = f64::from(scene.emitted(center).max_element());
     for piece in split(whole, view, domain, brightness) {
         let point = SurfacePoint { triangle, barycentric: piece.barycentric.iter().sum::<DVec2>() / 3.0 };
-        for side in [front, -front] {
+        let sides = if scene.hides_back(triangle) { &[front][..] } else { &[front, -front] };
+        for &side in sides {
             samples.extend(patch(tracer, radiance, view, patterns, point, piece, side));
         }
     }

@@ -20,6 +20,7 @@
 mod accessor;
 mod assembly;
 mod attribute_name;
+mod back_faces;
 mod budget;
 mod container;
 mod data_uri;
@@ -52,8 +53,10 @@ mod surface_color;
 mod surface_point;
 mod texture_lookup;
 mod triangulation;
+mod turned_faces;
 mod view;
 
+pub use back_faces::BackFaces;
 pub use error::{Fault, SceneError};
 pub use inspection::Inspection;
 pub use load::{inspect, load, with_source};

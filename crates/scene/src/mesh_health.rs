@@ -1,6 +1,7 @@
 //! What is odd about the triangles: for the eye of whoever exported them.
 
 use crate::Scene;
+use crate::turned_faces::turned_faces;
 use glam::DVec3;
 use serde::Serialize;
 
@@ -17,6 +18,8 @@ pub struct MeshHealth {
     pub boundary_edges: usize,
     /// Edges of more than two triangles.
     pub non_manifold_edges: usize,
+    /// Triangles that face away from the outside of a closed mesh.
+    pub turned: usize,
     /// Triangles whose part has no texture coordinates.
     pub without_uv: usize,
     /// Summed area.
@@ -45,16 +48,18 @@ impl MeshHealth {
             health.area += area;
             health.degenerate += usize::from(area == 0.0);
             health.without_uv += usize::from(!scene.part_of(index as u32).has_uv[0]);
-            let mut ids = triangle.vertices.map(|v| welded[v as usize]);
+            let ids = triangle.vertices.map(|v| welded[v as usize]);
             for k in 0..3 {
                 let (a, b) = (ids[k], ids[(k + 1) % 3]);
                 if a != b {
                     edges.push((a.min(b), a.max(b)));
                 }
             }
-            ids.sort_unstable();
             corners.push(ids);
         }
+        // A vertex is the lowest at its position.
+        health.turned = turned_faces(&corners, |vertex| scene.positions[vertex as usize]);
+        corners.iter_mut().for_each(|ids| ids.sort_unstable());
         corners.sort_unstable();
         health.duplicates = corners.windows(2).filter(|pair| pair[0] == pair[1]).count();
         edges.sort_unstable();

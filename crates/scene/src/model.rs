@@ -1,5 +1,6 @@
 //! The scene in memory: flat, world space, triangles only.
 
+use crate::BackFaces;
 use glam::{DMat4, DVec3, Mat3, Vec2, Vec3, Vec4};
 use std::ops::Range;
 use std::path::PathBuf;
@@ -42,6 +43,8 @@ pub struct Scene {
     pub camera_is_invented: bool,
     /// Whether the lights were made up because the file has none and needs some.
     pub lights_are_invented: bool,
+    /// Whether faces that are not double sided are seen from behind.
+    pub back_faces: BackFaces,
     /// What was wrong with the file but did no harm, a sentence each.
     pub warnings: Vec<String>,
 }
@@ -232,6 +235,11 @@ impl Scene {
     /// The material of a triangle.
     pub fn material_of(&self, triangle: u32) -> &Material {
         &self.materials[self.part_of(triangle).material as usize]
+    }
+
+    /// Whether a triangle is seen from its front alone.
+    pub fn hides_back(&self, triangle: u32) -> bool {
+        self.back_faces == BackFaces::Hide && !self.material_of(triangle).double_sided
     }
 
     /// The texture coordinates of all vertices in a set ([`TextureRef::uv_set`]); empty if no part has it.

@@ -75,6 +75,16 @@ impl<'a> Looking<'a> {
         }
     }
 
+    /// Whether the viewpoint lies on the side of a triangle from which its corners run counter-clockwise.
+    pub fn sees_front(&self, corners: &[DVec3; 3]) -> bool {
+        let [a, b, c] = *corners;
+        let normal = (b - a).cross(c - a);
+        match self.eye {
+            Eye::At(point) => normal.dot(point - a) > 0.0,
+            Eye::Toward(direction) => normal.dot(direction) > 0.0,
+        }
+    }
+
     /// Those of the places that a triangle may hide, and some that it does not.
     #[inline(always)]
     pub fn may_hide(&self, outline: &Outline) -> PlaceSet {

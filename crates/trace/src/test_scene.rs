@@ -18,6 +18,11 @@ pub const WHITE: Material = Material {
     double_sided: true,
 };
 
+/// The same, seen from its front alone.
+pub fn one_sided() -> Material {
+    Material { double_sided: false, ..WHITE }
+}
+
 /// A mesh: positions and triangles.
 pub type Mesh = (Vec<DVec3>, Vec<[u32; 3]>);
 

@@ -6,7 +6,7 @@ use crate::hierarchy::Hierarchy;
 use crate::local_space::LocalSpace;
 use crate::presence::is_there;
 use crate::sight::{Eye, Looking, Outline, PlaceSet, Places, Square, Viewpoint};
-use crate::watertight::{ShearedRay, has_area, in_plane};
+use crate::watertight::{Crossing, ShearedRay, has_area, in_plane};
 use crate::{Hit, Ray};
 use glam::DVec3;
 use scene::{Scene, SurfacePoint};
@@ -19,7 +19,10 @@ use std::sync::Arc;
 ///   the lower index is hit.
 /// * Triangles without area, or with corners that are not finite, are never hit; rays whose direction is zero
 ///   or not finite hit nothing.
-/// * Both sides of every triangle are met. Points that a material's opacity takes away are not (see
+/// * An eye sees no face from behind unless it is double sided ([`scene::Scene::hides_back`]): its rays pass the backs of
+///   others. Light passes neither side. So [`Self::first_hit`], [`Self::any_hit`], [`Self::hidden`] and
+///   [`Self::hidden_places`] say what is seen, [`Self::occluded`] says what light meets.
+/// * Points that a material's opacity takes away are not met (see
 ///   [`scene::AlphaMode`]): under a mask a point is there where the opacity reaches the cutoff; under
 ///   blending it is there *for a given ray* with the probability of its opacity, decided by a hash of the ray
 ///   and the triangle, so that sums over many rays see the right transmittance and each ray still gives the
@@ -39,6 +42,7 @@ struct LeafTriangle {
     corners: [DVec3; 3],
     index: u32,
     may_be_transparent: bool,
+    hides_back: bool,
 }
 
 /// What a ray met so far.
@@ -69,7 +73,8 @@ impl Tracer {
             .map(|place| {
                 let index = with_area[place as usize];
                 let may_be_transparent = scene.material_of(index).may_be_transparent();
-                LeafTriangle { corners: scene.corners(index), index, may_be_transparent }
+                let hides_back = scene.hides_back(index);
+                LeafTriangle { corners: scene.corners(index), index, may_be_transparent, hides_back }
             })
             .collect();
         let outlines = triangles.iter().map(|triangle| Outline::new(&triangle.corners, &space)).collect();
@@ -88,7 +93,7 @@ impl Tracer {
             + size_of_val(self.outlines.as_slice())
     }
 
-    /// The first surface that the ray meets.
+    /// The first surface that an eye at the ray's origin sees along it.
     pub fn first_hit(&self, ray: &Ray) -> Option<Hit> {
         let local = self.space.ray(ray)?;
         let sheared = ShearedRay::new(ray.origin, ray.direction);
@@ -112,6 +117,9 @@ impl Tracer {
         if !(t > ray.t_min && is_nearer) || ray.skip == Some(triangle.index) {
             return false;
         }
+        if triangle.hides_back && !crossing.from_front {
+            return false;
+        }
         let point = SurfacePoint { triangle: triangle.index, barycentric: crossing.barycentric };
         let is_met = !triangle.may_be_transparent || is_there(&self.scene, point, ray);
         if is_met {
@@ -120,25 +128,50 @@ impl Tracer {
         is_met
     }
 
-    /// Whether anything lies strictly between a surface point and the world position `eye`.
+    /// Whether light finds anything strictly between a surface point and the world position `source`.
     ///
     /// Free of self-intersection without an offset: the point's own triangle never occludes it, and neither
-    /// does any triangle in whose plane the point or `eye` lies to the precision of f64 (some 3e-15 of the
+    /// does any triangle in whose plane the point or `source` lies to the precision of f64 (some 3e-15 of the
     /// coordinates), because a line that starts in a plane does not meet it again. So neighbours that meet at
     /// the point's edge do not occlude it however they are bent, and shells closer together than any fixed
-    /// offset still occlude each other. `eye` may itself be on a surface.
-    pub fn occluded(&self, from: SurfacePoint, eye: DVec3) -> bool {
+    /// offset still occlude each other. `source` may itself be on a surface.
+    pub fn occluded(&self, from: SurfacePoint, source: DVec3) -> bool {
+        self.between(from, source, |_, _| true)
+    }
+
+    /// Whether an eye at this world position does not see a surface point: for what lies between ([`Self::occluded`], but
+    /// for faces that show the eye a back that is not seen), or since it would see the back of the point's own face.
+    pub fn hidden(&self, from: SurfacePoint, eye: DVec3) -> bool {
+        let shows_back =
+            || self.scene.area_normal(from.triangle).dot(eye - from.position(&self.scene)) <= 0.0;
+        self.scene.hides_back(from.triangle) && shows_back()
+            // The ray leads to the eye, which sees the other side of what the ray meets.
+            || self.between(from, eye, |triangle, crossing| !triangle.hides_back || !crossing.from_front)
+    }
+
+    /// Whether anything that `counts` lies strictly between a surface point and a world position.
+    #[inline(always)]
+    fn between(
+        &self,
+        from: SurfacePoint,
+        to: DVec3,
+        counts: impl Fn(&LeafTriangle, &Crossing) -> bool,
+    ) -> bool {
         let origin = from.position(&self.scene);
-        let ray = Ray { origin, direction: eye - origin, t_min: 0.0, t_max: 1.0, skip: Some(from.triangle) };
-        self.any(&ray, |corners| !in_plane(corners, origin) && !in_plane(corners, eye))
+        let ray = Ray { origin, direction: to - origin, t_min: 0.0, t_max: 1.0, skip: Some(from.triangle) };
+        self.any(&ray, |triangle, crossing| {
+            counts(triangle, crossing)
+                && !in_plane(&triangle.corners, origin)
+                && !in_plane(&triangle.corners, to)
+        })
     }
 
-    /// Whether a ray meets any surface.
+    /// Whether an eye at the ray's origin sees any surface along it.
     pub fn any_hit(&self, ray: &Ray) -> bool {
-        self.any(ray, |_| true)
+        self.any(ray, |triangle, crossing| !triangle.hides_back || crossing.from_front)
     }
 
-    /// The `places` of a square that something hides from a viewpoint: of each what [`Self::occluded`] (or, from infinity,
+    /// The `places` of a square that something hides from a viewpoint: of each what [`Self::hidden`] (or, from infinity,
     /// [`Self::any_hit`]) says of the ray to it, to the precision of f32 in u and v, for the cost of a few.
     pub fn hidden_places(&self, from: Viewpoint, square: &Square, places: &Places) -> PlaceSet {
         let (eye, skip) = match from {
@@ -146,7 +179,7 @@ impl Tracer {
             Viewpoint::Infinity(direction) => (Eye::Toward(direction.normalize_or_zero()), None),
         };
         let looking = Looking::new(eye, square, places, &self.space);
-        let (all, mut hidden) = (places.all(), PlaceSet::default());
+        let (all, mut hidden) = (places.all(), self.behind_own_face(from, square, places));
         self.hierarchy.walk_within(&looking.shaft(&self.space), f32::INFINITY, |leaf| {
             for place in leaf {
                 let near = looking.may_hide(&self.outlines[place]) - hidden;
@@ -154,13 +187,31 @@ impl Tracer {
                 if near.is_empty() || skip == Some(triangle.index) {
                     continue;
                 }
-                let new = looking.newly_hidden(&triangle.corners, near);
+                let mut new = looking.newly_hidden(&triangle.corners, near);
+                // The places lie on its other side than the viewpoint.
+                if triangle.hides_back && !new.is_empty() && looking.sees_front(&triangle.corners) {
+                    new = PlaceSet::default();
+                }
                 let is_cut = triangle.may_be_transparent && !new.is_empty();
                 hidden |= if is_cut { self.opaque_of(triangle, &looking, places, new) } else { new };
             }
             if hidden == all { f32::NEG_INFINITY } else { f32::INFINITY }
         });
         hidden
+    }
+
+    /// Those of the places of a square that the back of the viewpoint's own face would be seen from.
+    fn behind_own_face(&self, from: Viewpoint, square: &Square, places: &Places) -> PlaceSet {
+        let Viewpoint::Surface(point) = from else { return PlaceSet::default() };
+        if !self.scene.hides_back(point.triangle) {
+            return PlaceSet::default();
+        }
+        let (normal, position) = (self.scene.area_normal(point.triangle), point.position(&self.scene));
+        let is_behind = |place: DVec3| normal.dot(place - position) <= 0.0;
+        if !square.corners().into_iter().any(is_behind) {
+            return PlaceSet::default();
+        }
+        places.all().iter().filter(|&place| is_behind(square.at(places.at(place)))).collect()
     }
 
     /// Those of some places whose rays a triangle is there for.
@@ -185,7 +236,7 @@ impl Tracer {
 
     /// Whether a ray meets any triangle that `counts`.
     #[inline(always)]
-    fn any(&self, ray: &Ray, counts: impl Fn(&[DVec3; 3]) -> bool) -> bool {
+    fn any(&self, ray: &Ray, counts: impl Fn(&LeafTriangle, &Crossing) -> bool) -> bool {
         let Some(local) = self.space.ray(ray) else { return false };
         let sheared = ShearedRay::new(ray.origin, ray.direction);
         let far = local.local_t(ray.t_max);
@@ -194,7 +245,7 @@ impl Tracer {
             for triangle in &self.triangles[leaf] {
                 let Some(crossing) = sheared.cross(&triangle.corners) else { continue };
                 let within = crossing.t > ray.t_min && crossing.t < ray.t_max;
-                if !within || ray.skip == Some(triangle.index) || !counts(&triangle.corners) {
+                if !within || ray.skip == Some(triangle.index) || !counts(triangle, &crossing) {
                     continue;
                 }
                 let point = SurfacePoint { triangle: triangle.index, barycentric: crossing.barycentric };

@@ -25,6 +25,8 @@ pub(crate) struct ShearedRay {
 pub(crate) struct Crossing {
     pub t: f64,
     pub barycentric: DVec2,
+    /// Whether the ray comes from the triangle's front: from where its corners run counter-clockwise.
+    pub from_front: bool,
 }
 
 impl ShearedRay {
@@ -65,7 +67,9 @@ impl ShearedRay {
         }
         let t = (u * (sz * a[z]) + v * (sz * b[z]) + w * (sz * c[z])) / determinant;
         let b1 = v / determinant;
-        Some(Crossing { t, barycentric: DVec2::new(b1, (w / determinant).min(1.0 - b1)) })
+        // The normal's component along the ray is −determinant·dz times what is positive.
+        let from_front = determinant * sz > 0.0;
+        Some(Crossing { t, barycentric: DVec2::new(b1, (w / determinant).min(1.0 - b1)), from_front })
     }
 }
 

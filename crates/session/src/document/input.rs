@@ -9,7 +9,7 @@ use focus::{Focus, FocusMap, FocusRecipe, RecipeEntry};
 use lens::{Camera, Exposure, FocusOffset};
 use project::{FocusFile, ProjectError, ProjectFile, SceneState, read_camera, read_focus};
 use salf::{Salf, SalfFile};
-use scene::Scene;
+use scene::{BackFaces, Scene};
 use std::fs::File;
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
@@ -126,7 +126,18 @@ impl Input {
         let scene = load_scene(&project.scene, &*steps.begin("reading"))?;
         warnings.extend(named(&project.scene, &scene.warnings));
         let camera = project.cameras[project.active_camera].camera.clone();
-        Ok(Self { path: path.into(), scene, camera, project: Some(project), salf: None, warnings })
+        let back_faces = project.back_faces;
+        let mut input =
+            Self { path: path.into(), scene, camera, project: Some(project), salf: None, warnings };
+        input.set_back_faces(back_faces);
+        Ok(input)
+    }
+
+    /// Has faces seen from behind, or not, whatever the project says.
+    pub fn set_back_faces(&mut self, back_faces: BackFaces) {
+        if back_faces != self.scene.back_faces {
+            Arc::make_mut(&mut self.scene).back_faces = back_faces;
+        }
     }
 
     fn open_light_field(path: &Path, steps: &dyn Steps) -> Result<Self, SessionError> {

@@ -25,7 +25,10 @@ pub(crate) fn light_hash(scene: &Scene) -> [u8; 32] {
         }
     }
     // Written out, numbers are as exact as they are.
-    arrays(format!("{:?} {:?} {:?}", scene.parts, scene.materials, scene.lights).as_bytes());
+    arrays(
+        format!("{:?} {:?} {:?} {:?}", scene.parts, scene.materials, scene.lights, scene.back_faces)
+            .as_bytes(),
+    );
     hash.finalize().into()
 }
 

@@ -203,6 +203,7 @@ impl Document {
         let mut project = self.template.clone();
         project.cameras[project.active_camera].camera = self.camera.clone();
         project.exposure = self.exposure;
+        project.back_faces = self.stage.scene.back_faces;
         project.brush = self.brush.clone();
         project.view = self.view.clone();
         project.atlas = Some(self.stage.atlas.to_bytes());

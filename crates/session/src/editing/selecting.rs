@@ -28,7 +28,7 @@ pub(crate) fn selected(stage: &Stage, shape: &SelectionShape, before: Option<&Se
             let places = stage.texels.texels.par_iter().filter_map(|texel| {
                 let position = texel.centroid.position(&stage.scene);
                 let is_inside = contains(points, view.position(position)?)
-                    && (*through || !stage.tracer.occluded(texel.centroid, view.eye()));
+                    && (*through || !stage.tracer.hidden(texel.centroid, view.eye()));
                 is_inside.then_some(texel.y as usize * width + texel.x as usize)
             });
             for place in places.collect::<Vec<_>>() {

@@ -95,7 +95,7 @@ impl ApertureImage {
             let [row, column] = [index / side, index % side].map(|k| (k as f64 + 0.5) / side as f64);
             let u = DVec2::new(2.0 * column - 1.0, 1.0 - 2.0 * row);
             let eye = camera.world_from_camera((u * radius).extend(0.0));
-            let is_seen = !tracer.occluded(hit.point, eye);
+            let is_seen = !tracer.hidden(hit.point, eye);
             ApertureCell {
                 transmission: camera.aperture.transmission(u) as f32,
                 is_seen,

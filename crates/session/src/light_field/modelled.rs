@@ -73,7 +73,7 @@ fn seen(tracer: &Tracer, camera: &Camera, margin_px: f64, texel: &AtlasTexel) ->
     let sees = |look: usize| {
         let at = |k: usize| (2 * k + 1) as f64 / LOOKS_A_SIDE as f64 - 1.0;
         let u = DVec2::new(at(look % LOOKS_A_SIDE), at(look / LOOKS_A_SIDE)) * camera.aperture_radius;
-        !tracer.occluded(texel.centroid, camera.world_from_camera(u.extend(0.0)))
+        !tracer.hidden(texel.centroid, camera.world_from_camera(u.extend(0.0)))
     };
     let looks = LOOKS_A_SIDE * LOOKS_A_SIDE;
     match (0..looks).filter(|&look| sees(look)).count() {

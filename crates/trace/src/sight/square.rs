@@ -19,7 +19,7 @@ impl Square {
         self.center + place.x * self.right + place.y * self.up
     }
 
-    pub(super) fn corners(&self) -> [DVec3; 4] {
+    pub(crate) fn corners(&self) -> [DVec3; 4] {
         [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)].map(|(u, v)| self.at(DVec2::new(u, v)))
     }
 

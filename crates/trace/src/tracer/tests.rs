@@ -26,6 +26,8 @@ fn brute_force(scene: &Scene, ray: &Ray) -> Option<Hit> {
     let crossings = (0..scene.triangles.len() as u32).filter_map(|triangle| {
         let crossing = sheared.cross(&scene.corners(triangle))?;
         let within = crossing.t > ray.t_min && crossing.t < ray.t_max && ray.skip != Some(triangle);
+        let shows_back = scene.area_normal(triangle).dot(ray.direction) > 0.0;
+        let within = within && !(scene.hides_back(triangle) && shows_back);
         let point = SurfacePoint { triangle, barycentric: crossing.barycentric };
         within.then_some(Hit { point, t: crossing.t })
     });
@@ -39,7 +41,8 @@ fn agrees_with_testing_every_triangle() {
         for offset in OFFSETS {
             let (mut positions, triangles) = random_triangles(&mut random, count, size);
             positions.iter_mut().for_each(|p| *p += offset);
-            let scene = scene_of(&[((positions, triangles), WHITE)]);
+            let material = if count % 2 == 0 { one_sided() } else { WHITE };
+            let scene = scene_of(&[((positions, triangles), material)]);
             let tracer = Tracer::new(scene.clone());
             let mut hits = 0;
             for k in 0..3000 {
@@ -390,7 +393,8 @@ fn sight_is_what_single_rays_see() {
     for (round, offset) in OFFSETS.into_iter().cycle().take(300).enumerate() {
         let mut mesh = random_triangles(&mut random, 60, if round % 2 == 0 { 0.2 } else { 1.0 });
         mesh.0.iter_mut().for_each(|p| *p += offset);
-        let tracer = Tracer::new(scene_of(&[(mesh, WHITE)]));
+        let material = if round % 3 == 0 { one_sided() } else { WHITE };
+        let tracer = Tracer::new(scene_of(&[(mesh, material)]));
         let right = random.direction();
         let up = right.cross(random.direction()).normalize();
         let square = Square { center: offset + 1.5 * random.in_cube(), right: 0.3 * right, up: 0.3 * up };
@@ -405,7 +409,7 @@ fn sight_is_what_single_rays_see() {
                 let is_hidden = if infinite {
                     tracer.any_hit(&ray(square.at(place), direction))
                 } else {
-                    tracer.occluded(point, square.at(place))
+                    tracer.hidden(point, square.at(place))
                 };
                 asked += 1;
                 hidden += u32::from(is_hidden);
@@ -448,4 +452,36 @@ fn sight_goes_through_what_is_cut_away() {
         let found = tracer.hidden_places(toward, &square, &place);
         assert_eq!(found.iter().count(), hidden);
     }
+}
+
+#[test]
+fn an_eye_passes_backs_and_light_does_not() {
+    // A card that faces +z, over a floor that faces the same way.
+    let card = rectangle(DVec3::new(-1.0, -1.0, 0.0), 2.0 * DVec3::X, 2.0 * DVec3::Y);
+    let floor = rectangle(DVec3::new(-2.0, -2.0, -1.0), 4.0 * DVec3::X, 4.0 * DVec3::Y);
+    let scene = scene_of(&[(card, one_sided()), (floor, one_sided())]);
+    let shown = Arc::new(Scene { back_faces: scene::BackFaces::Show, ..(*scene).clone() });
+    let (tracer, showing) = (Tracer::new(scene), Tracer::new(shown));
+    let (above, below) = (DVec3::new(0.3, 0.2, 2.0), DVec3::new(0.3, 0.2, -3.0));
+    let first = |tracer: &Tracer, from: DVec3| {
+        tracer
+            .first_hit(&ray(from, if from.z > 0.0 { -DVec3::Z } else { DVec3::Z }))
+            .map(|hit| hit.point.triangle / 2)
+    };
+    assert_eq!((first(&tracer, above), first(&tracer, below)), (Some(0), None));
+    assert_eq!((first(&showing, above), first(&showing, below)), (Some(0), Some(1)));
+    let on = |triangle: u32| SurfacePoint { triangle, barycentric: DVec2::splat(0.3) };
+    let (on_card, on_floor) = (on(0), on(2));
+    assert!(!tracer.hidden(on_card, above) && !showing.hidden(on_card, above));
+    assert!(tracer.hidden(on_card, below), "its own back");
+    assert!(tracer.hidden(on_floor, above) && tracer.occluded(on_floor, above), "behind the card");
+    assert!(showing.hidden(on_card, below), "the floor's back is in the way");
+    // From beneath, light that comes up to the card is stopped by the floor; an eye would see through it.
+    assert!(tracer.occluded(on_card, below));
+    // Turned round, the card no longer hides the floor, but still shades it.
+    let turned = rectangle(DVec3::new(-1.0, -1.0, 0.0), 2.0 * DVec3::Y, 2.0 * DVec3::X);
+    let floor = rectangle(DVec3::new(-2.0, -2.0, -1.0), 4.0 * DVec3::X, 4.0 * DVec3::Y);
+    let tracer = Tracer::new(scene_of(&[(turned, one_sided()), (floor, one_sided())]));
+    assert!(!tracer.hidden(on_floor, above) && tracer.occluded(on_floor, above));
+    assert_eq!(first(&tracer, above), Some(1));
 }

@@ -124,7 +124,7 @@ impl BrightSurfaces {
             return;
         }
         let eye = camera.world_from_camera(u.extend(0.0));
-        if view.tracer.occluded(point, eye) {
+        if view.tracer.hidden(point, eye) {
             return;
         }
         let normal = camera.camera_direction(scene.area_normal(point.triangle));
