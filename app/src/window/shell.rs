@@ -222,6 +222,11 @@ impl Shell {
         for event in self.session.poll() {
             match event {
                 Event::Opened => self.document_opened(context),
+                Event::SurfaceChanged => {
+                    if let Some(document) = self.session.document() {
+                        self.paint.upload_surface(document, context);
+                    }
+                }
                 Event::MapChanged(rectangles) => {
                     if let Some(document) = self.session.document() {
                         self.paint.map_changed(document, rectangles);

@@ -239,7 +239,7 @@ impl Scene {
 
     /// Whether a triangle is seen from its front alone.
     pub fn hides_back(&self, triangle: u32) -> bool {
-        self.back_faces == BackFaces::Hide && !self.material_of(triangle).double_sided
+        self.back_faces.hides_back(self.material_of(triangle))
     }
 
     /// The texture coordinates of all vertices in a set ([`TextureRef::uv_set`]); empty if no part has it.

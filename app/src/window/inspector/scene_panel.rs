@@ -3,7 +3,7 @@
 use crate::window::Action;
 use egui::{ScrollArea, Ui};
 use glam::DVec2;
-use scene::{Scene, SurfacePoint};
+use scene::{BackFaces, Scene, SurfacePoint};
 use session::{Command, Document, FillRegion, SurfaceHit};
 
 /// What the list shows.
@@ -26,6 +26,13 @@ impl ScenePanel {
             document.map.width(),
             document.map.height()
         ));
+        let mut shows = scene.back_faces == BackFaces::Show;
+        let hint = "Show faces that are not double sided from behind, too: for files whose faces are turned. Otherwise a wall seen \
+                    from outside opens the room.";
+        if ui.checkbox(&mut shows, "Show back faces").on_hover_text(hint).changed() {
+            let back_faces = if shows { BackFaces::Show } else { BackFaces::Hide };
+            actions.push(Command::SetBackFaces(back_faces).into());
+        }
         for warning in &document.warnings {
             ui.colored_label(ui.visuals().warn_fg_color, warning);
         }

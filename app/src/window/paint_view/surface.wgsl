@@ -18,7 +18,7 @@ struct Frame {
 struct Material {
     base_color: vec4<f32>,
     emissive: vec4<f32>,
-    // 1 for unlit; opacity below which nothing is there.
+    // 1 for unlit; opacity below which nothing is there; 1 where it is seen from its front alone.
     kind: vec4<f32>,
 }
 
@@ -124,12 +124,12 @@ struct Seen {
 
 // First pass: what is seen of the surface.
 @fragment
-fn seen_fragment(in: Fragment) -> Seen {
+fn seen_fragment(in: Fragment, @builtin(front_facing) is_front: bool) -> Seen {
     // Everything with derivatives comes before the opacity test.
     let base = material.base_color * in.color * textureSample(base_texture, base_sampler, in.base_uv);
     let emitted = material.emissive.rgb * textureSample(emissive_texture, emissive_sampler, in.emissive_uv).rgb;
     let facet = cross(dpdx(in.position), dpdy(in.position));
-    if base.a < material.kind.y {
+    if base.a < material.kind.y || (material.kind.z > 0.5 && !is_front) {
         discard;
     }
 

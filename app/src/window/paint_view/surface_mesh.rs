@@ -211,7 +211,12 @@ impl<'a> MaterialUpload<'a> {
         let uniform = MaterialUniform {
             base_color: material.base_color.to_array(),
             emissive: material.emissive.extend(0.0).to_array(),
-            kind: [if material.unlit { 1.0 } else { 0.0 }, cutoff, 0.0, 0.0],
+            kind: [
+                f32::from(material.unlit),
+                cutoff,
+                f32::from(self.scene.back_faces.hides_back(material)),
+                0.0,
+            ],
         };
         let uniform = self.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
             label: Some("surface material"),

@@ -105,6 +105,13 @@ impl PaintView {
             Ok(focus) => self.focus = Some(focus),
             Err(error) => self.problem = Some(error.to_string()),
         }
+        self.upload_surface(document, context);
+    }
+
+    /// Copies the surface to the graphics card in the background; what was there is drawn until then.
+    pub fn upload_surface(&mut self, document: &Document, context: &egui::Context) {
+        let Some(renderer) = &self.renderer else { return };
+        let (device, queue) = renderer.device();
         let (sender, receiver) = mpsc::channel();
         self.upload = Some(receiver);
         let (device, queue, context) = (device.clone(), queue.clone(), context.clone());

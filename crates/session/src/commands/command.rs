@@ -9,6 +9,7 @@ use focus::{Brush, Combine, Gradient, LayerEdit};
 use glam::DVec2;
 use lens::{Exposure, FocusOffset};
 use project::{RecordedStep, SelectionShape};
+use scene::BackFaces;
 use splat::Tolerance;
 use std::path::PathBuf;
 
@@ -53,6 +54,8 @@ pub enum Command {
     SetView(serde_json::Value),
     /// How the sum becomes the picture.
     SetExposure(Exposure),
+    /// Whether faces that are not double sided are seen from behind. Saved with the document, no step of undo.
+    SetBackFaces(BackFaces),
     /// How the screen shows any picture. No part of the document.
     SetDisplay(Display),
     /// The longest side that the preview is drawn at, px; the picture's own size if that is smaller.

@@ -10,6 +10,8 @@ use std::path::PathBuf;
 pub enum Event {
     /// A document was opened; everything drawn of the old one is stale.
     Opened,
+    /// Other faces are seen than before; what is drawn of the scene's surface is stale.
+    SurfaceChanged,
     /// The camera changed (also by undo).
     CameraChanged,
     /// Texels of the focus map changed: all lie in these rectangles, columns and rows.

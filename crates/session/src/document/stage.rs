@@ -7,7 +7,7 @@ use atlas::{Atlas, AtlasError, TexelMap};
 use focus::Canvas;
 use glam::{DVec2, DVec3};
 use progress::Progress;
-use scene::{LoadOptions, Scene, SceneError};
+use scene::{BackFaces, LoadOptions, Scene, SceneError};
 use std::path::Path;
 use std::sync::{Arc, OnceLock};
 use trace::Tracer;
@@ -67,6 +67,20 @@ impl Stage {
     /// A checksum of everything in the scene that gives, blocks or reflects light; the first call takes a while.
     pub(crate) fn light_hash(&self) -> &[u8; 32] {
         self.light_hash.get_or_init(|| light_hash(&self.scene))
+    }
+
+    /// The same with faces seen from behind, or not.
+    pub fn with_back_faces(
+        &self,
+        back_faces: BackFaces,
+        progress: &dyn Progress,
+    ) -> Result<Self, SessionError> {
+        progress.check()?;
+        let scene = Arc::new(Scene { back_faces, ..(*self.scene).clone() });
+        let tracer = Arc::new(Tracer::new(scene.clone()));
+        progress.check()?;
+        let (atlas, texels, canvas) = (self.atlas.clone(), self.texels.clone(), self.canvas.clone());
+        Ok(Self { scene, bounds: self.bounds, atlas, tracer, texels, canvas, light_hash: OnceLock::new() })
     }
 
     /// Prepares a scene whose atlas is known.

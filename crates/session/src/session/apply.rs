@@ -30,6 +30,7 @@ impl Session {
                 self.show_tone();
                 Ok(())
             }
+            Command::SetBackFaces(back_faces) => self.set_back_faces(back_faces),
             Command::SetDisplay(display) => {
                 self.display = display;
                 self.show_tone();

@@ -76,6 +76,11 @@ impl Session {
                 self.document = Some(*document);
                 self.show_tone();
             }
+            Outcome::Staged(stage, generation) => {
+                if let Err(error) = self.take_stage(*stage, generation) {
+                    self.events.push(Event::Failed(error.to_string()));
+                }
+            }
             Outcome::Saved { path, revision, generation } => {
                 if generation == self.generation {
                     self.forget_recovery();

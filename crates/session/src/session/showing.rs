@@ -1,13 +1,19 @@
 //! What changes in the document, brought to the views: camera, paint, exposure.
 
+use super::outcome::Outcome;
 use super::state::Session;
 use crate::commands::Event;
-use crate::document::CameraEdit;
+use crate::document::{CameraEdit, Stage};
 use crate::error::SessionError;
 use crate::light_field::{Changes, serves};
 use focus::{Changed, union};
 use lens::Camera;
+use scene::BackFaces;
 use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// What the job is called that prepares the stage for other faces.
+const FACING: &str = "looking at other faces";
 
 impl Session {
     pub(super) fn edit_camera(&mut self, edit: CameraEdit) -> Result<(), SessionError> {
@@ -92,5 +98,36 @@ impl Session {
         let scale = (self.options.preview_size as f64 / longest as f64).min(1.0);
         let scaled = |side: u32| ((side as f64 * scale).round() as u32).max(1);
         Camera { width: scaled(camera.width), height: scaled(camera.height), ..camera.clone() }
+    }
+
+    /// Has faces seen from behind, or not: prepares the stage anew in the background.
+    pub(super) fn set_back_faces(&mut self, back_faces: BackFaces) -> Result<(), SessionError> {
+        self.jobs.iter().filter(|job| job.label == FACING).for_each(|job| job.progress.cancel());
+        let generation = self.generation;
+        let stage = self.opened()?.stage.clone();
+        if stage.scene.back_faces != back_faces {
+            self.start(FACING.into(), move |progress| {
+                Ok(Outcome::Staged(Box::new(stage.with_back_faces(back_faces, progress)?), generation))
+            })?;
+        }
+        Ok(())
+    }
+
+    /// Takes up a stage with other faces seen.
+    pub(super) fn take_stage(&mut self, stage: Stage, generation: u64) -> Result<(), SessionError> {
+        if generation != self.generation {
+            return Ok(());
+        }
+        self.commit_stroke()?;
+        let document = self.opened()?;
+        document.stage = Arc::new(stage);
+        document.revision += 1;
+        let (stage, map, shot) = (document.stage.clone(), document.map.clone(), document.camera.clone());
+        let camera = self.scaled_camera(&shot);
+        (self.field, self.preview_camera) = (None, Some(camera.clone()));
+        self.preview_thread.set_stage((stage, generation), (map, self.map_serial), camera);
+        self.end_verification();
+        self.events.push(Event::SurfaceChanged);
+        Ok(())
     }
 }
