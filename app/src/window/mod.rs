@@ -32,6 +32,7 @@ mod help;
 mod inspector;
 mod keys;
 mod layout;
+mod looking_round;
 mod menu_bar;
 mod navigation;
 mod options;

@@ -19,6 +19,7 @@ use super::file_dialog::{FileDialog, Purpose};
 use super::help::Help;
 use super::inspector::Inspector;
 use super::layout::{Layout, Pane};
+use super::looking_round::LookingRound;
 use super::menu_bar::{MenuState, is_possible, menu_bar};
 use super::options::WindowOptions;
 use super::paint_view::PaintView;
@@ -57,6 +58,7 @@ pub struct Shell {
     palette: Palette,
     help: Help,
     gesture: BrushGesture,
+    looking_round: LookingRound,
     dialog: FileDialog,
     question: UnsavedQuestion,
     /// What waits for a save to end well.
@@ -115,6 +117,7 @@ impl Shell {
             palette: Palette::default(),
             help: Help::default(),
             gesture: BrushGesture::default(),
+            looking_round: LookingRound::default(),
             dialog: FileDialog::new(options.system_dialogs),
             question: UnsavedQuestion::default(),
             after_save: None,
@@ -198,7 +201,13 @@ impl Shell {
 
     /// Sends a command to the session; a failure becomes a message.
     pub fn apply(&mut self, command: Command) {
-        match self.session.apply(command) {
+        let applied = self.session.apply(command);
+        self.report(applied);
+    }
+
+    /// Says what failed.
+    fn report(&mut self, done: Result<(), SessionError>) {
+        match done {
             Ok(()) | Err(SessionError::Cancelled) => {}
             Err(error) => self.toasts.error(error.to_string()),
         }
@@ -266,8 +275,16 @@ impl Shell {
         let escape = context.input(|input| input.key_pressed(egui::Key::Escape));
         if escape && self.session.is_painting() {
             actions.push(Command::AbortStroke.into());
+        } else if escape && self.session.looked_through().is_some() {
+            self.look_through_all();
         }
         actions.extend(keys::pressed(context).into_iter().map(Action::Run));
+    }
+
+    /// The picture shows all of the aperture again.
+    fn look_through_all(&mut self) {
+        let ended = self.looking_round.stop(&mut self.session);
+        self.report(ended);
     }
 
     /// The pointer and the keys set a number of the brush.
@@ -344,6 +361,8 @@ impl eframe::App for Shell {
         self.show_display();
         self.take_events(context);
         self.play(context);
+        let gone_on = self.looking_round.go_on(&mut self.session, context);
+        self.report(gone_on);
         self.guard_close(context);
         self.update_title(context);
     }

@@ -62,6 +62,11 @@ pub fn status_line(ui: &mut Ui, session: &Session, notes: StatusNotes<'_>, actio
             }
             ui.separator();
         }
+        if session.looked_through().is_some() {
+            ui.label("through one point of the aperture")
+                .on_hover_text("The picture shows the scene as it looks from there. Esc shows it through all of the aperture.");
+            ui.separator();
+        }
         if notes.drawing {
             ui.label("drawing…").on_hover_text("The picture is being summed anew.");
             ui.separator();

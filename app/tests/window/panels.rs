@@ -248,3 +248,39 @@ fn a_recording_is_played_in_the_window_and_timed() {
     assert!(told["error_against_exact"]["psnr"].as_f64() > Some(35.0), "{told}");
     assert!(person.complaints().is_empty(), "{:?}", person.complaints());
 }
+
+#[test]
+fn a_drag_over_the_aperture_looks_through_it() {
+    let (mut person, _folder) = opened();
+    let before = person.picture().radiance.clone();
+    person.presses(Modifiers::NONE, Key::F8);
+    person.window.run_steps(3);
+    let field = person.window.get_by_label("from behind the camera").rect();
+    let middle = field.center() - egui::vec2(0.0, 50.0);
+    let beside = middle + egui::vec2(20.0, 0.0);
+    person.drags(&[middle, beside]);
+    person.waits();
+    let point = person.shell().session().looked_through().expect("the drag chose a point");
+    assert!(point.x > 0.1 && point.y.abs() < 0.9, "{point}");
+    assert!(person.picture().radiance != before, "the card is out of focus: it moved");
+    assert!(person.window.query_by_label_contains("through one point of the aperture").is_some());
+    person.lets_go(beside);
+    person.waits();
+    assert_eq!(person.shell().session().looked_through(), None);
+    assert_eq!(person.picture().radiance, before);
+
+    // It runs round until Esc.
+    person.presses(Modifiers::NONE, Key::J);
+    let mut points = Vec::new();
+    for _ in 0..20 {
+        person.window.step();
+        points.extend(person.shell().session().looked_through());
+    }
+    assert!(points.iter().any(|point| point.distance(points[0]) > 0.05), "it runs: {points:?}");
+    assert!(points.iter().all(|point| (point.length() - 15.0 / 16.0).abs() < 0.02), "on the rim");
+    person.presses(Modifiers::NONE, Key::Escape);
+    person.waits();
+    assert_eq!(person.shell().session().looked_through(), None);
+    assert_eq!(person.picture().radiance, before);
+    assert!(person.complaints().is_empty(), "{:?}", person.complaints());
+}

@@ -19,6 +19,7 @@ mod error;
 mod focus_offset;
 mod optics;
 mod picture;
+mod sub_aperture;
 
 pub use aperture::{Aperture, ApertureMask, ApertureRow, ApertureRows, ApertureSampler, ApertureShape, Run};
 pub use camera::Camera;
@@ -26,3 +27,4 @@ pub use error::CameraError;
 pub use focus_offset::FocusOffset;
 pub use optics::Optics;
 pub use picture::{Exposure, Picture};
+pub use sub_aperture::SUB_APERTURE_RADIUS;

@@ -1,11 +1,16 @@
 //! The aperture as one point of the scene sees it: what it sends where, what stands between, and how that lands in the
 //! picture.
 
+use super::aperture_pad::{TIP, aperture_pad};
 use crate::window::controls::{self, row, rows};
 use crate::window::{Action, keys};
-use egui::{Color32, Mesh, Rect, Shape, Stroke, Ui, pos2, vec2};
-use glam::DVec3;
+use egui::{Color32, Mesh, Rect, Response, Sense, Shape, Stroke, Ui, pos2, vec2};
+use glam::{DVec2, DVec3};
+use lens::Aperture;
 use session::{ApertureImage, CommandId, KeptVisibility, Session, SurfaceHit};
+
+/// The grey of a closed aperture.
+const CLOSED: u8 = 16;
 
 /// The view's state between frames.
 #[derive(Default)]
@@ -32,95 +37,132 @@ impl ApertureView {
         self.image.as_ref()
     }
 
-    /// Draws the aperture and what is known of the point.
+    /// Draws the aperture, to look through any point of it, and what is known of the chosen point of the scene.
     pub fn ui(&mut self, ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
         let Some(document) = session.document() else { return };
-        let wants = CommandId::Inspect;
-        let Some(hit) = self.point else {
-            ui.weak("Choose a point of the scene: this shows what of the aperture it sees, and what it sends there.");
-            if ui.button("Choose a point").on_hover_text(keys::tip(ui.ctx(), wants)).clicked() {
-                actions.push(wants.into());
-            }
+        if document.camera.aperture_radius <= 0.0 {
+            ui.weak("A pinhole: there is no aperture to see.");
             return;
-        };
-        let focus = session.focus_at(&hit).unwrap_or(lens::FocusOffset::STANDARD);
-        let made_for = (hit.position, document.camera.clone(), focus, session.light_fields());
-        if self.made_for.as_ref() != Some(&made_for) {
-            self.image = session.aperture_image(&hit);
-            self.made_for = Some(made_for);
         }
-        let Some(image) = &self.image else {
-            ui.weak("A pinhole, or a point behind the camera: there is no aperture to see.");
-            return;
-        };
+        if let Some(hit) = self.point {
+            let focus = session.focus_at(&hit).unwrap_or(lens::FocusOffset::STANDARD);
+            let made_for = (hit.position, document.camera.clone(), focus, session.light_fields());
+            if self.made_for.as_ref() != Some(&made_for) {
+                self.image = session.aperture_image(&hit);
+                self.made_for = Some(made_for);
+            }
+        }
         ui.horizontal_top(|ui| {
-            let tip = "The aperture from behind the camera, as this point sees it: hatched where something stands \
-                       between, dark where the aperture's shape is closed. Its brightest light is shown as white.";
-            captioned(ui, "from behind the camera", tip, |ui, rect| paint(ui, rect, image, 1.0));
-            let tip = "The same as it lands in the picture: turned by half a turn for near blur.";
-            let sign = if image.circle_px < 0.0 { -1.0 } else { 1.0 };
-            captioned(ui, "as it lands", tip, |ui, rect| paint(ui, rect, image, sign));
-            if let Some(kept) = &image.kept {
-                let tip = "What the light field keeps of it, as one colour: the cells that the nearest sample sees. The \
-                           picture is made of these.";
-                captioned(ui, "as it is kept", tip, |ui, rect| paint_kept(ui, rect, kept));
-            }
-            rows(ui, "aperture", |ui| {
-                let mut line = |label: &str, tip: &str, value: String| {
-                    row(ui, label, tip, |ui| ui.label(value));
-                };
-                let seen = format!("{:.0} %", image.visible_share() * 100.0);
-                line("Sees", "How much of the open aperture the point sees, by rays.", seen);
-                let kept = image.kept.as_ref().map_or("–".into(), |kept| {
-                    let cells = if kept.side == 1 { "all".into() } else { format!("{0} × {0} cells", kept.side) };
-                    format!("{:.0} % ({cells})", kept.visible_share() * 100.0)
+            let response =
+                captioned(ui, "from behind the camera", TIP, Sense::drag(), |ui, rect| match &self.image {
+                    Some(image) => paint_seen(ui, rect, image, 1.0),
+                    None => paint_open(ui, rect, &document.camera.aperture),
                 });
-                line("Light field", "How much of it the light field keeps as seen, and how finely.", kept);
-                line("Depth", "Axial depth in the shot camera.", controls::length(image.depth));
-                let circle = controls::circle(image.circle_px);
-                line("Lands as", "Its circle of confusion on the full-size picture.", circle);
-                let focus = format!("t {:.4}, anchor {:.2}", image.focus.t, image.focus.anchor);
-                line("Painted", "The focus of the point.", focus);
-            });
-            if ui.button("Another point").on_hover_text(keys::tip(ui.ctx(), wants)).clicked() {
-                actions.push(wants.into());
+            aperture_pad(ui, &response, session, actions);
+            match &self.image {
+                Some(image) => seen(ui, image),
+                None if self.point.is_some() => {
+                    ui.weak("The point stands behind the camera: it sees nothing of the aperture.");
+                }
+                None => {
+                    ui.weak("Choose a point of the scene to see what of the aperture it sees.");
+                }
             }
+            ui.vertical(|ui| {
+                let choose = if self.point.is_some() { "Another point" } else { "Choose a point" };
+                for (id, label) in [(CommandId::Inspect, choose), (CommandId::LookRound, "Look round")] {
+                    if ui.button(label).on_hover_text(keys::tip(ui.ctx(), id)).clicked() {
+                        actions.push(id.into());
+                    }
+                }
+            });
         });
     }
 }
 
-/// A square picture as high as there is room for, and beneath it what it is.
-fn captioned(ui: &mut Ui, caption: &str, tip: &str, paint: impl FnOnce(&Ui, Rect)) {
-    ui.vertical(|ui| {
-        let line = ui.text_style_height(&egui::TextStyle::Body) + ui.spacing().item_spacing.y;
-        let side = (ui.available_height() - line).clamp(60.0, 320.0);
-        ui.set_width(side);
-        let (rect, response) = ui.allocate_exact_size(vec2(side, side), egui::Sense::hover());
-        paint(ui, rect);
-        response.on_hover_text(tip);
-        ui.vertical_centered(|ui| ui.add(egui::Label::new(egui::RichText::new(caption).weak()).truncate()));
+/// What a point sees beyond the first picture: as it lands, as it is kept, in numbers.
+fn seen(ui: &mut Ui, image: &ApertureImage) {
+    let tip = "The aperture as the point sees it, as it lands in the picture: turned by half a turn for near blur. Hatched \
+               where something stands between, dark where the aperture's shape is closed; its brightest light is shown \
+               as white.";
+    let sign = if image.circle_px < 0.0 { -1.0 } else { 1.0 };
+    captioned(ui, "as it lands", tip, Sense::hover(), |ui, rect| paint_seen(ui, rect, image, sign));
+    if let Some(kept) = &image.kept {
+        let tip = "What the light field keeps of it, as one colour: the cells that the nearest sample sees. The picture is \
+                   made of these.";
+        captioned(ui, "as it is kept", tip, Sense::hover(), |ui, rect| paint_kept(ui, rect, kept));
+    }
+    rows(ui, "aperture", |ui| {
+        let mut line = |label: &str, tip: &str, value: String| {
+            row(ui, label, tip, |ui| ui.label(value));
+        };
+        let seen = format!("{:.0} %", image.visible_share() * 100.0);
+        line("Sees", "How much of the open aperture the point sees, by rays.", seen);
+        let kept = image.kept.as_ref().map_or("–".into(), |kept| {
+            let cells = if kept.side == 1 { "all".into() } else { format!("{0} × {0} cells", kept.side) };
+            format!("{:.0} % ({cells})", kept.visible_share() * 100.0)
+        });
+        line("Light field", "How much of it the light field keeps as seen, and how finely.", kept);
+        line("Depth", "Axial depth in the shot camera.", controls::length(image.depth));
+        let circle = controls::circle(image.circle_px);
+        line("Lands as", "Its circle of confusion on the full-size picture.", circle);
+        let focus = format!("t {:.4}, anchor {:.2}", image.focus.t, image.focus.anchor);
+        line("Painted", "The focus of the point.", focus);
     });
 }
 
-/// Draws the cells, turned by half a turn where `sign` is −1.
-fn paint(ui: &Ui, rect: Rect, image: &ApertureImage, sign: f32) {
-    let painter = ui.painter_at(rect);
-    painter.rect_filled(rect, 2.0, Color32::from_gray(16));
+/// A square picture as high as there is room for, and beneath it what it is.
+fn captioned(ui: &mut Ui, caption: &str, tip: &str, sense: Sense, paint: impl FnOnce(&Ui, Rect)) -> Response {
+    let drawn = ui.vertical(|ui| {
+        let line = ui.text_style_height(&egui::TextStyle::Body) + ui.spacing().item_spacing.y;
+        let side = (ui.available_height() - line).clamp(60.0, 320.0);
+        ui.set_width(side);
+        let (rect, response) = ui.allocate_exact_size(vec2(side, side), sense);
+        paint(ui, rect);
+        ui.vertical_centered(|ui| ui.add(egui::Label::new(egui::RichText::new(caption).weak()).truncate()));
+        response.on_hover_text(tip)
+    });
+    drawn.inner
+}
+
+/// Draws the aperture's shape.
+fn paint_open(ui: &Ui, rect: Rect, aperture: &Aperture) {
+    const SIDE: usize = 64;
+    paint_cells(ui, rect, SIDE, 1.0, |column, row| {
+        let [u, v] = [column, row].map(|k| (2 * k + 1) as f64 / SIDE as f64 - 1.0);
+        let open = aperture.transmission(DVec2::new(u, -v));
+        (open > 0.0).then(|| Color32::from_gray(CLOSED + (180.0 * open) as u8))
+    });
+}
+
+/// Draws what a point sees, turned by half a turn where `sign` is −1.
+fn paint_seen(ui: &Ui, rect: Rect, image: &ApertureImage, sign: f32) {
     let brightest = image.cells.iter().flat_map(|cell| cell.radiance).fold(0.0f32, f32::max);
     let gain = if brightest > 0.0 { 1.0 / brightest } else { 1.0 };
-    let cell_side = rect.width() / image.side as f32;
-    let mut mesh = Mesh::default();
-    for (k, cell) in image.cells.iter().enumerate().filter(|(_, cell)| cell.transmission > 0.0) {
-        let [column, row] = [k % image.side, k / image.side];
-        let middle = vec2(column as f32 + 0.5, row as f32 + 0.5) * cell_side - rect.size() / 2.0;
-        let place = Rect::from_center_size(rect.center() + middle * sign, vec2(cell_side, cell_side));
+    paint_cells(ui, rect, image.side, sign, |column, row| {
+        let cell = &image.cells[row * image.side + column];
         let color = if cell.is_seen {
             let [r, g, b] = cell.radiance.map(|c| encoded(c * gain));
             Color32::from_rgb(r, g, b)
         } else {
             Color32::from_gray(if (column + row) % 4 < 2 { 52 } else { 34 })
         };
-        mesh.add_colored_rect(place, color.gamma_multiply(0.35 + 0.65 * cell.transmission));
+        (cell.transmission > 0.0).then(|| color.gamma_multiply(0.35 + 0.65 * cell.transmission))
+    });
+}
+
+/// Draws `side` × `side` cells, those of a colour, and a cross through the middle.
+fn paint_cells(ui: &Ui, rect: Rect, side: usize, sign: f32, color: impl Fn(usize, usize) -> Option<Color32>) {
+    let painter = ui.painter_at(rect);
+    painter.rect_filled(rect, 2.0, Color32::from_gray(CLOSED));
+    let cell_side = rect.width() / side as f32;
+    let mut mesh = Mesh::default();
+    for (row, column) in (0..side).flat_map(|row| (0..side).map(move |column| (row, column))) {
+        if let Some(color) = color(column, row) {
+            let middle = vec2(column as f32 + 0.5, row as f32 + 0.5) * cell_side - rect.size() / 2.0;
+            let place = Rect::from_center_size(rect.center() + middle * sign, vec2(cell_side, cell_side));
+            mesh.add_colored_rect(place, color);
+        }
     }
     painter.add(Shape::mesh(mesh));
     let middle = Stroke::new(1.0, Color32::from_white_alpha(40));
@@ -131,7 +173,7 @@ fn paint(ui: &Ui, rect: Rect, image: &ApertureImage, sign: f32) {
 /// Draws the cells that a sample of the light field keeps, in its colour.
 fn paint_kept(ui: &Ui, rect: Rect, kept: &KeptVisibility) {
     let painter = ui.painter_at(rect);
-    painter.rect_filled(rect, 2.0, Color32::from_gray(16));
+    painter.rect_filled(rect, 2.0, Color32::from_gray(CLOSED));
     let brightest = kept.radiance.into_iter().fold(0.0f32, f32::max);
     let gain = if brightest > 0.0 { 1.0 / brightest } else { 1.0 };
     let [r, g, b] = kept.radiance.map(|c| encoded(c * gain));

@@ -1,6 +1,7 @@
 //! The panels that are folded away at first, in tabs beneath the views: the atlas, the aperture as one point sees it, how
 //! blurred the picture is.
 
+mod aperture_pad;
 mod aperture_view;
 mod atlas_view;
 mod histogram_view;

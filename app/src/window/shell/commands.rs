@@ -165,6 +165,10 @@ impl Shell {
                 let pose = self.paint.camera().pose();
                 self.edit_camera(|_| CameraEdit::Pose(pose));
             }
+            CommandId::LookRound => {
+                let toggled = self.looking_round.toggle(&mut self.session, context);
+                self.report(toggled);
+            }
             CommandId::Normalise => {
                 if let Some(document) = self.session.document() {
                     let other = match document.exposure {

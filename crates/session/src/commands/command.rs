@@ -58,6 +58,9 @@ pub enum Command {
     SetBackFaces(BackFaces),
     /// How the screen shows any picture. No part of the document.
     SetDisplay(Display),
+    /// Shows the live picture through one aperture point, in [−1, 1]² (see [`lens::Aperture::sub_aperture`]), or through
+    /// all of the aperture again. No part of the document; the picture's rays are still those of the whole lens.
+    LookThrough(Option<DVec2>),
     /// The longest side that the preview is drawn at, px; the picture's own size if that is smaller.
     SetPreviewSize(u32),
     /// How coarse the live picture may be while one works.

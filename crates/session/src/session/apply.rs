@@ -36,6 +36,10 @@ impl Session {
                 self.show_tone();
                 Ok(())
             }
+            Command::LookThrough(point) => {
+                self.look_through(point);
+                Ok(())
+            }
             Command::SetPreviewSize(size) => {
                 self.options.preview_size = size.max(1);
                 self.show_camera();

@@ -7,7 +7,8 @@ use crate::document::{CameraEdit, Stage};
 use crate::error::SessionError;
 use crate::light_field::{Changes, serves};
 use focus::{Changed, union};
-use lens::Camera;
+use glam::DVec2;
+use lens::{Aperture, Camera};
 use scene::BackFaces;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -86,10 +87,27 @@ impl Session {
     /// Shows the camera in the preview.
     pub(super) fn show_camera(&mut self) {
         let Some(document) = &self.document else { return };
-        let camera = self.scaled_camera(&document.camera);
+        let camera = self.shown_camera(&document.camera);
         let stays = self.preview_camera.as_ref().is_some_and(|before| serves(before, &camera));
         self.preview_camera = Some(camera.clone());
         self.preview_thread.set_camera(camera, stays);
+    }
+
+    /// Shows the scene through one aperture point, or through all of the aperture again.
+    pub(super) fn look_through(&mut self, point: Option<DVec2>) {
+        if self.looked_through != point {
+            self.looked_through = point;
+            self.show_camera();
+        }
+    }
+
+    /// What the preview shows of a camera: its size, through what is looked through.
+    pub(super) fn shown_camera(&self, camera: &Camera) -> Camera {
+        let scaled = self.scaled_camera(camera);
+        match self.looked_through {
+            Some(point) => Camera { aperture: Aperture::sub_aperture(point), ..scaled },
+            None => scaled,
+        }
     }
 
     /// A camera scaled to the preview's size.
@@ -123,7 +141,7 @@ impl Session {
         document.stage = Arc::new(stage);
         document.revision += 1;
         let (stage, map, shot) = (document.stage.clone(), document.map.clone(), document.camera.clone());
-        let camera = self.scaled_camera(&shot);
+        let camera = self.shown_camera(&shot);
         (self.field, self.preview_camera) = (None, Some(camera.clone()));
         self.preview_thread.set_stage((stage, generation), (map, self.map_serial), camera);
         self.end_verification();

@@ -13,6 +13,7 @@ use crate::output::{Reference, ReferenceKind, Verification};
 use crate::preview::{PictureTimes, Preview, PreviewActivity, PreviewThread};
 
 use atlas::UnwrapOptions;
+use glam::DVec2;
 use lens::Camera;
 use splat::{Gpu, Tolerance};
 use std::collections::BTreeMap;
@@ -79,6 +80,8 @@ pub struct Session {
     pub(super) fields: u64,
     /// The pictures that were finished between the last two polls.
     pub(super) finished: Vec<PictureTimes>,
+    /// The aperture point that the preview shows the scene through; none: all of the aperture.
+    pub(super) looked_through: Option<DVec2>,
     /// The camera that the preview was asked to show last.
     pub(super) preview_camera: Option<Camera>,
     /// The newest preview that was seen, of whatever document.
@@ -127,6 +130,7 @@ impl Session {
             field: None,
             fields: 0,
             finished: Vec::new(),
+            looked_through: None,
             preview_camera: None,
             seen_preview: 0,
             map_serial: 0,
@@ -164,6 +168,11 @@ impl Session {
     /// How coarse the live picture may be.
     pub fn tolerance(&self) -> Tolerance {
         self.tolerance
+    }
+
+    /// The aperture point that the live picture shows the scene through, in [−1, 1]²; none: all of the aperture.
+    pub fn looked_through(&self) -> Option<DVec2> {
+        self.looked_through
     }
 
     /// The live picture as the screen shows it.
