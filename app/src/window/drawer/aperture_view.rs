@@ -128,9 +128,17 @@ fn captioned(ui: &mut Ui, caption: &str, tip: &str, sense: Sense, paint: impl Fn
 /// Draws the aperture's shape.
 fn paint_open(ui: &Ui, rect: Rect, aperture: &Aperture) {
     const SIDE: usize = 64;
+    /// Points a cell is looked at, a side: its outline is smooth.
+    const POINTS: usize = 4;
+    let open = |column: usize, row: usize| {
+        let along = |k: usize| (0..POINTS).map(move |j| ((k * POINTS + j) as f64 + 0.5) * 2.0);
+        let coordinate = |k: f64| k / (SIDE * POINTS) as f64 - 1.0;
+        let points = along(row).flat_map(|y| along(column).map(move |x| (x, y)));
+        let light = points.map(|(x, y)| aperture.transmission(DVec2::new(coordinate(x), -coordinate(y))));
+        light.sum::<f64>() / (POINTS * POINTS) as f64
+    };
     paint_cells(ui, rect, SIDE, 1.0, |column, row| {
-        let [u, v] = [column, row].map(|k| (2 * k + 1) as f64 / SIDE as f64 - 1.0);
-        let open = aperture.transmission(DVec2::new(u, -v));
+        let open = open(column, row);
         (open > 0.0).then(|| Color32::from_gray(CLOSED + (180.0 * open) as u8))
     });
 }
