@@ -4,6 +4,7 @@ use crate::texel_tree::TexelTree;
 use crate::{Changed, FocusMap};
 use atlas::{Atlas, AtlasTexel};
 use glam::{DVec3, Vec3};
+use lens::FocusOffset;
 use scene::Scene;
 
 /// A texel that covers some surface, as painting sees it.
@@ -113,6 +114,20 @@ impl Canvas {
     /// The gutter texels that copy a texel.
     pub fn gutters_of(&self, index: usize) -> &[[u32; 2]] {
         &self.gutters[self.gutter_starts[index] as usize..self.gutter_starts[index + 1] as usize]
+    }
+
+    /// A map with these values of the texels, in their order.
+    pub(crate) fn map_of(&self, values: &[[f32; 2]], background: FocusOffset) -> FocusMap {
+        let [width, height] = self.size();
+        let mut map = FocusMap::new(width, height, FocusOffset::STANDARD);
+        map.background = background;
+        for (index, (texel, value)) in self.texels.iter().zip(values).enumerate() {
+            map.set(texel.x, texel.y, *value);
+            for &[x, y] in self.gutters_of(index) {
+                map.set(x, y, *value);
+            }
+        }
+        map
     }
 
     /// Calls `visit` with the index and distance of every texel whose centroid is at most `radius` from

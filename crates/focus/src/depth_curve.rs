@@ -41,15 +41,6 @@ impl DepthCurve {
             .par_iter()
             .map(|texel| crate::focus_map::texel_of(self.at(camera.camera_from_world(texel.position).z)))
             .collect();
-        let [width, height] = canvas.size();
-        let mut map = FocusMap::new(width, height, FocusOffset::STANDARD);
-        map.background = self.at(f64::INFINITY);
-        for (index, (texel, value)) in canvas.texels().iter().zip(values).enumerate() {
-            map.set(texel.x, texel.y, value);
-            for &[x, y] in canvas.gutters_of(index) {
-                map.set(x, y, value);
-            }
-        }
-        map
+        canvas.map_of(&values, self.at(f64::INFINITY))
     }
 }

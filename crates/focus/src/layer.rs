@@ -1,6 +1,6 @@
 //! One layer of focus.
 
-use crate::{Blend, Canvas, DepthCurve, FocusMap};
+use crate::{Adjustment, Blend, Canvas, FocusMap};
 use lens::Camera;
 
 /// A layer: its values, how much each counts, and how they join what lies beneath.
@@ -14,24 +14,24 @@ pub struct FocusLayer {
     pub opacity: f64,
     /// How it joins what lies beneath.
     pub blend: Blend,
-    /// Its values and its mask. A layer with a curve has its values from that, for the shot camera that it was last
+    /// Its values and its mask. An adjustment layer has its values from its rule, for the shot camera that it was last
     /// evaluated for; only its mask is painted.
     pub map: FocusMap,
-    /// The curve of an adjustment layer.
-    pub curve: Option<DepthCurve>,
+    /// The rule of an adjustment layer.
+    pub adjustment: Option<Adjustment>,
 }
 
 impl FocusLayer {
     /// A layer of the values of a map.
     pub fn painted(name: impl Into<String>, map: FocusMap) -> Self {
         let (is_visible, opacity, blend) = (true, 1.0, Blend::Set);
-        Self { name: name.into(), is_visible, opacity, blend, map, curve: None }
+        Self { name: name.into(), is_visible, opacity, blend, map, adjustment: None }
     }
 
     /// An adjustment layer.
-    pub fn adjusted(name: impl Into<String>, curve: DepthCurve, canvas: &Canvas, camera: &Camera) -> Self {
-        let map = curve.evaluate(canvas, camera);
-        Self { curve: Some(curve), ..Self::painted(name, map) }
+    pub fn adjusted(name: impl Into<String>, rule: Adjustment, canvas: &Canvas, camera: &Camera) -> Self {
+        let map = rule.evaluate(canvas, camera);
+        Self { adjustment: Some(rule), ..Self::painted(name, map) }
     }
 
     /// Whether it hides all that lies beneath it: then it alone counts.
@@ -39,10 +39,10 @@ impl FocusLayer {
         self.is_visible && self.opacity == 1.0 && self.blend == Blend::Set && !self.map.has_mask()
     }
 
-    /// Takes the values of the curve, if it has one, for a shot camera; the mask stays.
+    /// Takes the values of its rule, if it has one, for a shot camera; the mask stays.
     pub fn evaluate(&mut self, canvas: &Canvas, camera: &Camera) {
-        if let Some(curve) = &self.curve {
-            let values = curve.evaluate(canvas, camera);
+        if let Some(rule) = &self.adjustment {
+            let values = rule.evaluate(canvas, camera);
             (self.map.texels, self.map.background) = (values.texels, values.background);
         }
     }
@@ -51,6 +51,6 @@ impl FocusLayer {
     pub fn is_valid(&self) -> bool {
         (0.0..=1.0).contains(&self.opacity)
             && self.map.is_valid()
-            && self.curve.as_ref().is_none_or(DepthCurve::is_valid)
+            && self.adjustment.as_ref().is_none_or(Adjustment::is_valid)
     }
 }

@@ -1,6 +1,8 @@
 //! A change of the layers of focus.
 
-use crate::{Blend, Canvas, DepthCurve, FocusError, FocusLayer, FocusMap, LayerStack};
+use crate::{
+    Adjustment, Blend, Canvas, DepthCurve, FocalPlane, FocusError, FocusLayer, FocusMap, LayerStack,
+};
 use lens::Camera;
 use serde::{Deserialize, Serialize};
 
@@ -13,6 +15,8 @@ pub enum LayerEdit {
     AddPaint,
     /// An adjustment layer by a curve over depth, above the active one; it becomes the active one.
     AddCurve,
+    /// An adjustment layer by a focal plane, above the active one; it becomes the active one.
+    AddPlane,
     /// A copy of a layer, above the active one; it becomes the active one.
     Duplicate(usize),
     /// Takes a layer away; the last one stays.
@@ -32,8 +36,10 @@ pub enum LayerEdit {
         /// To where it then is.
         to: usize,
     },
-    /// Another curve for an adjustment layer.
+    /// Another curve for a layer that has one.
     Curve(usize, DepthCurve),
+    /// Another focal plane for a layer that has one.
+    Plane(usize, FocalPlane),
     /// Gives a layer without mask one that counts everywhere.
     AddMask(usize),
     /// Makes a mask count where it did not, and the other way round; a layer without one then counts nowhere.
@@ -48,6 +54,7 @@ impl LayerEdit {
         match self {
             Self::AddPaint => "Add layer",
             Self::AddCurve => "Add depth curve",
+            Self::AddPlane => "Add focal plane",
             Self::Duplicate(_) => "Duplicate layer",
             Self::Remove(_) => "Remove layer",
             Self::Rename(..) => "Rename layer",
@@ -56,6 +63,7 @@ impl LayerEdit {
             Self::Blend(..) => "Layer blending",
             Self::Shift { .. } => "Move layer",
             Self::Curve(..) => "Depth curve",
+            Self::Plane(..) => "Focal plane",
             Self::AddMask(_) => "Add mask",
             Self::InvertMask(_) => "Invert mask",
             Self::RemoveMask(_) => "Remove mask",
@@ -66,14 +74,15 @@ impl LayerEdit {
     /// a step of its own.
     pub fn dragged(&self) -> Option<(&'static str, usize)> {
         match self {
-            Self::Rename(index, _) | Self::Opacity(index, _) | Self::Curve(index, _) => {
-                Some((self.name(), *index))
-            }
+            Self::Rename(index, _)
+            | Self::Opacity(index, _)
+            | Self::Curve(index, _)
+            | Self::Plane(index, _) => Some((self.name(), *index)),
             _ => None,
         }
     }
 
-    /// Does it. New depth curves begin from what `camera` sees of the canvas.
+    /// Does it. New depth curves and focal planes begin from what `camera` sees of the canvas.
     pub fn apply(self, layers: &mut LayerStack, canvas: &Canvas, camera: &Camera) -> Result<(), FocusError> {
         let bad = |problem| Err(FocusError::BadLayerEdit { problem });
         match self {
@@ -86,10 +95,13 @@ impl LayerEdit {
                 let Some(curve) = first_curve(canvas, camera) else {
                     return bad("nothing stands before the camera (turn it toward the scene)");
                 };
-                let name = free_name(layers, "Depth curve");
-                let mut layer = FocusLayer::adjusted(name, curve, canvas, camera);
-                layer.map.add_mask();
-                return inserted(layers, layer);
+                return adjusted(layers, "Depth curve", Adjustment::Curve(curve), canvas, camera);
+            }
+            Self::AddPlane => {
+                let Some(plane) = first_plane(canvas, camera) else {
+                    return bad("nothing stands before the camera (turn it toward the scene)");
+                };
+                return adjusted(layers, "Focal plane", Adjustment::Plane(plane), canvas, camera);
             }
             Self::Duplicate(index) => {
                 let Some(layer) = layers.layers().get(index) else { return bad("there is no such layer") };
@@ -113,6 +125,9 @@ impl LayerEdit {
             Self::Curve(_, ref curve) if !curve.is_valid() => {
                 return bad("the curve must have points with finite numbers");
             }
+            Self::Plane(_, ref plane) if !plane.is_valid() => {
+                return bad("the three points lie in one line (choose them further apart)");
+            }
             _ => {}
         }
         let index = match &self {
@@ -121,6 +136,7 @@ impl LayerEdit {
             | Self::Opacity(index, _)
             | Self::Blend(index, _)
             | Self::Curve(index, _)
+            | Self::Plane(index, _)
             | Self::AddMask(index)
             | Self::InvertMask(index)
             | Self::RemoveMask(index) => *index,
@@ -133,19 +149,44 @@ impl LayerEdit {
             Self::Opacity(_, opacity) => layer.opacity = opacity,
             Self::Blend(_, blend) => layer.blend = blend,
             Self::Curve(_, curve) => {
-                if layer.curve.is_none() {
-                    return bad("only an adjustment layer has a curve (add one)");
-                }
-                layer.curve = Some(curve);
+                let Some(Adjustment::Curve(own)) = &mut layer.adjustment else {
+                    return bad("the layer has no depth curve (add one)");
+                };
+                *own = curve;
+                layer.evaluate(canvas, camera);
+            }
+            Self::Plane(_, plane) => {
+                let Some(Adjustment::Plane(own)) = &mut layer.adjustment else {
+                    return bad("the layer has no focal plane (add one)");
+                };
+                *own = plane;
                 layer.evaluate(canvas, camera);
             }
             Self::AddMask(_) => layer.map.add_mask(),
             Self::InvertMask(_) => layer.map.invert_mask(),
             Self::RemoveMask(_) => layer.map.remove_mask(),
-            Self::AddPaint | Self::AddCurve | Self::Duplicate(_) | Self::Remove(_) | Self::Shift { .. } => {}
+            Self::AddPaint
+            | Self::AddCurve
+            | Self::AddPlane
+            | Self::Duplicate(_)
+            | Self::Remove(_)
+            | Self::Shift { .. } => {}
         }
         Ok(())
     }
+}
+
+/// Puts an adjustment layer with a mask that counts everywhere above the active one.
+fn adjusted(
+    layers: &mut LayerStack,
+    wanted: &str,
+    rule: Adjustment,
+    canvas: &Canvas,
+    camera: &Camera,
+) -> Result<(), FocusError> {
+    let mut layer = FocusLayer::adjusted(free_name(layers, wanted), rule, canvas, camera);
+    layer.map.add_mask();
+    inserted(layers, layer)
 }
 
 fn inserted(layers: &mut LayerStack, layer: FocusLayer) -> Result<(), FocusError> {
@@ -160,12 +201,23 @@ fn free_name(layers: &LayerStack, wanted: &str) -> String {
     numbered.into_iter().find(|name| !taken(name)).unwrap_or_else(|| stem.to_string())
 }
 
+/// The nearest and the farthest depth of anything before the camera; the first is infinite where there is nothing.
+fn depths(canvas: &Canvas, camera: &Camera) -> [f64; 2] {
+    let depths = canvas.texels().iter().map(|texel| camera.camera_from_world(texel.position).z);
+    let before = depths.filter(|depth| *depth > 0.0);
+    before.fold([f64::INFINITY, 0.0], |[near, far], depth| [depth.min(near), depth.max(far)])
+}
+
+/// Where the lens focuses, or at the farthest thing before it.
+fn first_plane(canvas: &Canvas, camera: &Camera) -> Option<FocalPlane> {
+    let [_, far] = depths(canvas, camera);
+    let depth = camera.focus_distance.min(far);
+    (depth > 0.0).then(|| FocalPlane::facing(camera, depth))
+}
+
 /// Sharp from the nearest to the farthest thing, with a point to take hold of where the lens focuses.
 fn first_curve(canvas: &Canvas, camera: &Camera) -> Option<DepthCurve> {
-    let depths = canvas.texels().iter().map(|texel| camera.camera_from_world(texel.position).z);
-    let (near, far) = depths
-        .filter(|depth| *depth > 0.0)
-        .fold((f64::INFINITY, 0.0), |(near, far), depth| (depth.min(near), depth.max(far)));
+    let [near, far] = depths(canvas, camera);
     let curve = DepthCurve::sharp_between(near, far)?;
     let focus = camera.focus_distance;
     let points = curve.curve.points().iter().copied();

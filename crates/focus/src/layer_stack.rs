@@ -75,7 +75,7 @@ impl LayerStack {
 
     /// Whether there is nothing but one plain layer, as in a document that never had another.
     pub fn is_single(&self) -> bool {
-        self.layers.len() == 1 && self.layers[0].is_plain() && self.layers[0].curve.is_none()
+        self.layers.len() == 1 && self.layers[0].is_plain() && self.layers[0].adjustment.is_none()
     }
 
     /// Puts a layer above the active one and makes it active. False where there are too many already.
@@ -118,11 +118,11 @@ impl LayerStack {
     }
 
     /// Whether any layer depends on where the shot camera stands.
-    pub fn has_curves(&self) -> bool {
-        self.layers.iter().any(|layer| layer.curve.is_some())
+    pub fn follows_camera(&self) -> bool {
+        self.layers.iter().any(|layer| layer.adjustment.is_some())
     }
 
-    /// Takes the values of all curves for a shot camera.
+    /// Takes the values of all adjustment layers for a shot camera.
     pub fn evaluate(&mut self, canvas: &Canvas, camera: &Camera) {
         self.layers.iter_mut().for_each(|layer| layer.evaluate(canvas, camera));
     }

@@ -5,13 +5,14 @@
 //! * [`FocusRecipe`]: focus by name of material and node, for scripts; evaluates to a [`Focus`].
 //! * [`Canvas`]: the surface behind the map's texels, found by world position.
 //! * [`Brush`] and [`Stroke`]: painting with spheres along a path on the surface, as one transaction.
-//! * [`FocusLayer`] and [`LayerStack`]: maps with masks, joined by a [`Blend`]; a [`DepthCurve`] makes an adjustment
-//!   layer. What they make together is a map again, and that is what is rendered.
+//! * [`FocusLayer`] and [`LayerStack`]: maps with masks, joined by a [`Blend`]; an [`Adjustment`] (a [`DepthCurve`], a tilted
+//!   or curved [`FocalPlane`]) makes an adjustment layer. What they make together is a map again, and that is what is rendered.
 //! * [`LayerEdit`]: a change of the layers, as data.
 //! * [`fill`]: the same value over a node, part, material or chart. [`Gradient`]: one that changes along a line.
 //! * [`Selection`]: what may be painted. [`Symmetry`]: where else everything is painted.
 //! * [`Edit`]: what undo takes back and redo makes again. [`Thumbnail`]: a small picture of a change.
 
+mod adjustment;
 mod bake;
 mod blend;
 mod brush;
@@ -23,6 +24,7 @@ mod depth_curve;
 mod edit;
 mod error;
 mod fill;
+mod focal_plane;
 mod focus_image;
 mod focus_map;
 mod gradient;
@@ -41,6 +43,7 @@ mod tile_grid;
 mod view_frame;
 mod wash;
 
+pub use adjustment::Adjustment;
 pub use blend::Blend;
 pub use brush::{Brush, BrushMode, Channels, FocusOffsetFields, PenSample};
 pub use canvas::{Canvas, CanvasTexel};
@@ -50,6 +53,7 @@ pub use depth_curve::DepthCurve;
 pub use edit::Edit;
 pub use error::FocusError;
 pub use fill::{FillTarget, fill, fill_selected};
+pub use focal_plane::FocalPlane;
 pub use focus_image::FocusImage;
 pub use focus_map::FocusMap;
 pub use gradient::{Gradient, GradientLine, GradientShape, draw_gradient};

@@ -9,7 +9,7 @@ use crate::container::Container;
 use crate::layer_rows::{LayerRow, LayerRows};
 use crate::manifest::{MANIFEST, Manifest, MapEntry};
 use crate::texel_bytes::{floats, pairs};
-use focus::{FocusLayer, FocusMap, LayerStack};
+use focus::{Adjustment, FocusLayer, FocusMap, LayerStack};
 use lens::FocusOffset;
 use std::path::Path;
 
@@ -20,7 +20,7 @@ pub(crate) fn write(layers: &LayerStack, entries: &mut Vec<(String, Vec<u8>)>) -
         name
     };
     let row = |(index, layer): (usize, &FocusLayer)| {
-        let values = layer.curve.is_none().then(|| {
+        let values = layer.adjustment.is_none().then(|| {
             let bytes = layer.map.to_rows().iter().flatten().flat_map(|value| value.to_le_bytes()).collect();
             put(format!("layers/{index}.f32"), bytes)
         });
@@ -29,13 +29,19 @@ pub(crate) fn write(layers: &LayerStack, entries: &mut Vec<(String, Vec<u8>)>) -
             put(format!("layers/{index}.mask.f32"), bytes)
         });
         let FocusOffset { t, anchor } = layer.map.background;
+        let (curve, plane) = match layer.adjustment.clone() {
+            Some(Adjustment::Curve(curve)) => (Some(curve), None),
+            Some(Adjustment::Plane(plane)) => (None, Some(plane)),
+            None => (None, None),
+        };
         LayerRow {
             name: layer.name.clone(),
             visible: layer.is_visible,
             opacity: layer.opacity,
             blend: layer.blend,
             background: [t, anchor, layer.map.background_mask as f64],
-            curve: layer.curve.clone(),
+            curve,
+            plane,
             values,
             mask,
         }
@@ -79,7 +85,7 @@ pub(crate) fn read(
             opacity: row.opacity,
             blend: row.blend,
             map,
-            curve: row.curve.clone(),
+            adjustment: row.adjustment(),
         });
     }
     LayerStack::new(layers, rows.active)

@@ -19,7 +19,10 @@ pub(crate) const MANIFEST: &str = "manifest.json";
 const FORMAT: &str = "focus-brush project";
 
 /// The newest version. It changes when an older program would misread the file.
-pub(crate) const VERSION: u64 = 3;
+pub(crate) const VERSION: u64 = 4;
+
+/// The version of a project without focal planes: older programs would take their layers for the ordinary lens.
+const WITHOUT_PLANES: u64 = 3;
 
 /// The version of a project whose brush is mirrored along the world's axes, if at all: older programs lose nothing of it.
 const ALONG_WORLD_AXES: u64 = 2;
@@ -88,11 +91,13 @@ pub(crate) struct MapEntry {
 
 impl Manifest {
     /// What a manifest calls the format, and the oldest version that can say it all.
-    pub fn format(brush: &Brush, has_layers: bool) -> (String, u64) {
-        let version = match (brush.has_own_axes(), has_layers) {
-            (true, _) => VERSION,
-            (false, true) => ALONG_WORLD_AXES,
-            (false, false) => WITHOUT_LAYERS,
+    pub fn format(brush: &Brush, layers: Option<&LayerRows>) -> (String, u64) {
+        let has_planes = layers.is_some_and(|rows| rows.layers.iter().any(|row| row.plane.is_some()));
+        let version = match (has_planes, brush.has_own_axes(), layers) {
+            (true, ..) => VERSION,
+            (false, true, _) => WITHOUT_PLANES,
+            (false, false, Some(_)) => ALONG_WORLD_AXES,
+            (false, false, None) => WITHOUT_LAYERS,
         };
         (FORMAT.to_string(), version)
     }

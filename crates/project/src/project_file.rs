@@ -155,8 +155,8 @@ impl ProjectFile {
         let layers = |project: &Self| {
             project.layers.clone().map(|stack| {
                 let same = stack.layers().iter().map(|layer| {
-                    let values = layer.curve.is_none().then(|| layer.map.clone());
-                    (layer.name.clone(), values, layer.map.mask_rows(), layer.curve.clone())
+                    let values = layer.adjustment.is_none().then(|| layer.map.clone());
+                    (layer.name.clone(), values, layer.map.mask_rows(), layer.adjustment.clone())
                 });
                 same.collect::<Vec<_>>()
             })
@@ -221,7 +221,7 @@ impl ProjectFile {
             let [width, height] = selection.size();
             MapEntry { entry: SELECTION.to_string(), width, height }
         });
-        let (format, version) = Manifest::format(&self.brush, layers.is_some());
+        let (format, version) = Manifest::format(&self.brush, layers.as_ref());
         let manifest = Manifest {
             format,
             version,

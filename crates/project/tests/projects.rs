@@ -102,7 +102,7 @@ fn layers_come_back_the_same_and_a_plain_document_stays_as_older_programs_know_i
             ..focus::FocusLayer::painted("far \"lamp\"", masked)
         },
         focus::FocusLayer {
-            curve: Some(curve),
+            adjustment: Some(focus::Adjustment::Curve(curve)),
             ..focus::FocusLayer::painted("surface", FocusMap::new(130, 70, FocusOffset::STANDARD))
         },
     ];
@@ -112,6 +112,20 @@ fn layers_come_back_the_same_and_a_plain_document_stays_as_older_programs_know_i
     assert_eq!(manifest(&file)["version"], 2);
     let again = ProjectFile::load(&file).unwrap();
     assert!(again == layered);
+
+    // A focal plane is more than older programs know.
+    let points = [[0.0, 0.0, -2.0], [1.0, 0.0, -2.0], [0.0, 1.0, -3.0]].map(glam::DVec3::from_array);
+    let plane = focus::FocalPlane { curvature: -0.25, ..focus::FocalPlane::through(points).unwrap() };
+    let plane = focus::FocusLayer {
+        adjustment: Some(focus::Adjustment::Plane(plane)),
+        ..focus::FocusLayer::painted("plane", FocusMap::new(130, 70, FocusOffset::STANDARD))
+    };
+    let stack = focus::LayerStack::new(vec![layers.layers()[0].clone(), plane], 1).unwrap();
+    let planar = ProjectFile { layers: Some(stack), ..layered.clone() };
+    planar.save(&file).unwrap();
+    assert_eq!(manifest(&file)["version"], 4);
+    assert!(ProjectFile::load(&file).unwrap() == planar);
+    layered.save(&file).unwrap();
 
     // What cannot be is refused, on saving and on opening.
     let small = focus::LayerStack::of(FocusMap::new(4, 4, FocusOffset::STANDARD));

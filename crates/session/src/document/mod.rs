@@ -3,6 +3,7 @@
 //! An [`Input`] is a file as read; with its scene unwrapped and ready for rays (the [`Stage`]) it becomes a [`Document`]. A new
 //! kind of file to open is a kind of [`InputKind`], here and nowhere else.
 
+mod adjusted_view;
 mod camera_edit;
 mod input;
 mod light_hash;
@@ -20,5 +21,6 @@ pub use scene_camera::camera_of;
 pub use stage::{Stage, load_scene};
 pub use undo::HistoryStep;
 
+pub(crate) use adjusted_view::AdjustedView;
 pub(crate) use stage::atlas_error;
 pub(crate) use undo::{Undo, Undoable, Undone};

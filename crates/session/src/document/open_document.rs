@@ -1,5 +1,6 @@
 //! What is open: the scene, its focus and its camera.
 
+use super::adjusted_view::AdjustedView;
 use super::input::{CameraChoice, Input, InputKind};
 use super::picking::SurfaceHit;
 use super::scene_camera::camera_of;
@@ -40,8 +41,8 @@ pub struct Document {
     pub path: Option<PathBuf>,
     /// What is odd about its files but does no harm, a sentence each.
     pub warnings: Vec<String>,
-    /// The camera's pose that the curves of the layers were evaluated for.
-    pub(crate) curves_for: glam::DMat4,
+    /// The view that the adjustment layers were evaluated for.
+    pub(crate) adjusted_for: AdjustedView,
     /// What is saved beside the fields above.
     template: ProjectFile,
     /// Steps of undo and redo.
@@ -183,7 +184,7 @@ impl Document {
             layers,
             pictured: map.clone(),
             map,
-            curves_for: input.camera.camera_to_world,
+            adjusted_for: AdjustedView::of(&input.camera),
             camera: input.camera.clone(),
             exposure: input.exposure(),
             brush: template.brush.clone(),

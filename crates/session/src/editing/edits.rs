@@ -4,7 +4,7 @@
 use super::paintable::paintable;
 use super::selecting::selected;
 use super::stroke_point::FillRegion;
-use crate::document::Document;
+use crate::document::{AdjustedView, Document};
 use crate::error::SessionError;
 use focus::{
     Changed, Channels, Combine, Edit, FillTarget, FocusError, FocusMap, Gradient, LayerEdit, LayerStack,
@@ -174,7 +174,7 @@ impl Document {
             return Ok(false);
         }
         self.layers = after.clone();
-        self.curves_for = self.camera.camera_to_world;
+        self.adjusted_for = AdjustedView::of(&self.camera);
         self.undo.push_layers(name, before, after, record);
         self.revision += 1;
         Ok(true)

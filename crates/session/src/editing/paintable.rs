@@ -10,7 +10,7 @@ pub(crate) fn paintable(layer: &FocusLayer, channels: Channels) -> Result<Channe
     if !layer.is_visible {
         return bad(format!("{name}: the layer is hidden (show it, or choose another one)"));
     }
-    let channels = if layer.curve.is_some() { Channels::Mask } else { channels };
+    let channels = if layer.adjustment.is_some() { Channels::Mask } else { channels };
     if channels == Channels::Mask && !layer.map.has_mask() {
         return bad(format!("{name}: the layer has no mask to paint (add one in the Layers panel)"));
     }

@@ -129,11 +129,11 @@ impl Session {
         self.layers_changed(changed)
     }
 
-    /// Puts a map in the place of the active layer's values, or above it where those come from a curve.
+    /// Puts a map in the place of the active layer's values, or above it where those come from a rule.
     pub(super) fn import_map(&mut self, map: FocusMap) -> Result<(), SessionError> {
         self.commit_stroke()?;
         let changed = self.opened()?.change_layers("Import focus", None, |layers, document| {
-            if layers.active().curve.is_some() {
+            if layers.active().adjustment.is_some() {
                 LayerEdit::AddPaint.apply(layers, &document.stage.canvas, &document.camera)?;
             }
             layers.active_mut().map = map;

@@ -3,7 +3,7 @@
 use super::outcome::Outcome;
 use super::state::Session;
 use crate::commands::Event;
-use crate::document::{CameraEdit, Stage};
+use crate::document::{AdjustedView, CameraEdit, Stage};
 use crate::error::SessionError;
 use crate::light_field::{Changes, serves};
 use focus::{Changed, union};
@@ -32,13 +32,14 @@ impl Session {
         self.follow_camera()
     }
 
-    /// Depth curves follow the shot camera.
+    /// Adjustment layers follow the shot camera.
     pub(super) fn follow_camera(&mut self) -> Result<(), SessionError> {
         let document = self.opened()?;
-        if !document.layers.has_curves() || document.curves_for == document.camera.camera_to_world {
+        let view = AdjustedView::of(&document.camera);
+        if !document.layers.follows_camera() || document.adjusted_for == view {
             return Ok(());
         }
-        document.curves_for = document.camera.camera_to_world;
+        document.adjusted_for = view;
         let stage = document.stage.clone();
         document.layers.evaluate(&stage.canvas, &document.camera);
         self.show_layers(None)

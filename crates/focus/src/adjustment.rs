@@ -1,0 +1,31 @@
+//! What an adjustment layer takes its values from.
+
+use crate::{Canvas, DepthCurve, FocalPlane, FocusMap};
+use lens::Camera;
+
+/// A rule that gives every point its focus by where it stands before the shot camera.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Adjustment {
+    /// A blur for every depth.
+    Curve(DepthCurve),
+    /// A plane in which all is sharp.
+    Plane(FocalPlane),
+}
+
+impl Adjustment {
+    /// Whether it can be used.
+    pub fn is_valid(&self) -> bool {
+        match self {
+            Self::Curve(curve) => curve.is_valid(),
+            Self::Plane(plane) => plane.is_valid(),
+        }
+    }
+
+    /// The focus of every texel of a canvas, as `camera` sees it.
+    pub fn evaluate(&self, canvas: &Canvas, camera: &Camera) -> FocusMap {
+        match self {
+            Self::Curve(curve) => curve.evaluate(canvas, camera),
+            Self::Plane(plane) => plane.evaluate(canvas, camera),
+        }
+    }
+}

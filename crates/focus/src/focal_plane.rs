@@ -1,0 +1,157 @@
+//! A focal plane that is tilted as one likes, or curved: what lies in it is sharp, wherever the lens focuses.
+
+use crate::{Canvas, FocusMap};
+use glam::{DQuat, DVec3};
+use lens::{Camera, FocusOffset};
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+
+/// A plane of focus through three points of the scene, as a lens tilted by Scheimpflug's rule has it, and perhaps curved
+/// as simple lenses have it.
+///
+/// A point at depth z in the direction (x, y, 1) of the shot camera is blurred as the ordinary lens would blur it, were
+/// it focused where that direction meets the focal surface:
+///
+/// ```text
+/// κ = 1/z_f − 1/z        1/z_f = n·(x, y, 1)/c + curvature · (x² + y²)/tan²θ        t = 1 + d·κ, anchor 1
+/// ```
+///
+/// with the plane n·P = c in camera space. 1/z_f is affine in the picture's position, so that a direction that misses the
+/// plane (it meets it behind the camera, or at infinity) is no special case. The plane stays in the scene when the camera
+/// moves; its curvature is the camera's.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct FocalPlane {
+    /// Three world points that it passes through, not in one line.
+    pub points: [DVec3; 3],
+    /// What the reciprocal of the focal surface's depth gains at half a picture's height from the middle, 1/length: above 0
+    /// the surface bends toward the camera all around, 0 is a plane.
+    #[serde(default)]
+    pub curvature: f64,
+}
+
+/// Larger offsets are taken as this large: a plane seen edge-on blurs everything beside it without bound.
+const LARGEST_OFFSET: f64 = 1e9;
+
+/// Angles between a plane and the picture stay below a right angle by this, rad.
+const STEEPEST: f64 = 1e-3;
+
+impl FocalPlane {
+    /// The plane through three points. `None` where they lie in one line, or are no numbers.
+    pub fn through(points: [DVec3; 3]) -> Option<Self> {
+        let plane = Self { points, curvature: 0.0 };
+        plane.is_valid().then_some(plane)
+    }
+
+    /// The ordinary plane of focus at a depth > 0 of a camera: across its axis, its points spread over the picture.
+    pub fn facing(camera: &Camera, depth: f64) -> Self {
+        let half_height = depth * (camera.yfov / 2.0).tan();
+        let places = [[-0.5, -0.4], [0.5, -0.4], [0.0, 0.5]];
+        let place =
+            |[x, y]: [f64; 2]| DVec3::new(x * camera.aspect(), y, 0.0) * half_height + DVec3::Z * depth;
+        Self { points: places.map(|at| camera.world_from_camera(place(at))), curvature: 0.0 }
+    }
+
+    /// Whether it can be used.
+    pub fn is_valid(&self) -> bool {
+        /// Sine of the angle between two edges below which three points are one line: positions in files are 32-bit floats.
+        const NARROWEST: f64 = 1e-5;
+        let [a, b] = self.edges();
+        let spread = a.cross(b).length() / (a.length() * b.length());
+        let is_finite = self.points.iter().all(|point| point.is_finite()) && self.curvature.is_finite();
+        is_finite && spread > NARROWEST
+    }
+
+    fn edges(&self) -> [DVec3; 2] {
+        [self.points[1] - self.points[0], self.points[2] - self.points[0]]
+    }
+
+    fn middle(&self) -> DVec3 {
+        self.points.iter().sum::<DVec3>() / 3.0
+    }
+
+    /// Its unit normal in camera space, away from the camera.
+    fn normal(&self, camera: &Camera) -> DVec3 {
+        let [a, b] = self.edges().map(|edge| camera.camera_direction(edge));
+        let normal = a.cross(b).normalize();
+        if normal.z < 0.0 { -normal } else { normal }
+    }
+
+    /// How it is turned against the picture, rad: tilt about the camera's x axis (above 0 its upper part is nearer), and
+    /// swing about its y axis (above 0 its right part is nearer). Within a right angle either way.
+    pub fn turn(&self, camera: &Camera) -> [f64; 2] {
+        let normal = self.normal(camera);
+        [normal.y.atan2(normal.z), normal.x.atan2(normal.z)]
+    }
+
+    /// Turned so about its points' middle; see [`Self::turn`].
+    pub fn turned(&self, camera: &Camera, turn: [f64; 2]) -> Self {
+        let steepest = std::f64::consts::FRAC_PI_2 - STEEPEST;
+        let [tilt, swing] = turn.map(|angle| angle.clamp(-steepest, steepest).tan());
+        let wanted = camera.world_direction(DVec3::new(swing, tilt, 1.0).normalize());
+        let rotation = DQuat::from_rotation_arc(camera.world_direction(self.normal(camera)), wanted);
+        let middle = self.middle();
+        Self { points: self.points.map(|point| middle + rotation * (point - middle)), ..self.clone() }
+    }
+
+    /// The depth at which the camera's axis meets it: infinite where it runs along the axis, below 0 behind the camera.
+    pub fn depth_on_axis(&self, camera: &Camera) -> f64 {
+        let normal = self.normal(camera);
+        normal.dot(camera.camera_from_world(self.points[0])) / normal.z
+    }
+
+    /// Moved along the camera's axis to meet it at this depth; as it is where it runs along the axis.
+    pub fn at_depth_on_axis(&self, camera: &Camera, depth: f64) -> Self {
+        let way = depth - self.depth_on_axis(camera);
+        let way = if way.is_finite() { camera.world_direction(DVec3::Z) * way } else { DVec3::ZERO };
+        Self { points: self.points.map(|point| point + way), ..self.clone() }
+    }
+
+    /// The focus of a camera-space point: see the type. Behind the camera, where nothing is seen, the ordinary lens's.
+    fn at(&self, seen: &SeenPlane, point: DVec3) -> FocusOffset {
+        if point.z <= 0.0 {
+            return FocusOffset::STANDARD;
+        }
+        seen.focus(point / point.z, 1.0 / point.z)
+    }
+
+    /// The focus of every texel of a canvas, as `camera` sees it. The background's is that of the picture's middle.
+    pub fn evaluate(&self, canvas: &Canvas, camera: &Camera) -> FocusMap {
+        let seen = SeenPlane::of(self, camera);
+        let values: Vec<[f32; 2]> = canvas
+            .texels()
+            .par_iter()
+            .map(|texel| crate::focus_map::texel_of(self.at(&seen, camera.camera_from_world(texel.position))))
+            .collect();
+        canvas.map_of(&values, seen.focus(DVec3::Z, 0.0))
+    }
+}
+
+/// A focal plane as a camera sees it.
+struct SeenPlane {
+    /// n/c in camera space: the plane is where its product with a point is 1.
+    plane: DVec3,
+    /// curvature/tan²θ.
+    curvature: f64,
+    image_distance: f64,
+}
+
+impl SeenPlane {
+    fn of(plane: &FocalPlane, camera: &Camera) -> Self {
+        let optics = camera.optics();
+        let normal = plane.normal(camera);
+        Self {
+            plane: normal / normal.dot(camera.camera_from_world(plane.points[0])),
+            curvature: plane.curvature / optics.tan_half_yfov.powi(2),
+            image_distance: optics.image_distance,
+        }
+    }
+
+    /// The focus of what is seen in `direction` (of depth 1) at the reciprocal of its depth.
+    fn focus(&self, direction: DVec3, inverse_depth: f64) -> FocusOffset {
+        let surface = self.plane.dot(direction) + self.curvature * direction.truncate().length_squared();
+        let t = 1.0 + self.image_distance * (surface - inverse_depth);
+        // A camera in the plane divides by 0, and in its own plane 0 by 0: that direction is in focus at every depth.
+        let t = if t.is_nan() { 1.0 } else { t.clamp(-LARGEST_OFFSET, LARGEST_OFFSET) };
+        FocusOffset::new(t, 1.0)
+    }
+}

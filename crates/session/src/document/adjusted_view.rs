@@ -1,0 +1,20 @@
+//! What of the shot camera adjustment layers depend on.
+
+use glam::DMat4;
+use lens::Camera;
+
+/// Pose, angle of view and sensor height: where things stand before the camera, and what a blur means as an offset.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct AdjustedView {
+    camera_to_world: DMat4,
+    yfov: f64,
+    sensor_height: f64,
+}
+
+impl AdjustedView {
+    /// That of a camera.
+    pub fn of(camera: &Camera) -> Self {
+        let &Camera { camera_to_world, yfov, sensor_height, .. } = camera;
+        Self { camera_to_world, yfov, sensor_height }
+    }
+}
