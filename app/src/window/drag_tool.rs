@@ -29,6 +29,8 @@ pub struct DragView<'a> {
     pub frame: ViewFrame,
     /// From the screen to where in it that is.
     pub position: &'a dyn Fn(Pos2) -> DVec2,
+    /// And back.
+    pub screen: &'a dyn Fn(DVec2) -> Pos2,
 }
 
 impl Drag {

@@ -39,6 +39,7 @@ mod options;
 mod paint_view;
 mod palette;
 mod picture_view;
+mod plane_tool;
 mod player;
 mod pointer;
 mod region_highlight;

@@ -5,10 +5,11 @@
 use super::curve_stroke::CurveStroke;
 use super::drag_tool::{Drag, DragView, combine};
 use super::hand::{Hand, click};
+use super::plane_tool::{self, PlaneTool};
 use super::{Action, Tool, navigation};
 use egui::{Event, Modifiers, PointerButton, Pos2, Response, Ui};
 use focus::ViewFrame;
-use glam::{DVec2, DVec3};
+use glam::DVec3;
 use project::SelectionShape;
 use session::{Command, Session, StrokePoint, StrokeTarget};
 
@@ -23,6 +24,8 @@ pub struct StrokeInput {
     drag: Option<Drag>,
     /// The curve that is being laid out.
     curve: CurveStroke,
+    /// The focal plane's point in hand.
+    plane: PlaneTool,
     /// Where cloning takes the focus from, until the first stroke says where it goes.
     clone_from: Option<DVec3>,
     /// Where the brush is: on the string behind the pointer.
@@ -32,16 +35,14 @@ pub struct StrokeInput {
 }
 
 impl StrokeInput {
-    /// Turns the left button on `response` into strokes and clicks. `frame` is the view, and `position` takes a
-    /// screen position to where in it that is ((0, 0) upper left, (1, 1) lower right).
+    /// Turns the left button on `response` into strokes and clicks in `view`.
     pub fn update(
         &mut self,
         ui: &Ui,
         response: &Response,
         session: &Session,
         hand: &Hand,
-        frame: ViewFrame,
-        position: impl Fn(Pos2) -> DVec2,
+        view: &DragView<'_>,
     ) -> Vec<Action> {
         let mut actions = Vec::new();
         if session.document().is_none() || hand.is_busy {
@@ -59,18 +60,24 @@ impl StrokeInput {
         });
         let down = ui.input(|input| input.pointer.primary_down());
         let pressure = ui.input(|input| pen_pressure(&input.events));
-        let point = |at| StrokePoint { at: StrokeTarget::View(frame, position(at)), pressure };
-        let view = DragView { frame, position: &position };
+        let frame = view.frame;
+        let point = |at| StrokePoint { at: StrokeTarget::View(frame, (view.position)(at)), pressure };
+        let dragged_to = || response.interact_pointer_pos().filter(|_| response.dragged());
+        if self.plane.is_holding() {
+            actions.extend(dragged_to().and_then(|at| self.plane.drag(session, view, at)));
+            actions.extend((!down).then(|| self.plane.release()));
+            return actions;
+        }
         if let Some(drag) = &mut self.drag {
             if ui.input(|input| input.key_pressed(egui::Key::Escape)) {
                 self.drag = None;
                 return actions;
             }
-            if let Some(at) = response.interact_pointer_pos().filter(|_| response.dragged()) {
-                actions.extend(drag.extend(at, session, &hand.settings, &view));
+            if let Some(at) = dragged_to() {
+                actions.extend(drag.extend(at, session, &hand.settings, view));
             }
             if !down && let Some(drag) = self.drag.take() {
-                actions.extend(drag.end(session, &hand.settings, &view));
+                actions.extend(drag.end(session, &hand.settings, view));
             }
             return actions;
         }
@@ -91,7 +98,7 @@ impl StrokeInput {
         let start = pressed.filter(|(modifiers, _)| own(modifiers) && is_here);
         if let Some((modifiers, at)) = start {
             response.request_focus();
-            self.press(session, hand, (modifiers, at), &view, point, &mut actions);
+            self.press(session, hand, (modifiers, at), view, point, &mut actions);
             return actions;
         }
         if !self.painting {
@@ -164,6 +171,12 @@ impl StrokeInput {
             }
             self.painting = true;
             self.brush = Some(at);
+        } else if tool == Tool::FocalPlane {
+            if plane_tool::active_plane(document).is_none() {
+                let what = "The layer is no focal plane: choose one in Layers, or add one there.";
+                actions.push(Action::Complain(what.into()));
+            }
+            actions.extend(self.plane.press(session, view, at));
         } else if tool.drags() {
             self.drag = Some(Drag::begin(tool, modifiers, at, session, view));
         } else if let Some(hit) = hit() {
@@ -194,8 +207,11 @@ impl StrokeInput {
         }
     }
 
-    /// Draws the drag that goes on.
-    pub fn paint(&self, ui: &Ui, clip: egui::Rect) {
+    /// Draws what the tool in hand has laid out.
+    pub fn paint(&self, ui: &Ui, clip: egui::Rect, session: &Session, hand: &Hand, view: &DragView<'_>) {
+        if let Some(document) = session.document().filter(|_| hand.tool == Tool::FocalPlane) {
+            plane_tool::paint(&ui.painter_at(clip), document, view);
+        }
         if let Some(drag) = &self.drag {
             drag.paint(&ui.painter_at(clip));
         }

@@ -28,6 +28,8 @@ pub enum Tool {
     FillChart,
     /// A drag draws a gradient.
     Gradient,
+    /// Clicks lay the focal plane of the layer through three places.
+    FocalPlane,
     /// A click makes the object sharp.
     SharpHere,
     /// A line around what may be painted.
@@ -60,7 +62,7 @@ impl Tool {
         &[Tool::Clone],
         &[Tool::Reset],
         &[Tool::FillObject, Tool::FillMaterial, Tool::FillChart, Tool::SharpHere],
-        &[Tool::Gradient],
+        &[Tool::Gradient, Tool::FocalPlane],
         &[
             Tool::SelectLasso,
             Tool::SelectBox,
@@ -87,6 +89,7 @@ impl Tool {
             Tool::FillMaterial => CommandId::FillMaterial,
             Tool::FillChart => CommandId::FillChart,
             Tool::Gradient => CommandId::Gradient,
+            Tool::FocalPlane => CommandId::PlaceFocalPlane,
             Tool::SharpHere => CommandId::SharpHere,
             Tool::SelectLasso => CommandId::SelectLasso,
             Tool::SelectBox => CommandId::SelectBox,
@@ -111,6 +114,7 @@ impl Tool {
         match self {
             Tool::Reset => "Reset",
             Tool::FillObject => "Fill",
+            Tool::FocalPlane => "Focal plane",
             Tool::Inspect => "Inspect",
             Tool::SelectObject => "Select object",
             Tool::SelectMaterial => "Select material",

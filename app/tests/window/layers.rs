@@ -4,7 +4,8 @@ use crate::acting::{Person, at, difference};
 use crate::small_scene::opened;
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable;
-use focus::Blend;
+use focus::{Adjustment, Blend};
+use focus_brush::window::Tool;
 use lens::FocusOffset;
 
 impl Person {
@@ -99,11 +100,15 @@ fn the_reset_brush_uncovers_what_lies_beneath_and_layers_are_saved() {
     assert_eq!(person.focus_at(0.95, 0.9).anchor, 1.0, "sharp at every depth to begin with");
     person.scrolls_to("Blur over depth");
     let drawing = person.window.get_by_label("Blur over depth").rect();
-    let right = person.document().layers.active().curve.clone().unwrap().curve.points().len();
+    let curve = |person: &Person| match person.document().layers.active().adjustment.clone() {
+        Some(Adjustment::Curve(curve)) => curve.curve,
+        other => panic!("a curve: {other:?}"),
+    };
+    let right = curve(&person).points().len();
     person.clicks(at(drawing, 0.91, 0.25));
-    let curve = person.document().layers.active().curve.clone().unwrap();
-    assert_eq!(curve.curve.points().len(), right + 1, "a click draws another point");
-    assert!(curve.curve.points()[right][1] > 1.0, "far blur is on top");
+    let curve = curve(&person);
+    assert_eq!(curve.points().len(), right + 1, "a click draws another point");
+    assert!(curve.points()[right][1] > 1.0, "far blur is on top");
     assert_eq!(person.document().undo_name(), Some("Depth curve"));
     person.scrolls_to("Blending");
     person.window.get_by_label("Blending").click();
@@ -135,4 +140,63 @@ fn the_reset_brush_uncovers_what_lies_beneath_and_layers_are_saved() {
     person.waits();
     assert_eq!(person.document().layers.layers().len(), 2);
     assert!(person.complaints().is_empty(), "{:?}", person.complaints());
+}
+
+#[test]
+fn a_focal_plane_runs_through_three_places_that_are_clicked() {
+    let (mut person, _folder) = opened();
+    let before = person.picture().radiance.clone();
+    person.scrolls_to("+ Focal plane");
+    person.window.get_by_label("+ Focal plane").click();
+    person.waits();
+    assert_eq!(person.shell().tool(), Tool::FocalPlane, "the next clicks place it");
+    let plane = |person: &Person| match person.document().layers.active().adjustment.clone() {
+        Some(Adjustment::Plane(plane)) => plane,
+        other => panic!("a plane: {other:?}"),
+    };
+    // It begins as the ordinary lens's.
+    let camera = person.document().camera.clone();
+    assert!((plane(&person).depth_on_axis(&camera) - camera.focus_distance).abs() < 1e-9);
+    let rect = person.picture_rect();
+    let places = [(0.25, 0.5), (0.9, 0.2), (0.9, 0.8)];
+    for (x, y) in places {
+        person.clicks(at(rect, x, y));
+        person.waits();
+    }
+    assert_eq!(person.document().undo_name(), Some("Focal plane"));
+    assert_eq!(person.document().undo_names().count(), 4, "every click is a step");
+    for (x, y) in places {
+        let focus = person.focus_at(x.into(), y.into());
+        assert!((focus.t - 1.0).abs() < 1e-4 && focus.anchor == 1.0, "sharp where it was clicked: {focus:?}");
+    }
+    let beside = person.focus_at(0.6, 0.5);
+    assert!((beside.t - 1.0).abs() > 1e-3, "the wall between lies behind it: {beside:?}");
+    assert!(person.picture().radiance != before);
+    // A point is dragged on, and taken back.
+    let placed = plane(&person);
+    let from = at(rect, 0.9, 0.8);
+    person.drags(&[from, at(rect, 0.8, 0.75), at(rect, 0.7, 0.7)]);
+    person.lets_go(at(rect, 0.7, 0.7));
+    person.waits();
+    let moved = plane(&person);
+    assert_eq!(moved.points[..2], placed.points[..2]);
+    assert!(moved.points[2].distance(placed.points[2]) > 0.1);
+    person.presses(Modifiers::COMMAND, Key::Z);
+    person.waits();
+    assert_eq!(plane(&person), placed);
+
+    // Turned by hand: what is above comes nearer.
+    person.scrolls_to("Tilt");
+    let tilt = plane(&person).turn(&person.document().camera)[0];
+    assert!(tilt.abs() < 1.5);
+    person.scrolls_to("Place by three points");
+    assert!(person.window.query_by_label("Curvature").is_some());
+    // Clicks on a layer that is none say so.
+    person.presses(Modifiers::NONE, Key::PageDown);
+    person.clicks(at(rect, 0.3, 0.3));
+    assert!(
+        person.complaints().iter().any(|text| text.contains("no focal plane")),
+        "{:?}",
+        person.complaints()
+    );
 }

@@ -1,10 +1,11 @@
 //! The layers of focus, the topmost first.
 
 use super::curve_editor::curve_editor;
+use super::plane_editor::plane_editor;
 use crate::window::controls::{self, finish, row, rows};
 use crate::window::{Action, keys};
 use egui::{Button, ComboBox, Slider, TextEdit, Ui};
-use focus::{Blend, FocusLayer, LayerEdit};
+use focus::{Adjustment, Blend, FocusLayer, LayerEdit};
 use session::{Command, CommandId, Document};
 
 /// The list of layers, and what can be changed of the one that is painted on.
@@ -36,6 +37,7 @@ pub fn layers_panel(ui: &mut Ui, document: &Document, actions: &mut Vec<Action>)
         };
         button(CommandId::AddLayer, "+ Layer");
         button(CommandId::AddDepthCurve, "+ Depth curve");
+        button(CommandId::AddFocalPlane, "+ Focal plane");
         button(CommandId::DuplicateLayer, "Duplicate");
         button(CommandId::RaiseLayer, "Up");
         button(CommandId::LowerLayer, "Down");
@@ -134,8 +136,10 @@ fn active_layer(
             .inner
         });
     });
-    if let Some(curve) = &layer.curve {
-        curve_editor(ui, document, index, curve, actions);
+    match &layer.adjustment {
+        Some(Adjustment::Curve(curve)) => curve_editor(ui, document, index, curve, actions),
+        Some(Adjustment::Plane(plane)) => plane_editor(ui, document, index, plane, actions),
+        None => {}
     }
 }
 

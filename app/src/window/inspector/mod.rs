@@ -8,6 +8,7 @@ mod history_panel;
 mod layers_panel;
 mod lens_panel;
 mod modelled_panel;
+mod plane_editor;
 mod scene_panel;
 mod shape_panel;
 mod tool_panel;

@@ -245,16 +245,17 @@ impl PaintView {
         let frame =
             ViewFrame { camera_to_world: self.camera.pose(), yfov: self.camera.yfov, aspect: aspect(rect) };
         let position = |at: Pos2| view_position(rect, at);
-        actions.extend(self.stroke.update(ui, &response, session, hand, frame, position));
+        let screen = |at: DVec2| screen_position(rect, at);
+        let view = DragView { frame, position: &position, screen: &screen };
+        actions.extend(self.stroke.update(ui, &response, session, hand, &view));
         let pointer = response.hover_pos().or_else(|| response.interact_pointer_pos());
-        let view = DragView { frame, position: &position };
         self.hover = pointer.and_then(|at| hand.hit(session, &view, at));
         let painter = ui.painter_at(rect);
         self.paint_shot_camera(&painter, &document.camera, document.stage.bounds);
         if look.focus_share > 0.0 {
             legend(&painter, rect);
         }
-        self.stroke.paint(ui, rect);
+        self.stroke.paint(ui, rect, session, hand, &view);
         let targets = hand.targets(session, self.hover.filter(|_| response.hovered()));
         self.highlight.paint(ui, document, (frame, rect, rect), &targets);
         if let (Some(hit), Some(ring)) = (self.hover, hand.ring) {
@@ -442,6 +443,11 @@ fn stored_viewpoint(view: &serde_json::Value) -> Option<OrbitCamera> {
 fn view_position(rect: Rect, at: Pos2) -> DVec2 {
     let share = |at: f32, from: f32, length: f32| ((at - from) / length.max(1.0)) as f64;
     DVec2::new(share(at.x, rect.left(), rect.width()), share(at.y, rect.top(), rect.height()))
+}
+
+/// And back.
+fn screen_position(rect: Rect, at: DVec2) -> Pos2 {
+    rect.min + vec2(at.x as f32, at.y as f32) * rect.size()
 }
 
 fn screen_from_view(rect: Rect, at: DVec2) -> Pos2 {

@@ -172,14 +172,15 @@ impl PictureView {
             ViewFrame { camera_to_world: shot.camera_to_world, yfov: shot.yfov, aspect: shot.aspect() };
         let is_selecting = self.verify.is_selecting();
         let position = |at: Pos2| picture_position(image, at);
+        let screen = |at: DVec2| image.min + vec2(at.x as f32, at.y as f32) * image.size();
+        let view = DragView { frame, position: &position, screen: &screen };
         self.verify.select(ui, &response, image, position, actions);
         if !(is_wiping || is_selecting) || session.is_painting() {
-            actions.extend(self.stroke.update(ui, &response, session, hand, frame, position));
+            actions.extend(self.stroke.update(ui, &response, session, hand, &view));
         }
-        self.stroke.paint(ui, rect);
+        self.stroke.paint(ui, rect, session, hand, &view);
         let pointer = response.hover_pos().or_else(|| response.interact_pointer_pos());
         let pointer = pointer.filter(|at| image.contains(*at) && !is_wiping && !is_selecting);
-        let view = DragView { frame, position: &position };
         self.hover = pointer.and_then(|at| hand.hit(session, &view, at));
         let targets = hand.targets(session, self.hover);
         self.highlight.paint(ui, document, (frame, image, rect), &targets);

@@ -87,6 +87,7 @@ impl Shell {
             | CommandId::FillMaterial
             | CommandId::FillChart
             | CommandId::Gradient
+            | CommandId::PlaceFocalPlane
             | CommandId::SharpHere
             | CommandId::SelectLasso
             | CommandId::SelectBox
@@ -140,6 +141,10 @@ impl Shell {
             }),
             CommandId::AddLayer => self.apply(Command::Layer(LayerEdit::AddPaint)),
             CommandId::AddDepthCurve => self.apply(Command::Layer(LayerEdit::AddCurve)),
+            CommandId::AddFocalPlane => {
+                self.apply(Command::Layer(LayerEdit::AddPlane));
+                self.choose(CommandId::PlaceFocalPlane);
+            }
             CommandId::DuplicateLayer => self.edit_layer(LayerEdit::Duplicate),
             CommandId::RemoveLayer => self.edit_layer(LayerEdit::Remove),
             CommandId::RaiseLayer => self.edit_layer(|from| LayerEdit::Shift { from, to: from + 1 }),

@@ -63,6 +63,7 @@ pub enum CommandId {
     FillChart,
     FillAll,
     Gradient,
+    PlaceFocalPlane,
     SharpHere,
     FocusHere,
     Pick,
@@ -83,6 +84,7 @@ pub enum CommandId {
     ToggleAnchor,
     AddLayer,
     AddDepthCurve,
+    AddFocalPlane,
     DuplicateLayer,
     RemoveLayer,
     RaiseLayer,
@@ -288,6 +290,7 @@ pub const COMMANDS: &[CommandInfo] = &[
     row(CommandId::FillChart, Menu::Focus, None, "Fill chart", "Click an atlas chart in either view to give it the chosen focus."),
     row(CommandId::FillAll, Menu::Focus, None, "Fill everything", "Give the whole scene the chosen focus."),
     row(CommandId::Gradient, Menu::Focus, Shortcut::key("D"), "Gradient", "Drag a line in either view: the chosen focus at its start leads to what is there, or another."),
+    row(CommandId::PlaceFocalPlane, Menu::Focus, Shortcut::shift("D"), "Place focal plane", "Click three places in either view: the focal plane of the layer runs through the last three. Drag a point to move it."),
     row(CommandId::SharpHere, Menu::Focus, Shortcut::shift("H"), "Make sharp", "Click an object in either view to make it sharp; everything else stays as it is."),
     row(CommandId::FocusHere, Menu::Focus, Shortcut::key("H"), "Focus here", "Click in either view to focus the lens there."),
     row(CommandId::Pick, Menu::Focus, Shortcut::key("I"), "Pick", "Click in either view to take the brush's focus from there."),
@@ -308,6 +311,7 @@ pub const COMMANDS: &[CommandInfo] = &[
     row(CommandId::ToggleAnchor, Menu::Focus, Shortcut::key("A"), "Anchor: lens or point", "Paint blur relative to the lens, or to the point itself."),
     row(CommandId::AddLayer, Menu::Layer, Shortcut::command_shift("N"), "Add layer", "Add an empty layer to paint on, above this one."),
     row(CommandId::AddDepthCurve, Menu::Layer, None, "Add depth curve", "Add a layer that gives every depth the blur of a curve you draw."),
+    row(CommandId::AddFocalPlane, Menu::Layer, None, "Add focal plane", "Add a layer whose plane is sharp, tilted as you like: click three places that it runs through."),
     row(CommandId::DuplicateLayer, Menu::Layer, Shortcut::command("J"), "Duplicate layer", "Add a copy of this layer."),
     row(CommandId::RemoveLayer, Menu::Layer, Shortcut::shift("Delete"), "Remove layer", "Take this layer away."),
     row(CommandId::RaiseLayer, Menu::Layer, Shortcut::command("CloseBracket"), "Raise layer", "Move this layer above the next one."),
@@ -346,6 +350,7 @@ impl CommandId {
                 | ResetMap
                 | AddLayer
                 | AddDepthCurve
+                | AddFocalPlane
                 | DuplicateLayer
                 | RemoveLayer
                 | RaiseLayer
