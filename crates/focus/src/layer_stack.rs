@@ -122,6 +122,17 @@ impl LayerStack {
         self.layers.iter().any(|layer| layer.adjustment.is_some())
     }
 
+    /// The same with nothing in adjustment layers but their rules and masks: what is small, and says all.
+    /// [`Self::evaluate`] brings the values back.
+    pub fn without_adjusted_values(&self) -> Self {
+        let [width, height] = self.size();
+        let mut stack = self.clone();
+        for layer in stack.layers.iter_mut().filter(|layer| layer.adjustment.is_some()) {
+            layer.map.texels = FocusMap::new(width, height, FocusOffset::STANDARD).texels;
+        }
+        stack
+    }
+
     /// Takes the values of all adjustment layers for a shot camera.
     pub fn evaluate(&mut self, canvas: &Canvas, camera: &Camera) {
         self.layers.iter_mut().for_each(|layer| layer.evaluate(canvas, camera));

@@ -151,6 +151,7 @@ fn it_stays_in_the_scene_when_the_camera_moves_and_is_undone() {
             "{now} and {before}: seen from another place alone"
         );
     }
+    let seen_last = circle(&session);
     // Through the wall's own point, it is sharp.
     let through =
         FocalPlane { points: [wall.position, DVec3::ZERO, DVec3::new(3.0, 0.0, -9.0)], ..leaning() };
@@ -161,6 +162,11 @@ fn it_stays_in_the_scene_when_the_camera_moves_and_is_undone() {
     session.apply(Command::Undo).unwrap();
     settle(&mut session);
     assert_eq!(plane(&session), leaning());
+    assert!((circle(&session) - seen_last).abs() < 1e-6, "its values are back");
+    let [held, _] = session.document().unwrap().undo_bytes();
+    let texels =
+        session.document().unwrap().map.width() as usize * session.document().unwrap().map.height() as usize;
+    assert!(held < 4 * texels, "steps hold rules, not what follows from them: {held} bytes");
     let line = [0.0, 1.0, 2.0].map(|x| DVec3::new(x, 0.0, -2.0));
     let refused =
         session.apply(Command::Layer(LayerEdit::Plane(1, FocalPlane { points: line, ..leaning() })));

@@ -280,6 +280,12 @@ impl Document {
         self.pictured = self.map.clone();
     }
 
+    /// Brings adjustment layers up to date with the shot camera.
+    pub(crate) fn adjust(&mut self) {
+        self.adjusted_for = AdjustedView::of(&self.camera);
+        self.layers.evaluate(&self.stage.canvas, &self.camera);
+    }
+
     /// A step was taken back, or done again.
     pub(crate) fn stepped(&mut self) {
         self.pictured = self.map.clone();

@@ -129,7 +129,8 @@ impl Undo {
         self.done.iter().filter_map(|step| step.record.as_deref())
     }
 
-    /// Takes up a change of the layers; edits of one thing in a row, as a dragged slider makes them, are one step.
+    /// Takes up a change of the layers; edits of one thing in a row, as a dragged slider makes them, are one step. The values
+    /// of adjustment layers are not kept: who takes a step back evaluates them again.
     pub fn push_layers(
         &mut self,
         name: &str,
@@ -145,9 +146,10 @@ impl Undo {
         let goes_on = |last: &Step| dragged.is_some() && edit(last.record.as_deref()) == dragged;
         let before = match self.last_of_run(goes_on) {
             Some(Step { change: Change::Layers { before, .. }, .. }) => before,
-            _ => before.into(),
+            _ => before.without_adjusted_values().into(),
         };
-        self.push(Step::new(name.into(), Change::Layers { before, after: after.into() }, record));
+        let after = after.without_adjusted_values().into();
+        self.push(Step::new(name.into(), Change::Layers { before, after }, record));
         self.run = dragged.is_some();
     }
 

@@ -65,7 +65,10 @@ impl Session {
                 Ok(())
             }
             Some(Undone::Layers) => {
-                self.opened()?.revision += 1;
+                let document = self.opened()?;
+                // Steps hold no values that follow from the camera.
+                document.adjust();
+                document.revision += 1;
                 self.events.push(Event::LayersChanged);
                 self.show_layers(None)
             }

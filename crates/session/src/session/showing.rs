@@ -35,13 +35,10 @@ impl Session {
     /// Adjustment layers follow the shot camera.
     pub(super) fn follow_camera(&mut self) -> Result<(), SessionError> {
         let document = self.opened()?;
-        let view = AdjustedView::of(&document.camera);
-        if !document.layers.follows_camera() || document.adjusted_for == view {
+        if !document.layers.follows_camera() || document.adjusted_for == AdjustedView::of(&document.camera) {
             return Ok(());
         }
-        document.adjusted_for = view;
-        let stage = document.stage.clone();
-        document.layers.evaluate(&stage.canvas, &document.camera);
+        document.adjust();
         self.show_layers(None)
     }
 
