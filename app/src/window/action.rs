@@ -1,6 +1,7 @@
 //! What panels and views ask for. They read the document and emit; the shell carries out.
 
 use super::layout::Pane;
+use project::Preset;
 use session::{Command, CommandId, SurfaceHit};
 use std::path::PathBuf;
 
@@ -19,8 +20,29 @@ pub enum Action {
     Inspect(SurfaceHit),
     /// Puts a panel elsewhere.
     Place(Pane, Placing),
+    /// Something with a preset.
+    Preset(PresetWish),
     /// A sentence for the user: something cannot be done.
     Complain(String),
+}
+
+/// What is done with a preset.
+#[derive(Clone, Debug)]
+pub enum PresetWish {
+    /// Brush or camera become as it says.
+    Use(Box<Preset>),
+    /// The user's own preset of a file, with its name, gets another name.
+    Rename(PathBuf, String),
+    /// The user's own preset of a file goes.
+    Delete(PathBuf),
+    /// It is written to a file that is asked for.
+    Export(Box<Preset>),
+}
+
+impl From<PresetWish> for Action {
+    fn from(wish: PresetWish) -> Self {
+        Self::Preset(wish)
+    }
 }
 
 /// What is done with a panel.

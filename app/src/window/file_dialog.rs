@@ -34,6 +34,10 @@ pub enum Purpose {
     ImportFocusMap,
     /// A picture of an aperture.
     ApertureMask,
+    /// A preset to put on the list.
+    ImportPreset,
+    /// A preset of the list.
+    ExportPreset,
 }
 
 impl Purpose {
@@ -48,6 +52,8 @@ impl Purpose {
             Self::ExportStrokes => "Export the strokes",
             Self::ImportFocusMap => "Import a focus map or a recipe",
             Self::ApertureMask => "Choose an aperture mask",
+            Self::ImportPreset => "Import a preset",
+            Self::ExportPreset => "Export the preset",
         }
     }
 
@@ -58,7 +64,7 @@ impl Purpose {
             Self::ExportPicture | Self::ExportShown | Self::ExportFocusMap => &["exr", "png"],
             Self::ImportFocusMap => &["exr", "png", "json"],
             Self::ExportScene => &["glb"],
-            Self::ExportStrokes => &["json"],
+            Self::ExportStrokes | Self::ImportPreset | Self::ExportPreset => &["json"],
             Self::ApertureMask => &["png", "jpg", "jpeg", "exr"],
         }
     }
@@ -88,6 +94,7 @@ impl Purpose {
                 | Self::ExportFocusMap
                 | Self::ExportScene
                 | Self::ExportStrokes
+                | Self::ExportPreset
         )
     }
 
@@ -96,7 +103,7 @@ impl Purpose {
             Self::Open => "Open",
             Self::SaveAs => "Save",
             _ if self.writes() => "Export",
-            Self::ImportFocusMap => "Import",
+            Self::ImportFocusMap | Self::ImportPreset => "Import",
             _ => "Choose",
         }
     }

@@ -104,7 +104,7 @@ pub fn is_possible(id: CommandId, state: &MenuState<'_>) -> bool {
     match id {
         Open | OpenDemo | Quit | ResetLayout | EnlargePanel | FloatPanel | FullScreen | ShowInspector
         | NextToneCurve | LightOrDark | ScaleUp | ScaleDown | KeysBlender | KeysSubstance | KeysKrita
-        | Palette | Shortcuts | About => true,
+        | ImportPreset | Palette | Shortcuts | About => true,
         SelectAll | InvertSelection | MaskFromSelection => {
             state.document.is_some_and(|document| document.selection.is_some())
         }

@@ -42,6 +42,7 @@ mod picture_view;
 mod plane_tool;
 mod player;
 mod pointer;
+mod preset_name;
 mod region_highlight;
 mod shell;
 mod soft_painter;

@@ -24,6 +24,8 @@ pub struct WindowOptions {
     pub unwrap: atlas::UnwrapOptions,
     /// Whether the system is asked for its file dialogs; else paths are typed.
     pub system_dialogs: bool,
+    /// Where the user's own presets are; none: nowhere.
+    pub presets: Option<PathBuf>,
     /// What is played once the file is open.
     pub replay: Option<Vec<project::RecordedStep>>,
     /// Where the times of what is played are written; the window then closes.
@@ -42,6 +44,7 @@ impl Default for WindowOptions {
             backend: splat::BackendChoice::Auto,
             unwrap: atlas::UnwrapOptions::default(),
             system_dialogs: system_dialogs(),
+            presets: project::PresetShelf::usual_folder(),
             replay: None,
             trace: None,
         }

@@ -9,6 +9,7 @@
 
 mod commands;
 mod document;
+mod presets;
 mod views;
 
 use super::action::Placing;
@@ -26,6 +27,7 @@ use super::paint_view::PaintView;
 use super::palette::Palette;
 use super::picture_view::{PictureView, Shown};
 use super::player::Player;
+use super::preset_name::PresetName;
 use super::status_line::{StatusNotes, status_line};
 use super::toasts::{Severity, Toasts};
 use super::tool_bar::{largest_radius, tool_bar};
@@ -33,6 +35,7 @@ use super::unsaved_question::{Next, UnsavedQuestion};
 use super::{Action, Tool, ViewSettings, graphics, keys, soft_painter, theme};
 use eframe::{CreationContext, Frame, Storage};
 use egui::{CentralPanel, Context, Panel, Ui, ViewportCommand};
+use project::{Preset, PresetShelf};
 use session::{CameraEdit, Command, CommandId, Event, ReferenceKind, Session, SessionError, SessionOptions};
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -61,6 +64,10 @@ pub struct Shell {
     looking_round: LookingRound,
     dialog: FileDialog,
     question: UnsavedQuestion,
+    presets: PresetShelf,
+    preset_name: PresetName,
+    /// The preset that a file is asked for.
+    exported_preset: Option<Preset>,
     /// What waits for a save to end well.
     after_save: Option<Next>,
     /// Whether the window may close without a question.
@@ -120,6 +127,9 @@ impl Shell {
             looking_round: LookingRound::default(),
             dialog: FileDialog::new(options.system_dialogs),
             question: UnsavedQuestion::default(),
+            presets: PresetShelf::open(options.presets),
+            preset_name: PresetName::default(),
+            exported_preset: None,
             after_save: None,
             may_close: false,
             title: String::new(),
@@ -265,7 +275,11 @@ impl Shell {
 
     /// Keys: Esc takes a stroke back; the rest is the command table's.
     fn keys(&mut self, context: &Context, actions: &mut Vec<Action>) {
-        if self.palette.is_open() || self.dialog.is_open() || self.question.is_open() {
+        if self.palette.is_open()
+            || self.dialog.is_open()
+            || self.question.is_open()
+            || self.preset_name.is_open()
+        {
             return;
         }
         if self.gesture.has_input() {
@@ -312,6 +326,7 @@ impl Shell {
                 Action::Place(pane, Placing::Enlarge) => self.layout.toggle_enlarged(pane),
                 Action::Place(pane, Placing::Float) => self.layout.toggle_floating(pane),
                 Action::Place(pane, Placing::Close) => self.layout.close(pane),
+                Action::Preset(wish) => self.preset(wish, context),
                 Action::Complain(text) => self.toasts.error(text),
             }
         }
@@ -400,6 +415,7 @@ impl eframe::App for Shell {
         }
         self.help.show(&context, &self.adapter);
         self.answer_questions(&context);
+        self.take_preset_name(&context);
         self.toasts.show(&context);
         self.perform(actions, &context);
         // While work goes on, its progress is shown twice a second.

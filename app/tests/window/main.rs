@@ -13,5 +13,6 @@ mod layers;
 mod on_card;
 mod painting;
 mod panels;
+mod presets;
 mod quality;
 mod small_scene;

@@ -212,7 +212,7 @@ impl Aperture {
 
 impl ApertureMask {
     /// Mean transmission over the box `u` × `v`, 0 outside [−1, 1]².
-    pub(crate) fn mean(&self, u: [f64; 2], v: [f64; 2]) -> f64 {
+    pub fn mean(&self, u: [f64; 2], v: [f64; 2]) -> f64 {
         let columns = u.map(|u| (u + 1.0) / 2.0 * self.width as f64);
         let rows = [v[1], v[0]].map(|v| (1.0 - v) / 2.0 * self.height as f64);
         let mut sum = 0.0;

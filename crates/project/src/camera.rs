@@ -4,7 +4,7 @@
 //! {"width": 960, "height": 540, "yfov": 0.7, "focus_distance": 3.0 | "inf", "aperture_radius": 0.0125,
 //!  "sensor_height": 0.024, "camera_to_world": 4×4 rows, "background": [r, g, b],
 //!  "aperture": {"shape": "disc" | "polygon" | "square" | "mask", "blades": 6, "rotation": rad,
-//!               "roundness": 0..1, "ratio": 1.0, "mask": FILE}}
+//!               "roundness": 0..1, "ratio": 1.0, "mask": FILE | {"name": …, "rows": […]}}}
 //! ```
 //!
 //! yfov is the full angle in rad, lengths are scene units, focus_distance is axial, to the focus plane;
@@ -14,6 +14,7 @@ use crate::ProjectError;
 use crate::aperture_mask_file::read_aperture_mask;
 use crate::disk::write_bytes;
 use crate::json::{Field, Fields, Json};
+use crate::mask_rows::mask_from_json;
 use glam::{DMat4, DVec4};
 use lens::{Aperture, ApertureMask, ApertureShape, Camera};
 use serde_json::{Value, json};
@@ -105,7 +106,8 @@ fn from_json(
     Ok(camera)
 }
 
-fn aperture_from_json(
+/// The aperture of its JSON fields. A mask is a picture's file, found by `mask`, or stands there itself.
+pub(crate) fn aperture_from_json(
     fields: &Fields<'_>,
     mask: &dyn Fn(&str) -> Result<ApertureMask, ProjectError>,
 ) -> Result<Aperture, ProjectError> {
@@ -121,7 +123,10 @@ fn aperture_from_json(
             rotation: number("rotation", 0.0)?,
             roundness: number("roundness", 0.0)?,
         },
-        ("mask", Some(file), _) => ApertureShape::Mask(Arc::new(mask(file.text()?)?)),
+        ("mask", Some(field), _) => ApertureShape::Mask(Arc::new(match field.value {
+            Json::Object(_) => mask_from_json(&field)?,
+            _ => mask(field.text()?)?,
+        })),
         ("mask", None, Some(shape)) => {
             return Err(shape.error("is \"mask\", but no mask is given", "add \"mask\": FILE"));
         }
@@ -146,15 +151,6 @@ pub fn camera_to_json(camera: &Camera) -> Value {
         distance if distance.is_infinite() => json!("inf"),
         distance => json!(distance),
     };
-    let mut aperture = match &camera.aperture.shape {
-        ApertureShape::Disc => json!({"shape": "disc"}),
-        ApertureShape::Square => json!({"shape": "square"}),
-        ApertureShape::Polygon { blades, rotation, roundness } => {
-            json!({"shape": "polygon", "blades": blades, "rotation": rotation, "roundness": roundness})
-        }
-        ApertureShape::Mask(mask) => json!({"shape": "mask", "mask": mask.file}),
-    };
-    aperture["ratio"] = json!(camera.aperture.ratio);
     json!({
         "width": camera.width,
         "height": camera.height,
@@ -164,6 +160,20 @@ pub fn camera_to_json(camera: &Camera) -> Value {
         "sensor_height": camera.sensor_height,
         "camera_to_world": rows,
         "background": camera.background,
-        "aperture": aperture,
+        "aperture": aperture_to_json(&camera.aperture),
     })
+}
+
+/// The aperture as a JSON value; a mask is named, and not copied.
+pub(crate) fn aperture_to_json(aperture: &Aperture) -> Value {
+    let mut json = match &aperture.shape {
+        ApertureShape::Disc => json!({"shape": "disc"}),
+        ApertureShape::Square => json!({"shape": "square"}),
+        ApertureShape::Polygon { blades, rotation, roundness } => {
+            json!({"shape": "polygon", "blades": blades, "rotation": rotation, "roundness": roundness})
+        }
+        ApertureShape::Mask(mask) => json!({"shape": "mask", "mask": mask.file}),
+    };
+    json["ratio"] = json!(aperture.ratio);
+    json
 }

@@ -230,6 +230,12 @@ impl<'a> Fields<'a> {
         }
     }
 
+    /// An error about the object itself.
+    pub fn error(&self, problem: impl Into<String>, cure: impl Into<String>) -> ProjectError {
+        let field = if self.path.is_empty() { "the whole file".to_string() } else { self.path.clone() };
+        ProjectError::Field { file: self.file.to_owned(), field, problem: problem.into(), cure: cure.into() }
+    }
+
     /// The folder that the file's relative paths start from.
     pub fn folder(&self) -> PathBuf {
         self.file.parent().unwrap_or(Path::new("")).to_owned()

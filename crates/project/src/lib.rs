@@ -6,6 +6,7 @@
 //! * [`write_picture`], [`read_picture`]: pictures as EXR, PNG and (reading only) HDR, with layers beside the colour.
 //! * [`compare`]: how far two pictures are apart; [`write_error_map`]: where; [`z_test`]: whether
 //!   chance explains it.
+//! * [`Preset`]: a brush, lens or bokeh to be used again; [`PresetShelf`]: all that there are.
 //! * [`ProjectFile`]: the saved document.
 //!
 //! Everything is written atomically: the old file stays until the new one is complete.
@@ -25,8 +26,10 @@ mod json;
 mod layer_entries;
 mod layer_rows;
 mod manifest;
+mod mask_rows;
 mod picture_file;
 mod png_file;
+mod presets;
 mod project_file;
 mod recipe;
 mod recovery;
@@ -43,6 +46,7 @@ pub use error::ProjectError;
 pub use error_map_file::{error_colours, write_error_map};
 pub use focus_map_file::{FocusMapFile, write_focus_map};
 pub use picture_file::{Layer, LinearPicture, PictureOptions, read_picture, write_picture, write_rgb};
+pub use presets::{LensPreset, Preset, PresetContent, PresetKind, PresetShelf, ShelfEntry};
 pub use project_file::{NamedCamera, ProjectFile, SceneState};
 pub use recipe::{FocusFile, read_focus, read_recipe};
 pub use recovery::{find_recovery, recovery_path_for, remove_recovery, unsaved_recovery_path};

@@ -1,11 +1,13 @@
 //! The brush's shape and manner.
 
 use super::falloff_editor::{falloff_choice, falloff_editor};
+use super::preset_row::preset_row;
 use crate::window::controls::{self, format_number, proportional, row, rows};
 use crate::window::tool_bar::{HARDNESS_TIP, SIZE_TIP, STRENGTH_TIP, largest_radius, push_brush};
 use crate::window::{Action, ViewSettings};
 use egui::{ComboBox, DragValue, Slider, Ui};
 use focus::{Brush, BrushMode, Channels};
+use project::{PresetKind, PresetShelf};
 use session::{Document, SurfaceHit};
 
 /// Size, strength, hardness, spacing, mode and limits.
@@ -13,11 +15,14 @@ pub fn brush_panel(
     ui: &mut Ui,
     document: &Document,
     settings: &mut ViewSettings,
+    presets: &PresetShelf,
     hover: Option<SurfaceHit>,
     actions: &mut Vec<Action>,
 ) {
     let mut brush = document.brush.clone();
     rows(ui, "brush", |ui| {
+        let current = &document.brush;
+        preset_row(ui, presets, PresetKind::Brush, |preset| preset.is_of_brush(current), actions);
         row(ui, "Size", SIZE_TIP, |ui| {
             ui.horizontal(|ui| {
                 let largest = largest_radius(document);

@@ -1,18 +1,20 @@
 //! The lens as a photographer knows it, and the picture it makes.
 
+use super::preset_row::preset_row;
 use super::shape_panel::shape_panel;
 use crate::window::controls::{self, finish, format_number, proportional, row, rows};
 use crate::window::view_settings::LARGEST_TOLERANCE_PX;
 use crate::window::{Action, ViewSettings};
 use egui::{Button, ComboBox, DragValue, Slider, Ui};
 use lens::Exposure;
+use project::{PresetKind, PresetShelf};
 use session::{CameraEdit, Command, CommandId, Document, Session, ToneCurve};
 
 /// Full stops that the f-number's menu offers.
 const STOPS: [f64; 9] = [0.7, 1.0, 1.4, 2.0, 2.8, 4.0, 5.6, 8.0, 16.0];
 
 /// f-number, focal length, focus distance, aperture radius and shape, pose and angle of view.
-pub fn lens_panel(ui: &mut Ui, document: &Document, actions: &mut Vec<Action>) {
+pub fn lens_panel(ui: &mut Ui, document: &Document, presets: &PresetShelf, actions: &mut Vec<Action>) {
     let camera = &document.camera;
     let optics = camera.optics();
     let edit = |edit: CameraEdit| Action::from(Command::Camera(edit));
@@ -20,6 +22,7 @@ pub fn lens_panel(ui: &mut Ui, document: &Document, actions: &mut Vec<Action>) {
         if document.scene_cameras().count() > 1 {
             scene_camera_row(ui, document, actions);
         }
+        preset_row(ui, presets, PresetKind::Lens, |preset| preset.is_of_camera(camera), actions);
         let mut number = camera.f_number();
         let tip = "The f-number: focal length over the aperture's diameter. Smaller means more blur. Keys: + and −.";
         let response = row(ui, "f-number", tip, |ui| {
@@ -82,6 +85,7 @@ pub fn lens_panel(ui: &mut Ui, document: &Document, actions: &mut Vec<Action>) {
             actions.push(edit(CameraEdit::SensorHeight(sensor / 1e3)));
         }
         finish(&response, actions);
+        preset_row(ui, presets, PresetKind::Bokeh, |preset| preset.is_of_camera(camera), actions);
         shape_panel(ui, camera, actions);
     });
 }

@@ -9,6 +9,7 @@ mod layers_panel;
 mod lens_panel;
 mod modelled_panel;
 mod plane_editor;
+mod preset_row;
 mod scene_panel;
 mod shape_panel;
 mod tool_panel;
@@ -18,6 +19,7 @@ pub use tool_panel::selected;
 
 use super::{Action, Tool, ViewSettings};
 use egui::{CollapsingHeader, ScrollArea, Ui};
+use project::PresetShelf;
 use session::{Session, SurfaceHit};
 
 /// What the inspector keeps between frames.
@@ -34,6 +36,7 @@ impl Inspector {
         session: &Session,
         tool: Tool,
         settings: &mut ViewSettings,
+        presets: &PresetShelf,
         hover: Option<SurfaceHit>,
         actions: &mut Vec<Action>,
     ) {
@@ -50,11 +53,11 @@ impl Inspector {
                     tool_panel::tool_panel(ui, document, tool, &mut settings.tools, actions);
                 });
             }
-            section(ui, "Lens", true, |ui| lens_panel::lens_panel(ui, document, actions));
+            section(ui, "Lens", true, |ui| lens_panel::lens_panel(ui, document, presets, actions));
             section(ui, "Focus", true, |ui| focus_panel::focus_panel(ui, document, actions));
             section(ui, "Layers", true, |ui| layers_panel::layers_panel(ui, document, actions));
             section(ui, "Brush", true, |ui| {
-                brush_panel::brush_panel(ui, document, settings, hover, actions);
+                brush_panel::brush_panel(ui, document, settings, presets, hover, actions);
             });
             section(ui, "Picture", true, |ui| {
                 lens_panel::picture_panel(ui, session, document, settings, actions);

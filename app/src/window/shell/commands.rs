@@ -12,8 +12,9 @@ use crate::window::{Tool, ViewSettings};
 use egui::{Context, ViewportCommand};
 use focus::{Brush, BrushMode, Combine, LayerEdit};
 use lens::{Exposure, FocusOffset};
-use project::SelectionShape;
+use project::{PresetKind, SelectionShape};
 use session::{CameraEdit, Command, CommandId, FillRegion, KeyMap, ReferenceKind};
+use std::path::Path;
 
 /// How large the contents of the window may be drawn.
 const SCALES: [f32; 8] = [0.75, 0.9, 1.0, 1.1, 1.25, 1.5, 1.75, 2.0];
@@ -41,6 +42,10 @@ impl Shell {
             CommandId::ExportScene => self.ask_for(Purpose::ExportScene, context),
             CommandId::ExportStrokes => self.ask_for(Purpose::ExportStrokes, context),
             CommandId::ImportFocusMap => self.ask_for(Purpose::ImportFocusMap, context),
+            CommandId::ImportPreset => self.ask_beside(Purpose::ImportPreset, Path::new(""), context),
+            CommandId::SaveBrushPreset => self.save_preset(PresetKind::Brush),
+            CommandId::SaveLensPreset => self.save_preset(PresetKind::Lens),
+            CommandId::SaveBokehPreset => self.save_preset(PresetKind::Bokeh),
             CommandId::Quit => self.ask_then(Next::Quit, context),
             CommandId::Undo => self.apply(Command::Undo),
             CommandId::Redo => self.apply(Command::Redo),

@@ -6,7 +6,7 @@ use crate::window::unsaved_question::{Answer, Next};
 use crate::window::{Tool, demo};
 use egui::{Context, ViewportCommand};
 use session::{Command, FullSize};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 impl Shell {
     pub(super) fn open(&mut self, path: PathBuf) {
@@ -83,10 +83,19 @@ impl Shell {
             Purpose::ExportFocusMap => format!("{stem}-focus.exr"),
             Purpose::ExportScene => format!("{stem}-unwrapped.glb"),
             Purpose::ExportStrokes => format!("{stem}-strokes.json"),
-            Purpose::Open | Purpose::ImportFocusMap | Purpose::ApertureMask => String::new(),
+            Purpose::Open
+            | Purpose::ImportFocusMap
+            | Purpose::ApertureMask
+            | Purpose::ImportPreset
+            | Purpose::ExportPreset => String::new(),
         };
         self.dialog.ask(purpose, base.with_file_name("").join(name), context);
         self.dialog.note(self.export_note(purpose));
+    }
+
+    /// Asks for a file to write that belongs to no document, among the user's own.
+    pub(super) fn ask_beside(&mut self, purpose: Purpose, name: &Path, context: &Context) {
+        self.dialog.ask(purpose, own_folder().join(name), context);
     }
 
     /// What is to be known before a picture is exported: how large it is, and what will be waited for.
@@ -127,6 +136,8 @@ impl Shell {
             Purpose::ExportStrokes => self.apply(Command::ExportStrokes(path)),
             Purpose::ImportFocusMap => self.apply(Command::ImportFocusMap(path)),
             Purpose::ApertureMask => self.use_mask(path),
+            Purpose::ImportPreset => self.import_preset(&path),
+            Purpose::ExportPreset => self.export_preset(&path),
         }
     }
 
@@ -209,8 +220,12 @@ impl Shell {
     pub(super) fn dropped_files(&mut self, context: &Context) {
         let dropped =
             context.input(|input| input.raw.dropped_files.first().map(|file| file.path().to_path_buf()));
-        if let Some(path) = dropped {
-            self.ask_then(Next::Open(path), context);
+        match dropped {
+            Some(path) if path.extension().is_some_and(|extension| extension == "json") => {
+                self.import_preset(&path);
+            }
+            Some(path) => self.ask_then(Next::Open(path), context),
+            None => {}
         }
     }
 }

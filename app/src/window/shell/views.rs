@@ -13,6 +13,7 @@ use crate::window::tool_bar::signed_circle_px;
 use crate::window::view_header::{ViewHeader, panel_menu};
 use crate::window::{Action, Tool, ViewSettings};
 use egui::{Context, Ui};
+use project::PresetShelf;
 use session::{PreviewActivity, Session, SurfaceHit};
 
 /// Work shorter than this is not spoken of.
@@ -80,7 +81,9 @@ impl Shell {
     pub(super) fn panels(&mut self, ui: &mut Ui, actions: &mut Vec<Action>) {
         let hand = self.hand();
         let hover = self.hovered();
-        let Self { layout, paint, picture, session, settings, inspector, drawer, pointed, tool, .. } = self;
+        let Self {
+            layout, paint, picture, session, settings, presets, inspector, drawer, pointed, tool, ..
+        } = self;
         let mut contents = Contents {
             paint,
             picture,
@@ -88,6 +91,7 @@ impl Shell {
             drawer,
             session,
             settings,
+            presets,
             tool: *tool,
             hand: &hand,
             hover,
@@ -140,6 +144,7 @@ struct Contents<'a> {
     drawer: &'a mut Drawer,
     session: &'a Session,
     settings: &'a mut ViewSettings,
+    presets: &'a PresetShelf,
     tool: Tool,
     hand: &'a Hand,
     hover: Option<SurfaceHit>,
@@ -171,7 +176,15 @@ impl Panes for Contents<'_> {
                 let frame = egui::Frame::new().inner_margin(egui::Margin::symmetric(8, 2));
                 frame.show(ui, |ui| match pane {
                     Pane::Inspector => {
-                        self.inspector.ui(ui, session, self.tool, settings, self.hover, actions);
+                        self.inspector.ui(
+                            ui,
+                            session,
+                            self.tool,
+                            settings,
+                            self.presets,
+                            self.hover,
+                            actions,
+                        );
                     }
                     _ => self.drawer.ui(ui, session, pane, hand, actions),
                 });

@@ -1,0 +1,107 @@
+//! The presets of one kind: chosen, saved, renamed, deleted, carried in and out.
+
+use crate::window::action::PresetWish;
+use crate::window::controls::row;
+use crate::window::{Action, keys};
+use egui::{Button, Ui};
+use project::{Preset, PresetKind, PresetShelf, ShelfEntry};
+use session::CommandId;
+
+/// Width of the menu, points.
+const MENU_WIDTH: f32 = 240.0;
+/// Height of the list within it, points.
+const LIST_HEIGHT: f32 = 420.0;
+
+/// A row with the preset that `is_current` says is in use, and the menu of all.
+pub fn preset_row(
+    ui: &mut Ui,
+    shelf: &PresetShelf,
+    kind: PresetKind,
+    is_current: impl Fn(&Preset) -> bool,
+    actions: &mut Vec<Action>,
+) {
+    let (label, save, tip) = match kind {
+        PresetKind::Brush => (
+            "Brush preset",
+            CommandId::SaveBrushPreset,
+            "A brush that was set up before; its size stays as it is.",
+        ),
+        PresetKind::Lens => (
+            "Lens preset",
+            CommandId::SaveLensPreset,
+            "A lens before a sensor; pose, focus distance and size of the picture stay as they are.",
+        ),
+        PresetKind::Bokeh => ("Bokeh preset", CommandId::SaveBokehPreset, "A shape of the aperture."),
+    };
+    let current = |entry: &&ShelfEntry| entry.preset.as_ref().is_ok_and(&is_current);
+    let name = shelf.of_kind(kind).find(current).map_or("Own".to_string(), ShelfEntry::name);
+    row(ui, label, tip, |ui| {
+        let menu = ui.menu_button(&name, |ui| {
+            ui.set_width(MENU_WIDTH);
+            let list = egui::ScrollArea::vertical().max_height(LIST_HEIGHT);
+            list.show(ui, |ui| {
+                for entry in shelf.of_kind(kind).filter(|entry| entry.file.is_none()) {
+                    entry_button(ui, entry, current(&entry), actions);
+                }
+                let own: Vec<_> = shelf.of_kind(kind).filter(|entry| entry.file.is_some()).collect();
+                if !own.is_empty() {
+                    ui.separator();
+                }
+                for entry in own {
+                    own_entry(ui, entry, current(&entry), actions);
+                }
+            });
+            ui.separator();
+            for (id, label) in [(save, "Save as preset…"), (CommandId::ImportPreset, "Import preset…")] {
+                if ui.button(label).on_hover_text(keys::tip(ui.ctx(), id)).clicked() {
+                    actions.push(id.into());
+                    ui.close();
+                }
+            }
+        });
+        menu.response
+    });
+}
+
+/// One that can be chosen.
+fn entry_button(ui: &mut Ui, entry: &ShelfEntry, is_current: bool, actions: &mut Vec<Action>) {
+    match &entry.preset {
+        Ok(preset) => {
+            if ui.add(Button::selectable(is_current, &preset.name)).clicked() {
+                actions.push(PresetWish::Use(Box::new(preset.clone())).into());
+                ui.close();
+            }
+        }
+        Err(error) => {
+            ui.add_enabled(false, Button::new(format!("{} (cannot be read)", entry.name())))
+                .on_disabled_hover_text(error);
+        }
+    }
+}
+
+/// One of the user's own: it has a menu of its own.
+fn own_entry(ui: &mut Ui, entry: &ShelfEntry, is_current: bool, actions: &mut Vec<Action>) {
+    let Some(file) = entry.file.clone() else { return };
+    ui.horizontal(|ui| {
+        entry_button(ui, entry, is_current, actions);
+        let more = ui.menu_button("…", |ui| {
+            if let Ok(preset) = &entry.preset {
+                if ui.button("Rename…").on_hover_text("Give this preset another name.").clicked() {
+                    actions.push(PresetWish::Rename(file.clone(), preset.name.clone()).into());
+                    ui.close();
+                }
+                let tip = "Write this preset to a file of your choice, to be imported elsewhere.";
+                if ui.button("Export…").on_hover_text(tip).clicked() {
+                    actions.push(PresetWish::Export(Box::new(preset.clone())).into());
+                    ui.close();
+                }
+            }
+            let tip = "Take this preset off the list; its file is kept in the folder \"deleted\" beside it.";
+            if ui.button("Delete").on_hover_text(tip).clicked() {
+                actions.push(PresetWish::Delete(file.clone()).into());
+                ui.close();
+            }
+        });
+        crate::window::controls::named(&more.response, &format!("{}: more", entry.name()));
+    });
+}

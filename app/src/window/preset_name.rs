@@ -1,0 +1,91 @@
+//! The name of a preset, asked for.
+
+use egui::{Context, Id, Key, TextEdit};
+use project::{Preset, PresetContent, PresetShelf};
+use std::path::PathBuf;
+
+/// What is to be named.
+#[derive(Clone, Debug)]
+pub enum Naming {
+    /// A new preset.
+    New(PresetContent),
+    /// The user's own preset of this file.
+    Rename(PathBuf),
+}
+
+/// The question, when it is open.
+#[derive(Default)]
+pub struct PresetName {
+    asked: Option<(Naming, String)>,
+    /// Whether the keyboard is on the name already.
+    focused: bool,
+}
+
+impl PresetName {
+    /// Asks for a name, beginning with `suggestion`.
+    pub fn ask(&mut self, naming: Naming, suggestion: String) {
+        *self = Self { asked: Some((naming, suggestion)), focused: false };
+    }
+
+    /// Whether it is open.
+    pub fn is_open(&self) -> bool {
+        self.asked.is_some()
+    }
+
+    /// Draws it and returns what was named, and how, once that is said.
+    pub fn show(&mut self, context: &Context, shelf: &PresetShelf) -> Option<(Naming, String)> {
+        let (naming, name) = self.asked.as_mut()?;
+        let mut accepted = false;
+        let mut given_up = false;
+        let frame = egui::Frame::popup(&context.global_style()).inner_margin(14.0);
+        let modal = egui::Modal::new(Id::unique("preset name")).frame(frame).show(context, |ui| {
+            ui.set_width(340.0);
+            ui.heading(match naming {
+                Naming::New(_) => "Save preset",
+                Naming::Rename(_) => "Rename preset",
+            });
+            ui.add_space(6.0);
+            let label = ui.label("Name");
+            let field = ui.add(TextEdit::singleline(name).desired_width(f32::INFINITY)).labelled_by(label.id);
+            if !std::mem::replace(&mut self.focused, true) {
+                field.request_focus();
+            }
+            let note = note(naming, name, shelf);
+            ui.add_space(6.0);
+            ui.horizontal(|ui| {
+                let is_possible = note.as_ref().is_none_or(|(is_possible, _)| *is_possible);
+                let entered = ui.input(|input| input.key_pressed(Key::Enter));
+                let verb = if matches!(naming, Naming::New(_)) { "Save" } else { "Rename" };
+                let button = ui.add_enabled(is_possible, egui::Button::new(verb));
+                accepted = button.clicked() || (entered && is_possible);
+                given_up = ui.button("Cancel").clicked();
+            });
+            if let Some((_, note)) = note {
+                ui.weak(note);
+            }
+        });
+        if given_up || modal.should_close() {
+            self.asked = None;
+            return None;
+        }
+        if accepted { self.asked.take() } else { None }
+    }
+}
+
+/// What is to be known of a name, and whether it can be given all the same.
+fn note(naming: &Naming, name: &str, shelf: &PresetShelf) -> Option<(bool, String)> {
+    let Naming::New(content) = naming else {
+        return name.trim().is_empty().then(|| (false, "Type a name.".to_string()));
+    };
+    let preset = match Preset::new(name, content.clone()) {
+        Ok(preset) => preset,
+        Err(problem) => return Some((false, format!("{problem}."))),
+    };
+    let same: Vec<_> = shelf.of_kind(preset.kind()).filter(|entry| entry.name() == preset.name).collect();
+    let note = match &same[..] {
+        [] => return None,
+        same if same.iter().any(|entry| entry.file.is_some()) => "Your preset of this name will be replaced.",
+        _ => "It will be listed beside the one that comes with the program.",
+    };
+    Some((true, note.into()))
+}

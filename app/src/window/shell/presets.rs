@@ -1,0 +1,98 @@
+//! What is done with presets: used, named, saved, carried in and out.
+
+use super::Shell;
+use crate::window::action::PresetWish;
+use crate::window::file_dialog::Purpose;
+use crate::window::preset_name::Naming;
+use egui::Context;
+use project::{LensPreset, Preset, PresetContent, PresetKind};
+use session::{CameraEdit, Command};
+use std::path::{Path, PathBuf};
+
+impl Shell {
+    pub(super) fn preset(&mut self, wish: PresetWish, context: &Context) {
+        match wish {
+            PresetWish::Use(preset) => self.use_preset(&preset),
+            PresetWish::Rename(file, name) => self.preset_name.ask(Naming::Rename(file), name),
+            PresetWish::Delete(file) => match self.presets.delete(&file) {
+                Ok(kept) => self.toasts.notice(format!("The preset is kept as {}", kept.display())),
+                Err(error) => self.toasts.error(error.to_string()),
+            },
+            PresetWish::Export(preset) => {
+                let name = PathBuf::from(preset.name.replace(['/', '\\', ':'], "-")).with_extension("json");
+                self.exported_preset = Some(*preset);
+                self.ask_beside(Purpose::ExportPreset, &name, context);
+            }
+        }
+    }
+
+    /// Uses a preset: a step of undo like the same change by hand.
+    pub(super) fn use_preset(&mut self, preset: &Preset) {
+        let Some(document) = self.session.document() else { return };
+        let brush = preset.brush(&document.brush);
+        let camera = preset.camera(&document.camera);
+        if let Some(brush) = brush {
+            self.apply(Command::SetBrush(brush));
+        }
+        match camera {
+            Some(Ok(camera)) => {
+                self.apply(Command::FinishEdit);
+                let kind = preset.kind();
+                self.apply(Command::Camera(match kind {
+                    PresetKind::Bokeh => CameraEdit::Aperture(camera.aperture),
+                    _ => CameraEdit::Whole(camera),
+                }));
+                self.apply(Command::FinishEdit);
+            }
+            Some(Err(problem)) => self.toasts.error(problem),
+            None => {}
+        }
+    }
+
+    /// Asks for the name of what is to be saved as a preset.
+    pub(super) fn save_preset(&mut self, kind: PresetKind) {
+        let Some(document) = self.session.document() else { return };
+        let content = match kind {
+            PresetKind::Brush => PresetContent::Brush(Box::new(document.brush.clone())),
+            PresetKind::Lens => PresetContent::Lens(LensPreset::of(&document.camera)),
+            PresetKind::Bokeh => PresetContent::Bokeh(document.camera.aperture.clone()),
+        };
+        self.preset_name.ask(Naming::New(content), String::new());
+    }
+
+    pub(super) fn import_preset(&mut self, file: &Path) {
+        match self.presets.import(file) {
+            Ok(preset) => {
+                self.toasts.notice(format!(
+                    "{}: a preset of {}, now in its list",
+                    preset.name,
+                    preset.kind().name()
+                ));
+            }
+            Err(error) => self.toasts.error(error.to_string()),
+        }
+    }
+
+    pub(super) fn export_preset(&mut self, file: &Path) {
+        let Some(preset) = self.exported_preset.take() else { return };
+        match preset.write(file) {
+            Ok(()) => self.toasts.notice(format!("Wrote {}", file.display())),
+            Err(error) => self.toasts.error(error.to_string()),
+        }
+    }
+
+    /// Takes up the name that was asked for.
+    pub(super) fn take_preset_name(&mut self, context: &Context) {
+        let Some((naming, name)) = self.preset_name.show(context, &self.presets) else { return };
+        let done = match naming {
+            Naming::New(content) => match Preset::new(&name, content) {
+                Ok(preset) => self.presets.save(&preset).map(|_| ()).map_err(|error| error.to_string()),
+                Err(problem) => Err(problem.to_string()),
+            },
+            Naming::Rename(file) => self.presets.rename(&file, &name).map_err(|error| error.to_string()),
+        };
+        if let Err(problem) = done {
+            self.toasts.error(problem);
+        }
+    }
+}

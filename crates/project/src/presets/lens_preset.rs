@@ -1,0 +1,86 @@
+//! A lens as a photographer names it.
+
+use crate::ProjectError;
+use crate::json::Fields;
+use lens::Camera;
+use serde_json::{Value, json};
+
+/// Focal length, f-number and the sensor before which the lens stands. Where the camera stands, what it focuses on, the size
+/// of the picture and the aperture's shape are no matter of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LensPreset {
+    /// f of the thin lens, scene units (glTF: metres), > 0.
+    pub focal_length: f64,
+    /// f/(2R), > 0; infinite for a pinhole.
+    pub f_number: f64,
+    /// Height of the sensor, scene units, > 0.
+    pub sensor_height: f64,
+}
+
+impl LensPreset {
+    /// The lens of a camera.
+    pub fn of(camera: &Camera) -> Self {
+        Self {
+            focal_length: camera.optics().focal_length(),
+            f_number: camera.f_number(),
+            sensor_height: camera.sensor_height,
+        }
+    }
+
+    /// The camera with this lens, focused where it was: 1/d = 1/f − 1/s decides how far the sensor is, and that the angle of
+    /// view. `None` where the camera focuses nearer than the focal length, which a lens cannot.
+    pub fn applied_to(&self, camera: &Camera) -> Option<Camera> {
+        let inverse_image_distance = 1.0 / self.focal_length - 1.0 / camera.focus_distance;
+        (inverse_image_distance > 0.0).then(|| Camera {
+            sensor_height: self.sensor_height,
+            yfov: 2.0 * (self.sensor_height * inverse_image_distance / 2.0).atan(),
+            aperture_radius: self.focal_length / (2.0 * self.f_number),
+            ..camera.clone()
+        })
+    }
+
+    /// Reads the fields of `"lens"`.
+    pub(super) fn read(fields: &Fields<'_>) -> Result<Self, ProjectError> {
+        fields.only(&["focal_length", "f_number", "sensor_height"])?;
+        let positive = |name| match fields.get(name) {
+            Some(field) if name == "f_number" && field.text().is_ok_and(|text| text == "inf") => {
+                Ok(f64::INFINITY)
+            }
+            Some(field) => match field.number()? {
+                number if number > 0.0 => Ok(number),
+                number => Err(field.error(format!("is {number}"), "give a number above 0")),
+            },
+            None => Err(fields.error(format!("has no \"{name}\""), "add it")),
+        };
+        Ok(Self {
+            focal_length: positive("focal_length")?,
+            f_number: positive("f_number")?,
+            sensor_height: positive("sensor_height")?,
+        })
+    }
+
+    /// Inverse of [`Self::read`].
+    pub(super) fn to_json(self) -> Value {
+        let f_number = if self.f_number.is_finite() { json!(self.f_number) } else { json!("inf") };
+        json!({ "focal_length": self.focal_length, "f_number": f_number, "sensor_height": self.sensor_height })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_lens_on_another_camera_is_the_same_lens() {
+        let preset = LensPreset { focal_length: 0.085, f_number: 1.4, sensor_height: 0.024 };
+        for focus_distance in [0.3, 2.0, f64::INFINITY] {
+            let camera = preset.applied_to(&Camera { focus_distance, ..Camera::default() }).unwrap();
+            camera.validate().unwrap();
+            let found = LensPreset::of(&camera);
+            assert!((found.focal_length / 0.085 - 1.0).abs() < 1e-12, "{found:?}");
+            assert!((found.f_number / 1.4 - 1.0).abs() < 1e-12, "{found:?}");
+        }
+        let too_near = Camera { focus_distance: 0.085, ..Camera::default() };
+        assert_eq!(preset.applied_to(&too_near), None);
+    }
+}

@@ -1,0 +1,240 @@
+//! A preset and its file.
+//!
+//! ```text
+//! {"format": "focus-brush preset", "version": 1, "name": "Soft focus", "brush": {…} | "lens": {…} | "bokeh": {…}}
+//! ```
+
+use super::brush_preset;
+use super::lens_preset::LensPreset;
+use crate::ProjectError;
+use crate::camera::{aperture_from_json, aperture_to_json};
+use crate::disk::{read_text, write_verified};
+use crate::json::{Field, Json};
+use crate::mask_rows::mask_to_json;
+use focus::Brush;
+use lens::{Aperture, ApertureShape, Camera};
+use serde_json::{Value, json};
+use std::path::Path;
+
+/// What the file calls its format.
+const FORMAT: &str = "focus-brush preset";
+
+/// The newest version.
+const VERSION: u32 = 1;
+
+/// The longest name, characters.
+const LONGEST_NAME: usize = 80;
+
+/// What a preset is of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum PresetKind {
+    /// How a brush paints.
+    Brush,
+    /// Focal length, f-number, sensor.
+    Lens,
+    /// The aperture's shape.
+    Bokeh,
+}
+
+impl PresetKind {
+    /// All, in the order in which they are listed.
+    pub const ALL: [Self; 3] = [Self::Brush, Self::Lens, Self::Bokeh];
+
+    /// Its word in files and folders.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Brush => "brush",
+            Self::Lens => "lens",
+            Self::Bokeh => "bokeh",
+        }
+    }
+}
+
+/// A preset.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Preset {
+    /// What it is called.
+    pub name: String,
+    /// What it holds.
+    pub content: PresetContent,
+}
+
+/// What a preset holds.
+#[derive(Clone, Debug, PartialEq)]
+pub enum PresetContent {
+    /// A brush; what of it belongs to a scene (size, symmetry) is not meant.
+    Brush(Box<Brush>),
+    /// A lens.
+    Lens(LensPreset),
+    /// An aperture's shape.
+    Bokeh(Aperture),
+}
+
+/// Where in which file something is wrong.
+pub(super) struct Place<'a> {
+    file: &'a Path,
+    field: &'static str,
+}
+
+impl Place<'_> {
+    pub fn error(&self, within: &str, problem: impl Into<String>, cure: impl Into<String>) -> ProjectError {
+        let dot = if within.is_empty() { "" } else { "." };
+        let field = format!("{}{dot}{within}", self.field);
+        ProjectError::Field { file: self.file.to_owned(), field, problem: problem.into(), cure: cure.into() }
+    }
+}
+
+impl Preset {
+    /// A preset of this name. An empty name, or one too long, is an error in words.
+    pub fn new(name: &str, content: PresetContent) -> Result<Self, &'static str> {
+        let name = name.trim();
+        if name.is_empty() {
+            return Err("a preset needs a name");
+        }
+        if name.chars().count() > LONGEST_NAME || name.chars().any(char::is_control) {
+            return Err("a preset's name has at most 80 characters, all in one line");
+        }
+        Ok(Self { name: name.to_string(), content })
+    }
+
+    /// What it is of.
+    pub fn kind(&self) -> PresetKind {
+        match self.content {
+            PresetContent::Brush(_) => PresetKind::Brush,
+            PresetContent::Lens(_) => PresetKind::Lens,
+            PresetContent::Bokeh(_) => PresetKind::Bokeh,
+        }
+    }
+
+    /// The brush with this preset, where it is one of brushes: size and symmetry stay.
+    pub fn brush(&self, current: &Brush) -> Option<Brush> {
+        match &self.content {
+            PresetContent::Brush(brush) => Some(brush_preset::applied(brush, current)),
+            _ => None,
+        }
+    }
+
+    /// The camera with this preset, where it is one of lenses or bokeh. An error in words where the camera cannot have it.
+    pub fn camera(&self, current: &Camera) -> Option<Result<Camera, String>> {
+        match &self.content {
+            PresetContent::Brush(_) => None,
+            PresetContent::Lens(lens) => Some(lens.applied_to(current).ok_or_else(|| {
+                let distance = current.focus_distance;
+                format!(
+                    "{}: no such lens focuses as near as {distance} (focus farther away first)",
+                    self.name
+                )
+            })),
+            PresetContent::Bokeh(aperture) => {
+                Some(Ok(Camera { aperture: aperture.clone(), ..current.clone() }))
+            }
+        }
+    }
+
+    /// Whether the brush is as this preset says.
+    pub fn is_of_brush(&self, brush: &Brush) -> bool {
+        self.brush(brush).is_some_and(|own| own == *brush)
+    }
+
+    /// Whether the camera's lens, or its aperture's shape, is as this preset says: to a millionth.
+    pub fn is_of_camera(&self, camera: &Camera) -> bool {
+        let near = |a: f64, b: f64| a == b || (a / b - 1.0).abs() < 1e-6;
+        match &self.content {
+            PresetContent::Brush(_) => false,
+            PresetContent::Bokeh(aperture) => *aperture == camera.aperture,
+            PresetContent::Lens(lens) => {
+                let own = LensPreset::of(camera);
+                near(own.focal_length, lens.focal_length)
+                    && near(own.f_number, lens.f_number)
+                    && near(own.sensor_height, lens.sensor_height)
+            }
+        }
+    }
+
+    /// Reads a preset file. An aperture mask that it names is looked up beside it.
+    pub fn read(file: &Path) -> Result<Self, ProjectError> {
+        Self::parse(file, &read_text(file)?)
+    }
+
+    /// The preset of the text of `file`.
+    pub(super) fn parse(file: &Path, text: &str) -> Result<Self, ProjectError> {
+        let json = Json::parse(file, text)?;
+        let fields = Field::root(file, &json).object()?;
+        let whole = |problem: &str, cure: &str| ProjectError::content(file, problem, cure);
+        match fields.get("format") {
+            Some(format) if format.text().is_ok_and(|text| text == FORMAT) => {}
+            _ => {
+                return Err(whole(
+                    "is no preset",
+                    "give a file that says \"format\": \"focus-brush preset\"",
+                ));
+            }
+        }
+        match fields.get("version").map_or(Ok(VERSION), |field| field.whole())? {
+            version if version > VERSION => {
+                let (file, version, newest) = (file.to_owned(), version.into(), VERSION.into());
+                return Err(ProjectError::Newer { file, version, newest });
+            }
+            _ => {}
+        }
+        fields.only(&["format", "version", "name", "brush", "lens", "bokeh"])?;
+        let kinds = PresetKind::ALL.map(PresetKind::name);
+        let given: Vec<_> = kinds.into_iter().filter(|name| fields.get(name).is_some()).collect();
+        let [kind] = given[..] else {
+            return Err(whole("holds not one of brush, lens and bokeh", "give one, and only one, of them"));
+        };
+        let Some(field) = fields.get(kind) else {
+            return Err(whole("is empty", "give brush, lens or bokeh"));
+        };
+        let content = match kind {
+            "brush" => {
+                // Parsed already, as JSON that knows its fields.
+                let value: Value = serde_json::from_str(text).unwrap_or_default();
+                let brush = brush_preset::read(&Place { file, field: "brush" }, &value["brush"])?;
+                PresetContent::Brush(Box::new(brush))
+            }
+            "lens" => PresetContent::Lens(LensPreset::read(&field.object()?)?),
+            _ => {
+                let mask = |name: &str| {
+                    let beside = file.parent().unwrap_or(Path::new("")).join(name);
+                    crate::read_aperture_mask(&beside, name)
+                };
+                let aperture = aperture_from_json(&field.object()?, &mask)?;
+                aperture.validate().map_err(|error| {
+                    let problem = format!("{} cannot be used", error.field);
+                    field.error(problem, format!("it must be {}", error.must))
+                })?;
+                PresetContent::Bokeh(aperture)
+            }
+        };
+        let Some(name) = fields.get("name") else { return Err(whole("has no name", "add \"name\"")) };
+        Self::new(name.text()?, content).map_err(|problem| name.error(problem, "give another name"))
+    }
+
+    /// The text of its file.
+    pub(super) fn to_text(&self) -> String {
+        let content = match &self.content {
+            PresetContent::Brush(brush) => brush_preset::to_json(brush),
+            PresetContent::Lens(lens) => lens.to_json(),
+            PresetContent::Bokeh(aperture) => {
+                let mut json = aperture_to_json(aperture);
+                if let ApertureShape::Mask(mask) = &aperture.shape {
+                    json["mask"] = mask_to_json(mask);
+                }
+                json
+            }
+        };
+        let mut json = json!({ "format": FORMAT, "version": VERSION, "name": self.name });
+        json[self.kind().name()] = content;
+        format!("{json:#}\n")
+    }
+
+    /// Writes a preset file; a mask is written within it.
+    pub fn write(&self, file: &Path) -> Result<(), ProjectError> {
+        let text = self.to_text();
+        write_verified(file, text.as_bytes(), |back| {
+            let back = std::str::from_utf8(back).map_err(|error| error.to_string())?;
+            Self::parse(file, back).map(|_| ()).map_err(|error| error.to_string())
+        })
+    }
+}

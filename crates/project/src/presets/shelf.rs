@@ -1,0 +1,167 @@
+//! All presets there are: those that come with the program, and the user's own in a folder.
+
+use super::preset::{Preset, PresetKind};
+use super::shipped::shipped;
+use crate::ProjectError;
+use std::path::{Path, PathBuf};
+
+/// Where deleted presets go, in the folder.
+const DELETED: &str = "deleted";
+
+/// A preset on the shelf.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ShelfEntry {
+    /// Its kind.
+    pub kind: PresetKind,
+    /// The user's own file; none for one that comes with the program.
+    pub file: Option<PathBuf>,
+    /// The preset, or why its file cannot be read.
+    pub preset: Result<Preset, String>,
+}
+
+impl ShelfEntry {
+    /// What it is called: its own name, or that of a file that cannot be read.
+    pub fn name(&self) -> String {
+        match &self.preset {
+            Ok(preset) => preset.name.clone(),
+            Err(_) => stem(self.file.as_deref().unwrap_or(Path::new(""))),
+        }
+    }
+}
+
+/// The presets of a user: a folder with a folder for each kind, and in it a file a preset.
+#[derive(Clone, Debug)]
+pub struct PresetShelf {
+    folder: Option<PathBuf>,
+    entries: Vec<ShelfEntry>,
+}
+
+impl PresetShelf {
+    /// The folder of this user's own presets; none where the system has no place for such.
+    pub fn usual_folder() -> Option<PathBuf> {
+        let folders = directories::ProjectDirs::from("", "", "focus-brush")?;
+        Some(folders.config_dir().join("presets"))
+    }
+
+    /// Looks what there is. A folder that is not there is empty.
+    pub fn open(folder: Option<PathBuf>) -> Self {
+        let mut shelf = Self { folder, entries: Vec::new() };
+        shelf.look();
+        shelf
+    }
+
+    /// Looks again.
+    pub fn look(&mut self) {
+        let own = |kind| self.files(kind).into_iter().map(move |file| (kind, file));
+        let own: Vec<_> = PresetKind::ALL.into_iter().flat_map(own).collect();
+        let shipped =
+            shipped().map(|preset| ShelfEntry { kind: preset.kind(), file: None, preset: Ok(preset) });
+        let own = own.into_iter().map(|(kind, file)| {
+            let preset = match Preset::read(&file) {
+                Ok(preset) if preset.kind() == kind => Ok(preset),
+                Ok(preset) => {
+                    let (is, file) = (preset.kind().name(), file.display());
+                    Err(format!("{file}: is a preset of {is} (move it to the folder \"{is}\")"))
+                }
+                Err(error) => Err(error.to_string()),
+            };
+            ShelfEntry { kind, file: Some(file), preset }
+        });
+        self.entries = shipped.chain(own).collect();
+    }
+
+    /// The files of one kind, by name.
+    fn files(&self, kind: PresetKind) -> Vec<PathBuf> {
+        let Some(folder) = &self.folder else { return Vec::new() };
+        let Ok(listing) = std::fs::read_dir(folder.join(kind.name())) else { return Vec::new() };
+        let is_preset = |file: &PathBuf| file.extension().is_some_and(|extension| extension == "json");
+        let mut files: Vec<_> =
+            listing.filter_map(|entry| Some(entry.ok()?.path())).filter(is_preset).collect();
+        files.sort();
+        files
+    }
+
+    /// All of one kind: first those that come with the program.
+    pub fn of_kind(&self, kind: PresetKind) -> impl Iterator<Item = &ShelfEntry> {
+        self.entries.iter().filter(move |entry| entry.kind == kind)
+    }
+
+    /// The preset of this name; of several the user's own.
+    pub fn named(&self, kind: PresetKind, name: &str) -> Option<&Preset> {
+        let presets = self.of_kind(kind).filter_map(|entry| entry.preset.as_ref().ok());
+        presets.filter(|preset| preset.name == name).last()
+    }
+
+    /// Puts a preset on the shelf, in the place of the user's own one of that name. Its file.
+    pub fn save(&mut self, preset: &Preset) -> Result<PathBuf, ProjectError> {
+        let folder = self.folder_of(preset.kind())?;
+        let same = |entry: &&ShelfEntry| entry.preset.as_ref().is_ok_and(|own| own.name == preset.name);
+        let own = self.of_kind(preset.kind()).filter(same).filter_map(|entry| entry.file.clone()).next();
+        let file = own.unwrap_or_else(|| free_file(&folder, &preset.name));
+        preset.write(&file)?;
+        self.look();
+        Ok(file)
+    }
+
+    /// Reads a preset file from elsewhere and puts it on the shelf.
+    pub fn import(&mut self, file: &Path) -> Result<Preset, ProjectError> {
+        let preset = Preset::read(file)?;
+        self.save(&preset)?;
+        Ok(preset)
+    }
+
+    /// Gives the user's own preset of `file` another name, which must not be taken.
+    pub fn rename(&mut self, file: &Path, name: &str) -> Result<(), ProjectError> {
+        let wrong = |problem: String| ProjectError::content(file, problem, "give another name");
+        let preset = Preset::read(file)?;
+        let renamed = Preset::new(name, preset.content).map_err(|problem| wrong(problem.into()))?;
+        let is_taken = self.of_kind(renamed.kind()).any(|entry| {
+            entry.file.as_deref() != Some(file) && entry.preset.as_ref().is_ok_and(|p| p.name == renamed.name)
+        });
+        if is_taken {
+            return Err(wrong(format!("there is another \"{}\"", renamed.name)));
+        }
+        renamed.write(file)?;
+        self.look();
+        Ok(())
+    }
+
+    /// Takes the user's own preset of `file` off the shelf; the file goes to the folder `deleted`, where it now lies.
+    pub fn delete(&mut self, file: &Path) -> Result<PathBuf, ProjectError> {
+        let write = |source| ProjectError::Write { file: file.to_owned(), source };
+        let folder = file.parent().unwrap_or(Path::new("")).join(DELETED);
+        std::fs::create_dir_all(&folder).map_err(write)?;
+        let kept = free_file(&folder, &stem(file));
+        std::fs::rename(file, &kept).map_err(write)?;
+        self.look();
+        Ok(kept)
+    }
+
+    /// The folder of one kind, made if it is missing.
+    fn folder_of(&self, kind: PresetKind) -> Result<PathBuf, ProjectError> {
+        let Some(folder) = &self.folder else {
+            let nowhere = std::io::Error::other("the system has no folder for a user's settings");
+            return Err(ProjectError::Write { file: PathBuf::from("presets"), source: nowhere });
+        };
+        let folder = folder.join(kind.name());
+        std::fs::create_dir_all(&folder)
+            .map_err(|source| ProjectError::Write { file: folder.clone(), source })?;
+        Ok(folder)
+    }
+}
+
+fn stem(file: &Path) -> String {
+    file.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default()
+}
+
+/// A file in the folder that is not there yet, named after a preset: of letters, digits and dashes, which every system takes.
+fn free_file(folder: &Path, name: &str) -> PathBuf {
+    let plain = |c: char| if c.is_alphanumeric() { c } else { '-' };
+    let stem: String = name.to_lowercase().chars().map(plain).take(60).collect();
+    let stem = stem.trim_matches('-');
+    let stem = if stem.is_empty() { "preset" } else { stem };
+    let named = |name: String| folder.join(format!("{name}.json"));
+    let numbered = (2..).map(|number| named(format!("{stem}-{number}")));
+    let mut candidates = std::iter::once(named(stem.to_string())).chain(numbered);
+    candidates.find(|file| !file.exists()).unwrap_or_else(|| named(stem.to_string()))
+}
