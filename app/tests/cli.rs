@@ -370,6 +370,37 @@ fn mistakes_are_one_line_and_the_right_code() {
 }
 
 #[test]
+fn lenses_and_bokeh_are_presets_by_name_or_file() {
+    let place = Workplace::new();
+    let listed = place.json("presets --json");
+    let names = |kind: &str| -> Vec<String> {
+        let list = listed[kind].as_array().unwrap().iter();
+        list.map(|entry| entry["name"].as_str().unwrap().to_string()).collect()
+    };
+    assert!(names("bokeh").contains(&"Star".to_string()) && names("lens").len() >= 10);
+    assert!(place.done("presets").lines().any(|line| line.trim() == "Heart"));
+    let lens = r#"{"format": "focus-brush preset", "version": 1, "name": "mine",
+        "lens": {"focal_length": 0.3, "f_number": 1.5, "sensor_height": 0.1}}"#;
+    std::fs::write(place.path("lens.json"), lens).unwrap();
+    let render = "render quads.glb --camera camera.json --exposure conserve -o";
+    place.done(&format!("{render} own.exr"));
+    place.done(&format!("{render} star.exr --lens lens.json --bokeh Star"));
+    // The wider lens sees less, and blurs the wall as far as its own numbers say.
+    let camera = project::read_camera(&place.path("camera.json"), &lens::Camera::default()).unwrap();
+    let preset = project::Preset::read(&place.path("lens.json")).unwrap();
+    let with = preset.camera(&camera).unwrap().unwrap();
+    project::write_camera(&place.path("with.json"), &with).unwrap();
+    place.done("render quads.glb --camera with.json --exposure conserve --bokeh Star -o same.exr");
+    let [star, same, own] =
+        ["star.exr", "same.exr", "own.exr"].map(|name| read_picture(&place.path(name)).unwrap());
+    assert_eq!(star.rgb, same.rgb);
+    assert_ne!(star.rgb, own.rgb);
+    place.fails(&format!("{render} x.exr --bokeh Stair"), 3, &["Stair", "focus-brush presets"]);
+    place.fails(&format!("{render} x.exr --bokeh lens.json"), 3, &["lens.json", "is a preset of lens"]);
+    place.fails(&format!("{render} x.exr --lens none.json"), 3, &["none.json"]);
+}
+
+#[test]
 fn the_doctor_and_the_help_answer() {
     let place = Workplace::new();
     let report = place.json("doctor --json");

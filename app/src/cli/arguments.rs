@@ -4,7 +4,7 @@ use clap::builder::{OsStringValueParser, PossibleValuesParser, TypedValueParser}
 use clap::{Args, Parser, ValueEnum};
 use scene::BackFaces;
 use session::{Aov, CameraChoice, Renderer};
-use std::ffi::OsStr;
+use std::ffi::{OsStr, OsString};
 use std::path::PathBuf;
 
 /// Paint onto a 3D scene how it is focused.
@@ -57,6 +57,8 @@ pub enum Subcommand {
     Report(ReportArguments),
     /// Write parts of a project: its focus map, its unwrapped scene, its picture in layers
     Export(ExportArguments),
+    /// The presets of brushes, lenses and bokeh
+    Presets(PresetsArguments),
     /// Adapters, libraries, what is missing and how to get it
     Doctor(DoctorArguments),
 }
@@ -164,6 +166,12 @@ pub struct ShotArguments {
     /// A camera file, or the name of a camera in the scene (default: the project's, or the scene's first)
     #[arg(long, value_name = "CAM.json|NAME", value_parser = camera_parser())]
     pub camera: Option<CameraChoice>,
+    /// A lens instead of the camera's: the name of a preset (focus-brush presets lists them) or its file
+    #[arg(long, value_name = "NAME|FILE.json")]
+    pub lens: Option<OsString>,
+    /// An aperture's shape instead of the camera's: the name of a preset or its file
+    #[arg(long, value_name = "NAME|FILE.json")]
+    pub bokeh: Option<OsString>,
     /// How it is focused: a recipe (.json) or a focus map (.exr, .png) (default: as the project is painted, or the
     /// ordinary lens)
     #[arg(long, value_name = "RECIPE.json|MAP.exr|png")]
@@ -309,6 +317,14 @@ pub struct ExportArguments {
     /// Write the picture with coverage, coc, depth, t and anchor as layers
     #[arg(long, value_name = "OUT.exr")]
     pub layers: Option<PathBuf>,
+}
+
+/// `presets`.
+#[derive(Debug, Args)]
+pub struct PresetsArguments {
+    /// Write JSON to stdout
+    #[arg(long)]
+    pub json: bool,
 }
 
 /// `doctor`.

@@ -1,7 +1,7 @@
 //! The command line: a thin layer over the `session` crate.
 //!
 //! * `arguments`: what can be typed. One file a subcommand does it: `info`, `new`, `replay`, `unwrap`, `bake`, `render`,
-//!   `compare`, `report`, `export`, `doctor`.
+//!   `compare`, `report`, `export`, `presets`, `doctor`.
 //! * `console`: progress on stderr, results on stdout. `failure`: errors and exit codes.
 
 mod arguments;
@@ -13,6 +13,7 @@ mod export;
 mod failure;
 mod info;
 mod new;
+mod presets;
 mod render;
 mod replay;
 mod report;
@@ -72,6 +73,7 @@ fn dispatch(command: Subcommand) -> Result<(), Failure> {
         Subcommand::Compare(arguments) => compare::run(&arguments),
         Subcommand::Report(arguments) => report::run(&arguments, &console),
         Subcommand::Export(arguments) => export::run(&arguments, &console),
+        Subcommand::Presets(arguments) => presets::run(&arguments),
         Subcommand::Doctor(arguments) => doctor::run(&arguments),
     }
 }

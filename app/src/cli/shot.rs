@@ -3,6 +3,7 @@
 use super::arguments::{AtlasArguments, ShotArguments};
 use super::console::Console;
 use super::failure::Failure;
+use super::presets::with_presets;
 use atlas::{Density, UnwrapOptions, UvPolicy};
 use focus::Focus;
 use lens::Camera;
@@ -37,7 +38,8 @@ pub fn opened(file: &Path, back_faces: Option<BackFaces>, steps: &dyn Steps) -> 
 
 /// The camera and the focus that were asked for.
 pub fn shot(input: &Input, arguments: &ShotArguments, console: &Console) -> Result<(Camera, Focus), Failure> {
-    let mut camera = input.camera(arguments.camera.as_ref())?;
+    let camera = input.camera(arguments.camera.as_ref())?;
+    let mut camera = with_presets(camera, arguments.lens.as_deref(), arguments.bokeh.as_deref())?;
     if let Some([width, height]) = arguments.size {
         (camera.width, camera.height) = (width, height);
     }
