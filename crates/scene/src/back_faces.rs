@@ -1,7 +1,5 @@
 //! Whether faces are seen from behind.
 
-use crate::Material;
-
 /// Whether the backs of faces that are not double sided are seen. Light is stopped by either side, whatever is seen.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum BackFaces {
@@ -14,11 +12,6 @@ pub enum BackFaces {
 }
 
 impl BackFaces {
-    /// Whether a material is seen from its front alone.
-    pub fn hides_back(self, material: &Material) -> bool {
-        self == Self::Hide && !material.double_sided
-    }
-
     /// Both, by the names that files and the command line know.
     pub const ALL: [(&'static str, Self); 2] = [("hide", Self::Hide), ("show", Self::Show)];
 

@@ -111,6 +111,13 @@ pub struct Material {
     pub double_sided: bool,
 }
 
+impl Material {
+    /// Whether it is seen from its front alone.
+    pub fn hides_back(&self, back_faces: BackFaces) -> bool {
+        back_faces == BackFaces::Hide && !self.double_sided
+    }
+}
+
 /// How a material's opacity is used.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum AlphaMode {
@@ -239,7 +246,7 @@ impl Scene {
 
     /// Whether a triangle is seen from its front alone.
     pub fn hides_back(&self, triangle: u32) -> bool {
-        self.back_faces.hides_back(self.material_of(triangle))
+        self.material_of(triangle).hides_back(self.back_faces)
     }
 
     /// The texture coordinates of all vertices in a set ([`TextureRef::uv_set`]); empty if no part has it.

@@ -28,18 +28,28 @@ pub struct Inspector {
     scene: scene_panel::ScenePanel,
 }
 
+/// What the inspector shows.
+pub struct Inspected<'a> {
+    /// The session.
+    pub session: &'a Session,
+    /// All presets.
+    pub presets: &'a PresetShelf,
+    /// The tool in hand.
+    pub tool: Tool,
+    /// What lies under the pointer.
+    pub hover: Option<SurfaceHit>,
+}
+
 impl Inspector {
     /// Draws all sections.
     pub fn ui(
         &mut self,
         ui: &mut Ui,
-        session: &Session,
-        tool: Tool,
+        inspected: Inspected<'_>,
         settings: &mut ViewSettings,
-        presets: &PresetShelf,
-        hover: Option<SurfaceHit>,
         actions: &mut Vec<Action>,
     ) {
+        let Inspected { session, presets, tool, hover } = inspected;
         // Narrow enough for label, slider and number at the inspector's least width.
         ui.spacing_mut().slider_width = 110.0;
         ScrollArea::vertical().auto_shrink([false; 2]).show(ui, |ui| {

@@ -214,7 +214,7 @@ impl<'a> MaterialUpload<'a> {
             kind: [
                 f32::from(material.unlit),
                 cutoff,
-                f32::from(self.scene.back_faces.hides_back(material)),
+                f32::from(material.hides_back(self.scene.back_faces)),
                 0.0,
             ],
         };

@@ -4,7 +4,7 @@ use super::Shell;
 use crate::window::brush_ring::BrushRing;
 use crate::window::drawer::Drawer;
 use crate::window::hand::Hand;
-use crate::window::inspector::Inspector;
+use crate::window::inspector::{Inspected, Inspector};
 use crate::window::layout::{Docked, Pane, Panes};
 use crate::window::paint_view::PaintView;
 use crate::window::picture_view::PictureView;
@@ -176,15 +176,9 @@ impl Panes for Contents<'_> {
                 let frame = egui::Frame::new().inner_margin(egui::Margin::symmetric(8, 2));
                 frame.show(ui, |ui| match pane {
                     Pane::Inspector => {
-                        self.inspector.ui(
-                            ui,
-                            session,
-                            self.tool,
-                            settings,
-                            self.presets,
-                            self.hover,
-                            actions,
-                        );
+                        let (presets, tool, hover) = (self.presets, self.tool, self.hover);
+                        let inspected = Inspected { session, presets, tool, hover };
+                        self.inspector.ui(ui, inspected, settings, actions);
                     }
                     _ => self.drawer.ui(ui, session, pane, hand, actions),
                 });

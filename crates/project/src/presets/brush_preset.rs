@@ -1,9 +1,9 @@
 //! What of a brush is no matter of the scene that it was made in.
 
-use super::preset::Place;
 use crate::ProjectError;
 use focus::Brush;
 use serde_json::{Map, Value};
+use std::path::Path;
 
 /// Fields that belong to the scene, or to what is being painted in it: size, where cloning takes from, symmetry.
 const OF_THE_SCENE: [&str; 7] =
@@ -23,16 +23,26 @@ pub(super) fn applied(preset: &Brush, current: &Brush) -> Brush {
     }
 }
 
-/// Reads the fields of `"brush"`; those that are missing are the default brush's.
-pub(super) fn read(place: &Place<'_>, value: &Value) -> Result<Brush, ProjectError> {
+/// Reads the fields of `"brush"` of a file; those that are missing are the default brush's.
+pub(super) fn read(file: &Path, value: &Value) -> Result<Brush, ProjectError> {
+    let error = |field: String, problem: String, cure: &str| {
+        Err(ProjectError::Field { file: file.to_owned(), field, problem, cure: cure.into() })
+    };
     if let Some(own) = OF_THE_SCENE.into_iter().find(|name| value.get(name).is_some()) {
-        return Err(place.error(own, "belongs to the scene and not to a preset", "leave it out"));
+        return error(
+            format!("brush.{own}"),
+            "belongs to the scene and not to a preset".into(),
+            "leave it out",
+        );
     }
-    let brush: Brush = serde_json::from_value(value.clone())
-        .map_err(|error| place.error("", format!("cannot be used: {error}"), "mend it there"))?;
-    match brush.problem() {
-        Some(problem) => Err(place.error("", format!("cannot be used: {problem}"), "mend it there")),
-        None => Ok(brush),
+    let wrong =
+        |problem: String| error("brush".into(), format!("cannot be used: {problem}"), "mend it there");
+    match serde_json::from_value::<Brush>(value.clone()) {
+        Err(problem) => wrong(problem.to_string()),
+        Ok(brush) => match brush.problem() {
+            Some(problem) => wrong(problem.into()),
+            None => Ok(brush),
+        },
     }
 }
 

@@ -70,20 +70,6 @@ pub enum PresetContent {
     Bokeh(Aperture),
 }
 
-/// Where in which file something is wrong.
-pub(super) struct Place<'a> {
-    file: &'a Path,
-    field: &'static str,
-}
-
-impl Place<'_> {
-    pub fn error(&self, within: &str, problem: impl Into<String>, cure: impl Into<String>) -> ProjectError {
-        let dot = if within.is_empty() { "" } else { "." };
-        let field = format!("{}{dot}{within}", self.field);
-        ProjectError::Field { file: self.file.to_owned(), field, problem: problem.into(), cure: cure.into() }
-    }
-}
-
 impl Preset {
     /// A preset of this name. An empty name, or one too long, is an error in words.
     pub fn new(name: &str, content: PresetContent) -> Result<Self, &'static str> {
@@ -190,7 +176,7 @@ impl Preset {
             "brush" => {
                 // Parsed already, as JSON that knows its fields.
                 let value: Value = serde_json::from_str(text).unwrap_or_default();
-                let brush = brush_preset::read(&Place { file, field: "brush" }, &value["brush"])?;
+                let brush = brush_preset::read(file, &value["brush"])?;
                 PresetContent::Brush(Box::new(brush))
             }
             "lens" => PresetContent::Lens(LensPreset::read(&field.object()?)?),
