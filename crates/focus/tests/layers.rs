@@ -1,8 +1,8 @@
 //! Layers: painted with masks, blended, drawn as curves; what they make together.
 
 use focus::{
-    Blend, Brush, BrushMode, Canvas, CanvasTexel, Channels, Curve, DepthCurve, FillTarget, FocusLayer,
-    FocusMap, LayerStack, PenSample, Stroke, SurfaceHit, fill,
+    Adjustment, Blend, Brush, BrushMode, Canvas, CanvasTexel, Channels, Curve, DepthCurve, FillTarget,
+    FocusLayer, FocusMap, LayerStack, PenSample, Stroke, SurfaceHit, fill,
 };
 use glam::{DVec3, Vec3};
 use lens::{Camera, FocusOffset};
@@ -137,7 +137,12 @@ fn a_depth_curve_gives_every_depth_its_blur_and_follows_the_camera() {
     let curve = DepthCurve { curve, anchor: 1.0 };
     let mut camera = camera();
     let mut layers = stack();
-    assert!(layers.insert(FocusLayer::adjusted("surface", curve.clone(), &canvas, &camera)));
+    assert!(layers.insert(FocusLayer::adjusted(
+        "surface",
+        Adjustment::Curve(curve.clone()),
+        &canvas,
+        &camera
+    )));
     let map = layers.composite();
     let texel = |map: &FocusMap, depth: f64| map.at(40, ((depth - 1.0) / 0.01).round() as u32);
     assert_eq!(texel(&map, 1.2), FocusOffset::SHARP);
