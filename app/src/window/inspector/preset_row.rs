@@ -36,7 +36,7 @@ pub fn preset_row(
     let current = |entry: &&ShelfEntry| entry.preset.as_ref().is_ok_and(&is_current);
     let name = shelf.of_kind(kind).find(current).map_or("Own".to_string(), ShelfEntry::name);
     row(ui, label, tip, |ui| {
-        let menu = ui.menu_button(format!("{name}  ⏷"), |ui| {
+        let menu = ui.menu_button(&name, |ui| {
             ui.set_width(MENU_WIDTH);
             let list = egui::ScrollArea::vertical().max_height(LIST_HEIGHT);
             list.show(ui, |ui| {
