@@ -1,0 +1,176 @@
+//! What GGX's single scattering sends back in all, tabulated: over the eye's direction, the perceptual roughness and the
+//! anisotropy.
+//!
+//! Of Schlick's reflectance it is F0·A + F90·B: A the share that does not rise with the angle, B that which does. What is left,
+//! 1 − A − B, is lost.
+
+use crate::fresnel::rise;
+use crate::ggx::Ggx;
+use crate::points::spread;
+use glam::{DVec2, DVec3};
+use std::f64::consts::FRAC_PI_2;
+use std::sync::OnceLock;
+
+/// Cosines, from 0 to 1.
+const COSINES: usize = 48;
+/// Roughnesses, from 0 to 1, of isotropic surfaces.
+const ROUGHNESSES: usize = 48;
+/// Of anisotropic ones, whose table has two axes more.
+const FEWER: usize = 12;
+/// Azimuths of the eye, from along the tangent to across.
+const AZIMUTHS: usize = 6;
+/// Normals that an entry is the mean of.
+const NORMALS: usize = 512;
+
+/// A and B of one roughness and anisotropy: over cosines, and over azimuths where that matters.
+struct Row {
+    entries: Vec<DVec2>,
+    azimuths: usize,
+    /// Their mean over the cosine-weighted hemisphere.
+    mean: DVec2,
+}
+
+/// Cosines lie densely toward grazing, where what is sent back changes fast.
+fn cosine_at(k: usize) -> f64 {
+    (k as f64 / (COSINES - 1) as f64).powi(2).max(1e-4)
+}
+
+/// The entry below x in [0, 1] of `count`, and how far beyond it x is.
+fn place(x: f64, count: usize) -> (usize, f64) {
+    let place = x.clamp(0.0, 1.0) * (count - 1) as f64;
+    let k = (place as usize).min(count.saturating_sub(2));
+    (k, place - k as f64)
+}
+
+impl Row {
+    fn of(ggx: &Ggx, azimuths: usize) -> Self {
+        let azimuth =
+            |k: usize| if azimuths > 1 { k as f64 / (azimuths - 1) as f64 * FRAC_PI_2 } else { 0.0 };
+        let entry = |k: usize| integrate(ggx, cosine_at(k % COSINES), azimuth(k / COSINES));
+        let entries = (0..azimuths * COSINES).map(entry).collect();
+        let mut row = Self { entries, azimuths, mean: DVec2::ZERO };
+        row.mean = row.integrated();
+        row
+    }
+
+    /// At the root of a cosine and an azimuth as a share of a right angle.
+    fn at(&self, root: f64, azimuth: f64) -> DVec2 {
+        let (c, beyond) = place(root, COSINES);
+        let line = |a: usize| {
+            let entries = &self.entries[a * COSINES..(a + 1) * COSINES];
+            entries[c].lerp(entries[c + 1], beyond)
+        };
+        if self.azimuths == 1 {
+            return line(0);
+        }
+        let (a, beyond) = place(azimuth, self.azimuths);
+        line(a).lerp(line(a + 1), beyond)
+    }
+
+    /// (1/π)∫ … cos dω: with cos = x², dcos = 2x dx.
+    fn integrated(&self) -> DVec2 {
+        const STEPS: usize = 256;
+        let around = if self.azimuths == 1 { 1 } else { 16 };
+        let step = |k: usize| {
+            let x = ((k % STEPS) as f64 + 0.5) / STEPS as f64;
+            self.at(x, ((k / STEPS) as f64 + 0.5) / around as f64) * 4.0 * x.powi(3)
+        };
+        (0..around * STEPS).map(step).sum::<DVec2>() / (around * STEPS) as f64
+    }
+}
+
+/// A and B seen from one direction: over visible normals a direction's weight is G₂/G₁.
+fn integrate(ggx: &Ggx, cos: f64, azimuth: f64) -> DVec2 {
+    let flat = (1.0 - cos * cos).max(0.0).sqrt();
+    let o = DVec3::new(flat * azimuth.cos(), flat * azimuth.sin(), cos);
+    let sum: DVec2 = spread(NORMALS)
+        .map(|u| {
+            let h = ggx.visible_normal(o, u);
+            let facing = o.dot(h);
+            let i = 2.0 * facing * h - o;
+            if i.z <= 0.0 {
+                return DVec2::ZERO;
+            }
+            let risen = rise(facing);
+            DVec2::new(1.0 - risen, risen) * (ggx.seen_from_both(o, i) / ggx.seen(o))
+        })
+        .sum();
+    sum / NORMALS as f64
+}
+
+/// The rows of isotropic surfaces, by roughness.
+fn isotropic() -> &'static [Row] {
+    static ROWS: OnceLock<Vec<Row>> = OnceLock::new();
+    ROWS.get_or_init(|| {
+        let row = |k: usize| Row::of(&Ggx::new((k as f64 / (ROUGHNESSES - 1) as f64).max(2e-3), 0.0), 1);
+        (0..ROUGHNESSES).map(row).collect()
+    })
+}
+
+/// Those of anisotropic ones, by roughness within anisotropy.
+fn anisotropic() -> &'static [Row] {
+    static ROWS: OnceLock<Vec<Row>> = OnceLock::new();
+    ROWS.get_or_init(|| {
+        let share = |k: usize| k as f64 / (FEWER - 1) as f64;
+        let row = |k: usize| Row::of(&Ggx::new(share(k % FEWER).max(0.02), share(k / FEWER)), AZIMUTHS);
+        (0..FEWER * FEWER).map(row).collect()
+    })
+}
+
+/// What is asked of the tables.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Gloss {
+    /// Perceptual roughness.
+    pub roughness: f64,
+    /// Anisotropy strength.
+    pub anisotropy: f64,
+}
+
+impl Gloss {
+    /// A and B toward a direction in the surface's axes.
+    pub fn shares(self, w: DVec3) -> DVec2 {
+        let root = w.z.abs().min(1.0).sqrt();
+        let azimuth = w.y.abs().atan2(w.x.abs()) / FRAC_PI_2;
+        self.interpolated(|row| row.at(root, azimuth))
+    }
+
+    /// Their means over the cosine-weighted hemisphere.
+    pub fn mean_shares(self) -> DVec2 {
+        self.interpolated(|row| row.mean)
+    }
+
+    fn interpolated(self, of: impl Fn(&Row) -> DVec2) -> DVec2 {
+        if self.anisotropy == 0.0 {
+            let (r, beyond) = place(self.roughness, ROUGHNESSES);
+            let rows = isotropic();
+            return of(&rows[r]).lerp(of(&rows[r + 1]), beyond);
+        }
+        let ((r, rough), (a, stretched)) = (place(self.roughness, FEWER), place(self.anisotropy, FEWER));
+        let rows = anisotropic();
+        let line = |a: usize| of(&rows[a * FEWER + r]).lerp(of(&rows[a * FEWER + r + 1]), rough);
+        line(a).lerp(line(a + 1), stretched)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tables_are_what_their_lobe_sends_back() {
+        for (roughness, anisotropy) in
+            [(0.0, 0.0), (0.13, 0.0), (0.4, 0.0), (0.77, 0.0), (1.0, 0.0), (0.3, 0.6), (0.7, 0.9)]
+        {
+            let gloss = Gloss { roughness, anisotropy };
+            let ggx = Ggx::new(roughness.max(2e-3), anisotropy);
+            for (cos, azimuth) in [(0.1, 0.2), (0.5, 0.9), (0.9, 1.5)] {
+                let o = DVec3::new(0.0, 0.0, cos)
+                    + (1.0f64 - cos * cos).sqrt() * DVec3::new(f64::cos(azimuth), f64::sin(azimuth), 0.0);
+                let [told, found] = [gloss.shares(o), integrate(&ggx, cos, azimuth)];
+                assert!(told.distance(found) < 0.006, "{gloss:?} {cos}: {told}, not {found}");
+            }
+        }
+        // A mirror loses nothing.
+        assert!((Gloss { roughness: 0.0, anisotropy: 0.0 }.mean_shares().element_sum() - 1.0).abs() < 1e-3);
+    }
+}

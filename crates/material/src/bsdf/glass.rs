@@ -1,0 +1,187 @@
+//! Glass: what it mirrors, what it lets through, and what multiple scattering on its facets gives back.
+
+use super::{Bsdf, Scattered, Seen, cosine_weighted, flipped, half, microfacets};
+use crate::Split;
+use crate::fresnel::dielectric_reflectance;
+use crate::ggx::Ggx;
+use glam::{DVec2, DVec3};
+use std::f64::consts::{FRAC_1_PI, TAU};
+
+/// Multiple scattering on rough glass seen from one side: what is lost by single scattering, and the share of it that comes back on
+/// that side.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Returned {
+    /// What single scattering sends to neither side.
+    pub lost: f64,
+    /// The share of it that comes back on the eye's side.
+    pub stays: f64,
+}
+
+impl Bsdf<'_> {
+    /// What rough glass mirrors.
+    pub(super) fn glass(&self, seen: &Seen, o: DVec3, i: DVec3) -> Split {
+        let (share, eta) = (self.shares[2], self.eta(seen));
+        if share == 0.0 || self.is_clear(eta) {
+            return Split::default();
+        }
+        let single = half(o, i)
+            .map_or(0.0, |h| dielectric_reflectance(o.dot(h), eta) * microfacets(&self.ggx, o, i, h));
+        let stays = self.glass_returned(seen, i);
+        (Split::mirrored(DVec3::splat(single), self.ggx.mean_alpha()) + Split::own(DVec3::splat(stays)))
+            * share
+    }
+
+    /// What rough glass lets through.
+    pub(super) fn across(&self, seen: &Seen, o: DVec3, i: DVec3) -> Split {
+        let (share, eta) = (self.shares[2], self.eta(seen));
+        if share == 0.0 || self.is_clear(eta) {
+            return Split::default();
+        }
+        let single = match self.surface.is_thin {
+            true => half(o, flipped(i)).map_or(0.0, |h| {
+                (1.0 - dielectric_reflectance(o.dot(h), eta)) * microfacets(&self.ggx, o, flipped(i), h)
+            }),
+            false => through_facets(&self.ggx, o, i, eta),
+        };
+        let crosses = self.glass_returned(seen, i);
+        Split::carried(self.surface.base_color * (single + crosses)) * share
+    }
+
+    /// The density, 1/sr, with which light from beyond is found by single scattering.
+    pub(super) fn density_across(&self, seen: &Seen, i: DVec3) -> f64 {
+        let (o, eta) = (seen.o, self.eta(seen));
+        if !self.surface.is_thin {
+            return density_through(&self.ggx, o, i, eta);
+        }
+        half(o, flipped(i)).map_or(0.0, |h| {
+            let crosses = 1.0 - dielectric_reflectance(o.dot(h), eta);
+            crosses * self.ggx.density_of_visible(o, h) / (4.0 * o.dot(h))
+        })
+    }
+
+    /// What single scattering on glass loses toward the eye, and the share of that which stays on its side.
+    pub(super) fn glass_lost(&self, seen: &Seen) -> Returned {
+        let eta = self.eta(seen);
+        if self.shares[2] == 0.0 || self.is_clear(eta) {
+            return Returned { lost: 0.0, stays: 1.0 };
+        }
+        match &self.rough_glass {
+            Some(glass) => Returned {
+                lost: glass.from(seen.from_front).lost(seen.o.z),
+                stays: glass.stays(seen.from_front),
+            },
+            None => Returned { lost: self.lost(self.gloss_shares(seen.o)), stays: dielectric_mean(eta) },
+        }
+    }
+
+    /// How it is spread over where it comes back from, 1/sr: as (1 − E(i))/(π(1 − Ē)) on that side.
+    fn spread_of_lost(&self, seen: &Seen, i: DVec3) -> f64 {
+        let (lost, mean) = match &self.rough_glass {
+            Some(glass) => {
+                let row = glass.from(seen.from_front == (i.z > 0.0));
+                (row.lost(i.z.abs()), row.mean_lost())
+            }
+            None => (self.lost(self.gloss_shares(i)), self.lost(self.mean_gloss_shares())),
+        };
+        if lost > 0.0 && mean > 0.0 { lost * FRAC_1_PI / mean } else { 0.0 }
+    }
+
+    /// What of the light that single scattering on glass loses comes back on the eye's side, or from beyond.
+    fn glass_returned(&self, seen: &Seen, i: DVec3) -> f64 {
+        let Returned { lost, stays } = self.glass_lost(seen);
+        if lost == 0.0 {
+            return 0.0;
+        }
+        // Radiance is n² as great beyond.
+        let (share, scale) = match (i.z > 0.0, self.surface.is_thin) {
+            (true, _) => (stays, 1.0),
+            (false, true) => (1.0 - stays, 1.0),
+            (false, false) => (1.0 - stays, self.eta(seen).powi(2)),
+        };
+        share * lost * self.spread_of_lost(seen, i) / scale
+    }
+
+    /// A direction that lost light comes back from, and whether it crosses; `which` and `u` are uniform.
+    pub(super) fn come_back(&self, seen: &Seen, which: f64, u: DVec2) -> (DVec3, bool) {
+        let crosses = which >= self.glass_lost(seen).stays;
+        let Some(glass) = &self.rough_glass else {
+            let i = cosine_weighted(u);
+            return (if crosses { flipped(i) } else { i }, crosses);
+        };
+        let cos = glass.from(seen.from_front != crosses).cosine_of_lost(u.y);
+        let (sin, around) = (TAU * u.x).sin_cos();
+        let flat = (1.0 - cos * cos).max(0.0).sqrt();
+        (DVec3::new(flat * around, flat * sin, if crosses { -cos } else { cos }), crosses)
+    }
+
+    /// The density of [`Self::come_back`], 1/sr.
+    pub(super) fn density_of_returned(&self, seen: &Seen, i: DVec3) -> f64 {
+        let stays = self.glass_lost(seen).stays;
+        let share = if i.z > 0.0 { stays } else { 1.0 - stays };
+        let spread = if self.rough_glass.is_none() { FRAC_1_PI } else { self.spread_of_lost(seen, i) };
+        share * spread * i.z.abs()
+    }
+
+    /// What glass sends back to the eye's side in all.
+    pub(super) fn glass_mirrors(&self, seen: &Seen) -> f64 {
+        let eta = self.eta(seen);
+        if self.shares[2] == 0.0 || self.is_clear(eta) {
+            return dielectric_reflectance(seen.o.z, eta);
+        }
+        let Returned { lost, stays } = self.glass_lost(seen);
+        let mirrored = match &self.rough_glass {
+            Some(glass) => glass.from(seen.from_front).mirrored(seen.o.z),
+            None => self.interface.rough(self.surface.roughness).from(true).mirrored(seen.o.z),
+        };
+        mirrored + lost * stays
+    }
+
+    /// One of clear glass; `odds` of the glass.
+    pub(super) fn clear(&self, seen: &Seen, odds: f64, is_mirrored: bool, i: DVec3) -> Option<Scattered> {
+        let scale = self.shares[2] * self.beneath(seen.o, i) / odds;
+        let weight = match is_mirrored {
+            true => DVec3::splat(scale),
+            false if self.surface.is_thin => self.surface.base_color * scale,
+            false => self.surface.base_color * scale / self.eta(seen).powi(2),
+        };
+        self.single(seen, i, Split::carried(weight))
+    }
+}
+
+/// The facet that refracts light from `i` toward `o`: −(o + η i), on `o`'s side.
+fn refracting(o: DVec3, i: DVec3, eta: f64) -> Option<DVec3> {
+    let h = (o + eta * i).try_normalize()?;
+    let h = if h.z < 0.0 { -h } else { h };
+    (o.dot(h) > 0.0 && i.dot(h) < 0.0).then_some(h)
+}
+
+/// What rough glass lets through by single scattering (Walter et al. 2007, equation 21), for radiance.
+fn through_facets(ggx: &Ggx, o: DVec3, i: DVec3, eta: f64) -> f64 {
+    let Some(h) = refracting(o, i, eta) else { return 0.0 };
+    let (from, to) = (o.dot(h), i.dot(h));
+    let crosses = 1.0 - dielectric_reflectance(from, eta);
+    let seen = ggx.seen_across(o, flipped_up(i)) * ggx.density_of_normals(h);
+    let value = (from * to / (o.z * i.z)).abs() * crosses * seen / (from + eta * to).powi(2);
+    // Equal media bend nothing: all normals refract alike, and the lobe is the direction itself.
+    if value.is_finite() { value } else { 0.0 }
+}
+
+fn density_through(ggx: &Ggx, o: DVec3, i: DVec3, eta: f64) -> f64 {
+    let Some(h) = refracting(o, i, eta) else { return 0.0 };
+    let (from, to) = (o.dot(h), i.dot(h));
+    let crosses = 1.0 - dielectric_reflectance(from, eta);
+    let density = crosses * ggx.density_of_visible(o, h) * eta * eta * to.abs() / (from + eta * to).powi(2);
+    if density.is_finite() { density } else { 0.0 }
+}
+
+/// The mean that a smooth dielectric mirrors over the cosine-weighted hemisphere.
+fn dielectric_mean(eta: f64) -> f64 {
+    const STEPS: usize = 32;
+    let step = |k: usize| dielectric_reflectance(((k as f64 + 0.5) / STEPS as f64).sqrt(), eta);
+    (0..STEPS).map(step).sum::<f64>() / STEPS as f64
+}
+
+/// On the side that the normal points to.
+fn flipped_up(w: DVec3) -> DVec3 {
+    DVec3::new(w.x, w.y, w.z.abs())
+}

@@ -1,0 +1,68 @@
+//! How a surface lies at a point.
+
+use glam::DVec3;
+
+/// The normals of a point and the direction that anisotropy runs along. Unit vectors.
+///
+/// The geometric normal alone decides on which side a direction lies: no shading normal lets light through from behind.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Frame {
+    /// Of the triangle, on its front.
+    pub geometric: DVec3,
+    /// As it is shaded.
+    pub normal: DVec3,
+    /// Across the shading normal.
+    pub tangent: DVec3,
+}
+
+impl Frame {
+    /// Of normals and a tangent, which is made upright to the shading normal; one along it, or 0, is replaced by any.
+    pub fn new(geometric: DVec3, normal: DVec3, tangent: DVec3) -> Self {
+        let upright = tangent - normal * normal.dot(tangent);
+        let tangent = upright.try_normalize().unwrap_or_else(|| normal.any_orthonormal_vector());
+        Self { geometric, normal, tangent }
+    }
+
+    /// Of one normal.
+    pub fn flat(normal: DVec3) -> Self {
+        Self::new(normal, normal, DVec3::ZERO)
+    }
+
+    /// The frame as seen from `outgoing`: on its side, and with a shading normal that does not turn away from it. One that does is
+    /// moved toward the geometric normal until it stands at a right angle, just so (as Keller et al. 2017 bend it): what is
+    /// seen is never shaded as if from behind.
+    pub(crate) fn facing(&self, outgoing: DVec3) -> Self {
+        let side = if self.geometric.dot(outgoing) < 0.0 { -1.0 } else { 1.0 };
+        let (geometric, normal) = (self.geometric * side, self.normal * side);
+        let [toward, turned] = [geometric.dot(outgoing), normal.dot(outgoing)];
+        // A direction in the geometric plane itself sees nothing, whichever normal is taken.
+        const LEAST: f64 = 1e-3;
+        if turned >= LEAST * toward || toward <= 0.0 {
+            return Self { geometric, normal, ..*self };
+        }
+        // (1 − s)·turned + s·toward = LEAST·toward.
+        let share = (LEAST * toward - turned) / (toward - turned);
+        let bent = normal.lerp(geometric, share).normalize_or(geometric);
+        Self::new(geometric, bent, self.tangent)
+    }
+
+    /// A direction in the frame's own axes: tangent, bitangent, normal.
+    pub(crate) fn local(&self, w: DVec3) -> DVec3 {
+        DVec3::new(self.tangent.dot(w), self.normal.cross(self.tangent).dot(w), self.normal.dot(w))
+    }
+
+    /// And back.
+    pub(crate) fn world(&self, w: DVec3) -> DVec3 {
+        self.tangent * w.x + self.normal.cross(self.tangent) * w.y + self.normal * w.z
+    }
+
+    /// How much of the light from `incident` counts where the shading normal leans away from the geometric one, in [0, 1]: it
+    /// falls smoothly to 0 where the triangle itself turns away, in place of a hard edge (Chiang, Li and Burley 2019, *Taming
+    /// the shadow terminator*).
+    pub(crate) fn terminator(&self, incident: DVec3) -> f64 {
+        let shaded = self.normal.dot(incident) * self.geometric.dot(self.normal);
+        let lit = self.geometric.dot(incident).abs();
+        let g = if shaded > 0.0 { (lit / shaded).min(1.0) } else { 1.0 };
+        g + g * g - g * g * g
+    }
+}

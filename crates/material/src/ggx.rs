@@ -1,0 +1,80 @@
+//! Microfacets after Trowbridge and Reitz (GGX), perhaps stretched along the tangent. Directions in the surface's own axes: z is
+//! its normal.
+
+use glam::{DVec2, DVec3};
+use std::f64::consts::{PI, TAU};
+
+/// Surfaces smoother than this α are mirrors: a lobe narrower than a millionth of a rad is one.
+pub const SMOOTHEST: f64 = 1e-6;
+
+/// How rough the surface is along its tangent and across.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ggx {
+    /// α along x and y.
+    alpha: DVec2,
+}
+
+impl Ggx {
+    /// Of a perceptual roughness and an anisotropy strength, both in [0, 1]: α = roughness², along the tangent mixed with 1 by the
+    /// strength's square (KHR_materials_anisotropy).
+    pub fn new(roughness: f64, anisotropy: f64) -> Self {
+        let across = roughness * roughness;
+        let along = across + (1.0 - across) * anisotropy * anisotropy;
+        Self { alpha: DVec2::new(along, across) }
+    }
+
+    /// Whether it is a mirror.
+    pub fn is_smooth(&self) -> bool {
+        self.alpha.min_element() < SMOOTHEST
+    }
+
+    /// The α that lobes are as wide as, of both axes: their geometric mean.
+    pub fn mean_alpha(&self) -> f64 {
+        (self.alpha.x * self.alpha.y).sqrt()
+    }
+
+    /// Area of microfacets of normal `h`, 1/sr, for each unit of surface.
+    pub fn density_of_normals(&self, h: DVec3) -> f64 {
+        if h.z <= 0.0 {
+            return 0.0;
+        }
+        let stretched = (h.truncate() / self.alpha).length_squared() + h.z * h.z;
+        1.0 / (PI * self.alpha.x * self.alpha.y * stretched * stretched)
+    }
+
+    /// Smith's Λ: the area hidden over the area seen.
+    fn lambda(&self, w: DVec3) -> f64 {
+        let tan2 = (w.truncate() * self.alpha).length_squared() / (w.z * w.z);
+        ((1.0 + tan2).sqrt() - 1.0) / 2.0
+    }
+
+    /// The share of microfacets that is seen from `w`.
+    pub fn seen(&self, w: DVec3) -> f64 {
+        1.0 / (1.0 + self.lambda(w))
+    }
+
+    /// The share that is seen from `o` and from `i`, correlated by height, both on one side.
+    pub fn seen_from_both(&self, o: DVec3, i: DVec3) -> f64 {
+        1.0 / (1.0 + self.lambda(o) + self.lambda(i))
+    }
+
+    /// The same for directions on opposite sides, not correlated (Walter et al. 2007).
+    pub fn seen_across(&self, o: DVec3, i: DVec3) -> f64 {
+        self.seen(o) * self.seen(i)
+    }
+
+    /// The density of visible normals from `o` (z > 0), 1/sr.
+    pub fn density_of_visible(&self, o: DVec3, h: DVec3) -> f64 {
+        self.seen(o) * o.dot(h).max(0.0) * self.density_of_normals(h) / o.z
+    }
+
+    /// A normal that is seen from `o` (z > 0), by uniform numbers (Dupuy and Benyoub 2023: a cap of the sphere, uniformly).
+    pub fn visible_normal(&self, o: DVec3, u: DVec2) -> DVec3 {
+        let from = DVec3::new(self.alpha.x * o.x, self.alpha.y * o.y, o.z).normalize();
+        let z = 1.0 - u.y * (1.0 + from.z);
+        let (sin, cos) = (TAU * u.x).sin_cos();
+        let flat = (1.0 - z * z).max(0.0).sqrt();
+        let cap = DVec3::new(flat * cos, flat * sin, z) + from;
+        DVec3::new(self.alpha.x * cap.x, self.alpha.y * cap.y, cap.z.max(0.0)).normalize_or(DVec3::Z)
+    }
+}

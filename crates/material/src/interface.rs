@@ -1,0 +1,215 @@
+//! The two sides of a refracting surface, and what rough glass mirrors and loses by single scattering on either.
+
+use crate::fresnel::dielectric_reflectance;
+use crate::ggx::Ggx;
+use crate::points::spread;
+use glam::{DVec2, DVec3};
+use std::sync::OnceLock;
+
+/// Cosines of a row.
+const COSINES: usize = 48;
+/// Roughnesses in the table.
+const ROUGHNESSES: usize = 24;
+/// Normals that an entry is the mean of.
+const NORMALS: usize = 1024;
+/// The table's smoothest row.
+const SMOOTHEST_ROUGHNESS: f64 = 2e-3;
+
+/// The media before (on the front) and behind a surface. Made once a material: rough glass needs tables.
+#[derive(Debug)]
+pub struct Interface {
+    /// Index of refraction on the front.
+    front: f64,
+    /// Index of refraction on the back.
+    back: f64,
+    tables: OnceLock<[Vec<Entries>; 2]>,
+}
+
+/// Of every cosine of a row: what single scattering mirrors, and what it sends to neither side.
+type Entries = [DVec2; COSINES];
+
+/// Rough glass seen from one side: over the cosine.
+///
+/// Lobes of all widths are alike where the cosine is measured by α, so rows have their cosines at α·s/(1 + α − s) for even
+/// steps of s in [0, 1], and rows of neighbouring roughness are joined at equal s. Between its cosines a row is linear.
+#[derive(Clone, Debug)]
+pub(crate) struct GlassRow {
+    alpha: f64,
+    entries: Entries,
+    /// ∫ of what is lost, 2∫₀ … cos dcos, up to every cosine.
+    lost_below: [f64; COSINES],
+    /// The mean of what is mirrored over the cosine-weighted hemisphere.
+    pub mean_mirrored: f64,
+}
+
+/// Rough glass seen from its front and from its back.
+#[derive(Clone, Debug)]
+pub(crate) struct RoughGlass {
+    rows: [GlassRow; 2],
+    eta: [f64; 2],
+}
+
+impl Interface {
+    /// Between vacuum and a medium of this index of refraction.
+    pub fn of_ior(ior: f64) -> Self {
+        Self::between(1.0, ior)
+    }
+
+    /// Between two media.
+    pub fn between(front: f64, back: f64) -> Self {
+        Self { front, back, tables: OnceLock::new() }
+    }
+
+    /// The index of refraction beyond over that before, seen from the front or the back.
+    pub fn eta(&self, from_front: bool) -> f64 {
+        if from_front { self.back / self.front } else { self.front / self.back }
+    }
+
+    /// Glass of a roughness between the media.
+    pub(crate) fn rough(&self, roughness: f64) -> RoughGlass {
+        let tables = self.tables.get_or_init(|| {
+            let of = |k: usize| k as f64 / (ROUGHNESSES - 1) as f64;
+            [true, false].map(|front| (0..ROUGHNESSES).map(|k| entries(of(k), self.eta(front))).collect())
+        });
+        let place = roughness.clamp(0.0, 1.0) * (ROUGHNESSES - 1) as f64;
+        let r = (place as usize).min(ROUGHNESSES - 2);
+        let row = |rows: &Vec<Entries>| {
+            let join = |k: usize| rows[r][k].lerp(rows[r + 1][k], place - r as f64);
+            GlassRow::new(roughness, std::array::from_fn(join))
+        };
+        let [front, back] = tables;
+        RoughGlass { rows: [row(front), row(back)], eta: [true, false].map(|side| self.eta(side)) }
+    }
+}
+
+impl RoughGlass {
+    /// Seen from the front or the back.
+    pub fn from(&self, front: bool) -> &GlassRow {
+        &self.rows[usize::from(!front)]
+    }
+
+    /// The share of what is lost that comes back on the eye's side. What crosses is chosen so that crossing is reciprocal:
+    /// (1 − r)/((1 − Ē')n'²) is the same from both sides.
+    pub fn stays(&self, from_front: bool) -> f64 {
+        let of = |front: bool| {
+            let beyond = self.from(!front).mean_lost() * self.eta[usize::from(!front)].powi(2);
+            (1.0 - self.from(front).mean_mirrored, beyond)
+        };
+        let ((own, beyond), (others, before)) = (of(from_front), of(!from_front));
+        // In units of n² before: what the other side sees beyond is in its own units.
+        let eta2 = self.eta[usize::from(!from_front)].powi(2);
+        let ratio = |a: f64, b: f64| if b > 0.0 { a / b } else { 0.0 };
+        let k = ratio(own, beyond).min(ratio(others, before * eta2));
+        1.0 - (k * beyond).clamp(0.0, 1.0)
+    }
+}
+
+/// The cosine of a step of s.
+fn cosine_at(alpha: f64, k: usize) -> f64 {
+    let s = k as f64 / (COSINES - 1) as f64;
+    alpha * s / (1.0 + alpha - s)
+}
+
+fn alpha_of(roughness: f64) -> f64 {
+    roughness.max(SMOOTHEST_ROUGHNESS).powi(2)
+}
+
+/// One row of the table.
+fn entries(roughness: f64, eta: f64) -> Entries {
+    let alpha = alpha_of(roughness);
+    let ggx = Ggx::new(alpha.sqrt(), 0.0);
+    std::array::from_fn(|k| {
+        // At the horizon itself nothing is seen; the first cosine is taken a little above.
+        let found = integrate(&ggx, cosine_at(alpha, k).max(1e-3 * alpha), eta);
+        // Integration is not exact: what is kept may come out a little above 1.
+        DVec2::new(found.x, (1.0 - found.element_sum()).max(0.0))
+    })
+}
+
+/// 2∫ (a + b·t)·t dt between two cosines, of a value linear between them.
+fn integral(from: f64, to: f64, at_from: f64, at_to: f64) -> f64 {
+    let b = (at_to - at_from) / (to - from);
+    let a = at_from - b * from;
+    a * (to * to - from * from) + 2.0 / 3.0 * b * (to.powi(3) - from.powi(3))
+}
+
+impl GlassRow {
+    fn new(roughness: f64, entries: Entries) -> Self {
+        let alpha = alpha_of(roughness);
+        let cell = |k: usize, of: &dyn Fn(DVec2) -> f64| {
+            let [from, to] = [k - 1, k].map(|k| cosine_at(alpha, k));
+            integral(from, to, of(entries[k - 1]), of(entries[k]))
+        };
+        let mut lost_below = [0.0; COSINES];
+        for k in 1..COSINES {
+            lost_below[k] = lost_below[k - 1] + cell(k, &|entry| entry.y);
+        }
+        let mean_mirrored = (1..COSINES).map(|k| cell(k, &|entry| entry.x)).sum();
+        Self { alpha, entries, lost_below, mean_mirrored }
+    }
+
+    fn at(&self, cos: f64) -> DVec2 {
+        let cos = cos.clamp(0.0, 1.0);
+        let s = cos * (1.0 + self.alpha) / (cos + self.alpha);
+        let k = ((s * (COSINES - 1) as f64) as usize).min(COSINES - 2);
+        let [from, to] = [k, k + 1].map(|k| cosine_at(self.alpha, k));
+        self.entries[k].lerp(self.entries[k + 1], ((cos - from) / (to - from)).clamp(0.0, 1.0))
+    }
+
+    /// What single scattering mirrors of light from a cosine.
+    pub fn mirrored(&self, cos: f64) -> f64 {
+        self.at(cos).x
+    }
+
+    /// What it sends to neither side.
+    pub fn lost(&self, cos: f64) -> f64 {
+        self.at(cos).y
+    }
+
+    /// The mean of that over the cosine-weighted hemisphere.
+    pub fn mean_lost(&self) -> f64 {
+        self.lost_below[COSINES - 1]
+    }
+
+    /// A cosine whose density over the hemisphere is lost·cos/(π · mean lost): where what was lost comes back from.
+    pub fn cosine_of_lost(&self, u: f64) -> f64 {
+        let wanted = u.clamp(0.0, 1.0) * self.mean_lost();
+        let k = self.lost_below.partition_point(|below| *below <= wanted).clamp(1, COSINES - 1);
+        let [from, to] = [k - 1, k].map(|k| cosine_at(self.alpha, k));
+        let end = |cos: f64| {
+            let share = (cos - from) / (to - from);
+            let [a, b] = [self.entries[k - 1].y, self.entries[k].y];
+            if cos > from { integral(from, cos, a, a + (b - a) * share) } else { 0.0 }
+        };
+        let (mut low, mut high) = (from, to);
+        for _ in 0..40 {
+            let middle = (low + high) / 2.0;
+            if self.lost_below[k - 1] + end(middle) < wanted { low = middle } else { high = middle }
+        }
+        (low + high) / 2.0
+    }
+}
+
+/// What is mirrored, and what crosses, of light from a cosine.
+fn integrate(ggx: &Ggx, cos: f64, eta: f64) -> DVec2 {
+    let o = DVec3::new((1.0 - cos * cos).max(0.0).sqrt(), 0.0, cos);
+    let sum: DVec2 = spread(NORMALS)
+        .map(|u| {
+            let h = ggx.visible_normal(o, u);
+            let facing = o.dot(h);
+            let mirrored = dielectric_reflectance(facing, eta);
+            let i = 2.0 * facing * h - o;
+            let stays = if i.z > 0.0 { mirrored * ggx.seen_from_both(o, i) / ggx.seen(o) } else { 0.0 };
+            let beyond = refracted(o, h, eta).filter(|i| i.z < 0.0);
+            DVec2::new(stays, beyond.map_or(0.0, |i| (1.0 - mirrored) * ggx.seen(i)))
+        })
+        .sum();
+    sum / NORMALS as f64
+}
+
+/// Where light seen from `o` comes from through a facet of normal `h`; none beyond the critical angle.
+pub(crate) fn refracted(o: DVec3, h: DVec3, eta: f64) -> Option<DVec3> {
+    let cos = o.dot(h);
+    let cos2_beyond = 1.0 - (1.0 - cos * cos) / (eta * eta);
+    (cos2_beyond > 0.0).then(|| (h * cos - o) / eta - h * cos2_beyond.sqrt())
+}
