@@ -7,12 +7,12 @@
 //! let picture = splatter.picture();
 //! ```
 //!
-//! Samples stand in a hierarchy ([`salf::tree`]), turned to integers once ([`nodes`]). A lens ([`lens_in_use`]) and paint
-//! ([`paint`]) give each node its defocus κ, and so decide which nodes are drawn ([`sums`]): a sample itself where it is
-//! nearly in focus, one node for many where they are far out of it. A node is drawn as the aperture's image ([`draw`]) of
-//! rows that were cut once for all splats of its size ([`stencil`], [`shape`]), on the level of a pyramid of accumulators
-//! whose pixel is about its own size ([`canvas`]). Running sums and upsampling make the picture ([`resolve`]); partly
-//! occluded samples share what open ones leave of it ([`partition`]), which leaves the sum of light as it is ([`balance`]).
+//! Samples stand in a hierarchy ([`salf::tree`]), turned to integers once (`nodes`). A lens (`lens_in_use`) and paint
+//! (`paint`) give each node its defocus κ, and so decide which nodes are drawn (`sums`): a sample itself where it is
+//! nearly in focus, one node for many where they are far out of it. A node is drawn as the aperture's image (`draw`) of
+//! rows that were cut once for all splats of its size (`stencil`, `shape`), on the level of a pyramid of accumulators
+//! whose pixel is about its own size (`canvas`). Running sums and upsampling make the picture (`resolve`); partly
+//! occluded samples share what open ones leave of it (`partition`), which leaves the sum of light as it is (`balance`).
 
 mod balance;
 mod bands;

@@ -109,7 +109,7 @@ impl Splatter {
     ///
     /// Others are finished: of one without any paint the coverage is evened out, to 1 but for holes; of one that is painted
     /// what shares is scaled until the light is all that was thrown at it. The two differ by the ripple of finite samples; once divided
-    /// by their coverage, by nothing but how they give light back ([`crate::balance`]). From the next [`Self::render`] on.
+    /// by their coverage, by nothing but how they give light back (`balance`). From the next [`Self::render`] on.
     pub fn set_live(&mut self, is_live: bool) {
         self.is_live = is_live;
     }
