@@ -63,6 +63,22 @@ pub enum Subcommand {
     Doctor(DoctorArguments),
 }
 
+/// How a scene is seen and lit.
+#[derive(Clone, Debug, Default, Args)]
+pub struct SceneLook {
+    /// Whether faces that are not double sided are seen from behind (default: the project's, or hide, as glTF asks for). show:
+    /// for files whose faces are turned, and to compare with renderers that show them
+    #[arg(long, value_name = "show|hide", value_parser = back_faces_parser())]
+    pub back_faces: Option<BackFaces>,
+    /// What lies beyond all surfaces, and lights them: a world file, or an equirectangular .hdr or .exr (default: the project's, or
+    /// the scene's own; a scene without light has a studio)
+    #[arg(long, value_name = "WORLD.json|SKY.hdr|exr")]
+    pub world: Option<PathBuf>,
+    /// Leave out light that meets microfacets more than once, to compare with renderers that do
+    #[arg(long)]
+    pub single_scattering: bool,
+}
+
 /// `info`.
 #[derive(Debug, Args)]
 pub struct InfoArguments {
@@ -71,10 +87,8 @@ pub struct InfoArguments {
     /// Bake a small picture's light field and count what of the scene is modelled
     #[arg(long)]
     pub bake: bool,
-    /// Whether faces that are not double sided are seen from behind (default: the project's, or hide, as glTF asks for). show:
-    /// for files whose faces are turned, and to compare with renderers that show them
-    #[arg(long, value_name = "show|hide", value_parser = back_faces_parser())]
-    pub back_faces: Option<BackFaces>,
+    #[command(flatten)]
+    pub scene_look: SceneLook,
     /// Write JSON to stdout
     #[arg(long)]
     pub json: bool,
@@ -94,10 +108,8 @@ pub struct NewArguments {
     /// How it is focused to begin with: a recipe (.json) or a focus map (.exr, .png) (default: the ordinary lens)
     #[arg(long, value_name = "RECIPE.json|MAP.exr|png")]
     pub focus: Option<PathBuf>,
-    /// Whether faces that are not double sided are seen from behind (default: the project's, or hide, as glTF asks for). show:
-    /// for files whose faces are turned, and to compare with renderers that show them
-    #[arg(long, value_name = "show|hide", value_parser = back_faces_parser())]
-    pub back_faces: Option<BackFaces>,
+    #[command(flatten)]
+    pub scene_look: SceneLook,
 }
 
 /// `replay`.
@@ -179,10 +191,8 @@ pub struct ShotArguments {
     /// Picture size in pixels instead of the camera's
     #[arg(long, value_name = "WxH", value_parser = size)]
     pub size: Option<[u32; 2]>,
-    /// Whether faces that are not double sided are seen from behind (default: the project's, or hide, as glTF asks for). show:
-    /// for files whose faces are turned, and to compare with renderers that show them
-    #[arg(long, value_name = "show|hide", value_parser = back_faces_parser())]
-    pub back_faces: Option<BackFaces>,
+    #[command(flatten)]
+    pub scene_look: SceneLook,
 }
 
 /// `render`.

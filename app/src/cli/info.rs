@@ -25,7 +25,7 @@ pub fn run(arguments: &InfoArguments, console: &Console) -> Result<(), Failure> 
         let note = format!("{}: no triangle, so there is nothing to render", file.display());
         return without_triangles(arguments, inspection, &note, console);
     }
-    let input = opened(file, arguments.back_faces, &Unwatched)?;
+    let input = opened(file, &arguments.scene_look, &Unwatched)?;
     console.warn(&input.warnings);
     let health = MeshHealth::of(&input.scene);
     let modelled = modelled(&input, arguments.bake, console)?;
@@ -138,7 +138,7 @@ fn scene_lines(scene: &Scene, health: &MeshHealth) {
     say(format!("  size         {:.4} × {:.4} × {:.4}", size[0], size[1], size[2]));
     let names: Vec<_> = scene.cameras.iter().map(|camera| format!("\"{}\"", camera.name)).collect();
     say(format!("  cameras      {}{}", names.join(", "), made_up(scene.camera_is_invented)));
-    say(format!("  lights       {}{}", scene.lights.len(), made_up(scene.lights_are_invented)));
+    say(format!("  lights       {}", scene.lights.len()));
     say(format!("  mesh         {}", mesh_sentence(health)));
 }
 
@@ -225,7 +225,6 @@ fn scene_json(scene: &Scene) -> Value {
         "cameras": scene.cameras.iter().map(|camera| &camera.name).collect::<Vec<_>>(),
         "camera_is_invented": scene.camera_is_invented,
         "lights": scene.lights.len(),
-        "lights_are_invented": scene.lights_are_invented,
     })
 }
 

@@ -3,7 +3,7 @@
 use super::arguments::NewArguments;
 use super::console::Console;
 use super::failure::Failure;
-use super::shot::{check_folder, unwrap_options};
+use super::shot::{check_folder, unwrap_options, world};
 use project::ProjectFile;
 use session::Document;
 use std::path::Path;
@@ -17,7 +17,8 @@ pub fn run(arguments: &NewArguments, console: &Console) -> Result<(), Failure> {
     let document = Document::begin(&arguments.scene, camera, focus, &unwrap_options(None), console)?;
     console.warn(&document.warnings);
     let mut project = document.to_project();
-    project.back_faces = arguments.back_faces.unwrap_or(project.back_faces);
+    project.back_faces = arguments.scene_look.back_faces.unwrap_or(project.back_faces);
+    project.world = world(&arguments.scene_look)?.or(project.world);
     project.save(output)?;
     console.note(&format!("wrote {}", output.display()));
     Ok(())

@@ -23,7 +23,7 @@ pub fn run(arguments: &RenderArguments, console: &Console) -> Result<(), Failure
     check_output(arguments)?;
 
     let start = Instant::now();
-    let input = opened(&arguments.file, arguments.shot.back_faces, console)?;
+    let input = opened(&arguments.file, &arguments.shot.scene_look, console)?;
     console.warn(&input.warnings);
     let (camera, focus) = shot(&input, &arguments.shot, console)?;
     let open_seconds = start.elapsed().as_secs_f64();

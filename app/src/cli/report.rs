@@ -4,7 +4,7 @@ use super::arguments::{BackendName, ReportArguments};
 use super::console::{Console, path_texts, say_json};
 use super::failure::Failure;
 use super::render::open_gpu;
-use super::shot::unwrap_options;
+use super::shot::{unwrap_options, world};
 use crate::window::demo;
 use report::{ReportOptions, SceneRequest};
 use serde_json::json;
@@ -104,11 +104,14 @@ fn backends(arguments: &ReportArguments) -> Result<Vec<Option<Gpu>>, Failure> {
 /// The scenes that were named; without any the demo, unless the hard cases were asked for.
 fn requests(arguments: &ReportArguments) -> Result<Vec<SceneRequest>, Failure> {
     let shot = &arguments.shot;
+    let world = world(&shot.scene_look)?.map(|world| world.load()).transpose()?;
     let request = |file: &PathBuf| SceneRequest {
         file: file.clone(),
         camera: shot.camera.clone(),
         focus: shot.focus.clone(),
-        back_faces: shot.back_faces,
+        back_faces: shot.scene_look.back_faces,
+        world: world.clone(),
+        single_scattering: shot.scene_look.single_scattering,
     };
     if !arguments.scenes.is_empty() {
         return Ok(arguments.scenes.iter().map(request).collect());

@@ -1,13 +1,13 @@
 //! From where a picture is taken, and how it is focused.
 
-use super::arguments::{AtlasArguments, ShotArguments};
+use super::arguments::{AtlasArguments, SceneLook, ShotArguments};
 use super::console::Console;
 use super::failure::Failure;
 use super::presets::with_presets;
 use atlas::{Density, UnwrapOptions, UvPolicy};
 use focus::Focus;
 use lens::Camera;
-use scene::BackFaces;
+use project::WorldFile;
 use session::{Input, Steps};
 use std::path::Path;
 
@@ -27,13 +27,26 @@ pub fn unwrap_options(arguments: Option<&AtlasArguments>) -> UnwrapOptions {
     }
 }
 
-/// Opens what is to be shown, with faces seen from behind or not as asked for.
-pub fn opened(file: &Path, back_faces: Option<BackFaces>, steps: &dyn Steps) -> Result<Input, Failure> {
+/// Opens what is to be shown, seen and lit as asked for.
+pub fn opened(file: &Path, look: &SceneLook, steps: &dyn Steps) -> Result<Input, Failure> {
+    let world = world(look)?;
     let mut input = Input::open(file, steps)?;
-    if let Some(back_faces) = back_faces {
+    if let Some(back_faces) = look.back_faces {
         input.set_back_faces(back_faces);
     }
+    if let Some(world) = world {
+        input.set_world(Some(world.load()?));
+    }
+    input.set_single_scattering(look.single_scattering);
     Ok(input)
+}
+
+/// The world that was asked for, its environment not yet read.
+pub fn world(look: &SceneLook) -> Result<Option<WorldFile>, Failure> {
+    let Some(file) = &look.world else { return Ok(None) };
+    let is_picture =
+        file.extension().is_some_and(|e| ["hdr", "exr"].iter().any(|known| e.eq_ignore_ascii_case(known)));
+    Ok(Some(if is_picture { WorldFile::of_environment(file) } else { WorldFile::read(file)? }))
 }
 
 /// The camera and the focus that were asked for.

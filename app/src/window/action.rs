@@ -16,6 +16,8 @@ pub enum Action {
     Open(PathBuf),
     /// Asks for the picture of an aperture mask, then uses it.
     ChooseMask,
+    /// Asks for an environment's picture, then uses it.
+    ChooseEnvironment,
     /// Shows what of the aperture a point sees.
     Inspect(SurfaceHit),
     /// Puts a panel elsewhere.

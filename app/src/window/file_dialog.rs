@@ -34,6 +34,8 @@ pub enum Purpose {
     ImportFocusMap,
     /// A picture of an aperture.
     ApertureMask,
+    /// An equirectangular picture.
+    Environment,
     /// A preset to put on the list.
     ImportPreset,
     /// A preset of the list.
@@ -52,6 +54,7 @@ impl Purpose {
             Self::ExportStrokes => "Export the strokes",
             Self::ImportFocusMap => "Import a focus map or a recipe",
             Self::ApertureMask => "Choose an aperture mask",
+            Self::Environment => "Choose an environment",
             Self::ImportPreset => "Import a preset",
             Self::ExportPreset => "Export the preset",
         }
@@ -65,6 +68,7 @@ impl Purpose {
             Self::ImportFocusMap => &["exr", "png", "json"],
             Self::ExportScene => &["glb"],
             Self::ExportStrokes | Self::ImportPreset | Self::ExportPreset => &["json"],
+            Self::Environment => &["hdr", "exr"],
             Self::ApertureMask => &["png", "jpg", "jpeg", "exr"],
         }
     }

@@ -319,6 +319,7 @@ impl Shell {
                 Action::Do(command) => self.apply(*command),
                 Action::Open(path) => self.ask_then(Next::Open(path), context),
                 Action::ChooseMask => self.ask_for(Purpose::ApertureMask, context),
+                Action::ChooseEnvironment => self.ask_for(Purpose::Environment, context),
                 Action::Inspect(hit) => {
                     self.drawer.inspect(hit);
                     self.layout.open(Pane::Aperture);

@@ -1,21 +1,21 @@
 //! Light, focus, a camera and simple surfaces for the tests, and what is measured on their pictures.
 
 use crate::FirstHits;
-use crate::test_scene::{Mesh, WHITE, rectangle};
+use crate::test_scene::{Mesh, rectangle, white};
 use glam::{DVec2, DVec3, Vec3};
 use lens::{Camera, FocusOffset, Picture};
 use progress::{Progress, Unwatched};
 use salf::{BakeOptions, Salf};
 use scene::{Material, Scene, SurfaceField, SurfacePoint};
 use std::sync::Arc;
-use trace::{Radiance, Tracer};
+use trace::{Leaving, Radiance, Tracer};
 
 /// Every surface sends its material's base colour; the background is black.
 pub struct BaseColor(pub Arc<Scene>);
 
 impl Radiance for BaseColor {
-    fn toward(&self, point: SurfacePoint, _eye: DVec3) -> Vec3 {
-        self.0.base_color(point).truncate()
+    fn leaving(&self, point: SurfacePoint, _eye: DVec3) -> Leaving {
+        Leaving::own(self.0.base_color(point).truncate())
     }
     fn from_infinity(&self, _direction: DVec3) -> Vec3 {
         Vec3::ZERO
@@ -76,7 +76,7 @@ pub fn wall(z: f64) -> Mesh {
 
 /// A material of this colour.
 pub fn paint(rgb: [f32; 3]) -> Material {
-    Material { base_color: glam::Vec4::new(rgb[0], rgb[1], rgb[2], 1.0), ..WHITE }
+    Material { base_color: glam::Vec4::new(rgb[0], rgb[1], rgb[2], 1.0), ..white() }
 }
 
 /// What the pinhole of `camera` sees.

@@ -4,25 +4,13 @@ use atlas::Atlas;
 use focus::{
     Canvas, Channels, FillTarget, Focus, FocusError, FocusImage, FocusMap, FocusRecipe, RecipeEntry,
 };
-use glam::{DVec2, DVec3, Vec2, Vec3, Vec4};
+use glam::{DVec2, DVec3, Vec2};
 use lens::FocusOffset;
-use scene::{AlphaMode, Material, Node, Part, Scene, SurfaceField, SurfacePoint, Triangle};
+use scene::{Material, Node, Part, Scene, SurfaceField, SurfacePoint, Triangle};
 use std::sync::Arc;
 
 fn material(name: &str) -> Material {
-    Material {
-        name: name.to_string(),
-        base_color: Vec4::ONE,
-        base_color_texture: None,
-        emissive: Vec3::ZERO,
-        emissive_texture: None,
-        metallic: 0.0,
-        roughness: 1.0,
-        specular: 1.0,
-        unlit: true,
-        alpha: AlphaMode::Opaque,
-        double_sided: true,
-    }
+    Material { name: name.to_string(), ..Material::of_unlit() }
 }
 
 fn node(name: &str) -> Node {

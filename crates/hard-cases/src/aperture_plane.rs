@@ -78,7 +78,7 @@ fn straddling(effort: Effort, progress: &dyn Progress) -> Result<Finding, Cancel
         // A wall beside the camera, edge-on to it.
         (Mesh::rectangle(DVec3::new(0.45, -2.0, 2.0), DVec3::Y * 4.0, DVec3::Z * -9.0), [0.2, 0.5, 0.9]),
     ];
-    let camera = Camera { background: [0.05; 3], ..camera(effort) };
+    let camera = Camera { background: Some([0.05; 3]), ..camera(effort) };
     let shot = Shot::new(scene_of(meshes.iter().map(|(mesh, color)| (mesh, *color))), camera.clone());
     let samples = effort.pick(256, 200);
     let culled = Shot::new(scene_of([]), camera);
@@ -96,7 +96,7 @@ fn straddling(effort: Effort, progress: &dyn Progress) -> Result<Finding, Cancel
 }
 
 fn grazing(effort: Effort, progress: &dyn Progress) -> Result<Finding, Cancelled> {
-    let camera = Camera { background: [1.0; 3], ..camera(effort) };
+    let camera = Camera { background: Some([1.0; 3]), ..camera(effort) };
     let (mut splatted, mut traced, mut untilted) = (Vec::new(), Vec::new(), Vec::new());
     for height in [-0.2, -0.4, -1.0, -20.0] {
         let scene = scene_of([(&floor(height, [-1.0, 1e6], 1e6), WHITE)]);

@@ -1,7 +1,7 @@
 //! Scenes made of corners. The camera of most cases stands at the origin and looks along −z.
 
 use glam::{DVec3, Vec4};
-use scene::{AlphaMode, Material, Node, Part, Scene, Triangle};
+use scene::{Material, Node, Part, Scene, Triangle};
 use std::sync::Arc;
 
 /// A mesh: positions and triangles.
@@ -83,15 +83,7 @@ pub fn scene_of<'a>(meshes: impl IntoIterator<Item = (&'a Mesh, [f32; 3])>) -> A
         scene.materials.push(Material {
             name: format!("material {index}"),
             base_color: Vec4::new(r, g, b, 1.0),
-            base_color_texture: None,
-            emissive: glam::Vec3::ZERO,
-            emissive_texture: None,
-            metallic: 0.0,
-            roughness: 1.0,
-            specular: 1.0,
-            unlit: true,
-            alpha: AlphaMode::Opaque,
-            double_sided: true,
+            ..Material::of_unlit()
         });
     }
     Arc::new(scene)

@@ -4,8 +4,8 @@ use focus::Focus;
 use lens::{Camera, FocusOffset, Picture};
 use progress::{Cancelled, Progress};
 use salf::{BakeOptions, Salf, bake};
-use scene::{Scene, SurfaceField};
-use slf::DirectLight;
+use scene::{Scene, SurfaceField, World};
+use slf::{Transport, TransportOptions};
 use splat::{SplatError, Splatter};
 use std::sync::Arc;
 use trace::Tracer;
@@ -15,14 +15,15 @@ use trace::truth::{self, Estimator, TruthOptions};
 pub struct Shot {
     pub tracer: Arc<Tracer>,
     pub camera: Camera,
-    radiance: Arc<DirectLight>,
+    radiance: Arc<Transport>,
 }
 
 impl Shot {
     pub fn new(scene: Arc<Scene>, camera: Camera) -> Self {
         let tracer = Arc::new(Tracer::new(scene));
-        let background = glam::DVec3::from(camera.background).as_vec3();
-        let radiance = Arc::new(DirectLight::new(tracer.clone(), background));
+        let background = camera.background.map(|background| glam::DVec3::from(background).as_vec3());
+        let world = World::of_scene(tracer.scene(), background);
+        let radiance = Arc::new(Transport::new(tracer.clone(), world, TransportOptions::default()));
         Self { tracer, camera, radiance }
     }
 

@@ -20,8 +20,8 @@ pub struct Camera {
     pub sensor_height: f64,
     /// Pose, a rigid motion; glTF axes: the camera looks down −Z, +Y up.
     pub camera_to_world: DMat4,
-    /// Radiance where no surface is, linear RGB.
-    pub background: [f64; 3],
+    /// Radiance where no surface is, linear RGB, if one was chosen; else the scene's world decides.
+    pub background: Option<[f64; 3]>,
     /// The aperture's shape.
     pub aperture: Aperture,
 }
@@ -37,7 +37,7 @@ impl Default for Camera {
             aperture_radius: 0.0125,
             sensor_height: 0.024,
             camera_to_world: DMat4::IDENTITY,
-            background: [0.0; 3],
+            background: None,
             aperture: Aperture::default(),
         }
     }
@@ -63,7 +63,7 @@ impl Camera {
         )?;
         require(positive(self.sensor_height), "sensor_height", "above 0 and finite")?;
         require(
-            self.background.iter().all(|c| *c >= 0.0 && c.is_finite()),
+            self.background.iter().flatten().all(|c| *c >= 0.0 && c.is_finite()),
             "background",
             "finite radiances of 0 or more",
         )?;

@@ -130,7 +130,7 @@ impl Gloss {
     /// A and B toward a direction in the surface's axes.
     pub fn shares(self, w: DVec3) -> DVec2 {
         let root = w.z.abs().min(1.0).sqrt();
-        let azimuth = w.y.abs().atan2(w.x.abs()) / FRAC_PI_2;
+        let azimuth = if self.anisotropy == 0.0 { 0.0 } else { w.y.abs().atan2(w.x.abs()) / FRAC_PI_2 };
         self.interpolated(|row| row.at(root, azimuth))
     }
 

@@ -32,6 +32,31 @@ pub struct Bsdf<'a> {
     f0: [DVec3; 2],
     /// Shares of metal, of the dielectric over its ground, and of glass.
     shares: [f64; 3],
+    /// Of the gloss; none where nothing is glossy.
+    means: Option<Means>,
+}
+
+/// What does not depend on directions.
+#[derive(Clone, Copy, Debug)]
+struct Means {
+    /// A and B over the cosine-weighted hemisphere.
+    shares: DVec2,
+    /// What of the lost light comes back from metal and from the dielectric.
+    multiple: [DVec3; 2],
+    /// What the dielectric's surface leaves to its ground, over the cosine-weighted hemisphere.
+    beneath: DVec3,
+}
+
+/// A direction, and what the upper lobes send back toward it.
+#[derive(Clone, Copy, Debug)]
+struct Side {
+    w: DVec3,
+    /// A and B of the gloss.
+    shares: DVec2,
+    /// What the dielectric's surface leaves to its ground.
+    beneath: DVec3,
+    coat: f64,
+    sheen: f64,
 }
 
 /// A direction that light was found to come from.
@@ -51,7 +76,24 @@ pub struct Scattered {
 struct Seen {
     frame: Frame,
     o: DVec3,
+    side: Side,
     from_front: bool,
+}
+
+/// Scattered light, 1/sr, by how it is found best.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Parts {
+    /// Of lobes as wide as a hemisphere: diffuse on the eye's side, sheen, what multiple scattering on facets gives back. It is own.
+    pub spread: DVec3,
+    /// Of all others.
+    pub sharp: Split,
+}
+
+/// How a point scatters light toward one direction: what is the same for light from everywhere is worked out once.
+pub struct Toward<'b, 'a> {
+    bsdf: &'b Bsdf<'a>,
+    seen: Seen,
+    odds: Odds,
 }
 
 const COAT_F0: f64 = 0.04;
@@ -63,7 +105,7 @@ impl<'a> Bsdf<'a> {
         let f0 = reflectance_of_ior(surface.ior) * surface.specular_color;
         let dielectric = (f0.min(DVec3::ONE)) * surface.specular;
         let [metal, glass] = [surface.metallic, surface.transmission];
-        Self {
+        let mut bsdf = Self {
             surface: *surface,
             frame,
             interface,
@@ -72,7 +114,27 @@ impl<'a> Bsdf<'a> {
             coat: Ggx::new(surface.clearcoat.map_or(0.0, |coat| coat.roughness), 0.0),
             f0: [surface.base_color, dielectric],
             shares: [metal, (1.0 - metal) * (1.0 - glass), (1.0 - metal) * glass],
-        }
+            means: None,
+        };
+        let is_glossy = metal > 0.0 || (bsdf.shares[1] > 0.0 && surface.specular > 0.0);
+        bsdf.means = is_glossy.then(|| bsdf.mean_gloss());
+        bsdf
+    }
+
+    fn mean_gloss(&self) -> Means {
+        let shares = match self.ggx.is_smooth() {
+            true => DVec2::new(20.0, 1.0) / 21.0,
+            false => self.gloss_table().mean_shares(),
+        };
+        let kept = shares.element_sum();
+        // F̄²Ē/(1 − F̄(1 − Ē)) (Kulla and Conty 2017).
+        let multiple = [0, 1].map(|which| {
+            let f90 = if which == 0 { DVec3::ONE } else { DVec3::splat(self.surface.specular) };
+            let mean = schlick_mean(self.f0[which], f90);
+            mean * mean * kept / (DVec3::ONE - mean * (1.0 - kept))
+        });
+        let back = self.f0[1] * shares.x + self.surface.specular * shares.y + multiple[1] * self.lost(shares);
+        Means { shares, multiple, beneath: DVec3::ONE - back }
     }
 
     fn rough_glass(surface: &Surface, interface: &Interface) -> Option<Box<RoughGlass>> {
@@ -85,7 +147,25 @@ impl<'a> Bsdf<'a> {
     fn seen(&self, outgoing: DVec3) -> Seen {
         let frame = self.frame.facing(outgoing);
         let from_front = self.frame.geometric.dot(outgoing) >= 0.0;
-        Seen { o: frame.local(outgoing), frame, from_front }
+        let o = frame.local(outgoing);
+        Seen { o, side: self.side(o), frame, from_front }
+    }
+
+    fn side(&self, w: DVec3) -> Side {
+        let (mut shares, mut beneath) = (DVec2::ZERO, DVec3::ONE);
+        if let Some(means) = &self.means {
+            shares = self.gloss_shares(w);
+            let multiple = means.multiple[1] * self.lost(shares);
+            beneath -= self.f0[1] * shares.x + self.surface.specular * shares.y + multiple;
+        }
+        Side { w, shares, beneath, coat: self.coat_albedo(w), sheen: self.sheen_albedo(w) }
+    }
+
+    /// For light toward one direction.
+    pub fn toward(&self, outgoing: DVec3) -> Toward<'_, 'a> {
+        let seen = self.seen(outgoing);
+        let odds = self.odds(&seen);
+        Toward { bsdf: self, seen, odds }
     }
 
     /// Light sent toward `outgoing` for light from `incident`, 1/sr, without the cosine; mirrors and clear glass, which have
@@ -97,34 +177,36 @@ impl<'a> Bsdf<'a> {
 
     /// The density, 1/sr, with which [`Self::sample`] finds `incident`.
     pub fn density(&self, outgoing: DVec3, incident: DVec3) -> f64 {
-        let seen = self.seen(outgoing);
-        self.density_of(&seen, &self.odds(&seen), incident)
+        let toward = self.toward(outgoing);
+        self.density_of(&toward.seen, &toward.odds, incident)
     }
 
     /// Draws where light comes from, by uniform numbers in [0, 1). `None` where the drawn way carries nothing.
     pub fn sample(&self, outgoing: DVec3, u: [f64; 3]) -> Option<Scattered> {
-        let seen = self.seen(outgoing);
+        self.toward(outgoing).sample(u)
+    }
+
+    fn drawn(&self, seen: &Seen, odds: &Odds, u: [f64; 3]) -> Option<Scattered> {
         if seen.o.z <= 0.0 {
             return None;
         }
-        let odds = self.odds(&seen);
         let place = DVec2::new(u[1], u[2]);
         let (choice, rest) = odds.choose(u[0])?;
         let o = seen.o;
         let (i, crosses) = match choice {
             Choice::Coat if self.coat.is_smooth() => {
-                return self.mirrored(&seen, self.coat_mirror(o) / odds.coat);
+                return self.mirrored(seen, self.coat_mirror(o) / odds.coat);
             }
             Choice::Coat => (mirror(o, self.coat.visible_normal(o, place)), false),
             Choice::Gloss if self.ggx.is_smooth() => {
-                return self.mirrored(&seen, self.gloss_mirror(o) / odds.gloss);
+                return self.mirrored(seen, self.gloss_mirror(o) / odds.gloss);
             }
             Choice::Gloss => (mirror(o, self.ggx.visible_normal(o, place)), false),
             Choice::Spread => (cosine_weighted(place), false),
             Choice::Through => (-cosine_weighted(place), true),
-            Choice::Returned => self.come_back(&seen, rest, place),
+            Choice::Returned => self.come_back(seen, rest, place),
             Choice::Glass => {
-                let eta = self.eta(&seen);
+                let eta = self.eta(seen);
                 let is_clear = self.is_clear(eta);
                 let h = if is_clear { DVec3::Z } else { self.ggx.visible_normal(o, place) };
                 let crosses = rest >= dielectric_reflectance(o.dot(h), eta);
@@ -134,7 +216,7 @@ impl<'a> Bsdf<'a> {
                     (true, false) => refracted(o, h, eta)?,
                 };
                 if is_clear {
-                    return self.clear(&seen, odds.glass, !crosses, i);
+                    return self.clear(seen, odds.glass, !crosses, i);
                 }
                 (i, crosses)
             }
@@ -144,8 +226,8 @@ impl<'a> Bsdf<'a> {
             return None;
         }
         let incident = seen.frame.world(i);
-        let density = self.density_of(&seen, &odds, incident);
-        let value = self.value(&seen, incident);
+        let density = self.density_of(seen, odds, incident);
+        let value = self.value(seen, incident);
         let weight = value * (i.z.abs() / density);
         let is_something = density > 0.0 && density.is_finite() && value.total() != DVec3::ZERO;
         is_something.then_some(Scattered { incident, weight, density: Some(density), crosses: i.z < 0.0 })
@@ -153,38 +235,44 @@ impl<'a> Bsdf<'a> {
 
     /// What is sent toward `outgoing` of light from everywhere, at most 1: in closed form, from tables. Of both parts.
     pub fn albedo(&self, outgoing: DVec3) -> Split {
-        let seen = self.seen(outgoing);
-        let o = seen.o;
+        self.albedo_of(&self.seen(outgoing))
+    }
+
+    fn albedo_of(&self, seen: &Seen) -> Split {
+        let (o, side) = (seen.o, &seen.side);
         if o.z <= 0.0 {
             return Split::default();
         }
         let [metal, dielectric, glass] = self.shares;
-        let (under_coat, under_sheen) = (1.0 - self.coat_albedo(o), 1.0 - self.sheen_albedo(o));
-        let shares = self.gloss_shares(o);
+        let (under_coat, under_sheen) = (1.0 - side.coat, 1.0 - side.sheen);
+        let shares = side.shares;
         let lost = self.lost(shares);
         let mut all = Split::mirrored(self.f0[0] * shares.x + shares.y, self.ggx.mean_alpha()) * metal;
         all += Split::own(self.multiple(0) * lost) * metal;
         let f90 = DVec3::splat(self.surface.specular);
         all += Split::mirrored(self.f0[1] * shares.x + f90 * shares.y, self.ggx.mean_alpha()) * dielectric;
         all += Split::own(self.multiple(1) * lost) * dielectric;
-        let ground = DVec3::ONE - self.dielectric_albedo(o);
+        let ground = side.beneath;
         let share = self.surface.diffuse_transmission;
         let color = self.surface.base_color * (1.0 - share) + self.surface.diffuse_transmission_color * share;
         all += Split::own(ground * color) * dielectric;
-        let mirrors = self.glass_mirrors(&seen);
+        let mirrors = self.glass_mirrors(seen);
         let tint = self.surface.base_color * (1.0 - mirrors);
         all += (Split::mirrored(DVec3::splat(mirrors), self.ggx.mean_alpha()) + Split::carried(tint)) * glass;
         all = all * under_sheen;
         if let Some(cloth) = self.surface.sheen {
             all += Split::own(cloth.color * sheen::albedo(o.z, cloth.roughness));
         }
-        all * under_coat + Split::mirrored(DVec3::splat(self.coat_albedo(o)), self.coat.mean_alpha())
+        all * under_coat + Split::mirrored(DVec3::splat(side.coat), self.coat.mean_alpha())
     }
 
     /// How coverage is shared between what is own and what is carried: by what either sends back in all, the mean of its
     /// channels. Sums to 1; all own where nothing is sent at all.
     pub fn coverage_shares(&self, outgoing: DVec3) -> [f64; 2] {
-        let albedo = self.albedo(outgoing);
+        self.shares_of(self.albedo(outgoing))
+    }
+
+    fn shares_of(&self, albedo: Split) -> [f64; 2] {
         let [own, carried] = [albedo.own, albedo.carried].map(|part| part.element_sum());
         if own + carried > 0.0 { [own / (own + carried), carried / (own + carried)] } else { [1.0, 0.0] }
     }
@@ -214,10 +302,7 @@ impl<'a> Bsdf<'a> {
     }
 
     fn mean_gloss_shares(&self) -> DVec2 {
-        match self.ggx.is_smooth() {
-            true => DVec2::new(20.0, 1.0) / 21.0,
-            false => self.gloss_table().mean_shares(),
-        }
+        self.means.map_or_else(|| self.gloss_table().mean_shares(), |means| means.shares)
     }
 
     /// What single scattering loses of white light.
@@ -226,22 +311,9 @@ impl<'a> Bsdf<'a> {
         if is_kept { 0.0 } else { (1.0 - shares.element_sum()).max(0.0) }
     }
 
-    /// What of the lost light comes back from metal (0) or the dielectric (1): F̄²Ē/(1 − F̄(1 − Ē)) (Kulla and Conty 2017).
+    /// What of the lost light comes back from metal (0) or the dielectric (1).
     fn multiple(&self, which: usize) -> DVec3 {
-        let f90 = if which == 0 { DVec3::ONE } else { DVec3::splat(self.surface.specular) };
-        let (mean, kept) = (schlick_mean(self.f0[which], f90), self.mean_gloss_shares().element_sum());
-        mean * mean * kept / (DVec3::ONE - mean * (1.0 - kept))
-    }
-
-    /// All that the dielectric's surface sends back, so that its ground does not get it.
-    fn dielectric_albedo(&self, w: DVec3) -> DVec3 {
-        let shares = self.gloss_shares(w);
-        self.f0[1] * shares.x + self.surface.specular * shares.y + self.multiple(1) * self.lost(shares)
-    }
-
-    fn mean_dielectric_albedo(&self) -> DVec3 {
-        let shares = self.mean_gloss_shares();
-        self.f0[1] * shares.x + self.surface.specular * shares.y + self.multiple(1) * self.lost(shares)
+        self.means.map_or(DVec3::ZERO, |means| means.multiple[which])
     }
 
     fn coat_albedo(&self, w: DVec3) -> f64 {
@@ -261,48 +333,61 @@ impl<'a> Bsdf<'a> {
     }
 
     /// What coat and sheen leave of what lies beneath, for both directions.
-    fn beneath(&self, o: DVec3, i: DVec3) -> f64 {
-        let left = |of: &dyn Fn(DVec3) -> f64| (1.0 - of(o)).min(1.0 - of(i));
-        left(&|w| self.coat_albedo(w)) * left(&|w| self.sheen_albedo(w))
+    fn beneath(&self, o: &Side, i: &Side) -> f64 {
+        (1.0 - o.coat).min(1.0 - i.coat) * (1.0 - o.sheen).min(1.0 - i.sheen)
     }
 
     fn value(&self, seen: &Seen, incident: DVec3) -> Split {
+        let Parts { spread, sharp } = self.parts(seen, incident);
+        Split::own(spread) + sharp
+    }
+
+    fn parts(&self, seen: &Seen, incident: DVec3) -> Parts {
         let (o, i) = (seen.o, seen.frame.local(incident));
         let same_side = seen.frame.geometric.dot(incident) > 0.0;
         // No light from behind, whatever the shading normal says.
         if o.z <= 0.0 || i.z == 0.0 || same_side != (i.z > 0.0) {
-            return Split::default();
+            return Parts::default();
         }
-        let beneath = self.beneath(o, i);
+        let (eye, light) = (&seen.side, &self.side(i));
+        let beneath = self.beneath(eye, light);
         if !same_side {
-            return (self.across(seen, o, i) + self.diffuse_across(o, i)) * beneath;
+            let sharp = (self.across(seen, o, i) + self.diffuse_across(eye, light)) * beneath;
+            return Parts { spread: DVec3::ZERO, sharp };
         }
-        let mut value = (self.gloss(o, i) + self.diffuse(o, i) + self.glass(seen, o, i)) * beneath;
+        let mut spread = (self.multiple_value(eye, light) + self.diffuse(eye, light)) * beneath;
+        let mut sharp = (self.gloss(eye, light) + self.glass(seen, o, i)) * beneath;
         if let Some(cloth) = self.surface.sheen {
-            let left = (1.0 - self.coat_albedo(o)).min(1.0 - self.coat_albedo(i));
-            value += Split::own(cloth.color * sheen::value(o, i, cloth.roughness) * left);
+            let left = (1.0 - eye.coat).min(1.0 - light.coat);
+            spread += cloth.color * sheen::value(o, i, cloth.roughness) * left;
         }
         if let (Some(coat), false, Some(h)) = (self.surface.clearcoat, self.coat.is_smooth(), half(o, i)) {
             let mirrored = COAT_F0 + (1.0 - COAT_F0) * rise(o.dot(h));
             let light = coat.factor * mirrored * microfacets(&self.coat, o, i, h);
-            value += Split::mirrored(DVec3::splat(light), self.coat.mean_alpha());
+            sharp += Split::mirrored(DVec3::splat(light), self.coat.mean_alpha());
         }
-        value * seen.frame.terminator(incident)
+        let share = seen.frame.terminator(incident);
+        Parts { spread: spread * share, sharp: sharp * share }
     }
 
     /// Metal and the dielectric's surface.
-    fn gloss(&self, o: DVec3, i: DVec3) -> Split {
-        let [metal, dielectric, _] = self.shares;
-        if self.ggx.is_smooth() || metal + dielectric == 0.0 {
+    fn gloss(&self, eye: &Side, light: &Side) -> Split {
+        if self.means.is_none() || self.ggx.is_smooth() {
             return Split::default();
         }
-        let lost = self.lost(self.gloss_shares(o)) * self.lost(self.gloss_shares(i));
-        let mean = self.lost(self.mean_gloss_shares());
-        let spread = if lost > 0.0 { lost * FRAC_1_PI / mean } else { 0.0 };
-        let multiple = (self.multiple(0) * metal + self.multiple(1) * dielectric) * spread;
+        let (o, i) = (eye.w, light.w);
         let single =
             half(o, i).map_or(DVec3::ZERO, |h| self.mirrored_at(o.dot(h)) * microfacets(&self.ggx, o, i, h));
-        Split::mirrored(single, self.ggx.mean_alpha()) + Split::own(multiple)
+        Split::mirrored(single, self.ggx.mean_alpha())
+    }
+
+    /// What multiple scattering on their facets gives back.
+    fn multiple_value(&self, eye: &Side, light: &Side) -> DVec3 {
+        let [metal, dielectric, _] = self.shares;
+        let Some(means) = self.means.filter(|_| !self.ggx.is_smooth()) else { return DVec3::ZERO };
+        let lost = self.lost(eye.shares) * self.lost(light.shares);
+        let spread = if lost > 0.0 { lost * FRAC_1_PI / self.lost(means.shares) } else { 0.0 };
+        (means.multiple[0] * metal + means.multiple[1] * dielectric) * spread
     }
 
     /// What facets of metal and dielectric mirror at an angle.
@@ -313,27 +398,27 @@ impl<'a> Bsdf<'a> {
     }
 
     /// The coupling of a ground beneath the dielectric's surface.
-    fn coupled(&self, o: DVec3, i: DVec3) -> DVec3 {
-        let over = |w| DVec3::ONE - self.dielectric_albedo(w);
-        let mean = DVec3::ONE - self.mean_dielectric_albedo();
+    fn coupled(&self, eye: &Side, light: &Side) -> DVec3 {
+        let Some(means) = &self.means else { return DVec3::splat(FRAC_1_PI) };
+        let both = eye.beneath * light.beneath / means.beneath;
         // A surface that mirrors all leaves nothing to its ground.
-        DVec3::select(mean.cmpgt(DVec3::ZERO), over(o) * over(i) / mean, DVec3::ZERO) * FRAC_1_PI
+        DVec3::select(means.beneath.cmpgt(DVec3::ZERO), both, DVec3::ZERO) * FRAC_1_PI
     }
 
-    fn diffuse(&self, o: DVec3, i: DVec3) -> Split {
+    fn diffuse(&self, eye: &Side, light: &Side) -> DVec3 {
         let share = self.shares[1] * (1.0 - self.surface.diffuse_transmission);
         if share == 0.0 {
-            return Split::default();
+            return DVec3::ZERO;
         }
-        Split::own(self.surface.base_color * self.coupled(o, i)) * share
+        self.surface.base_color * self.coupled(eye, light) * share
     }
 
-    fn diffuse_across(&self, o: DVec3, i: DVec3) -> Split {
+    fn diffuse_across(&self, eye: &Side, light: &Side) -> Split {
         let share = self.shares[1] * self.surface.diffuse_transmission;
         if share == 0.0 {
             return Split::default();
         }
-        Split::own(self.surface.diffuse_transmission_color * self.coupled(o, flipped(i))) * share
+        Split::own(self.surface.diffuse_transmission_color * self.coupled(eye, light)) * share
     }
 
     fn coat_mirror(&self, o: DVec3) -> DVec3 {
@@ -341,7 +426,7 @@ impl<'a> Bsdf<'a> {
     }
 
     fn gloss_mirror(&self, o: DVec3) -> DVec3 {
-        self.mirrored_at(o.z) * self.beneath(o, o)
+        self.mirrored_at(o.z) * self.beneath(&self.side(o), &self.side(o))
     }
 
     /// A mirror's direction.
@@ -357,17 +442,15 @@ impl<'a> Bsdf<'a> {
     }
 
     fn odds(&self, seen: &Seen) -> Odds {
-        let o = seen.o;
         let [metal, dielectric, glass] = self.shares;
         let mean = |color: DVec3| color.element_sum() / 3.0;
-        let shares = self.gloss_shares(o);
+        let Side { shares, coat, sheen: cloth, .. } = seen.side;
         let lost = self.lost(shares);
-        let (coat, cloth) = (self.coat_albedo(o), self.sheen_albedo(o));
         let beneath = (1.0 - coat) * (1.0 - cloth);
         let gloss = self.f0[0] * (metal * shares.x) + metal * shares.y;
         let gloss = gloss + (self.f0[1] * shares.x + self.surface.specular * shares.y) * dielectric;
         let multiple = (self.multiple(0) * metal + self.multiple(1) * dielectric) * lost;
-        let ground = (DVec3::ONE - self.dielectric_albedo(o)) * dielectric;
+        let ground = seen.side.beneath * dielectric;
         let share = self.surface.diffuse_transmission;
         let on_this_side = mean(multiple + ground * self.surface.base_color * (1.0 - share));
         let beyond = mean(ground * self.surface.diffuse_transmission_color * share);
@@ -412,6 +495,88 @@ impl<'a> Bsdf<'a> {
             density += odds.glass * self.density_across(seen, i);
         }
         density
+    }
+}
+
+impl Toward<'_, '_> {
+    /// [`Bsdf::evaluate`] times the cosine, and [`Bsdf::density`].
+    pub fn scatter(&self, incident: DVec3) -> (Split, f64) {
+        let value = self.bsdf.value(&self.seen, incident);
+        if value.total() == DVec3::ZERO {
+            return (value, 0.0);
+        }
+        let cosine = self.seen.frame.local(incident).z.abs();
+        (value * cosine, self.bsdf.density_of(&self.seen, &self.odds, incident))
+    }
+
+    /// [`Bsdf::sample`].
+    pub fn sample(&self, u: [f64; 3]) -> Option<Scattered> {
+        self.bsdf.drawn(&self.seen, &self.odds, u)
+    }
+
+    /// What is sent of light that is the same from everywhere, in both parts.
+    pub fn albedo(&self) -> Split {
+        self.bsdf.albedo_of(&self.seen)
+    }
+
+    /// What spread lobes ([`Parts`]) send of light that is the same from everywhere.
+    pub fn spread_albedo(&self) -> DVec3 {
+        let (bsdf, side) = (self.bsdf, &self.seen.side);
+        if self.seen.o.z <= 0.0 {
+            return DVec3::ZERO;
+        }
+        let [metal, dielectric, _] = bsdf.shares;
+        let lost = bsdf.lost(side.shares);
+        let multiple = (bsdf.multiple(0) * metal + bsdf.multiple(1) * dielectric) * lost;
+        let share = dielectric * (1.0 - bsdf.surface.diffuse_transmission);
+        let ground = side.beneath * bsdf.surface.base_color * share;
+        let mut all = (multiple + ground) * (1.0 - side.sheen);
+        if let Some(cloth) = bsdf.surface.sheen {
+            all += cloth.color * sheen::albedo(self.seen.o.z, cloth.roughness);
+        }
+        all * (1.0 - side.coat)
+    }
+
+    /// Value times cosine by parts, and the density, 1/sr, with which [`Self::sample_sharp`] finds `incident`.
+    pub fn scatter_parts(&self, incident: DVec3) -> (Parts, f64) {
+        let Parts { spread, sharp } = self.bsdf.parts(&self.seen, incident);
+        let cosine = self.seen.frame.local(incident).z.abs();
+        let has_sharp = sharp.total() != DVec3::ZERO;
+        let density = if has_sharp { self.sharp_density(incident) } else { 0.0 };
+        (Parts { spread: spread * cosine, sharp: sharp * cosine }, density)
+    }
+
+    fn sharp_density(&self, incident: DVec3) -> f64 {
+        self.odds.without_spread().map_or(0.0, |odds| self.bsdf.density_of(&self.seen, &odds, incident))
+    }
+
+    /// Draws where light comes from that spread lobes ([`Parts`]) send on, and tells its density, 1/sr. `None` where nothing is spread.
+    pub fn sample_spread(&self, u: [f64; 2]) -> Option<(DVec3, f64)> {
+        if self.odds.spread == 0.0 || self.seen.o.z <= 0.0 {
+            return None;
+        }
+        let i = cosine_weighted(DVec2::from_array(u));
+        (i.z > 0.0).then(|| (self.seen.frame.world(i), i.z * FRAC_1_PI))
+    }
+
+    /// The density, 1/sr, with which [`Self::sample_spread`] finds `incident`.
+    pub fn spread_density(&self, incident: DVec3) -> f64 {
+        if self.odds.spread == 0.0 { 0.0 } else { self.seen.frame.local(incident).z.max(0.0) * FRAC_1_PI }
+    }
+
+    /// Draws where light comes from that sharp lobes ([`Parts`]) send on.
+    pub fn sample_sharp(&self, u: [f64; 3]) -> Option<Scattered> {
+        let odds = self.odds.without_spread()?;
+        let scattered = self.bsdf.drawn(&self.seen, &odds, u)?;
+        let Some(density) = scattered.density else { return Some(scattered) };
+        let sharp = self.bsdf.parts(&self.seen, scattered.incident).sharp;
+        let weight = sharp * (self.seen.frame.local(scattered.incident).z.abs() / density);
+        (weight.total() != DVec3::ZERO).then_some(Scattered { weight, ..scattered })
+    }
+
+    /// [`Bsdf::coverage_shares`].
+    pub fn coverage_shares(&self) -> [f64; 2] {
+        self.bsdf.shares_of(self.bsdf.albedo_of(&self.seen))
     }
 }
 

@@ -24,7 +24,7 @@ mod points;
 mod sheen;
 mod surface;
 
-pub use bsdf::{Bsdf, Scattered};
+pub use bsdf::{Bsdf, Parts, Scattered, Toward};
 pub use frame::Frame;
 pub use fresnel::{dielectric_reflectance, reflectance_of_ior, schlick};
 pub use interface::Interface;

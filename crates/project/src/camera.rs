@@ -89,7 +89,7 @@ fn from_json(
             None => defaults.camera_to_world,
         },
         background: match fields.get("background") {
-            Some(field) => field.numbers()?,
+            Some(field) => Some(field.numbers()?),
             None => defaults.background,
         },
         aperture: match fields.get("aperture") {
@@ -151,7 +151,7 @@ pub fn camera_to_json(camera: &Camera) -> Value {
         distance if distance.is_infinite() => json!("inf"),
         distance => json!(distance),
     };
-    json!({
+    let mut json = json!({
         "width": camera.width,
         "height": camera.height,
         "yfov": camera.yfov,
@@ -159,9 +159,12 @@ pub fn camera_to_json(camera: &Camera) -> Value {
         "aperture_radius": camera.aperture_radius,
         "sensor_height": camera.sensor_height,
         "camera_to_world": rows,
-        "background": camera.background,
         "aperture": aperture_to_json(&camera.aperture),
-    })
+    });
+    if let Some(background) = camera.background {
+        json["background"] = json!(background);
+    }
+    json
 }
 
 /// The aperture as a JSON value; a mask is named, and not copied.

@@ -37,6 +37,7 @@ mod scene_path;
 mod strokes_file;
 mod texel_bytes;
 mod texel_set;
+mod world_file;
 mod z_test;
 
 pub use aperture_mask_file::read_aperture_mask;
@@ -55,4 +56,5 @@ pub use strokes_file::{
     StrokeView, read_strokes, write_strokes,
 };
 pub use texel_set::TexelSet;
+pub use world_file::{EnvironmentChoice, WorldFile};
 pub use z_test::{ZAgreement, z_test};

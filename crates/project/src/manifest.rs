@@ -48,6 +48,9 @@ pub(crate) struct Manifest {
     /// Whether faces are seen from behind, where that is told.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub back_faces: Option<String>,
+    /// What lies beyond all surfaces, where that was chosen: as in a world file.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub world: Option<Value>,
     pub background_focus: [f64; 2],
     pub brush: Brush,
     #[serde(default)]

@@ -15,7 +15,6 @@
 //! The scene itself stays where it is; its path is kept relative to the project, so that both may be moved
 //! together, with its checksum, so that a change is noticed.
 
-use crate::ProjectError;
 use crate::camera::{camera_from_json, camera_to_json};
 use crate::container::{Container, DAMAGED_CURE, pack};
 use crate::disk::{read_bytes, write_verified};
@@ -24,6 +23,7 @@ use crate::manifest::{CameraEntry, MANIFEST, Manifest, MapEntry, SceneReference,
 use crate::scene_path::ScenePath;
 use crate::texel_bytes::pairs;
 use crate::texel_set::TexelSet;
+use crate::{ProjectError, WorldFile};
 use focus::{Brush, FocusLayer, FocusMap, LayerStack};
 use lens::{ApertureMask, ApertureShape, Camera, Exposure, FocusOffset};
 use scene::BackFaces;
@@ -67,6 +67,8 @@ pub struct ProjectFile {
     pub exposure: Exposure,
     /// Whether faces that are not double sided are seen from behind.
     pub back_faces: BackFaces,
+    /// The world that was chosen; else the scene has one of its own.
+    pub world: Option<WorldFile>,
     /// The brush.
     pub brush: Brush,
     /// Layout and viewpoint, as the window wants them; any JSON.
@@ -108,6 +110,7 @@ impl ProjectFile {
             active_camera: 0,
             exposure: Exposure::default(),
             back_faces: BackFaces::default(),
+            world: None,
             brush: Brush::default(),
             view: Value::Null,
             atlas: None,
@@ -234,6 +237,7 @@ impl ProjectFile {
             active_camera: self.active_camera,
             exposure: exposure_name(self.exposure).to_string(),
             back_faces: (self.back_faces != BackFaces::default()).then(|| self.back_faces.name().to_string()),
+            world: self.world.as_ref().map(|world| world.to_json(file)),
             background_focus: [background.t, background.anchor],
             brush: self.brush.clone(),
             view: self.view.clone(),
@@ -277,6 +281,7 @@ impl ProjectFile {
             Some(name) => BackFaces::named(name)
                 .ok_or_else(|| error(format!("\"{name}\" says nothing of back faces")))?,
         };
+        let world = manifest.world.as_ref().map(|world| WorldFile::from_value(file, world)).transpose()?;
         if let Some(problem) = manifest.brush.problem() {
             return Err(error(format!("brush: {problem}")));
         }
@@ -317,6 +322,7 @@ impl ProjectFile {
             active_camera: manifest.active_camera,
             exposure,
             back_faces,
+            world,
             brush: manifest.brush,
             view: manifest.view,
             atlas,
@@ -356,7 +362,10 @@ fn read_camera(
         None => None,
     };
     let found = |_: &str| mask.clone().ok_or_else(|| container.error(MANIFEST, "names no aperture mask"));
-    camera_from_json(file, &json.to_string(), &Camera::default(), &found)
+    let camera = camera_from_json(file, &json.to_string(), &Camera::default(), &found)?;
+    // Projects used to say black where nobody had chosen anything; who wants darkness chooses a world.
+    let background = camera.background.filter(|color| *color != [0.0; 3]);
+    Ok(Camera { background, ..camera })
 }
 
 fn read_focus_map(

@@ -29,7 +29,7 @@ fn odd_camera() -> Camera {
         aperture_radius: 1.0 / 7.0,
         sensor_height: 0.027,
         camera_to_world: DMat4::from_rotation_translation(turn, DVec3::new(0.1, -1e-17, 1e10)),
-        background: [0.1, 0.7, 3.0],
+        background: Some([0.1, 0.7, 3.0]),
         aperture: Aperture {
             shape: ApertureShape::Polygon { blades: 5, rotation: 0.3, roundness: 0.6 },
             ratio: 1.33,

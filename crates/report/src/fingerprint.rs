@@ -2,7 +2,7 @@
 
 use focus::{Focus, FocusSource};
 use lens::{ApertureShape, Camera};
-use scene::{ImageLevel, Scene};
+use scene::{Environment, ImageLevel, Scene, World};
 use sha2::{Digest, Sha256};
 use std::sync::Arc;
 
@@ -49,7 +49,13 @@ pub fn of_scene(scene: &Scene) -> String {
         .add_debug(&scene.nodes)
         .add_debug(&scene.materials)
         .add_debug(&scene.lights)
-        .add_debug(&scene.back_faces);
+        .add_debug(&scene.back_faces)
+        .add_debug(&scene.world)
+        .add_debug(&scene.single_scattering)
+        .add(bytemuck::cast_slice(&scene.tangents));
+    if let Some(World { environment: Environment::Map(map), .. }) = &scene.world {
+        fingerprint = fingerprint.add(bytemuck::cast_slice(&map.texels));
+    }
     for uv in &scene.further_uv {
         fingerprint = fingerprint.add(bytemuck::cast_slice(uv));
     }

@@ -1,6 +1,6 @@
 //! What is asked of a report.
 
-use scene::BackFaces;
+use scene::{BackFaces, World};
 use session::CameraChoice;
 use std::path::PathBuf;
 
@@ -15,6 +15,10 @@ pub struct SceneRequest {
     pub focus: Option<PathBuf>,
     /// Whether faces that are not double sided are seen from behind; without one as the project says.
     pub back_faces: Option<BackFaces>,
+    /// What lies beyond all surfaces; without one as the project says.
+    pub world: Option<World>,
+    /// Whether light that meets microfacets more than once is left out.
+    pub single_scattering: bool,
 }
 
 /// How much is measured.

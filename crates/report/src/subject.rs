@@ -10,7 +10,7 @@ use session::{FirstHits, Input, InputKind, SessionError, Steps};
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Instant;
-use trace::{Radiance, Tracer};
+use trace::{Leaving, Radiance, Tracer};
 
 /// A scene with its camera and what it is focused by.
 pub struct Subject {
@@ -62,6 +62,10 @@ impl Subject {
         if let Some(back_faces) = request.back_faces {
             input.set_back_faces(back_faces);
         }
+        if let Some(world) = &request.world {
+            input.set_world(Some(world.clone()));
+        }
+        input.set_single_scattering(request.single_scattering);
         let mut camera = input.camera(request.camera.as_ref())?;
         let [width, height] = options.size.unwrap_or_else(|| {
             let width = (ReportOptions::HEIGHT as f64 * camera.aspect()).round().max(1.0) as u32;
@@ -138,8 +142,8 @@ pub fn first_hits(
 struct Dark;
 
 impl Radiance for Dark {
-    fn toward(&self, _point: scene::SurfacePoint, _eye: glam::DVec3) -> glam::Vec3 {
-        glam::Vec3::ZERO
+    fn leaving(&self, _point: scene::SurfacePoint, _eye: glam::DVec3) -> Leaving {
+        Leaving::own(glam::Vec3::ZERO)
     }
     fn from_infinity(&self, _direction: glam::DVec3) -> glam::Vec3 {
         glam::Vec3::ZERO

@@ -286,7 +286,7 @@ mod tests {
     struct Halves([f32; 2]);
 
     impl Radiance for Halves {
-        fn toward(&self, _point: SurfacePoint, _eye: DVec3) -> Vec3 {
+        fn leaving(&self, _point: SurfacePoint, _eye: DVec3) -> trace::Leaving {
             unreachable!("there is no surface")
         }
         fn from_infinity(&self, direction: DVec3) -> Vec3 {

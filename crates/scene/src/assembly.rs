@@ -40,7 +40,12 @@ pub(crate) fn append(
     // A set that is new to the scene takes room for the vertices before it, too.
     let padding = (further_sets - scene.further_uv.len()) as u64 * UV_BYTES * scene.positions.len() as u64;
     let vertex_bytes = VERTEX_BYTES + further_sets as u64 * UV_BYTES;
-    let lasting = vertices as u64 * vertex_bytes + primitive.triangles.len() as u64 * 32 + padding;
+    // Tangents that are new to the scene take room for the triangles before them, too.
+    let has_tangents = !(scene.tangents.is_empty() && primitive.tangents.is_empty());
+    let untouched = if scene.tangents.is_empty() { scene.triangles.len() as u64 } else { 0 };
+    let of_tangents = if has_tangents { 96 * (primitive.triangles.len() as u64 + untouched) } else { 0 };
+    let of_triangles = primitive.triangles.len() as u64 * 33 + of_tangents;
+    let lasting = vertices as u64 * vertex_bytes + of_triangles + padding;
     document.budget.memory(passing + lasting, &primitive.place)?;
     document.budget.work(16 * vertices as u64, &primitive.place)?;
     let matrices: Vec<DMat4> = match placement {
@@ -56,7 +61,10 @@ pub(crate) fn append(
 
     let sane =
         |&v: &u32| world[v as usize].abs().max_element() <= MAX_COORDINATE && world[v as usize].is_finite();
-    let kept: Vec<[u32; 3]> = primitive.triangles.iter().copied().filter(|t| t.iter().all(sane)).collect();
+    let is_kept: Vec<bool> = primitive.triangles.iter().map(|t| t.iter().all(sane)).collect();
+    let kept = |i: &usize| is_kept[*i];
+    let kept: Vec<[u32; 3]> =
+        (0..is_kept.len()).filter(kept).map(|triangle| primitive.triangles[triangle]).collect();
     if kept.len() < primitive.triangles.len() {
         let (dropped, all) = (primitive.triangles.len() - kept.len(), primitive.triangles.len());
         document.warn(format!(
@@ -90,6 +98,18 @@ pub(crate) fn append(
     }
     let colors = &primitive.colors;
     extend(&mut scene.colors, !colors.is_empty(), Vec4::ONE, base, end, &used, |v| colors[v]);
+    if has_tangents {
+        scene.tangents.resize(first as usize, [Vec4::ZERO; 3]);
+        let of = |triangle: usize| {
+            let (corners, vertices) = (primitive.tangents[triangle], primitive.triangles[triangle]);
+            let [a, b, c] =
+                [0, 1, 2].map(|corner| world_tangent(matrix(vertices[corner] as usize), corners[corner]));
+            if mirrored { [a, c, b] } else { [a, b, c] }
+        };
+        let kept = (0..primitive.tangents.len()).filter(|&triangle| is_kept[triangle]);
+        scene.tangents.extend(kept.map(of));
+        scene.tangents.resize(first as usize + triangles.len(), [Vec4::ZERO; 3]);
+    }
     scene.triangles.extend(triangles.into_iter().map(|[a, b, c]| {
         let vertices = if mirrored { [a, c, b] } else { [a, b, c] };
         Triangle { vertices: vertices.map(|v| base as u32 + v), part }
@@ -131,4 +151,11 @@ fn world_normal(matrix: &DMat4, normal: DVec3) -> Vec3 {
         DMat3::from_cols(m.y_axis.cross(m.z_axis), m.z_axis.cross(m.x_axis), m.x_axis.cross(m.y_axis));
     let sign = if m.determinant() < 0.0 { -1.0 } else { 1.0 };
     (sign * (cofactors * normal)).try_normalize().unwrap_or_default().as_vec3()
+}
+
+/// A tangent in the world. A matrix that mirrors turns normals with it, so that the bitangent has the other sign.
+fn world_tangent(matrix: &DMat4, tangent: Vec4) -> Vec4 {
+    let along = matrix.transform_vector3(tangent.truncate().as_dvec3()).normalize_or_zero();
+    let sign = if matrix.determinant() < 0.0 { -1.0 } else { 1.0 };
+    along.as_vec3().extend(if along == DVec3::ZERO { 0.0 } else { sign * tangent.w })
 }

@@ -3,20 +3,27 @@
 use crate::document::Document;
 use crate::error::Fault;
 
-const SPECULAR_GLOSSINESS: &str = "KHR_materials_pbrSpecularGlossiness";
-
 /// Read and honoured.
-pub(crate) const SUPPORTED: [&str; 10] = [
+pub(crate) const SUPPORTED: [&str; 19] = [
     "EXT_mesh_gpu_instancing",
     "EXT_texture_webp",
     "KHR_lights_punctual",
+    "KHR_materials_anisotropy",
+    "KHR_materials_clearcoat",
+    "KHR_materials_diffuse_transmission",
+    "KHR_materials_dispersion",
     "KHR_materials_emissive_strength",
-    SPECULAR_GLOSSINESS,
+    "KHR_materials_ior",
+    "KHR_materials_pbrSpecularGlossiness",
+    "KHR_materials_sheen",
     "KHR_materials_specular",
+    "KHR_materials_transmission",
     "KHR_materials_unlit",
+    "KHR_materials_volume",
     "KHR_mesh_quantization",
     "KHR_node_visibility",
     "KHR_texture_transform",
+    "KHR_materials_iridescence",
 ];
 
 /// Without influence on the default picture.
@@ -48,11 +55,6 @@ pub(crate) fn check(document: &Document<'_>) -> Result<(), Fault> {
     for extension in used(document).filter(is_strange) {
         document
             .warn(format!("the extension {extension} is ignored; the picture may differ from other viewers"));
-    }
-    if used(document).chain(required(document)).any(|extension| extension == SPECULAR_GLOSSINESS) {
-        document.warn(format!(
-            "of the extension {SPECULAR_GLOSSINESS} the diffuse colour is read; specular colour and glossiness are ignored"
-        ));
     }
     Ok(())
 }

@@ -4,7 +4,8 @@
 //!   [`with_source`] gives it as it is, to be written again.
 //! * [`Scene`]: what everything else works on.
 //! * [`SurfacePoint`]: an address on the surface: triangle and barycentrics. What the surface looks like there:
-//!   [`Scene::base_color`], [`Scene::emitted`], [`Scene::opacity`], [`Scene::shading_normal`].
+//!   [`Scene::base_color`], [`Scene::emitted`], [`Scene::opacity`], [`Scene::shading_normal`], [`Scene::bumped_normal`].
+//! * [`Material`]: what a surface is made of. [`World`]: what lies beyond all surfaces.
 //! * [`SurfaceField`]: anything that has a value at every surface point (focus, radiance).
 //! * [`MeshHealth`]: what is odd about the triangles.
 //!
@@ -15,7 +16,7 @@
 //!
 //! The road of a file: `container` (GLB chunks), `json_text` → `mending` (typed by the `gltf` crate) → `document` → `hierarchy` (which nodes, where) →
 //! `primitive` (checked `accessor`s to triangles, morphed) → `assembly` (instances and skins into the world) →
-//! `material_textures`, `material_file` (materials, images) → `view`, `punctual_light` (what is missing is made up). `flaws` tells authors what else is out of order.
+//! `material_textures`, `texture_reader`, `material_properties`, `material_file` (materials, images) → `view`, `punctual_light` (what is missing is made up). `flaws` tells authors what else is out of order.
 
 mod accessor;
 mod assembly;
@@ -37,11 +38,14 @@ mod json_object;
 mod json_text;
 mod load;
 mod load_options;
+mod material;
 mod material_file;
+mod material_properties;
 mod material_textures;
 mod mending;
 mod mesh_health;
 mod model;
+mod own_world;
 mod percent_encoding;
 mod primitive;
 mod punctual_light;
@@ -51,20 +55,25 @@ mod skin;
 mod source;
 mod surface_color;
 mod surface_point;
+mod tangents;
 mod texture_lookup;
+mod texture_reader;
 mod triangulation;
 mod turned_faces;
 mod view;
+mod world;
 
 pub use back_faces::BackFaces;
 pub use error::{Fault, SceneError};
 pub use inspection::Inspection;
 pub use load::{inspect, load, with_source};
 pub use load_options::LoadOptions;
-pub use mesh_health::MeshHealth;
-pub use model::{
-    AlphaMode, Image, ImageLevel, Light, LightKind, Material, Node, Part, Scene, SceneCamera, TextureRef,
-    Triangle, Wrap,
+pub use material::{
+    AlphaMode, Anisotropy, Clearcoat, DiffuseTransmission, Iridescence, Material, NormalMap, Scalar, Sheen,
+    TextureRef, Tint, Volume, Workflow, Wrap,
 };
+pub use mesh_health::MeshHealth;
+pub use model::{Image, ImageLevel, Light, LightKind, Node, Part, Scene, SceneCamera, Triangle};
 pub use source::{PartSource, Source, StoredElements};
 pub use surface_point::{SurfaceField, SurfacePoint};
+pub use world::{Backdrop, Environment, EnvironmentMap, World};

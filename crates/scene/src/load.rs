@@ -107,7 +107,7 @@ fn read(path: &Path, options: &LoadOptions, progress: &dyn Progress) -> Result<(
     let (mut scene, hierarchy, used) = geometry(path, &document, &mut None, progress)?;
     let mut materials = MaterialReader::new(&document);
     used.fill(&mut scene, &document, &mut materials)?;
-    scene.images = materials.images;
+    scene.images = materials.into_images();
     scene.normals.iter_mut().for_each(|normal| *normal = normal.normalize_or_zero());
     complete(&document, &mut scene);
     flaws::check(&document);
@@ -311,7 +311,7 @@ impl MeshNode<'_> {
     }
 }
 
-/// Gives the scene what the file lacks: a camera, light where some is needed.
+/// Gives the scene what the file lacks: a camera. Light is the world's.
 fn complete(document: &Document<'_>, scene: &mut Scene) {
     if scene.triangles.is_empty() {
         return;
@@ -321,15 +321,9 @@ fn complete(document: &Document<'_>, scene: &mut Scene) {
         scene.camera_is_invented = true;
     }
     view::focus_cameras(scene);
-    let used = || scene.parts.iter().map(|part| &scene.materials[part.material as usize]);
-    // A texture of emission up to 1 is a screen or a glow, not what the scene is lit by.
-    let is_lamp = |m: &Material| m.emissive_texture.is_none() || m.emissive.max_element() > 1.0;
-    let shines = used().any(|m| !m.unlit && m.emissive != Vec3::ZERO && is_lamp(m));
-    let needs_light = used().any(|material| !material.unlit);
-    if scene.lights.is_empty() && needs_light && !shines {
-        scene.lights = punctual_light::invented_lights();
-        scene.lights_are_invented = true;
-    } else if needs_light && !shines && scene.lights.iter().all(|light| light.intensity == Vec3::ZERO) {
+    let needs_light = scene.parts.iter().any(|part| !scene.materials[part.material as usize].unlit);
+    let is_dark = !scene.lights.is_empty() && scene.lights.iter().all(|light| light.intensity == Vec3::ZERO);
+    if needs_light && is_dark && !scene.has_lamps() {
         document.warn(
             "none of its lights shines, because of an intensity of 0; surfaces that need light are black",
         );

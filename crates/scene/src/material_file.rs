@@ -1,53 +1,48 @@
-//! Materials of the file, reduced to what light transport here uses, and the images they need.
+//! Materials of the file.
 
 use crate::document::{Document, named};
 use crate::error::Fault;
-use crate::json_object::integer;
-use crate::material_textures::{BaseColor, emission, uv_set};
-use crate::{AlphaMode, Image, Material, TextureRef, Wrap};
-use glam::{Mat3, Vec2, Vec3, Vec4};
-use gltf::texture::{MagFilter, TextureTransform, WrappingMode};
-use std::collections::HashMap;
+use crate::material_properties::Properties;
+use crate::material_textures::further_uv_sets;
+use crate::texture_reader::TextureReader;
+use crate::{
+    AlphaMode, Anisotropy, Clearcoat, DiffuseTransmission, Image, Iridescence, Material, Sheen, Volume,
+    Workflow,
+};
+use glam::{Vec3, Vec4};
+
+const SPECULAR_GLOSSINESS: &str = "KHR_materials_pbrSpecularGlossiness";
 
 /// glTF's default material.
 pub(crate) fn default_material() -> Material {
-    Material {
-        name: "default material".into(),
-        base_color: Vec4::ONE,
-        base_color_texture: None,
-        emissive: Vec3::ZERO,
-        emissive_texture: None,
-        metallic: 1.0,
-        roughness: 1.0,
-        specular: 1.0,
-        unlit: false,
-        alpha: AlphaMode::Opaque,
-        double_sided: false,
-    }
+    Material { name: "default material".into(), ..Material::default() }
 }
 
-/// Reads materials, and decodes each image once.
+/// Reads materials.
 pub(crate) struct MaterialReader<'a> {
-    document: &'a Document<'a>,
-    /// By index in the file; `None` for one that cannot be read.
-    known: HashMap<usize, Option<u32>>,
-    pub images: Vec<Image>,
+    textures: TextureReader<'a>,
 }
 
 impl<'a> MaterialReader<'a> {
     pub fn new(document: &'a Document<'a>) -> Self {
-        Self { document, known: HashMap::new(), images: Vec::new() }
+        Self { textures: TextureReader::new(document) }
+    }
+
+    /// The images that the materials need.
+    pub fn into_images(self) -> Vec<Image> {
+        self.textures.images
     }
 
     /// The name of material `index`.
     pub fn name(&self, index: usize) -> String {
-        let material = self.document.typed().materials().nth(index);
+        let material = self.textures.document.typed().materials().nth(index);
         material.and_then(|material| named(material.name())).unwrap_or_else(|| format!("material {index}"))
     }
 
-    /// Material `index`, which is used by `place`.
+    /// Material `index`, which is used by `place`. Without a base colour, an emission or an opacity there is no material;
+    /// whatever else is wrong with it is told and left out.
     pub fn read(&mut self, index: usize, place: &str) -> Result<Material, Fault> {
-        let document = self.document;
+        let document = self.textures.document;
         let place = document.entry("materials", index, place)?;
         let name = self.name(index);
         let Some(file) = document.typed().materials().nth(index) else {
@@ -58,133 +53,151 @@ impl<'a> MaterialReader<'a> {
             document.sound_below(&format!("{place}/{key}"))?;
         }
         extensions_are_sound(document, &format!("{place}/extensions"))?;
-        let base = BaseColor::of(&file);
-        let (emissive, emission) = emission(&file);
-        if !base.factor.is_finite() || !emissive.is_finite() {
+        let sets = further_uv_sets(document, Some(index));
+        let (base_color, [section, texture]) = base_color(&file);
+        let emissive = file.emissive_strength().unwrap_or(1.0) * Vec3::from_array(file.emissive_factor());
+        if !base_color.is_finite() || !emissive.is_finite() {
             return Err(Fault::Malformed { place, what: "its colours are not finite".into() });
         }
         if emissive != Vec3::ZERO {
             document.sound_below(&format!("{place}/emissiveTexture"))?;
         }
-        let base_color_texture = self.texture(&file, base.texture.as_ref())?;
-        let emissive_texture = self.texture(&file, emission.as_ref())?;
-        let alpha = match file.alpha_mode() {
-            gltf::material::AlphaMode::Opaque => AlphaMode::Opaque,
-            gltf::material::AlphaMode::Mask => {
-                document.sound(&format!("{place}/alphaCutoff"))?;
-                AlphaMode::Mask(file.alpha_cutoff().unwrap_or(0.5))
-            }
-            gltf::material::AlphaMode::Blend => AlphaMode::Blend,
-        };
-        Ok(Material {
+        let mut material = Material {
             name,
-            base_color: base.factor,
-            base_color_texture,
+            base_color,
             emissive,
-            emissive_texture,
-            metallic: base.metallic.clamp(0.0, 1.0),
-            roughness: base.roughness.clamp(0.0, 1.0),
-            specular: file.specular().map_or(1.0, |specular| specular.specular_factor()).clamp(0.0, 1.0),
             unlit: file.unlit(),
-            alpha,
             double_sided: file.double_sided(),
-        })
-    }
-
-    /// The texture of a property of `material`; nothing (which is white) with a warning if its image cannot be had.
-    fn texture(
-        &mut self,
-        material: &gltf::Material<'_>,
-        info: Option<&gltf::texture::Info<'_>>,
-    ) -> Result<Option<TextureRef>, Fault> {
-        let Some(info) = info else { return Ok(None) };
-        let texture = info.texture();
-        let texture_place = format!("/textures/{}", texture.index());
-        self.document.sound(&texture_place)?;
-        self.document.sound(&format!("{texture_place}/sampler"))?;
-        let Some(image) = self.texture_image(&texture, &texture_place) else { return Ok(None) };
-        let sampler = texture.sampler();
-        Ok(Some(TextureRef {
-            image,
-            uv_set: uv_set(material, info),
-            transform: info.texture_transform().map_or(Mat3::IDENTITY, |own| texture_transform(&own)),
-            wrap: [sampler.wrap_s(), sampler.wrap_t()].map(wrap),
-            nearest: sampler.mag_filter() == Some(MagFilter::Nearest),
-        }))
-    }
-
-    /// The first of a texture's images that can be read: WebP, then the plain one.
-    fn texture_image(&mut self, texture: &gltf::Texture<'_>, place: &str) -> Option<u32> {
-        let webp = texture.extension_value("EXT_texture_webp").and_then(|webp| integer(webp.get("source")?));
-        // The typed view relies on the source to be there.
-        let json = self.document.typed().as_json().textures.get(texture.index());
-        let plain = json.map(|texture| texture.source.value()).filter(|&i| i < self.document.len("images"));
-        let webp = (webp.map(|index| index as usize), format!("{place}/extensions/EXT_texture_webp/source"));
-        let (mut is_told, mut sources) = (false, 0);
-        for (source, place) in [webp, (plain, format!("{place}/source"))] {
-            if let Err(fault) = self.document.sound(&place) {
-                self.document.warn(format!("{fault}; the texture is white"));
-                is_told = true;
-            }
-            let Some(source) = source else { continue };
-            sources += 1;
-            if let Some(image) = self.image(source, &place) {
-                return Some(image);
-            }
-        }
-        if sources == 0 && !is_told {
-            self.document.warn(format!("{place}: has no image of a supported format; it is white"));
-        }
-        None
-    }
-
-    fn image(&mut self, index: usize, place: &str) -> Option<u32> {
-        if let Some(known) = self.known.get(&index) {
-            return *known;
-        }
-        let image = match self.document.image(index, place) {
-            Ok(image) => {
-                self.images.push(image);
-                Some(self.images.len() as u32 - 1)
-            }
-            Err(fault) => {
-                self.document.warn(format!("{fault}; the texture is white"));
-                None
-            }
+            alpha: match file.alpha_mode() {
+                gltf::material::AlphaMode::Opaque => AlphaMode::Opaque,
+                gltf::material::AlphaMode::Mask => {
+                    document.sound(&format!("{place}/alphaCutoff"))?;
+                    AlphaMode::Mask(file.alpha_cutoff().unwrap_or(0.5))
+                }
+                gltf::material::AlphaMode::Blend => AlphaMode::Blend,
+            },
+            ..Material::default()
         };
-        self.known.insert(index, image);
-        image
+        let object = document.item("materials", index, &place)?;
+        let mut properties = Properties::new(&mut self.textures, object, &sets);
+        material.base_color_texture =
+            properties.section(section).and_then(|mut section| section.texture(texture, true));
+        if material.emissive != Vec3::ZERO {
+            material.emissive_texture = properties.texture("emissiveTexture", true);
+        }
+        if !material.unlit {
+            read_gloss(&mut material, &mut properties);
+        }
+        Ok(material)
     }
 }
 
-/// An error if something is wrong with what is read of a material's `extensions`.
+/// The base colour, and the section and key of the texture that scales it: that of metallic-roughness, or the diffuse colour
+/// of KHR_materials_pbrSpecularGlossiness, which wants to be preferred where both are there. An unlit material shows its base
+/// colour by definition, if it says any.
+fn base_color(file: &gltf::Material<'_>) -> (Vec4, [&'static str; 2]) {
+    let plain = file.pbr_metallic_roughness();
+    let factor = Vec4::from_array(plain.base_color_factor());
+    let says_a_color = plain.base_color_texture().is_some() || factor != Vec4::ONE;
+    match file.pbr_specular_glossiness().filter(|_| !(file.unlit() && says_a_color)) {
+        Some(glossy) => (Vec4::from_array(glossy.diffuse_factor()), [SPECULAR_GLOSSINESS, "diffuseTexture"]),
+        None => (factor, ["pbrMetallicRoughness", "baseColorTexture"]),
+    }
+}
+
+/// Everything that scatters light but the base colour.
+fn read_gloss(material: &mut Material, file: &mut Properties<'_, '_>) {
+    const ANY: f32 = f32::MAX;
+    material.normal_map = file.normal_map("normalTexture");
+    material.workflow = workflow(file);
+    if let Some(index) = file.section("KHR_materials_ior") {
+        let ior = index.number("ior", 1.5, [0.0, ANY]);
+        material.ior = if ior == 0.0 { 0.0 } else { ior.max(1.0) };
+    }
+    if let Some(mut specular) = file.section("KHR_materials_specular") {
+        material.specular = specular.scalar(["specularFactor", "specularTexture"], 1.0, 3);
+        material.specular_color =
+            specular.tint(["specularColorFactor", "specularColorTexture"], Vec3::ONE, ANY);
+    }
+    if let Some(mut transmission) = file.section("KHR_materials_transmission") {
+        material.transmission = transmission.scalar(["transmissionFactor", "transmissionTexture"], 0.0, 0);
+    }
+    if let Some(volume) = file.section("KHR_materials_volume")
+        && volume.number("thicknessFactor", 0.0, [0.0, ANY]) > 0.0
+    {
+        material.volume = Some(Volume {
+            attenuation_distance: volume.distance("attenuationDistance"),
+            attenuation_color: volume.color("attenuationColor", Vec3::ONE, 1.0),
+        });
+    }
+    if let Some(dispersion) = file.section("KHR_materials_dispersion") {
+        material.dispersion = dispersion.number("dispersion", 0.0, [0.0, ANY]);
+    }
+    material.clearcoat = file.section("KHR_materials_clearcoat").and_then(|mut coat| {
+        let factor = coat.scalar(["clearcoatFactor", "clearcoatTexture"], 0.0, 0);
+        (factor.factor > 0.0).then(|| Clearcoat {
+            factor,
+            roughness: coat.scalar(["clearcoatRoughnessFactor", "clearcoatRoughnessTexture"], 0.0, 1),
+            normal_map: coat.normal_map("clearcoatNormalTexture"),
+        })
+    });
+    material.sheen = file.section("KHR_materials_sheen").and_then(|mut sheen| {
+        let color = sheen.tint(["sheenColorFactor", "sheenColorTexture"], Vec3::ZERO, 1.0);
+        let roughness = ["sheenRoughnessFactor", "sheenRoughnessTexture"];
+        (color.factor != Vec3::ZERO).then(|| Sheen { color, roughness: sheen.scalar(roughness, 0.0, 3) })
+    });
+    material.anisotropy = file.section("KHR_materials_anisotropy").and_then(|mut anisotropy| {
+        let strength = anisotropy.number("anisotropyStrength", 0.0, [0.0, 1.0]);
+        (strength > 0.0).then(|| Anisotropy {
+            strength,
+            rotation: anisotropy.number("anisotropyRotation", 0.0, [-ANY, ANY]),
+            texture: anisotropy.texture("anisotropyTexture", false),
+        })
+    });
+    material.iridescence = file.section("KHR_materials_iridescence").and_then(|mut film| {
+        let factor = film.scalar(["iridescenceFactor", "iridescenceTexture"], 0.0, 0);
+        let ends = [("iridescenceThicknessMinimum", 100.0), ("iridescenceThicknessMaximum", 400.0)];
+        (factor.factor > 0.0).then(|| Iridescence {
+            factor,
+            ior: film.number("iridescenceIor", 1.3, [1.0, ANY]),
+            thickness: ends.map(|(key, absent)| film.number(key, absent, [0.0, ANY])),
+            thickness_texture: film.texture("iridescenceThicknessTexture", false),
+        })
+    });
+    material.diffuse_transmission =
+        file.section("KHR_materials_diffuse_transmission").and_then(|mut through| {
+            let factor = through.scalar(["diffuseTransmissionFactor", "diffuseTransmissionTexture"], 0.0, 3);
+            let color = ["diffuseTransmissionColorFactor", "diffuseTransmissionColorTexture"];
+            (factor.factor > 0.0)
+                .then(|| DiffuseTransmission { factor, color: through.tint(color, Vec3::ONE, 1.0) })
+        });
+}
+
+/// Metalness and roughness, or colour and glossiness of the reflection.
+fn workflow(file: &mut Properties<'_, '_>) -> Workflow {
+    if let Some(mut glossy) = file.section(SPECULAR_GLOSSINESS) {
+        const TEXTURE: &str = "specularGlossinessTexture";
+        return Workflow::SpecularGlossiness {
+            specular: glossy.tint(["specularFactor", TEXTURE], Vec3::ONE, 1.0),
+            glossiness: glossy.scalar(["glossinessFactor", TEXTURE], 1.0, 3),
+        };
+    }
+    const TEXTURE: &str = "metallicRoughnessTexture";
+    let section = file.section("pbrMetallicRoughness");
+    section.map_or(Material::default().workflow, |mut own| Workflow::MetallicRoughness {
+        metallic: own.scalar(["metallicFactor", TEXTURE], 1.0, 2),
+        roughness: own.scalar(["roughnessFactor", TEXTURE], 1.0, 1),
+    })
+}
+
+/// An error if something is wrong with what a material's `extensions` say of its colours.
 fn extensions_are_sound(document: &Document<'_>, place: &str) -> Result<(), Fault> {
     document.sound(place)?;
-    for name in ["emissive_strength", "specular", "unlit"] {
+    for name in ["emissive_strength", "unlit"] {
         document.sound_below(&format!("{place}/KHR_materials_{name}"))?;
     }
-    let glossy = format!("{place}/KHR_materials_pbrSpecularGlossiness");
+    let glossy = format!("{place}/{SPECULAR_GLOSSINESS}");
     document.sound(&glossy)?;
     document.sound_below(&format!("{glossy}/diffuseFactor"))?;
     document.sound_below(&format!("{glossy}/diffuseTexture"))
-}
-
-fn wrap(mode: WrappingMode) -> Wrap {
-    match mode {
-        WrappingMode::Repeat => Wrap::Repeat,
-        WrappingMode::ClampToEdge => Wrap::Clamp,
-        WrappingMode::MirroredRepeat => Wrap::Mirror,
-    }
-}
-
-/// KHR_texture_transform: translation · rotation · scale. The rotation runs counter-clockwise as seen with v
-/// downwards, that is, from +v to +u.
-fn texture_transform(transform: &TextureTransform<'_>) -> Mat3 {
-    let (offset, scale) = (Vec2::from_array(transform.offset()), Vec2::from_array(transform.scale()));
-    let (sin, cos) = transform.rotation().sin_cos();
-    Mat3::from_cols(
-        Vec3::new(cos * scale.x, -sin * scale.x, 0.0),
-        Vec3::new(sin * scale.y, cos * scale.y, 0.0),
-        offset.extend(1.0),
-    )
 }

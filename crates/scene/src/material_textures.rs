@@ -1,75 +1,130 @@
-//! Which colours and textures of a material of the file count here, and in which UV sets the textures lie.
+//! Which textures a material of the file names, and in which UV sets they lie.
 //!
 //! A texture may lie in any TEXCOORD_n. Sets 0 and 1 are always read, for they may be an unwrapping too; of the others
 //! those that the material of a mesh asks for. [`TextureRef::uv_set`](crate::TextureRef::uv_set) numbers them through,
 //! material by material.
 
-use glam::{Vec3, Vec4};
-use gltf::Material;
-use gltf::texture::Info;
+use crate::document::Document;
+use crate::error::Fault;
+use crate::json_object::Object;
+use glam::{Mat3, Vec2, Vec3};
 
-/// The base colour of a material.
-pub(crate) struct BaseColor<'a> {
-    pub factor: Vec4,
-    pub texture: Option<Info<'a>>,
-    pub metallic: f32,
-    pub roughness: f32,
+/// Where a material's textures stand: in itself (""), in a part of it or in one of its extensions; and as what.
+const TEXTURES: [(&str, &[&str]); 11] = [
+    ("", &["normalTexture", "emissiveTexture"]),
+    ("pbrMetallicRoughness", &["baseColorTexture", "metallicRoughnessTexture"]),
+    ("KHR_materials_pbrSpecularGlossiness", &["diffuseTexture", "specularGlossinessTexture"]),
+    ("KHR_materials_specular", &["specularTexture", "specularColorTexture"]),
+    ("KHR_materials_transmission", &["transmissionTexture"]),
+    ("KHR_materials_volume", &["thicknessTexture"]),
+    ("KHR_materials_clearcoat", &["clearcoatTexture", "clearcoatRoughnessTexture", "clearcoatNormalTexture"]),
+    ("KHR_materials_sheen", &["sheenColorTexture", "sheenRoughnessTexture"]),
+    ("KHR_materials_anisotropy", &["anisotropyTexture"]),
+    ("KHR_materials_iridescence", &["iridescenceTexture", "iridescenceThicknessTexture"]),
+    (
+        "KHR_materials_diffuse_transmission",
+        &["diffuseTransmissionTexture", "diffuseTransmissionColorTexture"],
+    ),
+];
+
+/// Textures that need tangents, the one whose UVs they follow first.
+const WITH_TANGENTS: [(&str, &str); 3] = [
+    ("", "normalTexture"),
+    ("KHR_materials_clearcoat", "clearcoatNormalTexture"),
+    ("KHR_materials_anisotropy", "anisotropyTexture"),
+];
+
+/// A property that names a texture.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct TextureInfo {
+    /// Index into the file's textures, which may not exist.
+    pub index: usize,
+    /// The n of its TEXCOORD_n: that of its transform, if it has one, else its own.
+    pub set: u32,
+    /// KHR_texture_transform.
+    pub transform: Mat3,
+    /// Of a normal map.
+    pub scale: f32,
 }
 
-impl<'a> BaseColor<'a> {
-    /// By metallic-roughness, or the diffuse colour of KHR_materials_pbrSpecularGlossiness, which is the albedo of a
-    /// surface that is no metal.
-    ///
-    /// Where both are there, the extension wants to be preferred, and it is, but for two cases: an unlit material
-    /// shows its base colour by definition; and a black diffuse factor is that of a metal, whose colour is the
-    /// specular one, which is not read: metallic-roughness knows it, if it says any colour.
-    pub fn of(material: &Material<'a>) -> Self {
-        let plain = material.pbr_metallic_roughness();
-        let plain = Self {
-            factor: Vec4::from_array(plain.base_color_factor()),
-            texture: plain.base_color_texture(),
-            metallic: plain.metallic_factor(),
-            roughness: plain.roughness_factor(),
-        };
-        let Some(glossy) = material.pbr_specular_glossiness() else { return plain };
-        let diffuse = Vec4::from_array(glossy.diffuse_factor());
-        let says_a_color = plain.texture.is_some() || plain.factor != Vec4::ONE;
-        if says_a_color && (material.unlit() || diffuse.truncate() == Vec3::ZERO) {
-            return plain;
+impl TextureInfo {
+    /// The property `key` of `owner`, if it is there.
+    pub fn of(owner: &Object<'_>, key: &str) -> Result<Option<Self>, Fault> {
+        let Some(info) = owner.object(key)? else { return Ok(None) };
+        let Some(index) = info.index("index")? else { return Err(info.malformed("index", "is missing")) };
+        let transform = info.extension("KHR_texture_transform")?;
+        let set_of = |object: &Object<'_>| object.integer("texCoord");
+        let own = set_of(&info)?;
+        let set = transform.as_ref().map(set_of).transpose()?.flatten().or(own).unwrap_or(0);
+        let set = u32::try_from(set).map_err(|_| info.malformed("texCoord", "is too large"))?;
+        let scale = info.number("scale")?.unwrap_or(1.0) as f32;
+        let transform = transform.map_or(Ok(Mat3::IDENTITY), |transform| matrix(&transform))?;
+        Ok(Some(Self { index, set, transform, scale }))
+    }
+
+    /// [`TextureRef::uv_set`](crate::TextureRef::uv_set), where these are the further sets of the material.
+    pub fn uv_set(&self, further: &[u32]) -> u8 {
+        match self.set {
+            set @ (0 | 1) => set as u8,
+            set => 2 + further.iter().position(|&other| other == set).unwrap_or(0) as u8,
         }
-        Self { factor: diffuse, texture: glossy.diffuse_texture(), metallic: 0.0, roughness: 1.0 }
     }
 }
 
-/// The emitted radiance of a material, and its texture where there is any.
-pub(crate) fn emission<'a>(material: &Material<'a>) -> (Vec3, Option<Info<'a>>) {
-    let strength = material.emissive_strength().unwrap_or(1.0);
-    let radiance = strength * Vec3::from_array(material.emissive_factor());
-    (radiance, material.emissive_texture().filter(|_| radiance != Vec3::ZERO))
+/// KHR_texture_transform: translation · rotation · scale. The rotation runs counter-clockwise as seen with v
+/// downwards, that is, from +v to +u.
+fn matrix(transform: &Object<'_>) -> Result<Mat3, Fault> {
+    let pair = |key: &str, absent: Vec2| -> Result<Vec2, Fault> {
+        Ok(transform.numbers::<2>(key)?.map_or(absent, |pair| Vec2::from_array(pair.map(|v| v as f32))))
+    };
+    let (offset, scale) = (pair("offset", Vec2::ZERO)?, pair("scale", Vec2::ONE)?);
+    let (sin, cos) = (transform.number("rotation")?.unwrap_or(0.0) as f32).sin_cos();
+    Ok(Mat3::from_cols(
+        Vec3::new(cos * scale.x, -sin * scale.x, 0.0),
+        Vec3::new(sin * scale.y, cos * scale.y, 0.0),
+        offset.extend(1.0),
+    ))
 }
 
-/// The n of the TEXCOORD_n that a texture lies in: that of its transform, if it has one, else its own.
-fn set_of(texture: &Info<'_>) -> u32 {
-    let transform = texture.texture_transform();
-    transform.and_then(|transform| transform.tex_coord()).unwrap_or(texture.tex_coord())
+/// A part or an extension of a material; itself under "".
+pub(crate) fn section<'a>(material: &Object<'a>, name: &str) -> Result<Option<Object<'a>>, Fault> {
+    match name {
+        "" => Ok(Some(material.clone())),
+        _ if name.starts_with("KHR_") => material.extension(name),
+        _ => material.object(name),
+    }
 }
 
-/// The UV sets from 2 on that the textures of a material lie in, each once.
-pub(crate) fn further_uv_sets(material: &Material<'_>) -> Vec<u32> {
+/// The UV sets from 2 on that the textures of a material of the file lie in, each once.
+pub(crate) fn further_uv_sets(document: &Document<'_>, material: Option<usize>) -> Vec<u32> {
     let mut sets = Vec::new();
-    for texture in [BaseColor::of(material).texture, emission(material).1].iter().flatten() {
-        let set = set_of(texture);
-        if set > 1 && !sets.contains(&set) {
-            sets.push(set);
+    let Some(material) = material.and_then(|index| document.item("materials", index, "").ok()) else {
+        return sets;
+    };
+    let emissive = material.numbers::<3>("emissiveFactor").ok().flatten().unwrap_or_default();
+    let counts = |key: &&&str| **key != "emissiveTexture" || emissive != [0.0; 3];
+    for (name, keys) in TEXTURES {
+        // What is wrong is told when the material is read.
+        let Ok(Some(section)) = section(&material, name) else { continue };
+        for info in keys.iter().filter(counts).filter_map(|key| TextureInfo::of(&section, key).ok().flatten())
+        {
+            if info.set > 1 && !sets.contains(&info.set) {
+                sets.push(info.set);
+            }
         }
     }
     sets
 }
 
-/// [`TextureRef::uv_set`](crate::TextureRef::uv_set) of a texture of `material`.
-pub(crate) fn uv_set(material: &Material<'_>, texture: &Info<'_>) -> u8 {
-    match set_of(texture) {
-        set @ (0 | 1) => set as u8,
-        set => 2 + further_uv_sets(material).iter().position(|&further| further == set).unwrap_or(0) as u8,
+/// The texture whose UVs the tangents of a material of the file follow; none where nothing needs tangents. Anisotropy
+/// without a texture follows set 0.
+pub(crate) fn tangent_texture(document: &Document<'_>, material: Option<usize>) -> Option<TextureInfo> {
+    let material = document.item("materials", material?, "").ok()?;
+    if material.extension("KHR_materials_unlit").ok()?.is_some() {
+        return None;
     }
+    let of = |&(name, key): &(&str, &str)| TextureInfo::of(&section(&material, name).ok()??, key).ok()?;
+    let plain = TextureInfo { index: 0, set: 0, transform: Mat3::IDENTITY, scale: 1.0 };
+    let is_anisotropic = || material.extension("KHR_materials_anisotropy").ok().flatten().map(|_| plain);
+    WITH_TANGENTS.iter().find_map(of).or_else(is_anisotropic)
 }

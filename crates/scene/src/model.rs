@@ -1,7 +1,7 @@
 //! The scene in memory: flat, world space, triangles only.
 
-use crate::BackFaces;
-use glam::{DMat4, DVec3, Mat3, Vec2, Vec3, Vec4};
+use crate::{BackFaces, Material, World};
+use glam::{DMat4, DVec3, Vec2, Vec3, Vec4};
 use std::ops::Range;
 use std::path::PathBuf;
 
@@ -20,13 +20,16 @@ pub struct Scene {
     pub normals: Vec<Vec3>,
     /// Texture coordinates of sets 0 and 1 (glTF: origin at the image's upper left).
     pub uv: [Vec<Vec2>; 2],
-    /// Texture coordinates of further sets, as far as textures lie in them: entry k is what [`TextureRef::uv_set`]
+    /// Texture coordinates of further sets, as far as textures lie in them: entry k is what [`TextureRef::uv_set`](crate::TextureRef::uv_set)
     /// k + 2 means, for each part that of its own material.
     pub further_uv: Vec<Vec<Vec2>>,
     /// Linear vertex colours, multiplied into the base colour; 1 where the file gives none.
     pub colors: Vec<Vec4>,
     /// Counter-clockwise seen from the front, negative scales already undone.
     pub triangles: Vec<Triangle>,
+    /// Of each triangle's corners the direction in which u of the material's normal map runs (or of its anisotropy), unit, and
+    /// the sign of the bitangent, sign · normal × tangent; zero where a part needs none. Empty if no part does.
+    pub tangents: Vec<[Vec4; 3]>,
     /// What the triangles belong to, in order; their ranges tile `triangles`.
     pub parts: Vec<Part>,
     /// The nodes that have parts.
@@ -41,10 +44,12 @@ pub struct Scene {
     pub cameras: Vec<SceneCamera>,
     /// Whether the first camera was made up because the file has none.
     pub camera_is_invented: bool,
-    /// Whether the lights were made up because the file has none and needs some.
-    pub lights_are_invented: bool,
     /// Whether faces that are not double sided are seen from behind.
     pub back_faces: BackFaces,
+    /// The world that was chosen for it; else it has one of its own ([`World::of_scene`]).
+    pub world: Option<World>,
+    /// Whether light that meets microfacets more than once is left out, as in renderers that do.
+    pub single_scattering: bool,
     /// What was wrong with the file but did no harm, a sentence each.
     pub warnings: Vec<String>,
 }
@@ -82,78 +87,6 @@ pub struct Node {
     pub index: u32,
     /// From its own axes to the world.
     pub world: DMat4,
-}
-
-/// A material, reduced to what light transport here uses.
-#[derive(Clone, Debug)]
-pub struct Material {
-    /// Its name in the file, or `material N`.
-    pub name: String,
-    /// Linear base colour and opacity.
-    pub base_color: Vec4,
-    /// sRGB image multiplied into the base colour.
-    pub base_color_texture: Option<TextureRef>,
-    /// Linear emitted radiance, emissive strength included.
-    pub emissive: Vec3,
-    /// sRGB image multiplied into the emitted radiance.
-    pub emissive_texture: Option<TextureRef>,
-    /// Metalness in [0, 1].
-    pub metallic: f32,
-    /// Roughness in [0, 1].
-    pub roughness: f32,
-    /// KHR_materials_specular's factor (1 without the extension).
-    pub specular: f32,
-    /// KHR_materials_unlit: the base colour is the radiance.
-    pub unlit: bool,
-    /// How opacity is used.
-    pub alpha: AlphaMode,
-    /// Whether the back is shaded as the front is; else the back emits nothing.
-    pub double_sided: bool,
-}
-
-impl Material {
-    /// Whether it is seen from its front alone.
-    pub fn hides_back(&self, back_faces: BackFaces) -> bool {
-        back_faces == BackFaces::Hide && !self.double_sided
-    }
-}
-
-/// How a material's opacity is used.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum AlphaMode {
-    /// Ignored.
-    Opaque,
-    /// A point is there where opacity ≥ the cutoff.
-    Mask(f32),
-    /// A point lets 1 − opacity of the light behind it pass.
-    Blend,
-}
-
-/// How a texture is looked up.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct TextureRef {
-    /// Index into [`Scene::images`].
-    pub image: u32,
-    /// UV set: an index into [`Scene::uv`], from 2 on into [`Scene::further_uv`]. See [`Scene::uv_set`].
-    pub uv_set: u8,
-    /// KHR_texture_transform: uv' = transform · (u, v, 1).
-    pub transform: Mat3,
-    /// Wrap in u and v.
-    pub wrap: [Wrap; 2],
-    /// Whether the sampler asks for nearest texels (magnification).
-    pub nearest: bool,
-}
-
-/// What a texture shows outside [0, 1].
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub enum Wrap {
-    /// Starts over.
-    #[default]
-    Repeat,
-    /// Keeps its border.
-    Clamp,
-    /// Runs back and forth.
-    Mirror,
 }
 
 /// A decoded image: encoded values as in the file, four channels a texel, row 0 on top.
@@ -209,8 +142,6 @@ pub enum LightKind {
     },
     /// Parallel light from infinity.
     Directional,
-    /// The same radiance from everywhere (made up for a scene without light); `intensity` is that radiance.
-    Ambient,
 }
 
 /// A perspective camera of the file.
@@ -249,7 +180,7 @@ impl Scene {
         self.material_of(triangle).hides_back(self.back_faces)
     }
 
-    /// The texture coordinates of all vertices in a set ([`TextureRef::uv_set`]); empty if no part has it.
+    /// The texture coordinates of all vertices in a set ([`TextureRef::uv_set`](crate::TextureRef::uv_set)); empty if no part has it.
     #[inline]
     pub fn uv_set(&self, set: u8) -> &[Vec2] {
         let set = set as usize;

@@ -3,7 +3,8 @@
 use crate::accessor::{Accessor, Component};
 use crate::document::Document;
 use crate::error::Fault;
-use crate::material_textures::further_uv_sets;
+use crate::material_textures::{TextureInfo, further_uv_sets, tangent_texture};
+use crate::tangents;
 use crate::triangulation::{triangle, triangle_count};
 use glam::{DVec3, Vec2, Vec4};
 use gltf::mesh::{Mode, Semantic};
@@ -24,6 +25,8 @@ pub(crate) struct Primitive {
     /// Of the further sets that its material asks for, in that order.
     pub further_uv: Vec<Vec<Vec2>>,
     pub colors: Vec<Vec4>,
+    /// Of the triangles' corners: where u runs, and the sign of the bitangent; empty where the material needs none.
+    pub tangents: Vec<[Vec4; 3]>,
     /// For each vertex `influences_per_vertex` joints and their weights.
     pub influences: Vec<(u32, f64)>,
     pub influences_per_vertex: usize,
@@ -72,7 +75,7 @@ impl Primitive {
         if triangles.is_empty() {
             return Ok(None);
         }
-        let further_sets = further_uv_sets(&file.material());
+        let further_sets = further_uv_sets(document, file.material().index());
         let vertex_bytes = VERTEX_BYTES + 8 * further_sets.len() as u64;
         let memory = triangles.len() as u64 * 12 + vertices.len() as u64 * vertex_bytes;
         document.budget.memory(memory, place)?;
@@ -86,6 +89,7 @@ impl Primitive {
             uv: [Vec::new(), Vec::new()],
             further_uv: vec![Vec::new(); further_sets.len()],
             colors: Vec::new(),
+            tangents: Vec::new(),
             influences: Vec::new(),
             influences_per_vertex: 0,
             memory,
@@ -94,6 +98,9 @@ impl Primitive {
         primitive.read_uv(&attributes, &further_sets, &vertices, position.count)?;
         primitive.read_influences(&attributes, &vertices, position.count)?;
         primitive.morph(document, file, &further_sets, &vertices, position.count, weights)?;
+        if let Some(texture) = tangent_texture(document, file.material().index()) {
+            primitive.read_tangents(&attributes, &texture, &further_sets, &vertices, position.count)?;
+        }
         primitive.elements = vertices;
         Ok(Some(primitive))
     }
@@ -145,6 +152,42 @@ impl Primitive {
                 *uvs = vertices.iter().map(|&v| finite(Vec2::from_array(uv.floats(v as usize)))).collect();
             }
         }
+        Ok(())
+    }
+
+    /// Tangents: those of the file, which belong to its normals, or made by the texture coordinates of `texture`.
+    fn read_tangents(
+        &mut self,
+        attributes: &Attributes<'_>,
+        texture: &TextureInfo,
+        further_sets: &[u32],
+        vertices: &[u32],
+        count: usize,
+    ) -> Result<(), Fault> {
+        let (document, triangles) = (attributes.document, self.triangles.len() as u64);
+        document.budget.memory(48 * triangles, &attributes.place)?;
+        self.memory += 48 * triangles;
+        document.budget.work(4 * vertices.len() as u64 + 64 * triangles, &attributes.place)?;
+        let own = attributes.open(&Semantic::Tangents, &[4], count).filter(|_| !self.normals.is_empty());
+        if let Some(own) = own {
+            let of = |v: u32| Vec4::from_array(own.floats(vertices[v as usize] as usize));
+            let finite = |tangent: Vec4| if tangent.is_finite() { tangent } else { Vec4::ZERO };
+            self.tangents = self.triangles.iter().map(|corners| corners.map(|v| finite(of(v)))).collect();
+            return Ok(());
+        }
+        let uv = match usize::from(texture.uv_set(further_sets)) {
+            set @ (0 | 1) => &self.uv[set],
+            set => &self.further_uv[set - 2],
+        };
+        document.budget.memory(tangents::BYTES_A_TRIANGLE * triangles, &attributes.place)?;
+        self.tangents = tangents::generate(tangents::Mesh {
+            triangles: &self.triangles,
+            positions: &self.positions,
+            normals: &self.normals,
+            uv,
+            transform: texture.transform,
+        });
+        document.budget.release(tangents::BYTES_A_TRIANGLE * triangles);
         Ok(())
     }
 

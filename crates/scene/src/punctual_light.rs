@@ -5,7 +5,7 @@ use crate::error::Fault;
 use crate::{Light, LightKind};
 use glam::{DMat4, DVec3, Vec3};
 use gltf::khr_lights_punctual::Kind;
-use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 
 const EXTENSION: &str = "KHR_lights_punctual";
 
@@ -90,22 +90,4 @@ fn cone(document: &Document<'_>, place: &str, inner: f64, outer: f64) -> LightKi
         ));
     }
     LightKind::Spot { inner: inner.clamp(0.0, mended), outer: mended }
-}
-
-/// The light of a scene that needs some and has none: a sun from the upper left front, and a sky. A white wall
-/// that faces the sun has radiance 1.
-pub(crate) fn invented_lights() -> Vec<Light> {
-    const SKY: f32 = 0.3;
-    let light = |name: &str, kind, intensity| Light {
-        name: name.into(),
-        kind,
-        intensity: Vec3::splat(intensity),
-        position: DVec3::ZERO,
-        direction: DVec3::new(0.5, -1.0, -0.7).normalize(),
-        range: f64::INFINITY,
-    };
-    vec![
-        light("invented sun", LightKind::Directional, (1.0 - SKY) * PI as f32),
-        light("invented sky", LightKind::Ambient, SKY),
-    ]
 }

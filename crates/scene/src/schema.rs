@@ -218,10 +218,19 @@ static MATERIAL: Spec = Spec {
         ("doubleSided", Flag),
     ],
     extensions: &[
+        ("KHR_materials_anisotropy", &ANISOTROPY),
+        ("KHR_materials_clearcoat", &CLEARCOAT),
+        ("KHR_materials_diffuse_transmission", &DIFFUSE_TRANSMISSION),
+        ("KHR_materials_dispersion", &DISPERSION),
         ("KHR_materials_emissive_strength", &EMISSIVE_STRENGTH),
+        ("KHR_materials_ior", &IOR),
+        ("KHR_materials_iridescence", &IRIDESCENCE),
         ("KHR_materials_pbrSpecularGlossiness", &SPECULAR_GLOSSINESS),
+        ("KHR_materials_sheen", &SHEEN),
         ("KHR_materials_specular", &SPECULAR),
+        ("KHR_materials_transmission", &TRANSMISSION),
         ("KHR_materials_unlit", &NONE),
+        ("KHR_materials_volume", &VOLUME),
     ],
     ..NONE
 };
@@ -256,6 +265,78 @@ static SPECULAR: Spec = Spec {
         ("specularTexture", Object(&TEXTURE_INFO)),
         ("specularColorFactor", Numbers(3, 3, 0.0, ANY.1)),
         ("specularColorTexture", Object(&TEXTURE_INFO)),
+    ],
+    ..NONE
+};
+
+static ANISOTROPY: Spec = Spec {
+    optional: &[
+        ("anisotropyStrength", UNIT),
+        ("anisotropyRotation", Number(ANY.0, ANY.1)),
+        ("anisotropyTexture", Object(&TEXTURE_INFO)),
+    ],
+    ..NONE
+};
+
+static CLEARCOAT: Spec = Spec {
+    optional: &[
+        ("clearcoatFactor", UNIT),
+        ("clearcoatTexture", Object(&TEXTURE_INFO)),
+        ("clearcoatRoughnessFactor", UNIT),
+        ("clearcoatRoughnessTexture", Object(&TEXTURE_INFO)),
+        ("clearcoatNormalTexture", Object(&NORMAL_TEXTURE)),
+    ],
+    ..NONE
+};
+
+static DIFFUSE_TRANSMISSION: Spec = Spec {
+    optional: &[
+        ("diffuseTransmissionFactor", UNIT),
+        ("diffuseTransmissionTexture", Object(&TEXTURE_INFO)),
+        ("diffuseTransmissionColorFactor", COLOR),
+        ("diffuseTransmissionColorTexture", Object(&TEXTURE_INFO)),
+    ],
+    ..NONE
+};
+
+static DISPERSION: Spec = Spec { optional: &[("dispersion", Number(0.0, ANY.1))], ..NONE };
+
+/// 0 stands for infinity; what lies between 0 and 1 is nothing's.
+static IOR: Spec = Spec { optional: &[("ior", Number(0.0, ANY.1))], ..NONE };
+
+static IRIDESCENCE: Spec = Spec {
+    optional: &[
+        ("iridescenceFactor", UNIT),
+        ("iridescenceTexture", Object(&TEXTURE_INFO)),
+        ("iridescenceIor", Number(1.0, ANY.1)),
+        ("iridescenceThicknessMinimum", Number(0.0, ANY.1)),
+        ("iridescenceThicknessMaximum", Number(0.0, ANY.1)),
+        ("iridescenceThicknessTexture", Object(&TEXTURE_INFO)),
+    ],
+    ..NONE
+};
+
+static SHEEN: Spec = Spec {
+    optional: &[
+        ("sheenColorFactor", COLOR),
+        ("sheenColorTexture", Object(&TEXTURE_INFO)),
+        ("sheenRoughnessFactor", UNIT),
+        ("sheenRoughnessTexture", Object(&TEXTURE_INFO)),
+    ],
+    ..NONE
+};
+
+static TRANSMISSION: Spec = Spec {
+    optional: &[("transmissionFactor", UNIT), ("transmissionTexture", Object(&TEXTURE_INFO))],
+    ..NONE
+};
+
+static VOLUME: Spec = Spec {
+    optional: &[
+        ("thicknessFactor", Number(0.0, ANY.1)),
+        ("thicknessTexture", Object(&TEXTURE_INFO)),
+        ("attenuationDistance", Above(0.0)),
+        ("attenuationColor", COLOR),
     ],
     ..NONE
 };

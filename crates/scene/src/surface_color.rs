@@ -1,19 +1,7 @@
-//! What the surface looks like at a point: base colour, own light, opacity, normal.
+//! What the surface looks like at a point: base colour, own light, opacity, normal, and the numbers of its material.
 
-use crate::{AlphaMode, Material, Scene, SurfacePoint, TextureRef};
+use crate::{AlphaMode, NormalMap, Scalar, Scene, SurfacePoint, TextureRef, Tint};
 use glam::{DVec3, Vec2, Vec3, Vec4};
-
-impl Material {
-    /// Whether some point of it may let light through ([`AlphaMode::Mask`] and [`AlphaMode::Blend`]).
-    pub fn may_be_transparent(&self) -> bool {
-        self.alpha != AlphaMode::Opaque
-    }
-
-    /// Whether it sends light of its own: unlit, or emissive.
-    pub fn emits(&self) -> bool {
-        self.unlit || self.emissive != Vec3::ZERO
-    }
-}
 
 impl Scene {
     /// The texture coordinates of a set ([`TextureRef::uv_set`]) at a point; zero where the part has none.
@@ -92,5 +80,49 @@ impl Scene {
             }
         }
         self.area_normal(point.triangle).normalize_or_zero()
+    }
+
+    /// A number of the material at a point.
+    #[inline]
+    pub fn scalar_at(&self, scalar: &Scalar, point: SurfacePoint) -> f32 {
+        match &scalar.texture {
+            Some((texture, channel)) => {
+                scalar.factor * self.texture_at(texture, point)[usize::from(*channel)]
+            }
+            None => scalar.factor,
+        }
+    }
+
+    /// A colour of the material at a point, linear.
+    #[inline]
+    pub fn tint_at(&self, tint: &Tint, point: SurfacePoint) -> Vec3 {
+        match &tint.texture {
+            Some(texture) => tint.factor * self.texture_at(texture, point).truncate(),
+            None => tint.factor,
+        }
+    }
+
+    /// Where u of the material's normal map runs at a point: a unit vector upright to `normal`, and the bitangent, where v upwards
+    /// runs. `None` where the part has no tangents.
+    pub fn tangents_at(&self, point: SurfacePoint, normal: DVec3) -> Option<[DVec3; 2]> {
+        let corners = self.tangents.get(point.triangle as usize)?;
+        let tangent: DVec3 = corners
+            .iter()
+            .zip(point.weights())
+            .map(|(corner, weight)| corner.truncate().as_dvec3() * weight)
+            .sum();
+        let tangent = (tangent - normal * normal.dot(tangent)).try_normalize()?;
+        // Corners of one triangle that disagree have no sign in common; MikkTSpace makes none such.
+        let sign = if corners.iter().map(|corner| corner.w).sum::<f32>() < 0.0 { -1.0 } else { 1.0 };
+        Some([tangent, sign * normal.cross(tangent)])
+    }
+
+    /// The unit normal for shading with a normal map's bumps: scaled, and turned from tangent space into the world.
+    pub fn bumped_normal(&self, map: &NormalMap, point: SurfacePoint) -> DVec3 {
+        let normal = self.shading_normal(point);
+        let Some([tangent, bitangent]) = self.tangents_at(point, normal) else { return normal };
+        let bump = self.texture_at(&map.texture, point).truncate() * 2.0 - 1.0;
+        let bump = (bump * Vec3::new(map.scale, map.scale, 1.0)).as_dvec3();
+        (tangent * bump.x + bitangent * bump.y + normal * bump.z).try_normalize().unwrap_or(normal)
     }
 }

@@ -39,19 +39,26 @@ impl Wrap {
 }
 
 impl Image {
-    /// Linear RGBA of the texel in column `x` of row `y`, both within the image.
+    /// RGBA of the texel in column `x` of row `y`, both within the image: linear RGB of an image of colours, else the numbers
+    /// as they are, in [0, 1].
     #[inline(always)]
-    pub fn texel(&self, x: u32, y: u32) -> Vec4 {
+    pub fn texel(&self, x: u32, y: u32, is_color: bool) -> Vec4 {
         let at = 4 * (y as usize * self.width as usize + x as usize);
         match &self.texels {
             ImageLevel::Bits8(data) => {
                 let t = &data[at..at + 4];
+                if !is_color {
+                    return Vec4::from_array([t[0], t[1], t[2], t[3]].map(f32::from)) * (1.0 / 255.0);
+                }
                 let lut = &*LINEAR_FROM_8;
                 let of = |k: usize| lut[t[k] as usize];
                 Vec4::new(of(0), of(1), of(2), f32::from(t[3]) * (1.0 / 255.0))
             }
             ImageLevel::Bits16(data) => {
                 let t = &data[at..at + 4];
+                if !is_color {
+                    return Vec4::from_array([t[0], t[1], t[2], t[3]].map(f32::from)) * (1.0 / 65535.0);
+                }
                 let lut = &*LINEAR_FROM_16;
                 let of = |k: usize| lut[t[k] as usize];
                 Vec4::new(of(0), of(1), of(2), f32::from(t[3]) * (1.0 / 65535.0))
@@ -59,11 +66,12 @@ impl Image {
         }
     }
 
-    /// Linear RGBA at texture coordinates.
+    /// RGBA at texture coordinates; of colours linear.
     #[inline]
-    pub fn sample(&self, uv: Vec2, wrap: [Wrap; 2], nearest: bool) -> Vec4 {
+    pub fn sample(&self, uv: Vec2, wrap: [Wrap; 2], nearest: bool, is_color: bool) -> Vec4 {
         let (w, h) = (self.width as i32, self.height as i32);
-        let texel = |x: i32, y: i32| self.texel(wrap[0].fold(x, w) as u32, wrap[1].fold(y, h) as u32);
+        let texel =
+            |x: i32, y: i32| self.texel(wrap[0].fold(x, w) as u32, wrap[1].fold(y, h) as u32, is_color);
         let at = uv * Vec2::new(w as f32, h as f32);
         if nearest {
             return texel(at.x.floor() as i32, at.y.floor() as i32);
@@ -80,12 +88,12 @@ impl Image {
 }
 
 impl Scene {
-    /// Linear RGBA of a texture at the mesh's texture coordinates (its transform is applied here).
+    /// RGBA of a texture (colours linear) at the mesh's texture coordinates (its transform is applied here).
     #[inline]
     pub fn sample_texture(&self, texture: &TextureRef, uv: Vec2) -> Vec4 {
         let image = &self.images[texture.image as usize];
         let uv = (texture.transform * Vec3::new(uv.x, uv.y, 1.0)).truncate();
-        image.sample(uv, texture.wrap, texture.nearest)
+        image.sample(uv, texture.wrap, texture.nearest, texture.is_color)
     }
 }
 
@@ -99,7 +107,7 @@ mod tests {
     }
 
     fn at(x: f32, wrap: Wrap) -> Vec4 {
-        row().sample(Vec2::new(x / 4.0, 0.5), [wrap; 2], false)
+        row().sample(Vec2::new(x / 4.0, 0.5), [wrap; 2], false, true)
     }
 
     #[test]
@@ -127,7 +135,7 @@ mod tests {
 
     #[test]
     fn nearest_takes_the_texel_that_covers_the_point() {
-        let at = |x: f32| row().sample(Vec2::new(x / 4.0, 0.5), [Wrap::Repeat; 2], true);
+        let at = |x: f32| row().sample(Vec2::new(x / 4.0, 0.5), [Wrap::Repeat; 2], true, true);
         assert_eq!(at(1.01), Vec4::new(1.0, 0.0, 0.0, 1.0));
         assert_eq!(at(1.99), Vec4::new(1.0, 0.0, 0.0, 1.0));
     }
@@ -136,8 +144,8 @@ mod tests {
     fn absurd_coordinates_have_a_colour() {
         for x in [f32::MAX, f32::MIN, f32::INFINITY, f32::NAN, 3e9] {
             for wrap in [Wrap::Repeat, Wrap::Clamp, Wrap::Mirror] {
-                row().sample(Vec2::splat(x), [wrap; 2], false);
-                row().sample(Vec2::splat(x), [wrap; 2], true);
+                row().sample(Vec2::splat(x), [wrap; 2], false, true);
+                row().sample(Vec2::splat(x), [wrap; 2], true, true);
             }
         }
     }

@@ -61,36 +61,49 @@ fn rigid(world: DMat4) -> Option<DMat4> {
     position.is_finite().then(|| DMat4::from_mat3_translation(axes, position))
 }
 
-/// A camera that sees the whole scene in a picture at least as wide as high, from the front, right and above.
+/// A camera that sees the whole scene in a picture at least as wide as high, from the front, right and above, and as close as that
+/// allows.
 pub(crate) fn framing(scene: &Scene) -> SceneCamera {
     const YFOV: f64 = 0.7;
     /// Room around the scene.
     const MARGIN: f64 = 1.1;
-    let (low, high) = scene.bounds();
-    let centre = 0.5 * (low + high);
     let back = DVec3::new(0.6, 0.45, 1.0).normalize();
     let right = DVec3::Y.cross(back).normalize();
     let up = back.cross(right);
-    let tan = (0.5 * YFOV).tan();
-    // A corner at height y and z towards the camera is in view from a distance of at least z + |y| / tan.
-    let corner = |i: u32| {
-        DVec3::from_array([0, 1, 2].map(|axis| if i >> axis & 1 == 0 { low[axis] } else { high[axis] }))
-            - centre
-    };
-    let need = |c: DVec3| c.dot(back) + c.dot(up).abs().max(c.dot(right).abs()) / tan * MARGIN;
-    let distance = (0..8).map(|i| need(corner(i))).fold(0.0, f64::max);
+    let slope = (0.5 * YFOV).tan() / MARGIN;
+    // From (p, d) along an axis across and along `back` a point (x, z) is in view if |x − p| ≤ slope·(d − z): so p + slope·d is at
+    // least every x + slope·z, and p − slope·d at most every x − slope·z.
+    let used = scene.triangles.iter().flat_map(|triangle| triangle.vertices);
+    let ends = used.fold([[f64::INFINITY, f64::NEG_INFINITY]; 2], |ends, vertex| {
+        let position = scene.positions[vertex as usize];
+        let z = slope * position.dot(back);
+        [(ends[0], right), (ends[1], up)].map(|([low, high], axis)| {
+            let x = position.dot(axis);
+            [low.min(x - z), high.max(x + z)]
+        })
+    });
+    let [across, along] = ends.map(|[low, high]| 0.5 * (low + high));
+    let distance =
+        ends.iter().map(|[low, high]| (high - low) / (2.0 * slope)).fold(f64::NEG_INFINITY, f64::max);
+    let (low, high) = scene.bounds();
     // All in one point: any distance will do.
-    let distance = if distance > 0.0 { distance } else { 1.0 };
+    let nearest = (high - low).length() * 1e-3;
+    let surface = scene_front(scene, back);
+    let distance = distance.max(surface + if nearest > 0.0 { nearest } else { 1.0 });
+    let position = right * across + up * along + back * distance;
     SceneCamera {
         name: "framing".into(),
-        camera_to_world: DMat4::from_mat3_translation(
-            DMat3::from_cols(right, up, back),
-            centre + distance * back,
-        ),
+        camera_to_world: DMat4::from_mat3_translation(DMat3::from_cols(right, up, back), position),
         yfov: YFOV,
         aspect: None,
-        focus_distance: distance,
+        focus_distance: (position - 0.5 * (low + high)).dot(back),
     }
+}
+
+/// How far the scene reaches in a direction.
+fn scene_front(scene: &Scene, direction: DVec3) -> f64 {
+    let used = scene.triangles.iter().flat_map(|triangle| triangle.vertices);
+    used.map(|vertex| scene.positions[vertex as usize].dot(direction)).fold(f64::NEG_INFINITY, f64::max)
 }
 
 /// Sets the focus distances: to the first surface on the axis, else to the middle of the scene.

@@ -139,7 +139,7 @@ fn emitted_light() {
         "extensions": {"KHR_materials_emissive_strength": {"emissiveStrength": 4}}}]);
     let scene = glb.clean();
     assert_eq!(scene.emitted(MIDDLE), Vec3::new(4.0, 2.0, 0.0));
-    assert!(!scene.lights_are_invented);
+    assert!(scene.shines());
     glb.json["materials"][0]["extensions"] = json!({"KHR_materials_unlit": {}});
     assert_eq!(glb.clean().emitted(MIDDLE), Vec3::ONE);
 }

@@ -1,10 +1,10 @@
-//! KHR_materials_pbrSpecularGlossiness: its diffuse colour is the base colour.
+//! KHR_materials_pbrSpecularGlossiness: its diffuse colour is the base colour, and its gloss its own.
 
 mod handmade;
 
-use glam::Vec4;
+use glam::{Vec3, Vec4};
 use handmade::{Glb, MIDDLE};
-use scene::AlphaMode;
+use scene::{AlphaMode, Scalar, Tint, Workflow};
 use serde_json::{Value, json};
 
 const NAME: &str = "KHR_materials_pbrSpecularGlossiness";
@@ -54,10 +54,13 @@ fn diffuse_is_base_colour() {
             assert_eq!(scene.base_color(MIDDLE), expected.base_color(MIDDLE), "{factor} {texture}");
             assert_eq!(scene.opacity(MIDDLE), expected.opacity(MIDDLE), "{factor} {texture} {mode}");
             let (material, like) = (&scene.materials[0], &expected.materials[0]);
-            assert_eq!((material.metallic, material.roughness), (like.metallic, like.roughness));
+            let dull = Workflow::SpecularGlossiness {
+                specular: Tint::plain(Vec3::ZERO),
+                glossiness: Scalar::plain(0.0),
+            };
+            assert_eq!(material.workflow, dull);
             assert_eq!((material.base_color_texture, material.alpha), (like.base_color_texture, like.alpha));
-            assert_eq!(scene.warnings.len(), 1, "{:?}", scene.warnings);
-            assert!(scene.warnings[0].contains("specular colour and glossiness are ignored"));
+            assert_eq!(scene.warnings, [""; 0]);
         }
     }
 }
@@ -67,11 +70,11 @@ fn it_may_be_required() {
     let mut glb = triangle(glossy(json!({"diffuseFactor": [1, 0, 0, 1]})));
     glb.json["extensionsRequired"] = json!([NAME]);
     let scene = glb.load().unwrap();
-    assert_eq!((scene.base_color(MIDDLE), scene.warnings.len()), (Vec4::new(1.0, 0.0, 0.0, 1.0), 1));
+    assert_eq!((scene.base_color(MIDDLE), scene.warnings.len()), (Vec4::new(1.0, 0.0, 0.0, 1.0), 0));
 }
 
 #[test]
-fn of_both_the_extension_is_preferred_but_for_metals_and_unlit_ones() {
+fn of_both_the_extension_is_preferred_but_for_unlit_ones() {
     let (red, blue, black) = ([1.0, 0.0, 0.0, 1.0], [0.0, 0.0, 1.0, 1.0], [0.0, 0.0, 0.0, 1.0]);
     let color = |diffuse: [f32; 4], plain: Value, is_unlit: bool| {
         let mut material = glossy(json!({"diffuseFactor": diffuse}));
@@ -79,18 +82,30 @@ fn of_both_the_extension_is_preferred_but_for_metals_and_unlit_ones() {
         if is_unlit {
             material["extensions"]["KHR_materials_unlit"] = json!({});
         }
-        let scene = triangle(material).load().unwrap();
-        (scene.base_color(MIDDLE).to_array(), scene.materials[0].metallic)
+        triangle(material).load().unwrap().base_color(MIDDLE).to_array()
     };
-    assert_eq!(color(red, json!({"baseColorFactor": blue}), false), (red, 0.0));
-    assert_eq!(color(black, json!({"baseColorFactor": blue}), false), (blue, 1.0));
-    assert_eq!(color(black, json!({"metallicFactor": 0.5}), false), (black, 0.0));
-    assert_eq!(color(red, json!({"baseColorFactor": blue}), true), (blue, 1.0));
-    assert_eq!(color(red, json!({}), true), (red, 0.0));
+    assert_eq!(color(red, json!({"baseColorFactor": blue}), false), red);
+    assert_eq!(color(black, json!({"baseColorFactor": blue}), false), black);
+    assert_eq!(color(red, json!({"baseColorFactor": blue}), true), blue);
+    assert_eq!(color(red, json!({}), true), red);
 }
 
 #[test]
-fn what_is_not_read_of_it_may_be_anything() {
+fn its_texture_scales_colour_and_glossiness() {
+    let info = json!({"index": 0, "texCoord": 0});
+    let gloss =
+        json!({"specularFactor": [1, 0.5, 0], "glossinessFactor": 0.5, "specularGlossinessTexture": info});
+    let scene = triangle(glossy(gloss)).clean();
+    let Workflow::SpecularGlossiness { specular, glossiness } = scene.materials[0].workflow else {
+        panic!("{:?}", scene.materials[0].workflow);
+    };
+    // sRGB 188 is half the light; opacity is linear.
+    assert!(scene.tint_at(&specular, MIDDLE).abs_diff_eq(Vec3::new(0.503, 0.2515, 0.0), 1e-3));
+    assert!((scene.scalar_at(&glossiness, MIDDLE) - 0.5 * 128.0 / 255.0).abs() < 1e-6);
+}
+
+#[test]
+fn gloss_that_is_wrong_is_left_out() {
     for (key, value) in [
         ("specularFactor", json!("much")),
         ("glossinessFactor", json!([])),

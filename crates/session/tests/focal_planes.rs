@@ -100,7 +100,11 @@ fn it_is_splatted_as_it_is_traced() {
     let options = RenderOptions::at_tolerance(0.0);
     let splat = session::render(&stage.tracer, &camera, &focus, &options, &Unwatched).unwrap().picture;
 
-    let light = slf::DirectLight::new(stage.tracer.clone(), glam::Vec3::ZERO);
+    let light = slf::Transport::new(
+        stage.tracer.clone(),
+        scene::World::uniform(glam::Vec3::ZERO),
+        Default::default(),
+    );
     let rays = TruthOptions { samples_per_pixel: 512, ..TruthOptions::default() };
     let traced = trace::truth::render(&stage.tracer, &light, &focus, &camera, &rays, &Unwatched).unwrap();
     let tilted = Tilted { scene: &stage.scene, camera: &camera, plane: leaning() };

@@ -111,7 +111,7 @@ impl Baked {
         tiny_glb::write(&scene);
         let input = Input::open(&scene, &Unwatched).unwrap();
         let lens = Camera { aperture_radius: 0.1, sensor_height: 0.1, ..input.camera.clone() };
-        let mut camera = Camera { width: 60, height: 40, background: [0.1, 0.05, 0.2], ..lens };
+        let mut camera = Camera { width: 60, height: 40, background: Some([0.1, 0.05, 0.2]), ..lens };
         change(&mut camera);
         let focus = focus::Focus::constant(input.scene.clone(), FocusOffset::STANDARD);
         let tracer = Arc::new(Tracer::new(input.scene.clone()));

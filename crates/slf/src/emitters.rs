@@ -1,13 +1,15 @@
 //! Emissive surfaces as area lights.
 
-use crate::point_random::draw;
 use glam::{DVec2, DVec3, Vec3};
 use scene::{Scene, SurfacePoint};
+use std::collections::HashMap;
 
 /// The triangles that light others, chosen in proportion to the power they send.
 #[derive(Debug, Default)]
 pub(crate) struct Emitters {
     triangles: Vec<Emitter>,
+    /// By triangle of the scene: its place in `triangles`.
+    places: HashMap<u32, u32>,
     /// Running sums of their shares; the last is 1.
     cumulative: Vec<f64>,
 }
@@ -23,21 +25,18 @@ struct Emitter {
     share: f64,
 }
 
-/// A place on an emitter, seen from a point.
+/// A place on an emitter, seen from a position.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct EmitterSample {
     /// The place.
-    pub position: DVec3,
+    pub place: DVec3,
     /// Unit direction toward it.
     pub from: DVec3,
-    /// Irradiance on a surface that faces it, were nothing in between; the mean over samples is that of all
-    /// emitters.
-    pub irradiance: Vec3,
+    /// The radiance it sends, were nothing in between.
+    pub radiance: Vec3,
+    /// Of its direction, 1/sr.
+    pub density: f64,
 }
-
-/// 1/g and 1/g² of the golden ratio's generalisation g³ = g + 1: steps of a low-discrepancy sequence (Roberts
-/// 2018).
-const STEPS: [f64; 2] = [0.754_877_666_246_692_8, 0.569_840_290_998_053_3];
 
 impl Emitters {
     /// The emissive triangles of a scene. Unlit ones are not: their radiance is a picture, not light.
@@ -65,7 +64,8 @@ impl Emitters {
             }
         }
         triangles.iter_mut().for_each(|emitter| emitter.share /= sum);
-        Self { triangles, cumulative: sums.into_iter().map(|running| running / sum).collect() }
+        let places = (0..).zip(&triangles).map(|(place, emitter)| (emitter.triangle, place)).collect();
+        Self { triangles, places, cumulative: sums.into_iter().map(|running| running / sum).collect() }
     }
 
     /// Whether there are none.
@@ -73,36 +73,34 @@ impl Emitters {
         self.triangles.is_empty()
     }
 
-    /// `count` places on the emitters for a surface point, stratified over all emitters' power and well
-    /// spread on each. Deterministic: the same for the same point. Places that send nothing to the point are
-    /// left out, so divide by `count`.
-    pub fn samples<'a>(
-        &'a self,
-        scene: &'a Scene,
-        point: SurfacePoint,
-        count: u32,
-    ) -> impl Iterator<Item = EmitterSample> + 'a {
-        let position = point.position(scene);
-        let [select, a, b] = draw(point);
-        (0..count).filter_map(move |k| {
-            let u = (f64::from(k) + select) / f64::from(count);
-            let chosen = self.cumulative.partition_point(|&end| end <= u).min(self.triangles.len() - 1);
-            let emitter = &self.triangles[chosen];
-            let place =
-                DVec2::new((a + f64::from(k) * STEPS[0]).fract(), (b + f64::from(k) * STEPS[1]).fract());
-            let place = SurfacePoint { triangle: emitter.triangle, barycentric: uniform_barycentric(place) };
-            let target = place.position(scene);
-            let toward = target - position;
-            let from = toward.normalize_or_zero();
-            let facing = -from.dot(emitter.normal);
-            let facing = if emitter.both_sides { facing.abs() } else { facing };
-            if facing <= 0.0 || emitter.triangle == point.triangle {
-                return None;
-            }
-            // L·cosθ'/r² dA over its probability density, share/area.
-            let weight = facing / toward.length_squared() * emitter.area / emitter.share;
-            Some(EmitterSample { position: target, from, irradiance: scene.emitted(place) * weight as f32 })
-        })
+    /// Draws a place on an emitter by uniform numbers, for light that arrives at a position. `None` where that place sends nothing
+    /// there.
+    pub fn sample(&self, scene: &Scene, position: DVec3, choice: f64, u: [f64; 2]) -> Option<EmitterSample> {
+        let chosen = self.cumulative.partition_point(|&end| end <= choice).min(self.triangles.len() - 1);
+        let emitter = &self.triangles[chosen];
+        let barycentric = uniform_barycentric(DVec2::from_array(u));
+        let point = SurfacePoint { triangle: emitter.triangle, barycentric };
+        let place = point.position(scene);
+        let toward = place - position;
+        let from = toward.try_normalize()?;
+        let density = emitter.density(toward)?;
+        Some(EmitterSample { place, from, radiance: scene.emitted(point), density })
+    }
+
+    /// The density, 1/sr, with which [`Self::sample`] finds the place on `triangle` that lies `toward` from a position: 0 if none.
+    pub fn density(&self, triangle: u32, toward: DVec3) -> f64 {
+        let emitter = self.places.get(&triangle).map(|&place| &self.triangles[place as usize]);
+        emitter.and_then(|emitter| emitter.density(toward)).unwrap_or(0.0)
+    }
+}
+
+impl Emitter {
+    /// Its share, spread over its area as it is seen from `-toward`; none where it sends nothing there.
+    fn density(&self, toward: DVec3) -> Option<f64> {
+        let r2 = toward.length_squared();
+        let facing = -toward.dot(self.normal) / r2.sqrt();
+        let facing = if self.both_sides { facing.abs() } else { facing };
+        (facing > 0.0).then(|| self.share / self.area * r2 / facing)
     }
 }
 

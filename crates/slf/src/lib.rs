@@ -1,12 +1,22 @@
 //! The surface light field: radiance leaving a surface point.
 //!
-//! [`DirectLight`] is the light that a surface sends by itself, and what it reflects of lights and emissive
-//! surfaces, once and diffusely: `punctual` holds the laws of point, spot and directional lights, `emitters`
-//! the sampling of emissive surfaces.
+//! [`Transport`] traces it by paths. `material_point` looks up what a point is made of; `lights` draws what may shine on it:
+//! `punctual` (the laws of point, spot and directional lights), `emitters` (emissive surfaces), `environment_light`. `media` knows
+//! what bodies a path is in; `path_random` has its numbers. [`Irradiance`] keeps what was scattered before, for
+//! every camera; `solving` finds it.
 
-mod direct_light;
 mod emitters;
-mod point_random;
+mod environment_light;
+mod irradiance;
+mod lights;
+mod material_point;
+mod media;
+mod path_random;
 mod punctual;
+mod solving;
+mod transport;
 
-pub use direct_light::{DirectLight, DirectLightOptions};
+pub use irradiance::Irradiance;
+pub use material::Scattering;
+pub use solving::IrradianceOptions;
+pub use transport::{Transport, TransportOptions};

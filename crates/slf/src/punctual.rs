@@ -14,7 +14,7 @@ pub(crate) struct Arrival {
     pub irradiance: Vec3,
 }
 
-/// What arrives of `light` at `position`; `None` if nothing does, or if it is ambient. `beyond` is a distance
+/// What arrives of `light` at `position`; `None` if nothing does. `beyond` is a distance
 /// that leads out of the scene from anywhere in it: where directional light comes from.
 ///
 /// | kind | irradiance |
@@ -25,7 +25,6 @@ pub(crate) struct Arrival {
 pub(crate) fn arrival(light: &Light, position: DVec3, beyond: f64) -> Option<Arrival> {
     let share = |share: f64| (share > 0.0).then(|| light.intensity * share as f32);
     match light.kind {
-        LightKind::Ambient => None,
         LightKind::Directional => {
             let from = -light.direction;
             Some(Arrival { from, source: position + from * beyond, irradiance: light.intensity })

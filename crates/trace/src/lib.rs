@@ -29,9 +29,37 @@ use scene::SurfacePoint;
 
 /// Radiance that leaves the scene: what [`truth`] and the SALF gather.
 pub trait Radiance: Sync {
-    /// Linear RGB radiance leaving `point` toward the world position `eye`.
-    fn toward(&self, point: SurfacePoint, eye: DVec3) -> Vec3;
-    /// Linear RGB radiance arriving from the world direction `direction` where no surface is.
+    /// Radiance leaving `point` toward the world position `eye`.
+    fn leaving(&self, point: SurfacePoint, eye: DVec3) -> Leaving;
+    /// Linear RGB radiance arriving at the camera from the world direction `direction` where no surface is.
     #[allow(clippy::wrong_self_convention, reason = "light comes from infinity; nothing is converted")]
     fn from_infinity(&self, direction: DVec3) -> Vec3;
+
+    /// All of [`Self::leaving`].
+    fn toward(&self, point: SurfacePoint, eye: DVec3) -> Vec3 {
+        self.leaving(point, eye).total()
+    }
+}
+
+/// The radiance that leaves a point toward another, linear RGB, by what the focus paint does with it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Leaving {
+    /// Emitted, scattered diffusely or by rough gloss: it obeys the paint.
+    pub own: Vec3,
+    /// Mirrored or let through: it keeps the focus of the ordinary lens.
+    pub carried: Vec3,
+    /// The share of the point's coverage that `carried` has, in [0, 1]; `own` has the rest.
+    pub carried_share: f32,
+}
+
+impl Leaving {
+    /// Radiance that obeys the paint, and nothing else.
+    pub fn own(own: Vec3) -> Self {
+        Self { own, ..Self::default() }
+    }
+
+    /// Both together.
+    pub fn total(&self) -> Vec3 {
+        self.own + self.carried
+    }
 }

@@ -1,26 +1,16 @@
 //! Scenes for the tests, made of corners.
 
-use glam::{DVec3, Vec4};
-use scene::{AlphaMode, Material, Node, Part, Scene, Triangle};
+use glam::DVec3;
+use scene::{Material, Node, Part, Scene, Triangle};
 use std::sync::Arc;
 
-pub const WHITE: Material = Material {
-    name: String::new(),
-    base_color: Vec4::ONE,
-    base_color_texture: None,
-    emissive: glam::Vec3::ZERO,
-    emissive_texture: None,
-    metallic: 0.0,
-    roughness: 1.0,
-    specular: 1.0,
-    unlit: true,
-    alpha: AlphaMode::Opaque,
-    double_sided: true,
-};
+pub fn white() -> Material {
+    Material::of_unlit()
+}
 
 /// The same, seen from its front alone.
 pub fn one_sided() -> Material {
-    Material { double_sided: false, ..WHITE }
+    Material { double_sided: false, ..white() }
 }
 
 /// A mesh: positions and triangles.

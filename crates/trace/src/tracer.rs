@@ -107,17 +107,46 @@ impl Tracer {
         nearest.hit
     }
 
-    /// Takes a triangle for the nearest, if it is.
+    /// The first surface that light from a surface point meets in a direction: from behind, too. Free of self-intersection as
+    /// [`Self::occluded`] is.
+    pub fn first_met(&self, from: SurfacePoint, direction: DVec3) -> Option<Hit> {
+        let origin = from.position(&self.scene);
+        let ray = Ray { origin, direction, t_min: 0.0, t_max: f64::INFINITY, skip: Some(from.triangle) };
+        let local = self.space.ray(&ray)?;
+        let sheared = ShearedRay::new(origin, direction);
+        let mut nearest = Nearest { hit: None, t_max: ray.t_max };
+        self.hierarchy.walk(&local, local.local_t(ray.t_max), |leaf| {
+            for triangle in &self.triangles[leaf] {
+                let Some(crossing) = sheared.cross(&triangle.corners) else { continue };
+                if !in_plane(&triangle.corners, origin) {
+                    self.take_crossing(&mut nearest, triangle, &ray, &crossing);
+                }
+            }
+            Some(local.local_t(nearest.t_max))
+        });
+        nearest.hit
+    }
+
+    /// Takes a triangle for the nearest that an eye sees, if it is.
     #[inline(always)]
     fn take(&self, nearest: &mut Nearest, triangle: &LeafTriangle, ray: &Ray, sheared: &ShearedRay) -> bool {
         let Some(crossing) = sheared.cross(&triangle.corners) else { return false };
+        (crossing.from_front || !triangle.hides_back) && self.take_crossing(nearest, triangle, ray, &crossing)
+    }
+
+    /// Takes a triangle for the nearest, if it is.
+    #[inline(always)]
+    fn take_crossing(
+        &self,
+        nearest: &mut Nearest,
+        triangle: &LeafTriangle,
+        ray: &Ray,
+        crossing: &Crossing,
+    ) -> bool {
         let t = crossing.t;
         let is_nearer = t < nearest.t_max
             || nearest.hit.is_some_and(|hit| t == hit.t && triangle.index < hit.point.triangle);
         if !(t > ray.t_min && is_nearer) || ray.skip == Some(triangle.index) {
-            return false;
-        }
-        if triangle.hides_back && !crossing.from_front {
             return false;
         }
         let point = SurfacePoint { triangle: triangle.index, barycentric: crossing.barycentric };

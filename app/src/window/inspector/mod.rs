@@ -13,6 +13,7 @@ mod preset_row;
 mod scene_panel;
 mod shape_panel;
 mod tool_panel;
+mod world_panel;
 
 pub use layers_panel::is_layer_command_possible;
 pub use tool_panel::selected;
@@ -72,6 +73,7 @@ impl Inspector {
             section(ui, "Picture", true, |ui| {
                 lens_panel::picture_panel(ui, session, document, settings, actions);
             });
+            section(ui, "World", true, |ui| world_panel::world_panel(ui, document, actions));
             section(ui, "Scene", false, |ui| self.scene.ui(ui, document, actions));
             section(ui, "What was modelled", false, |ui| {
                 modelled_panel::modelled_panel(ui, session, document)

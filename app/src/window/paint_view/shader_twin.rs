@@ -4,9 +4,9 @@ use super::{FocusTexture, OrbitCamera, Stale, SurfaceFrame, SurfaceLook, Surface
 use crate::window::false_colour;
 use atlas::Atlas;
 use focus::FocusMap;
-use glam::{DVec3, Mat3, Vec2, Vec3, Vec4};
+use glam::{DVec3, Mat3, Vec2};
 use lens::{Camera, FocusOffset};
-use scene::{AlphaMode, Image, ImageLevel, Material, Node, Part, Scene, TextureRef, Triangle, Wrap};
+use scene::{Image, ImageLevel, Material, Node, Part, Scene, TextureRef, Triangle, Wrap};
 
 /// Pixels a side of what is drawn; a row is then as long as copies from the card must be.
 const SIDE: u32 = 64;
@@ -19,6 +19,7 @@ fn square(z: f64) -> Scene {
         Image { name: "white".into(), width: 1, height: 1, texels: ImageLevel::Bits16(vec![u16::MAX; 4]) };
     let texture = TextureRef {
         image: 0,
+        is_color: true,
         uv_set: 0,
         transform: Mat3::IDENTITY,
         wrap: [Wrap::Repeat; 2],
@@ -31,16 +32,8 @@ fn square(z: f64) -> Scene {
         nodes: vec![Node { name: "square".into(), index: 0, world: glam::DMat4::IDENTITY }],
         materials: vec![Material {
             name: "white".into(),
-            base_color: Vec4::ONE,
             base_color_texture: Some(texture),
-            emissive: Vec3::ZERO,
-            emissive_texture: None,
-            metallic: 0.0,
-            roughness: 1.0,
-            specular: 1.0,
-            unlit: true,
-            alpha: AlphaMode::Opaque,
-            double_sided: true,
+            ..Material::of_unlit()
         }],
         images: vec![image],
         ..Scene::default()

@@ -86,6 +86,7 @@ impl Shell {
             Purpose::Open
             | Purpose::ImportFocusMap
             | Purpose::ApertureMask
+            | Purpose::Environment
             | Purpose::ImportPreset
             | Purpose::ExportPreset => String::new(),
         };
@@ -136,6 +137,7 @@ impl Shell {
             Purpose::ExportStrokes => self.apply(Command::ExportStrokes(path)),
             Purpose::ImportFocusMap => self.apply(Command::ImportFocusMap(path)),
             Purpose::ApertureMask => self.use_mask(path),
+            Purpose::Environment => self.apply(Command::LoadEnvironment(path)),
             Purpose::ImportPreset => self.import_preset(&path),
             Purpose::ExportPreset => self.export_preset(&path),
         }
@@ -224,10 +226,19 @@ impl Shell {
             Some(path) if path.extension().is_some_and(|extension| extension == "json") => {
                 self.import_preset(&path);
             }
+            Some(path) if is_environment(&path) && self.session.document().is_some() => {
+                self.apply(Command::LoadEnvironment(path));
+            }
             Some(path) => self.ask_then(Next::Open(path), context),
             None => {}
         }
     }
+}
+
+/// Whether a file is a picture that may show all directions.
+fn is_environment(path: &Path) -> bool {
+    let is = |extension: &str| path.extension().is_some_and(|own| own.eq_ignore_ascii_case(extension));
+    is("hdr") || is("exr")
 }
 
 /// Where the user's own files go when nothing says where: documents, else home, else here.

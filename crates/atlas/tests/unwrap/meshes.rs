@@ -1,7 +1,7 @@
 //! Scenes made of code: sound ones and nasty ones.
 
 use glam::{DVec3, Vec2, Vec3, Vec4};
-use scene::{AlphaMode, Material, Node, Part, Scene, Triangle};
+use scene::{Material, Node, Part, Scene, Triangle};
 use std::f64::consts::PI;
 
 /// A part to be: positions, triangles and perhaps texture coordinates.
@@ -40,19 +40,7 @@ pub fn scene(pieces: Vec<Piece>) -> Scene {
 }
 
 fn material() -> Material {
-    Material {
-        name: "grey".into(),
-        base_color: Vec4::new(0.5, 0.5, 0.5, 1.0),
-        base_color_texture: None,
-        emissive: Vec3::ZERO,
-        emissive_texture: None,
-        metallic: 0.0,
-        roughness: 0.8,
-        specular: 1.0,
-        unlit: false,
-        alpha: AlphaMode::Opaque,
-        double_sided: false,
-    }
+    Material { name: "grey".into(), base_color: Vec4::new(0.5, 0.5, 0.5, 1.0), ..Material::of_lambert() }
 }
 
 /// A sphere without a border, of 4·n·(n − 1) triangles.

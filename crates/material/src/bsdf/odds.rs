@@ -35,6 +35,12 @@ impl Odds {
         Self { coat, gloss, glass, spread, through, returned }
     }
 
+    /// Of all lobes but those that are spread; none where there are no others.
+    pub fn without_spread(self) -> Option<Self> {
+        let others = Self { spread: 0.0, ..self }.shared();
+        (others.spread == 0.0).then_some(others)
+    }
+
     /// The lobe that a uniform number falls to, and where in its share.
     pub fn choose(&self, u: f64) -> Option<(Choice, f64)> {
         let mut rest = u;

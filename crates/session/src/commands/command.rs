@@ -9,7 +9,7 @@ use focus::{Brush, Combine, Gradient, LayerEdit};
 use glam::DVec2;
 use lens::{Exposure, FocusOffset};
 use project::{RecordedStep, SelectionShape};
-use scene::BackFaces;
+use scene::{BackFaces, World};
 use splat::Tolerance;
 use std::path::PathBuf;
 
@@ -56,6 +56,10 @@ pub enum Command {
     SetExposure(Exposure),
     /// Whether faces that are not double sided are seen from behind. Saved with the document, no step of undo.
     SetBackFaces(BackFaces),
+    /// What lies beyond all surfaces; none: what suits the scene. Saved with the document, no step of undo.
+    SetWorld(Option<World>),
+    /// The same of an environment's file, .hdr or .exr, which is read in the background.
+    LoadEnvironment(PathBuf),
     /// How the screen shows any picture. No part of the document.
     SetDisplay(Display),
     /// Shows the live picture through one aperture point, in [−1, 1]² (see [`lens::Aperture::sub_aperture`]), or through

@@ -18,8 +18,8 @@ pub enum CameraEdit {
     YFov(f64),
     /// Height of the sensor.
     SensorHeight(f64),
-    /// Linear radiance where no surface is.
-    Background([f64; 3]),
+    /// Linear radiance where no surface is, or none of its own.
+    Background(Option<[f64; 3]>),
     /// Picture width and height, px.
     Size(u32, u32),
     /// Pose, glTF axes.

@@ -9,7 +9,7 @@ use focus::{Focus, FocusMap, FocusRecipe, RecipeEntry};
 use lens::{Camera, Exposure, FocusOffset};
 use project::{FocusFile, ProjectError, ProjectFile, SceneState, read_camera, read_focus};
 use salf::{Salf, SalfFile};
-use scene::{BackFaces, Scene};
+use scene::{BackFaces, Scene, World};
 use std::fs::File;
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
@@ -126,10 +126,18 @@ impl Input {
         let scene = load_scene(&project.scene, &*steps.begin("reading"))?;
         warnings.extend(named(&project.scene, &scene.warnings));
         let camera = project.cameras[project.active_camera].camera.clone();
-        let back_faces = project.back_faces;
+        let (back_faces, world) = (project.back_faces, project.world.clone());
         let mut input =
             Self { path: path.into(), scene, camera, project: Some(project), salf: None, warnings };
         input.set_back_faces(back_faces);
+        match world.map(|world| world.load()).transpose() {
+            Ok(world) => input.set_world(world),
+            Err(error) => {
+                input
+                    .warnings
+                    .push(format!("{error}; the scene has its own world (choose one before saving)"));
+            }
+        }
         Ok(input)
     }
 
@@ -137,6 +145,20 @@ impl Input {
     pub fn set_back_faces(&mut self, back_faces: BackFaces) {
         if back_faces != self.scene.back_faces {
             Arc::make_mut(&mut self.scene).back_faces = back_faces;
+        }
+    }
+
+    /// Gives the scene a world, whatever the project says; none: its own.
+    pub fn set_world(&mut self, world: Option<World>) {
+        if world != self.scene.world {
+            Arc::make_mut(&mut self.scene).world = world;
+        }
+    }
+
+    /// Leaves light out that meets microfacets more than once, or not.
+    pub fn set_single_scattering(&mut self, is_single: bool) {
+        if is_single != self.scene.single_scattering {
+            Arc::make_mut(&mut self.scene).single_scattering = is_single;
         }
     }
 

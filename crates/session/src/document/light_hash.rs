@@ -1,6 +1,6 @@
 //! A checksum of a scene's light: two scenes of the same one are lit, block and reflect light alike.
 
-use scene::{ImageLevel, Scene};
+use scene::{Environment, ImageLevel, Scene, World};
 use sha2::{Digest, Sha256};
 
 /// A checksum of everything in a scene that gives, blocks or reflects light.
@@ -14,6 +14,7 @@ pub(crate) fn light_hash(scene: &Scene) -> [u8; 32] {
     arrays(bytemuck::cast_slice(&scene.normals));
     scene.uv.iter().chain(&scene.further_uv).for_each(|uv| arrays(bytemuck::cast_slice(uv)));
     arrays(bytemuck::cast_slice(&scene.colors));
+    arrays(bytemuck::cast_slice(&scene.tangents));
     for triangle in &scene.triangles {
         arrays(bytemuck::cast_slice(&triangle.vertices));
     }
@@ -24,10 +25,22 @@ pub(crate) fn light_hash(scene: &Scene) -> [u8; 32] {
             ImageLevel::Bits16(texels) => arrays(bytemuck::cast_slice(texels)),
         }
     }
+    if let Some(World { environment: Environment::Map(map), .. }) = &scene.world {
+        arrays(format!("{} {}", map.width, map.height).as_bytes());
+        arrays(bytemuck::cast_slice(&map.texels));
+    }
     // Written out, numbers are as exact as they are.
     arrays(
-        format!("{:?} {:?} {:?} {:?}", scene.parts, scene.materials, scene.lights, scene.back_faces)
-            .as_bytes(),
+        format!(
+            "{:?} {:?} {:?} {:?} {:?} {:?}",
+            scene.parts,
+            scene.materials,
+            scene.lights,
+            scene.back_faces,
+            scene.world,
+            scene.single_scattering
+        )
+        .as_bytes(),
     );
     hash.finalize().into()
 }

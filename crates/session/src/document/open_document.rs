@@ -13,7 +13,7 @@ use focus::{
     Brush, Changed, FocusMap, FocusRecipe, LayerStack, RecipeEntry, Selection, SelectionResult, Thumbnail,
 };
 use lens::{Camera, Exposure, FocusOffset};
-use project::{FocusFile, NamedCamera, ProjectFile, TexelSet};
+use project::{FocusFile, NamedCamera, ProjectFile, TexelSet, WorldFile};
 use scene::Scene;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -205,6 +205,7 @@ impl Document {
         project.cameras[project.active_camera].camera = self.camera.clone();
         project.exposure = self.exposure;
         project.back_faces = self.stage.scene.back_faces;
+        project.world = self.stage.scene.world.as_ref().map(WorldFile::of);
         project.brush = self.brush.clone();
         project.view = self.view.clone();
         project.atlas = Some(self.stage.atlas.to_bytes());

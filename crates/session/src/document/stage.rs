@@ -7,7 +7,7 @@ use atlas::{Atlas, AtlasError, TexelMap};
 use focus::Canvas;
 use glam::{DVec2, DVec3};
 use progress::Progress;
-use scene::{BackFaces, LoadOptions, Scene, SceneError};
+use scene::{BackFaces, LoadOptions, Scene, SceneError, World};
 use std::path::Path;
 use std::sync::{Arc, OnceLock};
 use trace::Tracer;
@@ -75,8 +75,18 @@ impl Stage {
         back_faces: BackFaces,
         progress: &dyn Progress,
     ) -> Result<Self, SessionError> {
+        self.with_scene(Scene { back_faces, ..(*self.scene).clone() }, progress)
+    }
+
+    /// The same in another world; none: the scene's own.
+    pub fn with_world(&self, world: Option<World>, progress: &dyn Progress) -> Result<Self, SessionError> {
+        self.with_scene(Scene { world, ..(*self.scene).clone() }, progress)
+    }
+
+    /// The same surface, seen or lit in another way.
+    fn with_scene(&self, scene: Scene, progress: &dyn Progress) -> Result<Self, SessionError> {
         progress.check()?;
-        let scene = Arc::new(Scene { back_faces, ..(*self.scene).clone() });
+        let scene = Arc::new(scene);
         let tracer = Arc::new(Tracer::new(scene.clone()));
         progress.check()?;
         let (atlas, texels, canvas) = (self.atlas.clone(), self.texels.clone(), self.canvas.clone());

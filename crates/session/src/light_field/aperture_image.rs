@@ -1,6 +1,6 @@
 //! What of the aperture a surface point sees, and what it sends there: the light field at one point, cell by cell.
 
-use super::light::light;
+use super::light::light_at_once;
 use super::running_sum::BakedField;
 use crate::document::{Document, SurfaceHit};
 use glam::{DVec2, DVec3};
@@ -89,7 +89,7 @@ impl ApertureImage {
         if radius <= 0.0 || depth <= 0.0 {
             return None;
         }
-        let light = light(tracer, camera);
+        let light = light_at_once(tracer, camera);
         let side = ApertureImage::SIDE;
         let cell = |index: usize| {
             let [row, column] = [index / side, index % side].map(|k| (k as f64 + 0.5) / side as f64);

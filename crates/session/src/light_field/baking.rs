@@ -39,5 +39,6 @@ fn bake_with(
     options: &BakeOptions,
     steps: &dyn Steps,
 ) -> Result<Salf, SessionError> {
-    Ok(salf::bake(tracer, &light(tracer, camera), camera, options, &*steps.begin("baking"))?)
+    let light = light(tracer, camera, &*steps.begin("light"))?;
+    Ok(salf::bake(tracer, &light, camera, options, &*steps.begin("baking"))?)
 }

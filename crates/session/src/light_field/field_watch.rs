@@ -92,7 +92,7 @@ mod tests {
         assert!(matches!(now(&document.stage), Standing::Underway));
         let tracer = &document.stage.tracer;
         let options = salf::BakeOptions::default();
-        let light = light(tracer, &camera);
+        let light = light(tracer, &camera, &Unwatched).unwrap();
         let salf = Arc::new(salf::bake(tracer, &light, &camera, &options, &Unwatched).unwrap());
         let long = Duration::from_secs(60);
         let start = Instant::now();

@@ -7,6 +7,7 @@ mod aperture_image;
 mod baking;
 mod changes;
 mod field_watch;
+mod kept_light;
 mod light;
 mod modelled;
 mod reach;
@@ -24,7 +25,7 @@ pub use store::LightFieldStore;
 
 pub(crate) use changes::Changes;
 pub(crate) use field_watch::{FieldWatch, Standing};
-pub(crate) use light::{light, light_for_many_points};
+pub(crate) use light::{light, light_at_once, light_for_many_points};
 pub(crate) use reach::Reach;
 pub(crate) use running_sum::{BakedField, Brought, FieldOptions, LightField, Plan};
 pub(crate) use serves::serves;

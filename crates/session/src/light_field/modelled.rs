@@ -232,19 +232,7 @@ mod tests {
             has_uv: [false; 2],
             mirrored: false,
         };
-        let material = scene::Material {
-            name: "white".into(),
-            base_color: glam::Vec4::ONE,
-            base_color_texture: None,
-            emissive: glam::Vec3::ZERO,
-            emissive_texture: None,
-            metallic: 0.0,
-            roughness: 1.0,
-            specular: 1.0,
-            unlit: true,
-            alpha: scene::AlphaMode::Opaque,
-            double_sided: true,
-        };
+        let material = scene::Material { name: "white".into(), ..scene::Material::of_unlit() };
         Arc::new(Scene {
             normals: vec![glam::Vec3::ZERO; positions.len()],
             positions,

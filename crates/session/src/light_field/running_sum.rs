@@ -11,7 +11,7 @@ use crate::document::Stage;
 use crate::error::SessionError;
 use focus::Focus;
 use lens::{Camera, Picture};
-use progress::Progress;
+use progress::{Progress, Stage as Share};
 use salf::{BakeOptions, Salf};
 use splat::{Gpu, SplatError, Splatter, Tolerance};
 use std::sync::Arc;
@@ -89,6 +89,9 @@ impl From<SplatError> for SessionError {
     }
 }
 
+/// Of a bake's time, where light has to be solved for.
+const LIGHT_SHARE: f32 = 0.3;
+
 impl LightField {
     /// Bakes what `camera` and `focus` need: a margin of at least `least_margin_px`.
     pub fn bake(
@@ -101,8 +104,9 @@ impl LightField {
         let needed = BakeOptions::for_focus(&stage.tracer, camera, focus).margin_px.max(how.least_margin_px);
         let margin_px = needed + MARGIN_HEADROOM * camera.height as f64;
         let options = BakeOptions { margin_px, ..BakeOptions::default() };
-        let radiance = light(&stage.tracer, camera);
-        let salf = salf::bake(&stage.tracer, &radiance, camera, &options, progress)?;
+        let radiance = light(&stage.tracer, camera, &Share::new(progress, 0.0, LIGHT_SHARE))?;
+        let baking = Share::new(progress, LIGHT_SHARE, 1.0);
+        let salf = salf::bake(&stage.tracer, &radiance, camera, &options, &baking)?;
         Ok(Self::of(stage, Arc::new(salf), how.tolerance, how.gpu))
     }
 

@@ -185,7 +185,7 @@ pub fn render(
             baselines::layered(&hits, camera, &options.layered, &*steps.begin("blurring"))?
         }
         Renderer::Views => {
-            let radiance = light(tracer, camera);
+            let radiance = light(tracer, camera, &*steps.begin("light"))?;
             let progress = steps.begin("views");
             baselines::shift_and_add(tracer, &radiance, focus, camera, &options.views, &*progress)?
         }
@@ -316,5 +316,6 @@ fn first_hits(
     focus: &Focus,
     steps: &dyn Steps,
 ) -> Result<FirstHits, SessionError> {
-    Ok(FirstHits::trace(tracer, &light(tracer, camera), focus, camera, &*steps.begin("first hits"))?)
+    let light = light(tracer, camera, &*steps.begin("light"))?;
+    Ok(FirstHits::trace(tracer, &light, focus, camera, &*steps.begin("first hits"))?)
 }

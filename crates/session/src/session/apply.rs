@@ -31,6 +31,8 @@ impl Session {
                 Ok(())
             }
             Command::SetBackFaces(back_faces) => self.set_back_faces(back_faces),
+            Command::SetWorld(world) => self.set_world(world),
+            Command::LoadEnvironment(file) => self.load_environment(file),
             Command::SetDisplay(display) => {
                 self.display = display;
                 self.show_tone();

@@ -70,7 +70,7 @@ impl Session {
             let steps = JobSteps { progress };
             let picture = match kind {
                 ReferenceKind::Pinhole => {
-                    let radiance = light(&stage.tracer, &camera);
+                    let radiance = light(&stage.tracer, &camera, &*steps.begin("light"))?;
                     let progress = steps.begin("first hits");
                     FirstHits::trace(&stage.tracer, &radiance, &focus, &camera, &*progress)?.picture()
                 }

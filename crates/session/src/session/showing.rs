@@ -9,12 +9,15 @@ use crate::light_field::{Changes, serves};
 use focus::{Changed, union};
 use glam::DVec2;
 use lens::{Aperture, Camera};
-use scene::BackFaces;
+use project::WorldFile;
+use scene::{BackFaces, World};
 use std::collections::BTreeMap;
+use std::path::PathBuf;
 use std::sync::Arc;
 
 /// What the job is called that prepares the stage for other faces.
 const FACING: &str = "looking at other faces";
+const WORLD: &str = "changing the world";
 
 impl Session {
     pub(super) fn edit_camera(&mut self, edit: CameraEdit) -> Result<(), SessionError> {
@@ -126,6 +129,39 @@ impl Session {
                 Ok(Outcome::Staged(Box::new(stage.with_back_faces(back_faces, progress)?), generation))
             })?;
         }
+        Ok(())
+    }
+
+    /// Gives the scene another world: prepares the stage anew in the background.
+    pub(super) fn set_world(&mut self, world: Option<World>) -> Result<(), SessionError> {
+        self.jobs.iter().filter(|job| job.label == WORLD).for_each(|job| job.progress.cancel());
+        let generation = self.generation;
+        let stage = self.opened()?.stage.clone();
+        if stage.scene.world != world {
+            self.start(WORLD.into(), move |progress| {
+                Ok(Outcome::Staged(Box::new(stage.with_world(world, progress)?), generation))
+            })?;
+        }
+        Ok(())
+    }
+
+    /// The same with an environment's file, seen as it is; turn, strength and bounces stay.
+    pub(super) fn load_environment(&mut self, file: PathBuf) -> Result<(), SessionError> {
+        self.jobs.iter().filter(|job| job.label == WORLD).for_each(|job| job.progress.cancel());
+        let generation = self.generation;
+        let stage = self.opened()?.stage.clone();
+        self.start(WORLD.into(), move |progress| {
+            let before = stage.scene.world.as_ref();
+            let of_file = WorldFile::of_environment(&file);
+            let world = WorldFile {
+                rotation: before.map_or(of_file.rotation, |world| world.rotation),
+                strength: before.map_or(of_file.strength, |world| world.strength),
+                bounces: before.and_then(|world| world.bounces),
+                ..of_file
+            };
+            let world = world.load()?;
+            Ok(Outcome::Staged(Box::new(stage.with_world(Some(world), progress)?), generation))
+        })?;
         Ok(())
     }
 

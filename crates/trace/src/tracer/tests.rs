@@ -41,7 +41,7 @@ fn agrees_with_testing_every_triangle() {
         for offset in OFFSETS {
             let (mut positions, triangles) = random_triangles(&mut random, count, size);
             positions.iter_mut().for_each(|p| *p += offset);
-            let material = if count % 2 == 0 { one_sided() } else { WHITE };
+            let material = if count % 2 == 0 { one_sided() } else { white() };
             let scene = scene_of(&[((positions, triangles), material)]);
             let tracer = Tracer::new(scene.clone());
             let mut hits = 0;
@@ -87,8 +87,8 @@ fn the_rays_of_a_beam_meet_what_they_meet_alone() {
     let mut random = Random(11);
     let key = |hit: Hit| (hit.point.triangle, hit.t.to_bits(), hit.point.barycentric.to_array());
     let glass =
-        Material { alpha: AlphaMode::Blend, base_color: glam::Vec4::new(1.0, 1.0, 1.0, 0.6), ..WHITE };
-    for (count, size, material) in [(1, 1.0, WHITE), (400, 0.3, glass), (2000, 0.02, WHITE)] {
+        Material { alpha: AlphaMode::Blend, base_color: glam::Vec4::new(1.0, 1.0, 1.0, 0.6), ..white() };
+    for (count, size, material) in [(1, 1.0, white()), (400, 0.3, glass), (2000, 0.02, white())] {
         for offset in OFFSETS {
             let (mut positions, triangles) = random_triangles(&mut random, count, size);
             positions.iter_mut().for_each(|p| *p += offset);
@@ -127,7 +127,7 @@ fn the_rays_of_a_beam_meet_what_they_meet_alone() {
             assert!(hits > 50 && together > 5, "{hits} hits, {together} of beams");
         }
     }
-    let tracer = Tracer::new(scene_of(&[(sphere(DVec3::ZERO, 1.0, 24), WHITE)]));
+    let tracer = Tracer::new(scene_of(&[(sphere(DVec3::ZERO, 1.0, 24), white())]));
     let (around, mut rays) = beam(&mut random, DVec3::ZERO, DVec3::ONE, 3.0, 16);
     assert!(tracer.first_hits(&around, &rays).iter().all(Option::is_some), "along different axes");
     rays[3].direction = DVec3::NAN;
@@ -139,7 +139,7 @@ fn the_rays_of_a_beam_meet_what_they_meet_alone() {
 fn no_ray_leaves_a_closed_mesh() {
     let mut random = Random(2);
     for offset in OFFSETS {
-        let scene = scene_of(&[(sphere(offset, 1.0, 24), WHITE)]);
+        let scene = scene_of(&[(sphere(offset, 1.0, 24), white())]);
         let tracer = Tracer::new(scene.clone());
         let mut leaks = 0;
         for _ in 0..500_000 {
@@ -157,7 +157,7 @@ fn a_convex_mesh_does_not_occlude_itself() {
     let mut random = Random(3);
     for offset in OFFSETS {
         for rings in [8, 200] {
-            let scene = scene_of(&[(sphere(offset, 1.0, rings), WHITE)]);
+            let scene = scene_of(&[(sphere(offset, 1.0, rings), white())]);
             let tracer = Tracer::new(scene.clone());
             let (mut seen, mut hidden) = (0, 0);
             while seen < 50_000 {
@@ -186,7 +186,7 @@ fn a_convex_mesh_does_not_occlude_itself() {
 #[test]
 fn the_far_side_of_a_closed_mesh_is_occluded() {
     let mut random = Random(4);
-    let scene = scene_of(&[(sphere(DVec3::ZERO, 1.0, 32), WHITE)]);
+    let scene = scene_of(&[(sphere(DVec3::ZERO, 1.0, 32), white())]);
     let tracer = Tracer::new(scene.clone());
     for _ in 0..20_000 {
         let triangle = (random.unit() * scene.triangles.len() as f64) as u32;
@@ -203,7 +203,7 @@ fn shells_occlude_each_other() {
         let inner = sphere(offset, 1.0, 16);
         let outer = sphere(offset, 1.0 + 4e-5, 16);
         let shells = inner.1.len() as f64;
-        let scene = scene_of(&[(inner, WHITE), (outer, WHITE)]);
+        let scene = scene_of(&[(inner, white()), (outer, white())]);
         let tracer = Tracer::new(scene.clone());
         for _ in 0..20_000 {
             let triangle = (random.unit() * shells) as u32;
@@ -218,7 +218,7 @@ fn shells_occlude_each_other() {
 fn neither_end_occludes() {
     let floor = rectangle(DVec3::ZERO, DVec3::X, DVec3::Z);
     let wall = rectangle(DVec3::ZERO, DVec3::Y, DVec3::Z);
-    let tracer = Tracer::new(scene_of(&[(floor, WHITE), (wall, WHITE)]));
+    let tracer = Tracer::new(scene_of(&[(floor, white()), (wall, white())]));
     let on = |triangle, b1, b2| SurfacePoint { triangle, barycentric: DVec2::new(b1, b2) };
     let on_wall = on(2, 0.5, 0.25).position(tracer.scene());
     assert!(!tracer.occluded(on(0, 0.5, 0.25), on_wall));
@@ -229,7 +229,7 @@ fn neither_end_occludes() {
 #[test]
 fn the_lowest_of_coincident_triangles_is_hit() {
     let quad = rectangle(DVec3::ZERO, DVec3::X, DVec3::Y);
-    let copies: Vec<_> = (0..9).map(|_| (quad.clone(), WHITE)).collect();
+    let copies: Vec<_> = (0..9).map(|_| (quad.clone(), white())).collect();
     let tracer = Tracer::new(scene_of(&copies));
     let mut ray = ray(DVec3::new(0.5, 0.25, 1.0), -DVec3::Z);
     assert_eq!(tracer.first_hit(&ray).unwrap().point.triangle, 0);
@@ -239,7 +239,7 @@ fn the_lowest_of_coincident_triangles_is_hit() {
 
 #[test]
 fn the_interval_is_open() {
-    let tracer = Tracer::new(scene_of(&[(rectangle(DVec3::ZERO, DVec3::X, DVec3::Y), WHITE)]));
+    let tracer = Tracer::new(scene_of(&[(rectangle(DVec3::ZERO, DVec3::X, DVec3::Y), white())]));
     let within = |t_min, t_max| {
         let ray = Ray { t_min, t_max, ..ray(DVec3::new(0.5, 0.25, 1.0), DVec3::new(0.0, 0.0, -0.25)) };
         assert_eq!(tracer.first_hit(&ray).is_some(), tracer.any_hit(&ray));
@@ -251,7 +251,7 @@ fn the_interval_is_open() {
 
 #[test]
 fn what_is_no_ray_or_no_triangle_is_not_hit() {
-    let tracer = Tracer::new(scene_of(&[(rectangle(-DVec3::ONE, DVec3::X * 2.0, DVec3::Y * 2.0), WHITE)]));
+    let tracer = Tracer::new(scene_of(&[(rectangle(-DVec3::ONE, DVec3::X * 2.0, DVec3::Y * 2.0), white())]));
     for direction in [DVec3::ZERO, DVec3::splat(f64::NAN), DVec3::new(0.0, 0.0, f64::INFINITY)] {
         assert!(tracer.first_hit(&ray(-3.0 * DVec3::Z, direction)).is_none());
     }
@@ -263,7 +263,7 @@ fn what_is_no_ray_or_no_triangle_is_not_hit() {
     let broken = vec![DVec3::ZERO, DVec3::X, DVec3::new(0.0, f64::NAN, 0.0)];
     let endless = vec![DVec3::ZERO, DVec3::X, DVec3::new(0.0, f64::INFINITY, 0.0)];
     for positions in [needle, broken, endless] {
-        let tracer = Tracer::new(scene_of(&[((positions, vec![[0, 1, 2]]), WHITE)]));
+        let tracer = Tracer::new(scene_of(&[((positions, vec![[0, 1, 2]]), white())]));
         assert!(!tracer.any_hit(&ray(DVec3::new(0.1, 0.1, 3.0), -DVec3::new(0.0, 0.0, 1.0))));
     }
 }
@@ -276,7 +276,7 @@ fn a_deep_tree_is_walked_whole() {
         [DVec3::new(size, 0.0, 0.0), DVec3::new(size, 0.5 * size, 0.0), DVec3::new(size, 0.0, 0.5 * size)]
     });
     let mesh = (positions.collect(), (0..3000).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect());
-    let scene = scene_of(&[(mesh, WHITE)]);
+    let scene = scene_of(&[(mesh, white())]);
     let tracer = Tracer::new(scene.clone());
     let mut random = Random(6);
     for _ in 0..2000 {
@@ -288,10 +288,10 @@ fn a_deep_tree_is_walked_whole() {
 }
 
 fn window(alpha: AlphaMode, opacity: f32) -> Tracer {
-    let material = Material { alpha, base_color: glam::Vec4::new(1.0, 1.0, 1.0, opacity), ..WHITE };
+    let material = Material { alpha, base_color: glam::Vec4::new(1.0, 1.0, 1.0, opacity), ..white() };
     let behind = rectangle(DVec3::new(-1.0, -1.0, -2.0), DVec3::X * 2.0, DVec3::Y * 2.0);
     let pane = |z| rectangle(DVec3::new(-1.0, -1.0, z), DVec3::X * 2.0, DVec3::Y * 2.0);
-    Tracer::new(scene_of(&[(pane(0.0), material.clone()), (pane(-1.0), material), (behind, WHITE)]))
+    Tracer::new(scene_of(&[(pane(0.0), material.clone()), (pane(-1.0), material), (behind, white())]))
 }
 
 #[test]
@@ -328,11 +328,11 @@ fn rays_a_second() {
     for (spheres, rings) in [(40, 50), (100, 71)] {
         let mut meshes: Vec<_> = (0..spheres)
             .map(|_| {
-                (sphere(random.in_cube() * 3.0 - DVec3::Z * 6.0, 0.2 + 0.5 * random.unit(), rings), WHITE)
+                (sphere(random.in_cube() * 3.0 - DVec3::Z * 6.0, 0.2 + 0.5 * random.unit(), rings), white())
             })
             .collect();
         let ground = rectangle(DVec3::new(-50.0, -3.0, 50.0), DVec3::X * 100.0, DVec3::Z * -100.0);
-        meshes.push((ground, WHITE));
+        meshes.push((ground, white()));
         let scene = scene_of(&meshes);
         let start = std::time::Instant::now();
         let tracer = Tracer::new(scene.clone());
@@ -393,7 +393,7 @@ fn sight_is_what_single_rays_see() {
     for (round, offset) in OFFSETS.into_iter().cycle().take(300).enumerate() {
         let mut mesh = random_triangles(&mut random, 60, if round % 2 == 0 { 0.2 } else { 1.0 });
         mesh.0.iter_mut().for_each(|p| *p += offset);
-        let material = if round % 3 == 0 { one_sided() } else { WHITE };
+        let material = if round % 3 == 0 { one_sided() } else { white() };
         let tracer = Tracer::new(scene_of(&[(mesh, material)]));
         let right = random.direction();
         let up = right.cross(random.direction()).normalize();
@@ -425,8 +425,8 @@ fn sight_is_what_single_rays_see() {
 fn no_place_shows_between_triangles() {
     let mut random = Random(6);
     let tracer = Tracer::new(scene_of(&[
-        (sphere(DVec3::ZERO, 1.0, 12), WHITE),
-        (rectangle(DVec3::new(-0.1, -0.1, 0.0), 0.2 * DVec3::X, 0.2 * DVec3::Y), WHITE),
+        (sphere(DVec3::ZERO, 1.0, 12), white()),
+        (rectangle(DVec3::new(-0.1, -0.1, 0.0), 0.2 * DVec3::X, 0.2 * DVec3::Y), white()),
     ]));
     let inner = tracer.scene().triangles.len() as u32 - 1;
     for _ in 0..2000 {

@@ -120,7 +120,9 @@ impl BrightSurfaces {
         let position = camera.camera_from_world(point.position(scene));
         let inverse_depth = 1.0 / position.z;
         let to = view.landing_px(position, u, view.blur(Some(point), inverse_depth, u).kappa);
-        if !sensor.sees(to) {
+        // What is carried lands where the ordinary lens has it.
+        let from = view.landing_px(position, u, optics.standard_kappa(inverse_depth));
+        if !sensor.sees(to) && !sensor.sees(from) {
             return;
         }
         let eye = camera.world_from_camera(u.extend(0.0));
@@ -130,9 +132,12 @@ impl BrightSurfaces {
         let normal = camera.camera_direction(scene.area_normal(point.triangle));
         let w = optics.pixels_by_area(normal.normalize_or_zero(), position, u);
         let sent = self.rates[point.triangle as usize] / (normal.length() / 2.0);
-        let from = view.landing_px(position, u, optics.standard_kappa(inverse_depth));
         let weight = w / if self.reach.contains(from) { w + sent } else { sent };
-        sensor.expose(to, radiance.toward(point, eye), weight, 0.0);
+        let light = radiance.leaving(point, eye);
+        sensor.expose(to, light.own, weight, 0.0);
+        if light.carried != glam::Vec3::ZERO {
+            sensor.expose(from, light.carried, weight, 0.0);
+        }
     }
 }
 

@@ -24,7 +24,7 @@ use super::sheared::{Sheared, Spread};
 use super::survey::{self, Look, Survey};
 use super::view::{Blur, View};
 use crate::random::hash;
-use crate::{Radiance, Ray};
+use crate::{Leaving, Radiance, Ray};
 use glam::{DVec2, DVec3, Vec3};
 use lens::ApertureSampler;
 use progress::{Cancelled, Progress, Stage};
@@ -165,14 +165,30 @@ impl Exposure<'_> {
         let own = self.sensor.pixel(corner).filter(|_| self.sensor.is_own_pixel());
         // What stays in this pixel is summed here first.
         let mut stays = sensor::Sum::default();
+        let mut land = |at: DVec2, light: Vec3, coverage: f64| {
+            if own.is_some() && self.sensor.pixel(at) == own {
+                stays.add(self.sensor.quantise(light, 1.0, coverage));
+            } else {
+                self.sensor.expose(at, light, 1.0, coverage);
+            }
+        };
         let mut expose = |sample: &PixelSample| {
             let from = corner + sample.within_px;
             let found = self.trace(from, sample.u);
             let to = from + found.displacement_px;
-            if own.is_some() && self.sensor.pixel(to) == own {
-                stays.add(self.sensor.quantise(self.light(&found, sample.u), 1.0, 1.0));
-            } else if self.sensor.sees(to) {
-                self.sensor.expose(to, self.light(&found, sample.u), 1.0, 1.0);
+            if !self.sensor.sees(to) && !self.sensor.sees(from) {
+                return;
+            }
+            let light = self.light(&found, sample.u);
+            if to == from {
+                land(from, light.total(), 1.0);
+                return;
+            }
+            // What is carried stays where the ordinary lens has it.
+            let carried = f64::from(light.carried_share);
+            land(to, light.own, 1.0 - carried);
+            if carried > 0.0 || light.carried != Vec3::ZERO {
+                land(from, light.carried, carried);
             }
         };
         if self.estimator.options.sampler == Sampler::Independent {
@@ -200,7 +216,7 @@ impl Exposure<'_> {
             let [radius_px, moved_px] =
                 [standard, found.blur.kappa - standard].map(|kappa| view.optics.splat_radius_px(kappa));
             let moved_px = if found.blur.is_standard { 0.0 } else { moved_px };
-            Look { radius_px, moved_px, light: self.light(&found, ray.u) }
+            Look { radius_px, moved_px, light: self.light(&found, ray.u).total() }
         };
         Survey::of(region, &rays, view.camera.aperture_radius, look, progress)
     }
@@ -223,13 +239,14 @@ impl Exposure<'_> {
     }
 
     /// The radiance that a sample through the aperture point `u` carries.
-    fn light(&self, found: &Found, u: DVec2) -> Vec3 {
+    fn light(&self, found: &Found, u: DVec2) -> Leaving {
         match found.point {
             Some(point) => {
-                let share = self.estimator.bright.camera_share(self.view, point, u);
-                self.radiance.toward(point, found.eye) * share as f32
+                let share = self.estimator.bright.camera_share(self.view, point, u) as f32;
+                let Leaving { own, carried, carried_share } = self.radiance.leaving(point, found.eye);
+                Leaving { own: own * share, carried: carried * share, carried_share }
             }
-            None => self.radiance.from_infinity(found.direction),
+            None => Leaving::own(self.radiance.from_infinity(found.direction)),
         }
     }
 }

@@ -186,12 +186,22 @@ impl Source {
                 }
                 let kappa = view.blur(Some(point), 1.0 / position.z, u).kappa;
                 let to = view.landing_px(position, u, kappa);
-                if !sensor.sees(to) || !is_met_first(view, *triangle, eye, world - eye) {
+                // What is carried lands where the ordinary lens has it.
+                let standard = view.optics.standard_kappa(1.0 / position.z);
+                let of_carried = view.landing_px(position, u, standard);
+                let is_seen = sensor.sees(to) || sensor.sees(of_carried);
+                if !is_seen || !is_met_first(view, *triangle, eye, world - eye) {
                     return;
                 }
                 let normal = camera.camera_direction(view.tracer.scene().area_normal(*triangle));
                 let w = view.optics.pixels_by_area(normal.normalize_or_zero(), position, u);
-                sensor.expose(to, radiance.toward(point, eye), w * area / self.rate, 1.0);
+                let weight = w * area / self.rate;
+                let light = radiance.leaving(point, eye);
+                let carried = f64::from(light.carried_share);
+                sensor.expose(to, light.own, weight, 1.0 - carried);
+                if carried > 0.0 || light.carried != glam::Vec3::ZERO {
+                    sensor.expose(of_carried, light.carried, weight, carried);
+                }
             }
             Extent::Infinity { corner, size } => {
                 let sharp = camera.q_from_pixel(*corner + *size * v);

@@ -107,7 +107,7 @@ impl Sensor {
     }
 
     /// The integers of a sample. Negative or undefined channels of `radiance` are 0, infinite ones the largest
-    /// f32; `weight` ≥ 0 is what it weighs, in samples, and `coverage` is 1 or 0.
+    /// f32; `weight` ≥ 0 is what it weighs, in samples, and `coverage` the share of it that covers, in [0, 1].
     pub fn quantise(&self, radiance: Vec3, weight: f64, coverage: f64) -> Sum {
         let light = weight * f64::from(self.quantiser.light).exp2();
         let [r, g, b] =

@@ -1,4 +1,5 @@
 use super::*;
+use crate::Leaving;
 use crate::test_scene::*;
 use glam::{DVec2, DVec3, Vec3};
 use lens::{ApertureMask, ApertureShape, Picture};
@@ -13,8 +14,8 @@ mod convergence;
 struct BaseColor(Arc<scene::Scene>);
 
 impl Radiance for BaseColor {
-    fn toward(&self, point: SurfacePoint, _eye: DVec3) -> Vec3 {
-        self.0.base_color(point).truncate()
+    fn leaving(&self, point: SurfacePoint, _eye: DVec3) -> Leaving {
+        Leaving::own(self.0.base_color(point).truncate())
     }
     fn from_infinity(&self, _direction: DVec3) -> Vec3 {
         Vec3::ZERO
@@ -54,7 +55,7 @@ const SPOT_PX: f64 = 8.0;
 fn spot(camera: &Camera, z: f64) -> Arc<scene::Scene> {
     let half = SPOT_PX / 2.0 * z * camera.optics().tan_half_yfov / camera.optics().half_height_px;
     let square = rectangle(DVec3::new(-half, -half, -z), DVec3::X * 2.0 * half, DVec3::Y * 2.0 * half);
-    scene_of(&[(square, WHITE)])
+    scene_of(&[(square, white())])
 }
 
 fn picture(scene: Arc<scene::Scene>, camera: &Camera, focus: FocusOffset, spp: u32) -> Picture {
@@ -82,7 +83,7 @@ fn moments(picture: &Picture) -> (f64, DVec2, f64) {
 
 #[test]
 fn a_white_furnace_is_exactly_white() {
-    let room = scene_of(&[(sphere(DVec3::new(0.1, 0.2, -0.3), 5.0, 16), WHITE)]);
+    let room = scene_of(&[(sphere(DVec3::new(0.1, 0.2, -0.3), 5.0, 16), white())]);
     for focus_distance in [3.0, f64::INFINITY] {
         let camera = Camera { focus_distance, width: 40, height: 30, ..camera() };
         for samples in [1, 5, 64] {
@@ -96,7 +97,7 @@ fn a_white_furnace_is_exactly_white() {
 #[test]
 fn an_evenly_painted_wall_is_white() {
     let wall = rectangle(DVec3::new(-9.0, -9.0, -5.0), DVec3::X * 18.0, DVec3::Y * 18.0);
-    let wall = scene_of(&[(wall, WHITE)]);
+    let wall = scene_of(&[(wall, white())]);
     for focus in [FocusOffset::new(0.9, 0.0), FocusOffset::new(1.05, 1.0), FocusOffset::new(1.1, 0.5)] {
         let picture = picture(wall.clone(), &Camera { width: 40, height: 30, ..camera() }, focus, 256);
         // Where κ is even, every pixel gives and takes the same number of samples.
@@ -157,7 +158,7 @@ fn a_tiny_bright_lamp_is_a_smooth_disc() {
     let half = 0.25 * z * optics.tan_half_yfov / optics.half_height_px;
     for (t, anchor) in [(0.8, 1.0), (1.2, 1.0)] {
         let lamp = rectangle(DVec3::new(-half, -half, -z), DVec3::X * 2.0 * half, DVec3::Y * 2.0 * half);
-        let glow = scene::Material { base_color: glam::vec4(3e3, 3e3, 3e3, 1.0), ..WHITE };
+        let glow = scene::Material { base_color: glam::vec4(3e3, 3e3, 3e3, 1.0), ..white() };
         let focus = FocusOffset::new(t, anchor);
         let picture = picture(scene_of(&[(lamp, glow)]), &camera, focus, 64);
         let radius = optics.splat_radius_px(optics.kappa(1.0 / z, focus)).abs();
@@ -184,7 +185,7 @@ fn bright_surfaces_brighten_nothing() {
     let wall = rectangle(DVec3::new(-0.1, -3.0, -4.0), DVec3::X * 5.0, DVec3::Y * 6.0);
     let fence = rectangle(DVec3::new(0.1, -3.0, -2.0), DVec3::X * 0.1, DVec3::Y * 6.0);
     let scene_with = |level: f32| {
-        let glow = scene::Material { base_color: glam::vec4(level, level, level, 1.0), ..WHITE };
+        let glow = scene::Material { base_color: glam::vec4(level, level, level, 1.0), ..white() };
         scene_of(&[(wall.clone(), glow.clone()), (fence.clone(), glow)])
     };
     for focus in [FocusOffset::STANDARD, FocusOffset::new(0.95, 1.0), FocusOffset::new(1.03, 0.0)] {
@@ -211,7 +212,7 @@ fn light_outside_of_the_frame_comes_in_by_its_circle_of_confusion() {
     let px = z * (camera.yfov / 2.0).tan() / 64.0;
     for (outside, seen) in [(0.8 * radius, true), (1.2 * radius, false)] {
         let corner = DVec3::new((64.0 + outside - 1.0) * px, -px, -z);
-        let scene = scene_of(&[(rectangle(corner, DVec3::X * 2.0 * px, DVec3::Y * 2.0 * px), WHITE)]);
+        let scene = scene_of(&[(rectangle(corner, DVec3::X * 2.0 * px, DVec3::Y * 2.0 * px), white())]);
         assert_eq!(moments(&picture(scene, &camera, focus, 64)).0 > 0.0, seen, "{outside} px of {radius}");
     }
 }
@@ -221,9 +222,9 @@ fn threads_do_not_matter() {
     let scene = scene_of(&[
         (
             sphere(DVec3::new(0.0, 0.0, -4.0), 1.0, 12),
-            scene::Material { base_color: glam::vec4(0.3, 0.7, 0.1, 1.0), ..WHITE },
+            scene::Material { base_color: glam::vec4(0.3, 0.7, 0.1, 1.0), ..white() },
         ),
-        (rectangle(DVec3::new(-9.0, -9.0, -9.0), DVec3::X * 18.0, DVec3::Y * 18.0), WHITE),
+        (rectangle(DVec3::new(-9.0, -9.0, -9.0), DVec3::X * 18.0, DVec3::Y * 18.0), white()),
     ]);
     let render_with = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
@@ -241,8 +242,8 @@ fn threads_do_not_matter() {
 fn the_brightest_light_does_not_overflow() {
     struct Blinding(f32);
     impl Radiance for Blinding {
-        fn toward(&self, _point: SurfacePoint, _eye: DVec3) -> Vec3 {
-            Vec3::splat(self.0)
+        fn leaving(&self, _point: SurfacePoint, _eye: DVec3) -> Leaving {
+            Leaving::own(Vec3::splat(self.0))
         }
         fn from_infinity(&self, _direction: DVec3) -> Vec3 {
             Vec3::new(self.0, -self.0, f32::NAN)

@@ -2,6 +2,7 @@
 //! apart than their standard errors allow.
 
 use super::*;
+use crate::Leaving;
 use glam::{Vec4, vec4};
 use scene::{AlphaMode, Material};
 
@@ -9,12 +10,12 @@ use scene::{AlphaMode, Material};
 struct Shaded(Arc<scene::Scene>);
 
 impl Radiance for Shaded {
-    fn toward(&self, point: SurfacePoint, eye: DVec3) -> Vec3 {
+    fn leaving(&self, point: SurfacePoint, eye: DVec3) -> Leaving {
         let position = point.position(&self.0);
         let toward = (eye - position).normalize();
         let normal = self.0.area_normal(point.triangle).normalize();
         let shade = 0.6 + 0.2 * (3.0 * position.x + position.y).sin() + 0.2 * normal.dot(toward).abs();
-        self.0.base_color(point).truncate() * shade as f32
+        Leaving::own(self.0.base_color(point).truncate() * shade as f32)
     }
     fn from_infinity(&self, direction: DVec3) -> Vec3 {
         Vec3::new(0.2, 0.3, 0.5) * (1.0 + direction.normalize().y as f32)
@@ -48,7 +49,7 @@ impl SurfaceField<FocusOffset> for ByPart {
 }
 
 fn colored(color: Vec4) -> Material {
-    Material { base_color: color, ..WHITE }
+    Material { base_color: color, ..white() }
 }
 
 /// A floor from behind the camera to far away, a wall with a hole in front of a sky, a ball, a fence near the lens

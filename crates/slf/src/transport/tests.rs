@@ -1,21 +1,17 @@
 use super::*;
 use glam::{DVec2, Vec2, Vec4};
-use scene::{AlphaMode, Image, ImageLevel, Light, Material, Node, Part, Scene, TextureRef, Triangle, Wrap};
-use std::f64::consts::PI;
-
-const GREY: Material = Material {
-    name: String::new(),
-    base_color: Vec4::new(0.5, 0.25, 1.0, 1.0),
-    base_color_texture: None,
-    emissive: Vec3::ZERO,
-    emissive_texture: None,
-    metallic: 0.0,
-    roughness: 1.0,
-    specular: 0.0,
-    unlit: false,
-    alpha: AlphaMode::Opaque,
-    double_sided: false,
+use progress::Unwatched;
+use scene::{
+    Backdrop, Image, ImageLevel, Light, LightKind, Material, Node, Part, Scalar, Scene, TextureRef, Triangle,
+    Volume, Workflow, Wrap,
 };
+use std::f64::consts::{FRAC_1_PI, PI};
+
+mod rooms;
+
+fn grey() -> Material {
+    Material { base_color: Vec4::new(0.5, 0.25, 1.0, 1.0), ..Material::of_lambert() }
+}
 
 /// A rectangle of two triangles, counter-clockwise seen from where side × other points.
 struct Rectangle(DVec3, DVec3, DVec3, Material);
@@ -44,8 +40,16 @@ fn scene_of(rectangles: &[Rectangle], lights: &[Light]) -> Scene {
     scene
 }
 
-fn direct(scene: Scene) -> DirectLight {
-    DirectLight::new(Arc::new(Tracer::new(Arc::new(scene))), Vec3::new(0.1, 0.2, 0.3))
+/// Direct light alone, before a backdrop that lights nothing.
+fn direct(scene: Scene) -> Transport {
+    direct_by(scene, 1)
+}
+
+fn direct_by(scene: Scene, paths: u32) -> Transport {
+    let backdrop = Backdrop::Color(Vec3::new(0.1, 0.2, 0.3));
+    let world = World { backdrop, bounces: Some(0), ..World::uniform(Vec3::ZERO) };
+    let options = TransportOptions { paths, ..TransportOptions::default() };
+    Transport::new(Arc::new(Tracer::new(Arc::new(scene))), world, options)
 }
 
 fn light(kind: LightKind, position: DVec3, direction: DVec3) -> Light {
@@ -69,27 +73,19 @@ fn a_point_light_over_a_plane() {
     let point = light(LightKind::Point, at, DVec3::ZERO);
     // albedo/π · I cosθ/r², cosθ = 0.8, r = 2.
     let expected = ALBEDO * INTENSITY * (0.8 / 4.0 / PI) as f32;
-    let scene = scene_of(&[floor(GREY)], std::slice::from_ref(&point));
+    let scene = scene_of(&[floor(grey())], std::slice::from_ref(&point));
     assert_near(direct(scene.clone()).toward(MIDDLE, ABOVE), expected);
     assert_eq!(direct(scene).toward(MIDDLE, -ABOVE), Vec3::ZERO, "from below, where no light arrives");
 
     // Whatever the winding: the side that faces the eye counts.
-    let turned = Rectangle(DVec3::new(-1.0, 0.0, -1.0), DVec3::X * 2.0, DVec3::Z * 2.0, GREY);
+    let turned = Rectangle(DVec3::new(-1.0, 0.0, -1.0), DVec3::X * 2.0, DVec3::Z * 2.0, grey());
     assert_near(direct(scene_of(&[turned], std::slice::from_ref(&point))).toward(MIDDLE, ABOVE), expected);
 
     let windowed = Light { range: 4.0, ..point.clone() };
-    let scene = scene_of(&[floor(GREY)], &[windowed]);
+    let scene = scene_of(&[floor(grey())], &[windowed]);
     assert_near(direct(scene).toward(MIDDLE, ABOVE), expected * (1.0 - 0.5f32.powi(4)));
     let out_of_range = Light { range: 1.9, ..point };
-    assert_eq!(direct(scene_of(&[floor(GREY)], &[out_of_range])).toward(MIDDLE, ABOVE), Vec3::ZERO);
-}
-
-#[test]
-fn metals_reflect_their_base_colour() {
-    let metal = Material { metallic: 1.0, ..GREY };
-    let point = light(LightKind::Point, DVec3::Y, DVec3::ZERO);
-    let scene = scene_of(&[floor(metal)], &[point]);
-    assert_near(direct(scene).toward(MIDDLE, ABOVE), ALBEDO * INTENSITY * FRAC_1_PI);
+    assert_eq!(direct(scene_of(&[floor(grey())], &[out_of_range])).toward(MIDDLE, ABOVE), Vec3::ZERO);
 }
 
 #[test]
@@ -104,17 +100,35 @@ fn a_spot_light_has_a_soft_cone() {
         let direction = DVec3::new(angle.sin(), -angle.cos(), 0.0);
         let spot = light(LightKind::Spot { inner, outer }, DVec3::Y * 3.0, direction);
         let expected = ALBEDO * INTENSITY * (share / 9.0 / PI) as f32;
-        let found = direct(scene_of(&[floor(GREY)], &[spot])).toward(MIDDLE, ABOVE);
+        let found = direct(scene_of(&[floor(grey())], &[spot])).toward(MIDDLE, ABOVE);
         assert!((found - expected).abs().max_element() < 1e-6, "{angle}: {found}, not {expected}");
     }
 }
 
 #[test]
-fn directional_and_ambient_light() {
+fn directional_light() {
     let sun = light(LightKind::Directional, DVec3::ZERO, DVec3::new(0.6, -0.8, 0.0));
-    let sky = light(LightKind::Ambient, DVec3::ZERO, DVec3::ZERO);
-    let scene = scene_of(&[floor(GREY)], &[sun, sky]);
-    assert_near(direct(scene).toward(MIDDLE, ABOVE), ALBEDO * INTENSITY * (0.8 * FRAC_1_PI + 1.0));
+    let scene = scene_of(&[floor(grey())], &[sun]);
+    assert_near(direct(scene).toward(MIDDLE, ABOVE), ALBEDO * INTENSITY * (0.8 * FRAC_1_PI) as f32);
+}
+
+#[test]
+fn of_many_lights_one_is_drawn_and_the_mean_is_right() {
+    let lights: Vec<_> = (0..9)
+        .map(|k| {
+            light(
+                LightKind::Point,
+                DVec3::new(f64::from(k) * 0.3 - 1.0, 0.5 + 0.2 * f64::from(k), 0.1),
+                DVec3::ZERO,
+            )
+        })
+        .collect();
+    let each = lights
+        .iter()
+        .map(|light| direct(scene_of(&[floor(grey())], std::slice::from_ref(light))).toward(MIDDLE, ABOVE));
+    let expected: Vec3 = each.sum();
+    let found = direct_by(scene_of(&[floor(grey())], &lights), 1 << 12).toward(MIDDLE, ABOVE);
+    assert!((found / expected - 1.0).abs().max_element() < 2e-3, "{found}, not {expected}");
 }
 
 #[test]
@@ -124,9 +138,9 @@ fn what_stands_between_casts_a_shadow() {
         light(LightKind::Directional, DVec3::ZERO, -DVec3::Y),
     ];
     for light in lights {
-        let lid = |x: f64| Rectangle(DVec3::new(x, 1.0, 0.1), DVec3::X * 0.2, DVec3::Z * -0.2, GREY);
+        let lid = |x: f64| Rectangle(DVec3::new(x, 1.0, 0.1), DVec3::X * 0.2, DVec3::Z * -0.2, grey());
         let lit = |x: f64| {
-            let scene = scene_of(&[floor(GREY), lid(x)], std::slice::from_ref(&light));
+            let scene = scene_of(&[floor(grey()), lid(x)], std::slice::from_ref(&light));
             direct(scene).toward(MIDDLE, ABOVE) != Vec3::ZERO
         };
         assert!(!lit(-0.1) && lit(0.01), "{:?}", light.kind);
@@ -142,9 +156,10 @@ fn unlit_is_the_texture_on_both_sides() {
         uv_set: 0,
         transform: glam::Mat3::IDENTITY,
         wrap: [Wrap::Clamp; 2],
+        is_color: true,
         nearest: true,
     };
-    let unlit = Material { unlit: true, base_color_texture: Some(texture), ..GREY };
+    let unlit = Material { unlit: true, base_color_texture: Some(texture), ..grey() };
     let mut scene = scene_of(&[floor(unlit)], &[light(LightKind::Point, DVec3::Y, DVec3::ZERO)]);
     scene.images.push(image);
     let direct = direct(scene);
@@ -161,7 +176,7 @@ fn unlit_is_the_texture_on_both_sides() {
 
 #[test]
 fn emission_leaves_by_the_front() {
-    let lamp = Material { emissive: Vec3::new(4.0, 5.0, 6.0), base_color: Vec4::ZERO, ..GREY };
+    let lamp = Material { emissive: Vec3::new(4.0, 5.0, 6.0), base_color: Vec4::ZERO, ..grey() };
     let both = Material { double_sided: true, ..lamp.clone() };
     for (material, below) in [(lamp.clone(), Vec3::ZERO), (both, lamp.emissive)] {
         let direct = direct(scene_of(&[floor(material)], &[]));
@@ -180,15 +195,13 @@ fn corner_form_factor(a: f64, b: f64, c: f64) -> f64 {
 
 #[test]
 fn an_emissive_rectangle_lights_by_its_form_factor() {
-    let lamp = Material { emissive: Vec3::splat(2.0), base_color: Vec4::ZERO, ..GREY };
+    let lamp = Material { emissive: Vec3::splat(2.0), base_color: Vec4::ZERO, ..grey() };
     // Over the floor's middle, facing down, [−0.5, 0.5] × [−0.25, 0.25] at height 0.75.
     let down = |material| Rectangle(DVec3::new(-0.5, 0.75, -0.25), DVec3::X, DVec3::Z * 0.5, material);
     let up = |material| Rectangle(DVec3::new(-0.5, 0.75, 0.25), DVec3::X, DVec3::Z * -0.5, material);
     let expected = 4.0 * corner_form_factor(0.5, 0.25, 0.75) * 2.0;
     let mean = |lamp: Rectangle, samples| {
-        let tracer = Arc::new(Tracer::new(Arc::new(scene_of(&[floor(GREY), lamp], &[]))));
-        let options = DirectLightOptions { emitter_samples: samples };
-        let direct = DirectLight::with_options(tracer, Vec3::ZERO, options);
+        let direct = direct_by(scene_of(&[floor(grey()), lamp], &[]), samples);
         // Points next to the middle draw other samples.
         let points = (0..64).map(|k| SurfacePoint {
             triangle: 0,
@@ -212,16 +225,14 @@ fn an_emissive_rectangle_lights_by_its_form_factor() {
 #[test]
 fn an_emissive_box_is_not_its_own_shadow() {
     // A lamp of six faces: its own triangles and edges must not stop its light.
-    let lamp = Material { emissive: Vec3::ONE, base_color: Vec4::ZERO, ..GREY };
+    let lamp = Material { emissive: Vec3::ONE, base_color: Vec4::ZERO, ..grey() };
     let (low, high) = (DVec3::new(-0.2, 0.6, -0.2), DVec3::new(0.2, 1.0, 0.2));
     let size = high - low;
     let [x, y, z] = [DVec3::X * size.x, DVec3::Y * size.y, DVec3::Z * size.z];
     let faces = [(low, x, z), (high, -z, -x), (low, y, x), (high, -x, -y), (low, z, y), (high, -y, -z)];
-    let mut rectangles = vec![floor(GREY)];
+    let mut rectangles = vec![floor(grey())];
     rectangles.extend(faces.map(|(corner, side, other)| Rectangle(corner, side, other, lamp.clone())));
-    let tracer = Arc::new(Tracer::new(Arc::new(scene_of(&rectangles, &[]))));
-    let options = DirectLightOptions { emitter_samples: 20_000 };
-    let found = DirectLight::with_options(tracer, Vec3::ZERO, options).toward(MIDDLE, ABOVE).z;
+    let found = direct_by(scene_of(&rectangles, &[]), 20_000).toward(MIDDLE, ABOVE).z;
     // From the middle only the lower face shows.
     let expected = 4.0 * corner_form_factor(0.2, 0.2, 0.6) as f32;
     assert!((found / expected - 1.0).abs() < 0.02, "{found}, expected {expected}");

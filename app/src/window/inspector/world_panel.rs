@@ -1,0 +1,154 @@
+//! The world: what lies beyond all surfaces, lights them, and is seen where none is.
+
+use crate::window::Action;
+use crate::window::controls::{proportional, row, rows};
+use egui::{Button, DragValue, Ui};
+use glam::{DVec3, Vec3};
+use scene::{Backdrop, Environment, World};
+use session::{Command, Document};
+
+/// What shines from infinity, as the panel offers it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Kind {
+    Own,
+    Studio,
+    Color,
+    File,
+}
+
+/// Draws the world's choices.
+pub fn world_panel(ui: &mut Ui, document: &Document, actions: &mut Vec<Action>) {
+    let scene = document.scene();
+    let background = document.camera.background.map(|color| DVec3::from_array(color).as_vec3());
+    let shown = World::of_scene(scene, background);
+    let kind = kind_of(scene.world.as_ref());
+    rows(ui, "world", |ui| {
+        let tip = "What shines on the scene from everywhere. Drop an equirectangular .hdr or .exr on the window to use it.";
+        row(ui, "Environment", tip, |ui| environment_buttons(ui, kind, &shown, actions));
+        if let Some(source) = source(&shown) {
+            row(ui, "Source", "Where the environment is from.", |ui| {
+                ui.add(egui::Label::new(source).truncate())
+            });
+        }
+        let mut world = shown.clone();
+        if let Environment::Uniform(color) = &mut world.environment {
+            row(ui, "Color", "Its radiance, linear.", |ui| color_edit(ui, color));
+        }
+        let mut degrees = world.rotation.to_degrees();
+        let tip = "Turns the environment about the upright axis.";
+        let response = row(ui, "Turn", tip, |ui| {
+            ui.add(DragValue::new(&mut degrees).speed(1.0).range(-360.0..=360.0).suffix("°").max_decimals(1))
+        });
+        if response.changed() {
+            world.rotation = degrees.to_radians();
+        }
+        let mut strength = f64::from(world.strength);
+        let tip = "Scales the environment's light.";
+        if row(ui, "Strength", tip, |ui| ui.add(proportional(&mut strength, 0.0..=1e6))).changed() {
+            world.strength = strength as f32;
+        }
+        row(ui, "Backdrop", "What the camera sees where no surface is. It lights nothing.", |ui| {
+            backdrop_buttons(ui, &mut world.backdrop)
+        });
+        if let Backdrop::Color(color) = &mut world.backdrop {
+            row(ui, "Backdrop color", "The radiance that the camera sees, linear.", |ui| {
+                color_edit(ui, color)
+            });
+        }
+        let tip = "How often light is scattered from surface to surface: 0 is direct light only.";
+        row(ui, "Bounces", tip, |ui| bounces(ui, &mut world.bounces));
+        if world != shown {
+            actions.push(Command::SetWorld(Some(world)).into());
+        }
+    });
+}
+
+fn kind_of(world: Option<&World>) -> Kind {
+    match world.map(|world| &world.environment) {
+        None => Kind::Own,
+        Some(Environment::Uniform(_)) => Kind::Color,
+        Some(environment) if *environment == World::studio().environment => Kind::Studio,
+        Some(_) => Kind::File,
+    }
+}
+
+/// The name of an environment's file.
+fn source(world: &World) -> Option<String> {
+    let Environment::Map(map) = &world.environment else { return None };
+    let name = std::path::Path::new(&map.name).file_name();
+    Some(name.map_or_else(|| map.name.clone(), |name| name.to_string_lossy().into_owned()))
+}
+
+fn environment_buttons(ui: &mut Ui, kind: Kind, shown: &World, actions: &mut Vec<Action>) -> egui::Response {
+    ui.horizontal_wrapped(|ui| {
+        let mut chosen = None;
+        for (of, label, tip) in [
+            (Kind::Own, "Scene's own", "What the scene brings; a scene without light has the studio."),
+            (Kind::Studio, "Studio", "A soft neutral studio."),
+            (Kind::Color, "Color", "The same radiance from everywhere."),
+            (Kind::File, "File…", "An equirectangular picture, .hdr or .exr."),
+        ] {
+            if ui.add(Button::selectable(kind == of, label)).on_hover_text(tip).clicked() {
+                chosen = Some(of);
+            }
+        }
+        match chosen {
+            Some(Kind::Own) => actions.push(Command::SetWorld(None).into()),
+            Some(Kind::Studio) => actions.push(Command::SetWorld(Some(World::studio())).into()),
+            Some(Kind::Color) => {
+                let color = match shown.environment {
+                    Environment::Uniform(color) if color != Vec3::ZERO => color,
+                    _ => Vec3::splat(0.5),
+                };
+                actions.push(Command::SetWorld(Some(World::uniform(color))).into());
+            }
+            Some(Kind::File) => actions.push(Action::ChooseEnvironment),
+            None => {}
+        }
+    })
+    .response
+}
+
+fn backdrop_buttons(ui: &mut Ui, backdrop: &mut Backdrop) -> egui::Response {
+    ui.horizontal(|ui| {
+        let is_environment = *backdrop == Backdrop::Environment;
+        if ui
+            .add(Button::selectable(is_environment, "Environment"))
+            .on_hover_text("The camera sees what lights the scene.")
+            .clicked()
+        {
+            *backdrop = Backdrop::Environment;
+        }
+        if ui
+            .add(Button::selectable(!is_environment, "Plain"))
+            .on_hover_text("The camera sees one colour.")
+            .clicked()
+            && is_environment
+        {
+            *backdrop = World::studio().backdrop;
+        }
+    })
+    .response
+}
+
+fn color_edit(ui: &mut Ui, color: &mut Vec3) -> egui::Response {
+    let mut rgb = color.to_array();
+    let response = ui.color_edit_button_rgb(&mut rgb);
+    if response.changed() {
+        *color = Vec3::from_array(rgb);
+    }
+    response
+}
+
+fn bounces(ui: &mut Ui, bounces: &mut Option<u32>) -> egui::Response {
+    ui.horizontal(|ui| {
+        let mut all = bounces.is_none();
+        if ui.checkbox(&mut all, "All").on_hover_text("As many as matter.").changed() {
+            *bounces = if all { None } else { Some(2) };
+        }
+        if let Some(count) = bounces {
+            ui.add(DragValue::new(count).range(0..=64));
+        }
+    })
+    .response
+}

@@ -1,0 +1,304 @@
+//! World files, and the world of a project: what lies beyond all surfaces.
+//!
+//! ```json
+//! {"environment": "FILE.hdr" | "FILE.exr" | "studio" | [r, g, b], "rotation": rad, "strength": 1.0,
+//!  "backdrop": "environment" | [r, g, b], "bounces": null}
+//! ```
+//!
+//! Missing fields take the defaults: the studio, 0, 1, the environment (before the studio a neutral grey), as many bounces as
+//! matter. A file's path starts from the folder of what names it.
+
+use crate::ProjectError;
+use crate::json::{Field, Fields, Json};
+use crate::picture_file::read_picture;
+use glam::Vec3;
+use scene::{Backdrop, Environment, EnvironmentMap, World};
+use serde_json::{Value, json};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+const FIELDS: [&str; 5] = ["environment", "rotation", "strength", "backdrop", "bounces"];
+
+/// A world as a file says it, its environment not yet read.
+#[derive(Clone, Debug, PartialEq)]
+pub struct WorldFile {
+    /// What shines.
+    pub environment: EnvironmentChoice,
+    /// About +Y, rad.
+    pub rotation: f64,
+    /// Scales its radiance, ≥ 0.
+    pub strength: f32,
+    /// What the camera sees where no surface is; `None` as suits the environment.
+    pub backdrop: Option<Backdrop>,
+    /// See [`World::bounces`].
+    pub bounces: Option<u32>,
+}
+
+/// What shines from infinity.
+#[derive(Clone, Debug, PartialEq)]
+pub enum EnvironmentChoice {
+    /// An equirectangular picture, .hdr or .exr.
+    File(PathBuf),
+    /// Our own.
+    Studio,
+    /// The same radiance from everywhere.
+    Uniform(Vec3),
+}
+
+impl Default for WorldFile {
+    fn default() -> Self {
+        Self {
+            environment: EnvironmentChoice::Studio,
+            rotation: 0.0,
+            strength: 1.0,
+            backdrop: None,
+            bounces: None,
+        }
+    }
+}
+
+impl WorldFile {
+    /// Reads a world file.
+    ///
+    /// # Errors
+    /// What is wrong with it, by file and field.
+    pub fn read(file: &Path) -> Result<Self, ProjectError> {
+        let json = Json::read(file)?;
+        Self::from_fields(&Field::root(file, &json).object()?)
+    }
+
+    /// What says a world that was read before.
+    pub fn of(world: &World) -> Self {
+        let environment = match &world.environment {
+            Environment::Uniform(color) => EnvironmentChoice::Uniform(*color),
+            environment if *environment == World::studio().environment => EnvironmentChoice::Studio,
+            Environment::Map(map) => EnvironmentChoice::File(PathBuf::from(&map.name)),
+        };
+        Self {
+            environment,
+            rotation: world.rotation,
+            strength: world.strength,
+            backdrop: Some(world.backdrop),
+            bounces: world.bounces,
+        }
+    }
+
+    /// An environment's file alone, seen and lighting.
+    pub fn of_environment(file: &Path) -> Self {
+        Self { environment: EnvironmentChoice::File(file.into()), ..Self::default() }
+    }
+
+    /// What a project in `file` says.
+    pub(crate) fn from_value(file: &Path, value: &Value) -> Result<Self, ProjectError> {
+        let json = Json::parse(file, &value.to_string())?;
+        Self::from_fields(&Field::root(file, &json).object()?)
+    }
+
+    fn from_fields(fields: &Fields<'_>) -> Result<Self, ProjectError> {
+        fields.only(&FIELDS)?;
+        let mut world = Self::default();
+        if let Some(field) = fields.get("environment") {
+            world.environment = match field.value {
+                Json::Text(text) if text == "studio" => EnvironmentChoice::Studio,
+                Json::Text(text) => EnvironmentChoice::File(fields.folder().join(text)),
+                _ => EnvironmentChoice::Uniform(radiance(&field)?),
+            };
+        }
+        if let Some(field) = fields.get("rotation") {
+            world.rotation = field.number()?;
+        }
+        if let Some(field) = fields.get("strength") {
+            world.strength = field.number()? as f32;
+            if !(world.strength >= 0.0 && world.strength.is_finite()) {
+                return Err(field.error("is no strength", "give a number of 0 or more"));
+            }
+        }
+        if let Some(field) = fields.get("backdrop") {
+            world.backdrop = Some(match field.value {
+                Json::Text(text) if text == "environment" => Backdrop::Environment,
+                Json::Text(_) => {
+                    return Err(field.error("is no backdrop", "give \"environment\" or [r, g, b]"));
+                }
+                _ => Backdrop::Color(radiance(&field)?),
+            });
+        }
+        if let Some(field) = fields.get("bounces").filter(|field| *field.value != Json::Null) {
+            world.bounces = Some(field.whole()?);
+        }
+        Ok(world)
+    }
+
+    /// As JSON; a file's path as seen from `from`, a file beside which it is kept.
+    pub fn to_json(&self, from: &Path) -> Value {
+        let environment = match &self.environment {
+            EnvironmentChoice::Studio => json!("studio"),
+            EnvironmentChoice::Uniform(color) => json!(color.to_array()),
+            EnvironmentChoice::File(file) => json!(crate::scene_path::ScenePath::new(file, from).path),
+        };
+        let mut json = json!({
+            "environment": environment,
+            "rotation": self.rotation,
+            "strength": self.strength,
+            "bounces": self.bounces,
+        });
+        match self.backdrop {
+            Some(Backdrop::Environment) => json["backdrop"] = json!("environment"),
+            Some(Backdrop::Color(color)) => json["backdrop"] = json!(color.to_array()),
+            None => {}
+        }
+        json
+    }
+
+    /// The world, its environment read.
+    ///
+    /// # Errors
+    /// If the environment's file cannot be used.
+    pub fn load(&self) -> Result<World, ProjectError> {
+        let (environment, suits) = match &self.environment {
+            EnvironmentChoice::Studio => {
+                let studio = World::studio();
+                (studio.environment, studio.backdrop)
+            }
+            EnvironmentChoice::Uniform(color) => (Environment::Uniform(*color), Backdrop::Environment),
+            EnvironmentChoice::File(file) => {
+                (Environment::Map(Arc::new(read_environment(file)?)), Backdrop::Environment)
+            }
+        };
+        Ok(World {
+            environment,
+            rotation: self.rotation,
+            strength: self.strength,
+            backdrop: self.backdrop.unwrap_or(suits),
+            bounces: self.bounces,
+        })
+    }
+}
+
+fn radiance(field: &Field<'_>) -> Result<Vec3, ProjectError> {
+    let color = Vec3::from_array(field.numbers::<3>()?.map(|channel| channel as f32));
+    let is_radiance = color.is_finite() && color.cmpge(Vec3::ZERO).all();
+    is_radiance
+        .then_some(color)
+        .ok_or_else(|| field.error("is no radiance", "give three numbers of 0 or more"))
+}
+
+/// Reads an equirectangular picture: .hdr or .exr.
+///
+/// # Errors
+/// If it is no picture, another kind of picture, or not about twice as wide as high.
+fn read_environment(file: &Path) -> Result<EnvironmentMap, ProjectError> {
+    let extension = file.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
+    if !["hdr", "exr"].contains(&extension.as_str()) {
+        let cure = "give an equirectangular .hdr or .exr";
+        return Err(ProjectError::content(file, "is no environment", cure));
+    }
+    let picture = read_picture(file)?;
+    let aspect = f64::from(picture.width) / f64::from(picture.height.max(1));
+    if !(1.9..=2.1).contains(&aspect) {
+        let problem = format!(
+            "has {} × {} pixels, an equirectangular picture is twice as wide as high",
+            picture.width, picture.height
+        );
+        return Err(ProjectError::content(file, problem, "give one that shows all directions"));
+    }
+    // What is not a number, or negative, shines not at all.
+    let sane = |channel: f32| if channel.is_finite() { channel.max(0.0) } else { 0.0 };
+    Ok(EnvironmentMap {
+        name: file.to_string_lossy().into_owned(),
+        width: picture.width,
+        height: picture.height,
+        texels: picture.rgb.into_iter().map(|texel| texel.map(sane)).collect(),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::fs;
+
+    fn read(text: &str) -> Result<WorldFile, ProjectError> {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("world.json");
+        fs::write(&file, text).unwrap();
+        WorldFile::read(&file)
+    }
+
+    #[test]
+    fn missing_fields_have_defaults() {
+        assert_eq!(read("{}").unwrap(), WorldFile::default());
+        let world = read("{}").unwrap().load().unwrap();
+        assert_eq!(world, World::studio());
+        let sky =
+            read(r#"{"environment": [1, 2, 3], "strength": 0.5, "bounces": 2}"#).unwrap().load().unwrap();
+        assert_eq!((sky.radiance(glam::DVec3::X), sky.bounces), (Vec3::new(0.5, 1.0, 1.5), Some(2)));
+        assert_eq!(sky.seen(glam::DVec3::X), sky.radiance(glam::DVec3::X));
+        let before_red = read(r#"{"backdrop": [1, 0, 0], "bounces": null}"#).unwrap().load().unwrap();
+        assert_eq!((before_red.seen(glam::DVec3::X), before_red.bounces), (Vec3::X, None));
+    }
+
+    #[test]
+    fn what_is_wrong_names_its_field() {
+        for (text, field) in [
+            (r#"{"environment": [1, 2]}"#, "environment"),
+            (r#"{"environment": [1, 2, -1]}"#, "environment"),
+            (r#"{"strength": -1}"#, "strength"),
+            (r#"{"rotation": "left"}"#, "rotation"),
+            (r#"{"backdrop": "sky"}"#, "backdrop"),
+            (r#"{"bounces": 0.5}"#, "bounces"),
+            (r#"{"sun": 1}"#, "sun"),
+        ] {
+            let error = read(text).unwrap_err().to_string();
+            assert!(error.contains(field), "{text}: {error}");
+        }
+        let error = read(r#"{"environment": "nowhere.hdr"}"#).unwrap().load().unwrap_err().to_string();
+        assert!(error.contains("nowhere.hdr"), "{error}");
+        let error = read(r#"{"environment": "sky.png"}"#).unwrap().load().unwrap_err().to_string();
+        assert!(error.contains("equirectangular"), "{error}");
+    }
+
+    #[test]
+    fn it_is_written_as_it_was_read() {
+        let world = WorldFile {
+            environment: EnvironmentChoice::File("/somewhere/sky.exr".into()),
+            rotation: 1.5,
+            strength: 2.0,
+            backdrop: Some(Backdrop::Color(Vec3::new(0.25, 0.5, 1.0))),
+            bounces: Some(3),
+        };
+        let at = Path::new("/somewhere/else/scene.fbrush");
+        let json = world.to_json(at);
+        assert_eq!(json["environment"], "../sky.exr");
+        let again = WorldFile::from_value(at, &json).unwrap();
+        assert_eq!(
+            again,
+            WorldFile { environment: EnvironmentChoice::File("/somewhere/else/../sky.exr".into()), ..world }
+        );
+    }
+
+    #[test]
+    fn environments_are_read_row_by_row() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("sky.exr");
+        let mut picture = lens::Picture::black(4, 2);
+        picture.radiance =
+            (0..8).map(|k| [k as f32, 0.5, if k == 3 { f32::INFINITY } else { 1.0 }]).collect();
+        let channels = ["R", "G", "B"]
+            .into_iter()
+            .enumerate()
+            .map(|(c, name)| (name.to_string(), picture.radiance.iter().map(|texel| texel[c]).collect()));
+        let exr = crate::exr_file::ExrImage {
+            width: 4,
+            height: 2,
+            channels: channels.collect(),
+            ..Default::default()
+        };
+        crate::exr_file::write_exr(&file, &exr, crate::exr_file::ExrSamples::Float).unwrap();
+        let World { environment: Environment::Map(map), .. } =
+            WorldFile::of_environment(&file).load().unwrap()
+        else {
+            panic!("no map")
+        };
+        assert_eq!((map.width, map.height, map.texels[5]), (4, 2, [5.0, 0.5, 1.0]));
+        assert_eq!(map.texels[3][2], 0.0, "what is not finite does not shine");
+    }
+}

@@ -1,0 +1,278 @@
+//! What a surface is made of, as the file says it: factors and the textures that scale them.
+//!
+//! glTF 2.0's metallic-roughness or KHR_materials_pbrSpecularGlossiness, and the KHR_materials extensions, in their own
+//! terms. What a point looks like is looked up by `surface_color`; how it scatters light is not known here.
+
+use crate::BackFaces;
+use glam::{Mat3, Vec3, Vec4};
+
+/// A material.
+#[derive(Clone, Debug)]
+pub struct Material {
+    /// Its name in the file, or `material N`.
+    pub name: String,
+    /// Linear base colour and opacity; the diffuse colour of specular-glossiness.
+    pub base_color: Vec4,
+    /// sRGB image multiplied into the base colour.
+    pub base_color_texture: Option<TextureRef>,
+    /// Linear emitted radiance, emissive strength included.
+    pub emissive: Vec3,
+    /// sRGB image multiplied into the emitted radiance.
+    pub emissive_texture: Option<TextureRef>,
+    /// KHR_materials_unlit: the base colour is the radiance.
+    pub unlit: bool,
+    /// How opacity is used.
+    pub alpha: AlphaMode,
+    /// Whether the back is shaded as the front is; else the back emits nothing.
+    pub double_sided: bool,
+    /// How its gloss is told.
+    pub workflow: Workflow,
+    /// Bumps.
+    pub normal_map: Option<NormalMap>,
+    /// Index of refraction, ≥ 1; 0 stands for infinity (KHR_materials_ior).
+    pub ior: f32,
+    /// Strength of the dielectric reflection in [0, 1] (KHR_materials_specular).
+    pub specular: Scalar,
+    /// Its colour facing the surface, ≥ 0.
+    pub specular_color: Tint,
+    /// Share of light that is let through, in [0, 1] (KHR_materials_transmission).
+    pub transmission: Scalar,
+    /// What fills the body behind the surface; none where the surface is a thin wall (KHR_materials_volume).
+    pub volume: Option<Volume>,
+    /// 20/Abbe number, ≥ 0 (KHR_materials_dispersion).
+    pub dispersion: f32,
+    /// KHR_materials_clearcoat.
+    pub clearcoat: Option<Clearcoat>,
+    /// KHR_materials_sheen.
+    pub sheen: Option<Sheen>,
+    /// KHR_materials_anisotropy.
+    pub anisotropy: Option<Anisotropy>,
+    /// KHR_materials_iridescence.
+    pub iridescence: Option<Iridescence>,
+    /// KHR_materials_diffuse_transmission.
+    pub diffuse_transmission: Option<DiffuseTransmission>,
+}
+
+/// How a material tells its gloss.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Workflow {
+    /// glTF 2.0's own.
+    MetallicRoughness {
+        /// In [0, 1]; the texture's blue.
+        metallic: Scalar,
+        /// In [0, 1]; the texture's green.
+        roughness: Scalar,
+    },
+    /// KHR_materials_pbrSpecularGlossiness.
+    SpecularGlossiness {
+        /// What the surface mirrors facing it, linear RGB in [0, 1].
+        specular: Tint,
+        /// 1 − roughness; the texture's alpha.
+        glossiness: Scalar,
+    },
+}
+
+/// A number, which a channel of a texture scales.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Scalar {
+    /// The number.
+    pub factor: f32,
+    /// The texture and its channel, 0 red … 3 alpha; linear.
+    pub texture: Option<(TextureRef, u8)>,
+}
+
+/// A linear colour, which a texture scales.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tint {
+    /// The colour.
+    pub factor: Vec3,
+    /// The texture.
+    pub texture: Option<TextureRef>,
+}
+
+/// A texture of normals in tangent space.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NormalMap {
+    /// Linear; each channel stands for [−1, 1].
+    pub texture: TextureRef,
+    /// Multiplied into x and y.
+    pub scale: f32,
+}
+
+/// A homogeneous medium.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Volume {
+    /// Distance after which white light has `attenuation_color`, > 0; infinite where it attenuates nothing.
+    pub attenuation_distance: f64,
+    /// Linear RGB in [0, 1].
+    pub attenuation_color: Vec3,
+}
+
+/// A coat.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Clearcoat {
+    /// How much of the surface is coated, in [0, 1]; red.
+    pub factor: Scalar,
+    /// In [0, 1]; green.
+    pub roughness: Scalar,
+    /// Bumps of its own; without them it is smooth whatever lies beneath.
+    pub normal_map: Option<NormalMap>,
+}
+
+/// Cloth's fuzz.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sheen {
+    /// Linear RGB in [0, 1].
+    pub color: Tint,
+    /// In [0, 1]; alpha.
+    pub roughness: Scalar,
+}
+
+/// Gloss that is wider across than along.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Anisotropy {
+    /// In [0, 1].
+    pub strength: f32,
+    /// From the tangent, counter-clockwise, rad.
+    pub rotation: f32,
+    /// Red and green: a direction in [−1, 1]² that `rotation` turns further; blue scales the strength.
+    pub texture: Option<TextureRef>,
+}
+
+/// A thin film.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Iridescence {
+    /// How much of the surface has it, in [0, 1]; red.
+    pub factor: Scalar,
+    /// Index of refraction, ≥ 1.
+    pub ior: f32,
+    /// Thickness in nm where the texture is 0 and where it is 1 (or where there is none).
+    pub thickness: [f32; 2],
+    /// Green.
+    pub thickness_texture: Option<TextureRef>,
+}
+
+/// Diffuse light that leaves on the other side.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DiffuseTransmission {
+    /// Its share, in [0, 1]; alpha.
+    pub factor: Scalar,
+    /// Its colour.
+    pub color: Tint,
+}
+
+/// How a material's opacity is used.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum AlphaMode {
+    /// Ignored.
+    Opaque,
+    /// A point is there where opacity ≥ the cutoff.
+    Mask(f32),
+    /// A point lets 1 − opacity of the light behind it pass.
+    Blend,
+}
+
+/// How a texture is looked up.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TextureRef {
+    /// Index into [`Scene::images`](crate::Scene::images).
+    pub image: u32,
+    /// Whether its RGB are sRGB-encoded colours; else they are linear numbers.
+    pub is_color: bool,
+    /// UV set: an index into [`Scene::uv`](crate::Scene::uv), from 2 on into [`Scene::further_uv`](crate::Scene::further_uv). See
+    /// [`Scene::uv_set`](crate::Scene::uv_set).
+    pub uv_set: u8,
+    /// KHR_texture_transform: uv' = transform · (u, v, 1).
+    pub transform: Mat3,
+    /// Wrap in u and v.
+    pub wrap: [Wrap; 2],
+    /// Whether the sampler asks for nearest texels (magnification).
+    pub nearest: bool,
+}
+
+/// What a texture shows outside [0, 1].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum Wrap {
+    /// Starts over.
+    #[default]
+    Repeat,
+    /// Keeps its border.
+    Clamp,
+    /// Runs back and forth.
+    Mirror,
+}
+
+impl Scalar {
+    /// Without a texture.
+    pub const fn plain(factor: f32) -> Self {
+        Self { factor, texture: None }
+    }
+}
+
+impl Tint {
+    /// Without a texture.
+    pub const fn plain(factor: Vec3) -> Self {
+        Self { factor, texture: None }
+    }
+}
+
+impl Default for Material {
+    /// glTF's default material, without a name: a rough white metal.
+    fn default() -> Self {
+        Self {
+            name: String::new(),
+            base_color: Vec4::ONE,
+            base_color_texture: None,
+            emissive: Vec3::ZERO,
+            emissive_texture: None,
+            unlit: false,
+            alpha: AlphaMode::Opaque,
+            double_sided: false,
+            workflow: Workflow::MetallicRoughness {
+                metallic: Scalar::plain(1.0),
+                roughness: Scalar::plain(1.0),
+            },
+            normal_map: None,
+            ior: 1.5,
+            specular: Scalar::plain(1.0),
+            specular_color: Tint::plain(Vec3::ONE),
+            transmission: Scalar::plain(0.0),
+            volume: None,
+            dispersion: 0.0,
+            clearcoat: None,
+            sheen: None,
+            anisotropy: None,
+            iridescence: None,
+            diffuse_transmission: None,
+        }
+    }
+}
+
+impl Material {
+    /// A surface that shows its base colour, white, on both sides, whatever the light.
+    pub fn of_unlit() -> Self {
+        Self { unlit: true, double_sided: true, ..Self::default() }
+    }
+
+    /// A surface that scatters light diffusely and does nothing else: no metal, no reflection (Lambert). White.
+    pub fn of_lambert() -> Self {
+        let workflow =
+            Workflow::MetallicRoughness { metallic: Scalar::plain(0.0), roughness: Scalar::plain(1.0) };
+        Self { workflow, specular: Scalar::plain(0.0), ..Self::default() }
+    }
+
+    /// Whether it is seen from its front alone.
+    pub fn hides_back(&self, back_faces: BackFaces) -> bool {
+        back_faces == BackFaces::Hide && !self.double_sided
+    }
+
+    /// Whether some point of it may let light through ([`AlphaMode::Mask`] and [`AlphaMode::Blend`]).
+    pub fn may_be_transparent(&self) -> bool {
+        self.alpha != AlphaMode::Opaque
+    }
+
+    /// Whether it sends light of its own: unlit, or emissive.
+    pub fn emits(&self) -> bool {
+        self.unlit || self.emissive != Vec3::ZERO
+    }
+}

@@ -1,0 +1,83 @@
+//! Properties of a material that its picture can do without: what is wrong with one is told, and its default stands in.
+
+use crate::error::Fault;
+use crate::json_object::Object;
+use crate::material_textures::{TextureInfo, section};
+use crate::texture_reader::TextureReader;
+use crate::{NormalMap, Scalar, TextureRef, Tint};
+use glam::Vec3;
+
+/// The properties of a material, or of a part or an extension of it.
+pub(crate) struct Properties<'r, 'a> {
+    reader: &'r mut TextureReader<'a>,
+    object: Object<'a>,
+    /// The material's further UV sets.
+    sets: &'r [u32],
+}
+
+impl<'r, 'a> Properties<'r, 'a> {
+    pub fn new(reader: &'r mut TextureReader<'a>, object: Object<'a>, sets: &'r [u32]) -> Self {
+        Self { reader, object, sets }
+    }
+
+    /// What was read, or a warning.
+    fn told<T>(&self, read: Result<Option<T>, Fault>) -> Option<T> {
+        read.unwrap_or_else(|fault| {
+            self.reader.document.warn(format!("{fault}; it is left out"));
+            None
+        })
+    }
+
+    /// A part or an extension, if it is there.
+    pub fn section(&mut self, name: &str) -> Option<Properties<'_, 'a>> {
+        let object = self.told(section(&self.object, name))?;
+        Some(Properties { reader: self.reader, object, sets: self.sets })
+    }
+
+    /// A number, moved into a range.
+    pub fn number(&self, key: &str, absent: f32, [low, high]: [f32; 2]) -> f32 {
+        self.told(self.object.number(key)).map_or(absent, |number| number as f32).clamp(low, high)
+    }
+
+    /// A number that may be infinite, which it is where it is absent.
+    pub fn distance(&self, key: &str) -> f64 {
+        let distance = self.told(self.object.number(key)).unwrap_or(f64::INFINITY);
+        if distance > 0.0 { distance } else { f64::INFINITY }
+    }
+
+    /// A linear colour, each channel moved into [0, `high`].
+    pub fn color(&self, key: &str, absent: Vec3, high: f32) -> Vec3 {
+        let color = self.told(self.object.numbers::<3>(key));
+        color
+            .map_or(absent, |color| Vec3::from_array(color.map(|v| v as f32)))
+            .clamp(Vec3::ZERO, Vec3::splat(high))
+    }
+
+    /// A texture.
+    pub fn texture(&mut self, key: &str, is_color: bool) -> Option<TextureRef> {
+        let info = self.told(TextureInfo::of(&self.object, key))?;
+        let place = format!("{}/{key}", self.object.place);
+        let texture = self.reader.texture(&info, &place, is_color, self.sets);
+        self.told(texture)
+    }
+
+    /// A number in [0, 1] with the texture that scales it; that is not read where the number is 0.
+    pub fn scalar(&mut self, [key, texture]: [&str; 2], absent: f32, channel: u8) -> Scalar {
+        let factor = self.number(key, absent, [0.0, 1.0]);
+        let texture = if factor > 0.0 { self.texture(texture, false) } else { None };
+        Scalar { factor, texture: texture.map(|texture| (texture, channel)) }
+    }
+
+    /// A colour with the texture that scales it; that is not read where the colour is black.
+    pub fn tint(&mut self, [key, texture]: [&str; 2], absent: Vec3, high: f32) -> Tint {
+        let factor = self.color(key, absent, high);
+        Tint { factor, texture: if factor == Vec3::ZERO { None } else { self.texture(texture, true) } }
+    }
+
+    /// A normal map.
+    pub fn normal_map(&mut self, key: &str) -> Option<NormalMap> {
+        let scale = self.told(TextureInfo::of(&self.object, key))?.scale;
+        let texture = self.texture(key, false)?;
+        Some(NormalMap { texture, scale: scale.clamp(-1e3, 1e3) })
+    }
+}

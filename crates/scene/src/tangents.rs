@@ -1,0 +1,84 @@
+//! Tangents: along which direction of the surface a texture's u runs, as normal maps and anisotropy need it.
+//!
+//! The file's own, or MikkTSpace's where it has none, which is what normal maps are baked with. They belong to the corners of
+//! triangles, for two triangles that share a vertex may be mirror images of each other in the texture.
+
+use bevy_mikktspace::{Geometry, TangentSpace, generate_tangents};
+use glam::{DVec3, Mat3, Vec2, Vec3, Vec4};
+
+/// Bytes that a triangle takes while its tangents are made, about.
+pub(crate) const BYTES_A_TRIANGLE: u64 = 400;
+
+/// What tangents depend on.
+pub(crate) struct Mesh<'a> {
+    pub triangles: &'a [[u32; 3]],
+    pub positions: &'a [DVec3],
+    /// Empty if there are none.
+    pub normals: &'a [DVec3],
+    /// Of the texture that they are for.
+    pub uv: &'a [Vec2],
+    /// How that texture is moved.
+    pub transform: Mat3,
+}
+
+/// A mesh as MikkTSpace wants it.
+struct Work<'a> {
+    mesh: Mesh<'a>,
+    tangents: Vec<[Vec4; 3]>,
+}
+
+/// Tangents of the corners of a mesh's triangles by MikkTSpace: unit vectors with the sign of the bitangent, normal × tangent ·
+/// sign. Zero where a triangle has none.
+pub(crate) fn generate(mesh: Mesh<'_>) -> Vec<[Vec4; 3]> {
+    let tangents = vec![[Vec4::ZERO; 3]; mesh.triangles.len()];
+    if mesh.uv.is_empty() {
+        return tangents;
+    }
+    let mut work = Work { mesh, tangents };
+    // It fails where there is nothing to do.
+    let _ = generate_tangents(&mut work);
+    work.tangents
+}
+
+impl Work<'_> {
+    fn vertex(&self, face: usize, corner: usize) -> usize {
+        self.mesh.triangles[face][corner] as usize
+    }
+}
+
+impl Geometry for Work<'_> {
+    fn num_faces(&self) -> usize {
+        self.mesh.triangles.len()
+    }
+
+    fn num_vertices_of_face(&self, _face: usize) -> usize {
+        3
+    }
+
+    fn position(&self, face: usize, corner: usize) -> [f32; 3] {
+        self.mesh.positions[self.vertex(face, corner)].as_vec3().to_array()
+    }
+
+    fn normal(&self, face: usize, corner: usize) -> [f32; 3] {
+        let normals = &self.mesh.normals;
+        let normal = if normals.is_empty() {
+            let [a, b, c] = [0, 1, 2].map(|corner| self.mesh.positions[self.vertex(face, corner)]);
+            (b - a).cross(c - a)
+        } else {
+            normals[self.vertex(face, corner)]
+        };
+        normal.normalize_or_zero().as_vec3().to_array()
+    }
+
+    fn tex_coord(&self, face: usize, corner: usize) -> [f32; 2] {
+        let uv = self.mesh.transform * self.mesh.uv[self.vertex(face, corner)].extend(1.0);
+        // MikkTSpace has v upwards, as normal maps have it.
+        [uv.x, 1.0 - uv.y]
+    }
+
+    fn set_tangent(&mut self, space: Option<TangentSpace>, face: usize, corner: usize) {
+        let tangent = space.map_or(Vec4::ZERO, |space| Vec4::from_array(space.tangent_encoded()));
+        let is_one = tangent.is_finite() && tangent.truncate() != Vec3::ZERO;
+        self.tangents[face][corner] = if is_one { tangent } else { Vec4::ZERO };
+    }
+}

@@ -1,0 +1,95 @@
+//! What lies beyond all surfaces: it lights them, and it is seen where none is.
+
+mod environment_map;
+mod studio;
+
+pub use environment_map::EnvironmentMap;
+
+use glam::{DVec3, Vec3};
+use std::sync::Arc;
+
+/// The world around a scene.
+#[derive(Clone, Debug, PartialEq)]
+pub struct World {
+    /// What shines on the scene from infinity.
+    pub environment: Environment,
+    /// Turns the environment about +Y, counter-clockwise seen from above, rad.
+    pub rotation: f64,
+    /// Scales its radiance, ≥ 0.
+    pub strength: f32,
+    /// What the camera sees where no surface is. It lights nothing.
+    pub backdrop: Backdrop,
+    /// How often light is scattered before it leaves toward the camera at last, beyond the first time: 0 is direct light only;
+    /// `None` as often as it matters.
+    pub bounces: Option<u32>,
+}
+
+/// Radiance from infinity.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Environment {
+    /// The same from everywhere, linear RGB.
+    Uniform(Vec3),
+    /// A picture of all directions.
+    Map(Arc<EnvironmentMap>),
+}
+
+/// What the camera sees at infinity.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Backdrop {
+    /// The environment.
+    Environment,
+    /// A colour, linear RGB.
+    Color(Vec3),
+}
+
+/// The grey that a scene without light stands before: the middle of a display's scale.
+const NEUTRAL_GREY: f32 = 0.21;
+
+impl World {
+    /// The same radiance everywhere, seen and lighting.
+    pub fn uniform(radiance: Vec3) -> Self {
+        Self {
+            environment: Environment::Uniform(radiance),
+            rotation: 0.0,
+            strength: 1.0,
+            backdrop: Backdrop::Environment,
+            bounces: None,
+        }
+    }
+
+    /// A soft neutral studio, before a neutral grey.
+    pub fn studio() -> Self {
+        Self {
+            environment: Environment::Map(EnvironmentMap::studio()),
+            backdrop: Backdrop::Color(Vec3::splat(NEUTRAL_GREY)),
+            ..Self::uniform(Vec3::ZERO)
+        }
+    }
+
+    /// Radiance that arrives from a direction (unit).
+    pub fn radiance(&self, direction: DVec3) -> Vec3 {
+        let radiance = match &self.environment {
+            Environment::Uniform(radiance) => *radiance,
+            Environment::Map(map) => map.radiance(self.unturned(direction)),
+        };
+        radiance * self.strength
+    }
+
+    /// What the camera sees in a direction (unit).
+    pub fn seen(&self, direction: DVec3) -> Vec3 {
+        match self.backdrop {
+            Backdrop::Environment => self.radiance(direction),
+            Backdrop::Color(color) => color,
+        }
+    }
+
+    /// A direction of the world in the environment's own axes.
+    pub fn unturned(&self, direction: DVec3) -> DVec3 {
+        glam::DQuat::from_rotation_y(-self.rotation) * direction
+    }
+
+    /// And back.
+    pub fn turned(&self, direction: DVec3) -> DVec3 {
+        glam::DQuat::from_rotation_y(self.rotation) * direction
+    }
+}

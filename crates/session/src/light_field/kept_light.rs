@@ -1,0 +1,131 @@
+//! Irradiance that was solved for, by scene and world: no camera traces its bounces again.
+//!
+//! It is solved for on a thread of its own, which goes on whoever stops waiting, as long as the scene is open.
+
+use progress::{Cancelled, Progress};
+use scene::World;
+use slf::{Irradiance, IrradianceOptions, Scattering, Transport, TransportOptions};
+use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError, Weak};
+use std::time::Duration;
+use trace::Tracer;
+
+/// The irradiance of a scene in a world.
+struct Kept {
+    tracer: Weak<Tracer>,
+    world: World,
+    irradiance: OnceLock<Arc<Irradiance>>,
+    /// Bits of an f32.
+    done: AtomicU32,
+    has_failed: AtomicBool,
+}
+
+/// Worlds that are kept of one scene: that one looks at, and that one turns back to.
+const WORLDS: usize = 3;
+
+fn all() -> MutexGuard<'static, Vec<Arc<Kept>>> {
+    static ALL: Mutex<Vec<Arc<Kept>>> = Mutex::new(Vec::new());
+    ALL.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+impl Kept {
+    fn is_of(&self, tracer: &Arc<Tracer>, world: &World) -> bool {
+        std::ptr::eq(self.tracer.as_ptr(), Arc::as_ptr(tracer)) && self.world == *world
+    }
+}
+
+/// The irradiance, if it is there.
+pub(super) fn known(tracer: &Arc<Tracer>, world: &World) -> Option<Arc<Irradiance>> {
+    all().iter().find(|kept| kept.is_of(tracer, world))?.irradiance.get().cloned()
+}
+
+/// The irradiance as soon as it is there.
+pub(super) fn wait(
+    tracer: &Arc<Tracer>,
+    world: &World,
+    progress: &dyn Progress,
+) -> Result<Arc<Irradiance>, Cancelled> {
+    let kept = begun(tracer, world);
+    loop {
+        if let Some(irradiance) = kept.irradiance.get() {
+            return Ok(irradiance.clone());
+        }
+        if kept.has_failed.load(Ordering::Acquire) {
+            // Its thread is gone: here it is solved for once more.
+            return Irradiance::solve(&transport(tracer, world), IrradianceOptions::default(), progress)
+                .map(Arc::new);
+        }
+        progress.check()?;
+        progress.report(f32::from_bits(kept.done.load(Ordering::Relaxed)));
+        std::thread::sleep(Duration::from_millis(5));
+    }
+}
+
+/// The irradiance that is solved for, from now on if it was not before.
+fn begun(tracer: &Arc<Tracer>, world: &World) -> Arc<Kept> {
+    let mut all = all();
+    all.retain(|kept| kept.tracer.strong_count() > 0);
+    if let Some(at) = all.iter().position(|kept| kept.is_of(tracer, world)) {
+        let kept = all.remove(at);
+        all.push(kept.clone());
+        return kept;
+    }
+    let kept = Arc::new(Kept {
+        tracer: Arc::downgrade(tracer),
+        world: world.clone(),
+        irradiance: OnceLock::new(),
+        done: AtomicU32::new(0),
+        has_failed: AtomicBool::new(false),
+    });
+    let of_scene = all.iter().filter(|other| Weak::ptr_eq(&other.tracer, &kept.tracer)).count();
+    if of_scene >= WORLDS
+        && let Some(oldest) = all.iter().position(|other| Weak::ptr_eq(&other.tracer, &kept.tracer))
+    {
+        all.remove(oldest);
+    }
+    all.push(kept.clone());
+    let work = {
+        let (kept, tracer) = (kept.clone(), tracer.clone());
+        move || solve(&kept, tracer)
+    };
+    if std::thread::Builder::new().name("light".into()).spawn(work).is_err() {
+        kept.has_failed.store(true, Ordering::Release);
+    }
+    kept
+}
+
+fn solve(kept: &Kept, tracer: Arc<Tracer>) {
+    let watch = Watch { kept, tracer: tracer.clone() };
+    let work = || Irradiance::solve(&transport(&tracer, &kept.world), IrradianceOptions::default(), &watch);
+    match std::panic::catch_unwind(std::panic::AssertUnwindSafe(work)) {
+        Ok(Ok(irradiance)) => {
+            let _ = kept.irradiance.set(Arc::new(irradiance));
+        }
+        _ => kept.has_failed.store(true, Ordering::Release),
+    }
+}
+
+fn transport(tracer: &Arc<Tracer>, world: &World) -> Transport {
+    let single = tracer.scene().single_scattering;
+    let scattering = if single { Scattering::Single } else { Scattering::Multiple };
+    Transport::new(tracer.clone(), world.clone(), TransportOptions { paths: 1, light_samples: 1, scattering })
+}
+
+/// Goes on as long as anybody else has the scene.
+struct Watch<'a> {
+    kept: &'a Kept,
+    tracer: Arc<Tracer>,
+}
+
+/// References to the tracer that the work itself holds: its own, the watch's and the transport's.
+const OWN_REFERENCES: usize = 3;
+
+impl Progress for Watch<'_> {
+    fn report(&self, fraction: f32) {
+        self.kept.done.fetch_max(fraction.to_bits(), Ordering::Relaxed);
+    }
+
+    fn cancelled(&self) -> bool {
+        Arc::strong_count(&self.tracer) <= OWN_REFERENCES
+    }
+}

@@ -1,0 +1,107 @@
+//! Numbers by the cells of a lattice in space.
+
+use glam::{DVec3, IVec3};
+use std::collections::HashMap;
+use std::hash::{BuildHasherDefault, Hasher};
+
+/// Cubic cells with numbers in each.
+#[derive(Debug, Default)]
+pub(super) struct Lattice {
+    /// The side of a cell.
+    pub spacing: f64,
+    /// Where each cell's numbers begin in `numbers`, and how many there are.
+    cells: HashMap<u64, (u32, u32), BuildHasherDefault<Mixed>>,
+    numbers: Vec<u32>,
+}
+
+/// A hash of one word that is mixed well enough.
+#[derive(Default)]
+pub(super) struct Mixed(u64);
+
+impl Hasher for Mixed {
+    fn finish(&self) -> u64 {
+        self.0
+    }
+    fn write(&mut self, bytes: &[u8]) {
+        bytes.iter().for_each(|&byte| self.write_u64(u64::from(byte)));
+    }
+    fn write_u64(&mut self, word: u64) {
+        self.0 = (self.0 ^ word).wrapping_mul(0x9e37_79b9_7f4a_7c15).rotate_left(29);
+    }
+}
+
+/// Cells beyond ±2²⁰ have the names of others, which is slow and no harm.
+fn key(cell: IVec3) -> u64 {
+    const BITS: u32 = 21;
+    let part = |x: i32| u64::from(x as u32) & ((1 << BITS) - 1);
+    part(cell.x) | part(cell.y) << BITS | part(cell.z) << (2 * BITS)
+}
+
+impl Lattice {
+    /// Of the numbers 0.. by their cells.
+    pub fn new(spacing: f64, cells: &[IVec3]) -> Self {
+        let mut numbers: Vec<u32> = (0..cells.len() as u32).collect();
+        numbers.sort_by_key(|&number| (key(cells[number as usize]), number));
+        let mut found = Self { spacing, cells: HashMap::default(), numbers };
+        let mut begin = 0;
+        let same = |a: &u32, b: &u32| key(cells[*a as usize]) == key(cells[*b as usize]);
+        for run in found.numbers.chunk_by(same) {
+            found.cells.insert(key(cells[run[0] as usize]), (begin, run.len() as u32));
+            begin += run.len() as u32;
+        }
+        found
+    }
+
+    /// The cell of a position.
+    pub fn cell(spacing: f64, position: DVec3) -> IVec3 {
+        (position / spacing).floor().as_ivec3()
+    }
+
+    /// The numbers in a cell.
+    pub fn numbers(&self, cell: IVec3) -> &[u32] {
+        let (begin, count) = self.cells.get(&key(cell)).copied().unwrap_or_default();
+        &self.numbers[begin as usize..(begin + count) as usize]
+    }
+
+    /// Visits the numbers of the eight cells around a position, each with its share by trilinear interpolation.
+    #[inline]
+    pub fn visit_around(&self, position: DVec3, mut visit: impl FnMut(u32, f64)) {
+        let at = position / self.spacing - 0.5;
+        let low = at.floor();
+        let share = at - low;
+        for corner in 0..8 {
+            let up = IVec3::new(corner & 1, corner >> 1 & 1, corner >> 2);
+            let along = |up: i32, share: f64| if up == 1 { share } else { 1.0 - share };
+            let weight = along(up.x, share.x) * along(up.y, share.y) * along(up.z, share.z);
+            for &number in self.numbers(low.as_ivec3() + up) {
+                visit(number, weight);
+            }
+        }
+    }
+
+    pub fn bytes(&self) -> usize {
+        self.cells.capacity() * 20 + size_of_val(self.numbers.as_slice())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_found_where_they_lie_and_shares_sum_to_one() {
+        let cells: Vec<IVec3> = (0..27).map(|k| IVec3::new(k % 3, k / 3 % 3, k / 9) - 1).collect();
+        let lattice = Lattice::new(0.5, &cells);
+        for (number, &cell) in (0..).zip(&cells) {
+            assert_eq!(lattice.numbers(cell), [number]);
+            assert_eq!(Lattice::cell(0.5, (cell.as_dvec3() + 0.3) * 0.5), cell);
+        }
+        assert!(lattice.numbers(IVec3::splat(7)).is_empty());
+        let mut sum = 0.0;
+        lattice.visit_around(DVec3::new(0.2, 0.13, 0.31), |_, share| sum += share);
+        assert!((sum - 1.0).abs() < 1e-12);
+        lattice.visit_around(DVec3::splat(0.25), |number, share| {
+            assert_eq!(share, f64::from(u8::from(cells[number as usize] == IVec3::ZERO)));
+        });
+    }
+}

@@ -1,0 +1,215 @@
+//! The surface in patches.
+
+use super::lattice::Lattice;
+use super::place::Place;
+use glam::{DVec2, DVec3, IVec3};
+use scene::{Scene, SurfacePoint};
+use std::collections::HashMap;
+
+/// Patches of a scene's lit surface.
+#[derive(Debug)]
+pub(crate) struct Patches {
+    lattice: Lattice,
+    patches: Vec<Patch>,
+    /// Of all patches, in their order: points spread over each.
+    points: Vec<PatchPoint>,
+}
+
+/// What lies in one cell of the lattice, of one part, and faces about one way.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Patch {
+    pub part: u32,
+    /// The mean of its points.
+    pub position: DVec3,
+    /// The mean of its points' normals, unit.
+    pub normal: DVec3,
+    pub area: f64,
+    first_point: u32,
+    points: u32,
+}
+
+/// A point that light is gathered at.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PatchPoint {
+    pub point: SurfacePoint,
+    pub is_front: bool,
+}
+
+/// Points of a patch.
+const POINTS: usize = 16;
+/// Points a patch of full size is looked for with.
+const CANDIDATES: f64 = 24.0;
+
+/// A point on its way into a patch.
+struct Candidate {
+    key: (IVec3, u32, u8),
+    point: PatchPoint,
+    position: DVec3,
+    normal: DVec3,
+    area: f64,
+}
+
+impl Patches {
+    /// Parts the surface of a scene into about so many patches, and never more than twice as many. Unlit surfaces have none: no
+    /// light matters to them.
+    pub fn of(scene: &Scene, wanted: u32) -> Self {
+        let lit = || {
+            let parts = scene.parts.iter().filter(|part| !scene.materials[part.material as usize].unlit);
+            parts.flat_map(|part| part.triangles.clone())
+        };
+        let sides = |triangle: u32| if scene.material_of(triangle).double_sided { 2.0 } else { 1.0 };
+        let area: f64 = lit().map(|t| scene.area_normal(t).length() / 2.0 * sides(t)).sum();
+        let mut spacing = (area / f64::from(wanted)).sqrt();
+        loop {
+            let candidates = candidates(scene, lit(), spacing);
+            let found = Self::group(candidates, spacing);
+            if found.patches.len() <= 2 * wanted as usize || !spacing.is_finite() {
+                return found;
+            }
+            spacing *= 1.5;
+        }
+    }
+
+    fn group(candidates: Vec<Candidate>, spacing: f64) -> Self {
+        let mut groups: HashMap<(IVec3, u32, u8), Vec<u32>> = HashMap::new();
+        for (index, candidate) in (0..).zip(&candidates) {
+            groups.entry(candidate.key).or_default().push(index);
+        }
+        let mut groups: Vec<_> = groups.into_iter().collect();
+        groups.sort_unstable_by_key(|((cell, part, facing), _)| (cell.to_array(), *part, *facing));
+        let (mut patches, mut points, mut cells) = (Vec::new(), Vec::new(), Vec::new());
+        for ((cell, part, _), members) in groups {
+            let members: Vec<&Candidate> = members.iter().map(|&index| &candidates[index as usize]).collect();
+            let area: f64 = members.iter().map(|member| member.area).sum();
+            let mean = |of: &dyn Fn(&Candidate) -> DVec3| {
+                members.iter().map(|member| of(member) * member.area).sum::<DVec3>() / area
+            };
+            let first_point = points.len() as u32;
+            // Evenly through the running sum of areas.
+            let count = members.len().min(POINTS);
+            let (mut reached, mut next) = (0.0, 0);
+            for member in &members {
+                reached += member.area;
+                while next < count && reached >= (next as f64 + 0.5) / count as f64 * area {
+                    points.push(member.point);
+                    next += 1;
+                }
+            }
+            patches.push(Patch {
+                part,
+                position: mean(&|member| member.position),
+                normal: mean(&|member| member.normal).normalize_or(members[0].normal),
+                area,
+                first_point,
+                points: points.len() as u32 - first_point,
+            });
+            cells.push(cell);
+        }
+        Self { lattice: Lattice::new(spacing, &cells), patches, points }
+    }
+
+    pub fn spacing(&self) -> f64 {
+        self.lattice.spacing
+    }
+
+    pub fn bytes(&self) -> usize {
+        self.lattice.bytes() + size_of_val(self.patches.as_slice()) + size_of_val(self.points.as_slice())
+    }
+
+    pub fn all(&self) -> &[Patch] {
+        &self.patches
+    }
+
+    pub fn points(&self, patch: &Patch) -> &[PatchPoint] {
+        &self.points[patch.first_point as usize..(patch.first_point + patch.points) as usize]
+    }
+
+    /// Visits the patches around a place with what they have to say about it: by distance, along the surface and off it, and by
+    /// how they face.
+    #[inline]
+    pub fn visit_around(&self, place: &Place, mut visit: impl FnMut(u32, f32)) {
+        let spacing = self.lattice.spacing;
+        self.lattice.visit_around(place.position, |number, share| {
+            let patch = &self.patches[number as usize];
+            if patch.part != place.part {
+                return;
+            }
+            let facing = patch.normal.dot(place.normal);
+            let off = (place.position - patch.position).dot(place.normal).abs() / spacing;
+            // What faces more than 70° away, or lies more than a cell off the plane, has no say.
+            let weight = share * (facing - 0.35).max(0.0).powi(2) * (1.0 - off).max(0.0);
+            if weight > 0.0 {
+                visit(number, weight as f32);
+            }
+        });
+    }
+
+    /// Whether some patch has anything to say about a place.
+    pub fn knows(&self, place: &Place) -> bool {
+        let mut knows = false;
+        self.visit_around(place, |_, _| knows = true);
+        knows
+    }
+
+    /// Visits the patches in the cells around another that face about as it does.
+    pub fn visit_neighbors(&self, patch: &Patch, mut visit: impl FnMut(u32)) {
+        let cell = Lattice::cell(self.lattice.spacing, patch.position);
+        for k in 0..27 {
+            let around = cell + IVec3::new(k % 3, k / 3 % 3, k / 9) - 1;
+            for &number in self.lattice.numbers(around) {
+                let other = &self.patches[number as usize];
+                if other.part == patch.part && other.normal.dot(patch.normal) > 0.8 {
+                    visit(number);
+                }
+            }
+        }
+    }
+}
+
+/// Points all over some triangles, about [`CANDIDATES`] a square of the lattice's spacing, at least one each, on either side that can
+/// be lit and seen.
+fn candidates(scene: &Scene, triangles: impl Iterator<Item = u32>, spacing: f64) -> Vec<Candidate> {
+    let mut found = Vec::new();
+    for triangle in triangles {
+        let area = scene.area_normal(triangle).length() / 2.0;
+        if !(area > 0.0 && area.is_finite()) {
+            continue;
+        }
+        let count = (area / (spacing * spacing) * CANDIDATES).ceil().clamp(1.0, 4e6) as u32;
+        let sides: &[bool] = if scene.material_of(triangle).double_sided { &[true, false] } else { &[true] };
+        for k in 0..count {
+            let point = SurfacePoint { triangle, barycentric: barycentric(k, count) };
+            for &is_front in sides {
+                let place = Place::of(scene, point, is_front);
+                let (position, normal) = (place.position, place.normal);
+                let key = (Lattice::cell(spacing, position), place.part, facing(normal));
+                let area = area / f64::from(count);
+                found.push(Candidate { key, point: PatchPoint { point, is_front }, position, normal, area });
+            }
+        }
+    }
+    found
+}
+
+/// Which of the six axes a normal is nearest to.
+fn facing(normal: DVec3) -> u8 {
+    let size = normal.abs();
+    let axis = if size.x >= size.y && size.x >= size.z {
+        0
+    } else if size.y >= size.z {
+        1
+    } else {
+        2
+    };
+    2 * axis + u8::from(normal[usize::from(axis)] < 0.0)
+}
+
+/// Point `k` of `count` spread over a triangle (Roberts 2018; Heitz 2019), none on its border.
+fn barycentric(k: u32, count: u32) -> DVec2 {
+    if count == 1 {
+        return DVec2::splat(1.0 / 3.0);
+    }
+    const STEPS: DVec2 = DVec2::new(0.754_877_666_246_692_8, 0.569_840_290_998_053_3);
+    let u = (STEPS * f64::from(k) + 0.5).fract();
+    if u.y > u.x { DVec2::new(0.5 * u.x, u.y - 0.5 * u.x) } else { DVec2::new(u.x - 0.5 * u.y, 0.5 * u.y) }
+}

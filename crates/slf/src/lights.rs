@@ -1,0 +1,124 @@
+//! All that shines, as a surface point finds it: by drawing a light for it.
+
+use crate::emitters::Emitters;
+use crate::environment_light::EnvironmentLight;
+use crate::punctual::{Arrival, arrival};
+use glam::{DVec3, Vec3};
+use scene::{Scene, World};
+
+/// The lights of a scene and its world.
+#[derive(Debug)]
+pub(crate) struct Lights {
+    emitters: Emitters,
+    environment: Option<EnvironmentLight>,
+    /// How many punctual lights there are.
+    punctual: usize,
+    /// Longer than the scene is wide.
+    beyond: f64,
+}
+
+/// Light that may arrive from one direction.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct LightSample {
+    /// Unit, toward the light.
+    pub from: DVec3,
+    /// The world position between which and the point nothing may stand.
+    pub source: DVec3,
+    /// Whether that is the light itself; else it lies beyond the scene.
+    pub is_near: bool,
+    /// Radiance over density, or a punctual light's irradiance over the probability to have chosen it.
+    pub light: Vec3,
+    /// Of the direction, 1/sr; none of a punctual light, which no other way of sampling finds.
+    pub density: Option<f64>,
+}
+
+/// So many punctual lights are all asked; of more one is drawn by what it would send.
+const FEW: usize = 3;
+
+impl Lights {
+    pub fn of(scene: &Scene, world: &World) -> Self {
+        let (low, high) = scene.bounds();
+        let beyond = 2.0 * (high - low).length();
+        let (emitters, environment) = (Emitters::of(scene), EnvironmentLight::of(world));
+        Self { emitters, environment, punctual: scene.lights.len(), beyond }
+    }
+
+    /// Whether any surface is a light.
+    pub fn has_emitters(&self) -> bool {
+        !self.emitters.is_empty()
+    }
+
+    /// How often lights are to be drawn, where so often would do for lamps and sky: once where there is nothing to draw.
+    pub fn draws(&self, wanted: u32) -> u32 {
+        let is_even = self.environment.is_none() && self.emitters.is_empty();
+        match (is_even, self.punctual <= FEW) {
+            (true, true) => 1,
+            (true, false) => wanted.min(4),
+            (false, _) => wanted,
+        }
+    }
+
+    /// Draws lights for a position, each kind once; `draw` gives uniform numbers.
+    pub fn sample(
+        &self,
+        scene: &Scene,
+        world: &World,
+        position: DVec3,
+        mut draw: impl FnMut() -> f64,
+        mut visit: impl FnMut(LightSample),
+    ) {
+        if let Some(environment) = &self.environment {
+            let (direction, density) = environment.sample([draw(), draw()]);
+            let from = world.turned(direction);
+            let light = world.radiance(from) / density as f32;
+            let source = position + from * self.beyond;
+            visit(LightSample { from, source, is_near: false, light, density: Some(density) });
+        }
+        if !self.emitters.is_empty() {
+            let (choice, place) = (draw(), [draw(), draw()]);
+            if let Some(sample) = self.emitters.sample(scene, position, choice, place) {
+                visit(LightSample {
+                    from: sample.from,
+                    source: sample.place,
+                    is_near: true,
+                    light: sample.radiance / sample.density as f32,
+                    density: Some(sample.density),
+                });
+            }
+        }
+        let near = |light: &scene::Light| light.kind != scene::LightKind::Directional;
+        let arrivals = || {
+            scene
+                .lights
+                .iter()
+                .filter_map(|light| Some((arrival(light, position, self.beyond)?, near(light))))
+        };
+        let mut punctual = |(arrival, is_near): (Arrival, bool), share: f32| {
+            let Arrival { from, source, irradiance } = arrival;
+            visit(LightSample { from, source, is_near, light: irradiance / share, density: None });
+        };
+        if scene.lights.len() <= FEW {
+            arrivals().for_each(|light| punctual(light, 1.0));
+            return;
+        }
+        let sum: f32 = arrivals().map(|(arrival, _)| arrival.irradiance.element_sum()).sum();
+        let mut rest = draw() as f32 * sum;
+        let chosen = arrivals().find(|(arrival, _)| {
+            rest -= arrival.irradiance.element_sum();
+            rest < 0.0
+        });
+        if let Some((arrival, is_near)) = chosen.filter(|_| sum > 0.0) {
+            punctual((arrival, is_near), arrival.irradiance.element_sum() / sum);
+        }
+    }
+
+    /// The density, 1/sr, with which [`Self::sample`] draws a direction (unit) from the environment.
+    pub fn density_of_environment(&self, world: &World, direction: DVec3) -> f64 {
+        self.environment.as_ref().map_or(0.0, |environment| environment.density(world.unturned(direction)))
+    }
+
+    /// The same of a triangle that lies `toward` from a position.
+    pub fn density_of_emitter(&self, triangle: u32, toward: DVec3) -> f64 {
+        self.emitters.density(triangle, toward)
+    }
+}

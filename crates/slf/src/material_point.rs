@@ -1,0 +1,110 @@
+//! What a surface point is made of and how it lies, its textures looked up.
+
+use glam::{DVec2, DVec3, Vec3};
+use material::{Clearcoat, Frame, Scattering, Sheen, Surface};
+use scene::{Anisotropy, Scene, SurfacePoint, Workflow};
+
+/// Stands for an infinite index of refraction, which glTF writes as 0: a mirror.
+const INFINITE_IOR: f64 = 1e6;
+
+/// A surface point as light finds it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct MaterialPoint {
+    /// In the world.
+    pub position: DVec3,
+    /// What it is made of.
+    pub surface: Surface,
+    /// How it lies.
+    pub frame: Frame,
+    /// Index into [`Scene::materials`].
+    pub material: u32,
+}
+
+impl MaterialPoint {
+    /// Looks a point up.
+    pub fn of(scene: &Scene, point: SurfacePoint, scattering: Scattering) -> Self {
+        let material = scene.part_of(point.triangle).material;
+        Self {
+            position: point.position(scene),
+            surface: surface(scene, point, scattering),
+            frame: frame(scene, point),
+            material,
+        }
+    }
+}
+
+/// The radiance that a point sends toward a direction by itself: from its front, from its back if it is double sided.
+pub(crate) fn emitted(scene: &Scene, point: SurfacePoint, outgoing: DVec3) -> Vec3 {
+    let material = scene.material_of(point.triangle);
+    let shows =
+        material.double_sided || material.unlit || scene.area_normal(point.triangle).dot(outgoing) >= 0.0;
+    if shows { scene.emitted(point) } else { Vec3::ZERO }
+}
+
+fn frame(scene: &Scene, point: SurfacePoint) -> Frame {
+    let material = scene.material_of(point.triangle);
+    let geometric = scene.area_normal(point.triangle).normalize_or_zero();
+    let normal = match &material.normal_map {
+        Some(map) => scene.bumped_normal(map, point),
+        None => scene.shading_normal(point),
+    };
+    let tangent = material.anisotropy.as_ref().and_then(|anisotropy| {
+        let [tangent, bitangent] = scene.tangents_at(point, scene.shading_normal(point))?;
+        let direction = along(scene, anisotropy, point);
+        Some(tangent * direction.x + bitangent * direction.y)
+    });
+    Frame::new(geometric, normal, tangent.unwrap_or(DVec3::ZERO))
+}
+
+/// The direction of anisotropy in tangent space.
+fn along(scene: &Scene, anisotropy: &Anisotropy, point: SurfacePoint) -> DVec2 {
+    let own = anisotropy.texture.as_ref().map(|texture| scene.texture_at(texture, point));
+    let own = own.map_or(DVec2::X, |rgba| DVec2::new(f64::from(rgba.x), f64::from(rgba.y)) * 2.0 - 1.0);
+    DVec2::from_angle(f64::from(anisotropy.rotation)).rotate(own)
+}
+
+fn surface(scene: &Scene, point: SurfacePoint, scattering: Scattering) -> Surface {
+    let material = scene.material_of(point.triangle);
+    let color = |rgb: Vec3| rgb.as_dvec3().clamp(DVec3::ZERO, DVec3::ONE);
+    let scalar = |scalar| f64::from(scene.scalar_at(scalar, point)).clamp(0.0, 1.0);
+    let base_color = color(scene.base_color(point).truncate());
+    let gloss = match &material.workflow {
+        Workflow::MetallicRoughness { metallic, roughness } => Surface {
+            base_color,
+            metallic: scalar(metallic),
+            roughness: scalar(roughness),
+            ior: if material.ior == 0.0 { INFINITE_IOR } else { f64::from(material.ior) },
+            specular: scalar(&material.specular),
+            specular_color: scene.tint_at(&material.specular_color, point).as_dvec3(),
+            ..Surface::default()
+        },
+        Workflow::SpecularGlossiness { specular, glossiness } => Surface::of_specular_glossiness(
+            base_color,
+            color(scene.tint_at(specular, point)),
+            scalar(glossiness),
+        ),
+    };
+    let anisotropy = material.anisotropy.as_ref().map_or(0.0, |anisotropy| {
+        let texture = anisotropy.texture.as_ref();
+        f64::from(anisotropy.strength * texture.map_or(1.0, |texture| scene.texture_at(texture, point).z))
+    });
+    let through = material.diffuse_transmission.as_ref();
+    Surface {
+        anisotropy,
+        transmission: scalar(&material.transmission),
+        is_thin: material.volume.is_none(),
+        diffuse_transmission: through.map_or(0.0, |through| scalar(&through.factor)),
+        diffuse_transmission_color: through
+            .map_or(DVec3::ONE, |through| color(scene.tint_at(&through.color, point))),
+        clearcoat: material
+            .clearcoat
+            .as_ref()
+            .map(|coat| Clearcoat { factor: scalar(&coat.factor), roughness: scalar(&coat.roughness) }),
+        sheen: material.sheen.as_ref().map(|sheen| Sheen {
+            color: color(scene.tint_at(&sheen.color, point)),
+            roughness: scalar(&sheen.roughness),
+        }),
+        scattering,
+        ..gloss
+    }
+}

@@ -1,0 +1,150 @@
+//! What a path is in: air, or bodies of glass and water, one within another.
+
+use glam::DVec3;
+use material::{Interface, attenuation, dispersed_ior};
+use scene::Scene;
+use std::collections::HashMap;
+use std::sync::OnceLock;
+
+/// Wavelengths that stand for red, green and blue where glass disperses, nm: the peaks of sRGB's primaries.
+const WAVELENGTHS: [f64; 3] = [611.4, 549.1, 464.2];
+
+/// The bodies of a scene, and the surfaces between them.
+#[derive(Debug)]
+pub(crate) struct Media {
+    /// By material: what its body is filled with.
+    fillings: Vec<Filling>,
+    /// Different indices of refraction; vacuum's is the first.
+    iors: Vec<f64>,
+    /// From one index to another, by front and back.
+    interfaces: Vec<OnceLock<Interface>>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Filling {
+    /// Whether there is a body at all.
+    is_solid: bool,
+    disperses: bool,
+    /// Index into `iors` for all colours together, and for red, green and blue.
+    ior: [u16; 4],
+    color: DVec3,
+    distance: f64,
+}
+
+/// How many bodies within each other are kept apart.
+const MOST_NESTED: usize = 8;
+
+/// The bodies that a path is in, the innermost last.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Inside {
+    materials: [u32; MOST_NESTED],
+    count: usize,
+    /// The colour that is followed, 0 to 2, once the path was dispersed.
+    pub channel: Option<usize>,
+}
+
+impl Media {
+    pub fn of(scene: &Scene) -> Self {
+        let mut numbers = HashMap::from([(1.0f64.to_bits(), 0u16)]);
+        let mut iors = vec![1.0];
+        let mut number = |ior: f64| {
+            let next = iors.len().min(usize::from(u16::MAX)) as u16;
+            *numbers.entry(ior.to_bits()).or_insert_with(|| {
+                iors.push(ior);
+                next
+            })
+        };
+        let fillings = scene
+            .materials
+            .iter()
+            .map(|material| {
+                let ior = if material.ior == 0.0 { 1e6 } else { f64::from(material.ior) };
+                let dispersion = f64::from(material.dispersion);
+                let is_solid = material.volume.is_some() && material.transmission.factor > 0.0;
+                let plain = number(ior);
+                let of_color = WAVELENGTHS.map(|wavelength| match is_solid && dispersion > 0.0 {
+                    true => number(dispersed_ior(ior, dispersion, wavelength)),
+                    false => plain,
+                });
+                Filling {
+                    is_solid,
+                    disperses: is_solid && dispersion > 0.0,
+                    ior: [plain, of_color[0], of_color[1], of_color[2]],
+                    color: material.volume.map_or(DVec3::ONE, |volume| volume.attenuation_color.as_dvec3()),
+                    distance: material.volume.map_or(f64::INFINITY, |volume| volume.attenuation_distance),
+                }
+            })
+            .collect();
+        let interfaces = (0..iors.len() * iors.len()).map(|_| OnceLock::new()).collect();
+        Self { fillings, iors, interfaces }
+    }
+
+    /// Whether a material's glass bends each colour differently.
+    pub fn disperses(&self, material: u32) -> bool {
+        self.fillings[material as usize].disperses
+    }
+
+    /// The two sides of a surface of a material that a path meets on its front or its back.
+    pub fn interface(&self, material: u32, inside: &Inside, is_front: bool) -> &Interface {
+        let own = self.ior(material, inside);
+        let mut around = *inside;
+        if !is_front {
+            around.leave(material);
+        }
+        let outside = match around.innermost() {
+            Some(outer) if self.fillings[material as usize].is_solid => self.ior(outer, inside),
+            _ => 0,
+        };
+        let (front, back) = (usize::from(outside), usize::from(own));
+        let interface = &self.interfaces[front * self.iors.len() + back];
+        interface.get_or_init(|| Interface::between(self.iors[front], self.iors[back]))
+    }
+
+    fn ior(&self, material: u32, inside: &Inside) -> u16 {
+        self.fillings[material as usize].ior[inside.channel.map_or(0, |channel| channel + 1)]
+    }
+
+    /// What is left of light after a way through the innermost body.
+    pub fn attenuation(&self, inside: &Inside, length: f64) -> DVec3 {
+        inside.innermost().map_or(DVec3::ONE, |material| {
+            let filling = &self.fillings[material as usize];
+            attenuation(filling.color, filling.distance, length)
+        })
+    }
+
+    /// Goes through a surface of a material, from its front or out of it.
+    pub fn cross(&self, inside: &mut Inside, material: u32, enters: bool) {
+        if !self.fillings[material as usize].is_solid {
+            return;
+        }
+        if !enters {
+            inside.leave(material);
+        } else if inside.count < MOST_NESTED {
+            inside.materials[inside.count] = material;
+            inside.count += 1;
+        }
+    }
+
+    /// Where light is that leaves a surface of a material toward its front or its back.
+    pub fn beside(&self, material: u32, is_front: bool) -> Inside {
+        let mut inside = Inside::default();
+        self.cross(&mut inside, material, !is_front);
+        inside
+    }
+}
+
+impl Inside {
+    fn innermost(&self) -> Option<u32> {
+        self.count.checked_sub(1).map(|last| self.materials[last])
+    }
+
+    /// Leaves the innermost body of this material; a body whose walls are of several materials is left by any of them.
+    fn leave(&mut self, material: u32) {
+        let bodies = &mut self.materials[..self.count];
+        let place = bodies.iter().rposition(|&other| other == material).or(bodies.len().checked_sub(1));
+        if let Some(place) = place {
+            bodies[place..].rotate_left(1);
+            self.count -= 1;
+        }
+    }
+}

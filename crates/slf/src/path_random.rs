@@ -1,0 +1,61 @@
+//! The numbers that a path is drawn by: the same for the same point, the same path.
+
+use glam::DVec3;
+use scene::SurfacePoint;
+
+/// A stream of uniform numbers in [0, 1).
+///
+/// Its first numbers are points of a Sobol' sequence, Owen-scrambled apart for every point (Burley 2020), so that the paths of one
+/// point are spread evenly over their first scatterings and lights; then come independent ones.
+#[derive(Clone, Debug)]
+pub(crate) struct PathRandom {
+    index: u32,
+    seed: u32,
+    dimension: u32,
+    state: u64,
+}
+
+/// Numbers that are spread evenly: of the first two scatterings.
+const SPREAD: u32 = 24;
+
+impl PathRandom {
+    /// Of path `index` of light from a point toward an eye.
+    pub fn new(point: SurfacePoint, eye: DVec3, index: u32) -> Self {
+        let numbers = point.barycentric.to_array().into_iter().chain(eye.to_array());
+        let seed =
+            numbers.fold(mix(u64::from(point.triangle)), |state, number| mix(state ^ number.to_bits()));
+        // A Sobol' sequence has 2¹⁶ points here; then another scramble goes on.
+        let scramble = mix(seed ^ u64::from(index >> 16));
+        Self {
+            index: index & 0xffff,
+            seed: scramble as u32,
+            dimension: 0,
+            state: mix(seed ^ u64::from(index) << 32),
+        }
+    }
+
+    pub fn next(&mut self) -> f64 {
+        if self.dimension < SPREAD {
+            self.dimension += 1;
+            return f64::from(sobol_burley::sample(self.index, self.dimension - 1, self.seed));
+        }
+        self.state = mix(self.state);
+        (self.state >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    pub fn next2(&mut self) -> [f64; 2] {
+        std::array::from_fn(|_| self.next())
+    }
+
+    pub fn next3(&mut self) -> [f64; 3] {
+        std::array::from_fn(|_| self.next())
+    }
+}
+
+/// SplitMix64 (Steele, Lea and Flood 2014).
+fn mix(x: u64) -> u64 {
+    let x = x.wrapping_add(0x9e37_79b9_7f4a_7c15);
+    let x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    let x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    x ^ (x >> 31)
+}

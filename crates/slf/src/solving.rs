@@ -1,0 +1,162 @@
+//! The light at all patches, bounce by bounce.
+//!
+//! Every patch sends rays once, spread by the cosine. What a ray finds first is light (which counts at once), or a place whose
+//! diffuse lobes send on what arrives there: a *link* to a patch with a weight. Gloss and glass on the way are followed as they
+//! are. So light is a linear system, E = D + I₀ + T·E, solved by passing light along the links; each pass is a bounce. Then each
+//! patch's indirect light is joined with its neighbours' as far as nothing near disturbs it (Ward 1988: the harmonic mean of the
+//! distances it sees).
+
+use crate::irradiance::Irradiance;
+use crate::irradiance::patches::{Patch, Patches};
+use crate::irradiance::place::Place;
+use crate::transport::{Found, Transport};
+use glam::Vec3;
+use progress::{Cancelled, Progress};
+use rayon::prelude::*;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// Passes after which light has died away, whatever the albedo (0.9⁶⁴ is a thousandth).
+const PASSES: u32 = 64;
+/// Neighbours within so many harmonic means of the distances are joined.
+const REACH: f64 = 0.25;
+
+/// What the rays of a patch found, each a share of irradiance/π.
+struct Gathered {
+    direct: Vec3,
+    /// Light that came by another way than from a light that is drawn.
+    indirect: Vec3,
+    links: Vec<(u32, Vec3)>,
+    /// The harmonic mean of the distances, infinite in the open.
+    distance: f64,
+}
+
+/// How closely light is solved for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct IrradianceOptions {
+    /// About so many patches the surface has.
+    pub patches: u32,
+    /// Rays of a patch.
+    pub rays: u32,
+}
+
+impl Default for IrradianceOptions {
+    fn default() -> Self {
+        Self { patches: 40_000, rays: 128 }
+    }
+}
+
+impl Irradiance {
+    /// Solves for the light of a scene. Deterministic: the same bits for any number of threads.
+    ///
+    /// # Errors
+    /// [`Cancelled`] if `progress` says so.
+    pub fn solve(
+        transport: &Transport,
+        options: IrradianceOptions,
+        progress: &dyn Progress,
+    ) -> Result<Self, Cancelled> {
+        let patches = Patches::of(transport.scene(), options.patches);
+        let (direct, indirect) = solve(transport, &patches, options.rays.max(1), progress)?;
+        Ok(Self::new(patches, direct, indirect))
+    }
+}
+
+/// Direct and indirect irradiance/π of all patches.
+fn solve(
+    transport: &Transport,
+    patches: &Patches,
+    rays: u32,
+    progress: &dyn Progress,
+) -> Result<(Vec<Vec3>, Vec<Vec3>), Cancelled> {
+    let done = AtomicUsize::new(0);
+    let all = patches.all();
+    let gathered: Vec<Gathered> = all
+        .par_iter()
+        .map(|patch| {
+            progress.check()?;
+            let found = gather(transport, patches, patch, rays);
+            progress.report((done.fetch_add(1, Ordering::Relaxed) + 1) as f32 / all.len() as f32);
+            Ok(found)
+        })
+        .collect::<Result<_, Cancelled>>()?;
+    let direct: Vec<Vec3> = gathered.iter().map(|found| found.direct).collect();
+    let mut indirect: Vec<Vec3> = gathered.iter().map(|found| found.indirect).collect();
+    let passes = transport.bounces().map_or(PASSES, |bounces| bounces.min(PASSES));
+    for _ in 0..passes {
+        progress.check()?;
+        let next: Vec<Vec3> = gathered
+            .par_iter()
+            .map(|found| {
+                let sent = |&(patch, weight): &(u32, Vec3)| {
+                    weight * (direct[patch as usize] + indirect[patch as usize])
+                };
+                found.indirect + found.links.iter().map(sent).sum::<Vec3>()
+            })
+            .collect();
+        let change =
+            next.iter().zip(&indirect).map(|(a, b)| (*a - *b).abs().max_element()).fold(0.0, f32::max);
+        let most = next.iter().map(|light| light.max_element()).fold(0.0, f32::max);
+        indirect = next;
+        if change <= 1e-5 * most {
+            break;
+        }
+    }
+    let smooth = (0..all.len()).into_par_iter().map(|at| joined(patches, &gathered, &indirect, at)).collect();
+    Ok((direct, smooth))
+}
+
+/// Sends the rays of a patch.
+fn gather(transport: &Transport, patches: &Patches, patch: &Patch, rays: u32) -> Gathered {
+    let points = patches.points(patch);
+    let share = 1.0 / rays as f32;
+    let (mut direct, mut indirect, mut links) = (Vec3::ZERO, Vec3::ZERO, Vec::new());
+    let mut nearness = 0.0;
+    for ray in 0..rays {
+        let point = points[ray as usize % points.len()];
+        let Found { drawn, other, distance, onward } =
+            transport.look_around(points[0].point, point, ray, patches);
+        direct += drawn * share;
+        indirect += other * share;
+        nearness += 1.0 / distance;
+        if let Some((place, weight, choice)) = onward
+            && let Some(target) = chosen(patches, &place, choice)
+        {
+            links.push((target, weight * share));
+        }
+    }
+    Gathered { direct, indirect, links, distance: f64::from(rays) / nearness }
+}
+
+/// A patch around a place, drawn by what it has to say.
+fn chosen(patches: &Patches, place: &Place, choice: f64) -> Option<u32> {
+    let mut sum = 0.0;
+    patches.visit_around(place, |_, weight| sum += weight);
+    let mut rest = choice as f32 * sum;
+    let mut found = None;
+    patches.visit_around(place, |patch, weight| {
+        if rest >= 0.0 {
+            found = Some(patch);
+        }
+        rest -= weight;
+    });
+    found
+}
+
+/// The indirect light of a patch, joined with its neighbours'.
+fn joined(patches: &Patches, gathered: &[Gathered], indirect: &[Vec3], at: usize) -> Vec3 {
+    let patch = &patches.all()[at];
+    let (mut sum, mut weights) = (indirect[at] * patch.area as f32, patch.area as f32);
+    patches.visit_neighbors(patch, |other| {
+        let other = other as usize;
+        if other == at {
+            return;
+        }
+        let neighbor = &patches.all()[other];
+        let reach = REACH * gathered[at].distance.min(gathered[other].distance);
+        let near = (1.0 - patch.position.distance(neighbor.position) / reach).max(0.0);
+        let weight = (near * neighbor.area) as f32;
+        sum += indirect[other] * weight;
+        weights += weight;
+    });
+    sum / weights
+}

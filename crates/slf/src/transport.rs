@@ -1,0 +1,535 @@
+//! Light transport: what surfaces send by themselves and what they scatter of each other's light, by paths.
+
+use crate::irradiance::Irradiance;
+use crate::irradiance::patches::{PatchPoint, Patches};
+use crate::irradiance::place::Place;
+use crate::lights::{LightSample, Lights};
+use crate::material_point::{MaterialPoint, emitted};
+use crate::media::{Inside, Media};
+use crate::path_random::PathRandom;
+use glam::{DVec3, Vec3};
+use material::{Bsdf, Frame, Parts, Scattered, Scattering, Split, Surface, Toward};
+use scene::{Scene, SurfacePoint, World};
+use std::sync::Arc;
+use trace::{Hit, Leaving, Radiance, Tracer};
+
+/// How light is gathered.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TransportOptions {
+    /// Paths for each point and eye. Their noise is that of the picture where each surface point is asked once; where many points
+    /// fall into a pixel, as in the ground truth, one will do.
+    pub paths: u32,
+    /// Lights that are drawn for each point and eye, where irradiance is known; elsewhere each path draws one.
+    pub light_samples: u32,
+    /// Whether light that meets microfacets more than once counts.
+    pub scattering: Scattering,
+}
+
+impl Default for TransportOptions {
+    fn default() -> Self {
+        Self { paths: 32, light_samples: 16, scattering: Scattering::Multiple }
+    }
+}
+
+/// Radiance of a lit scene, traced by paths (Kajiya 1986).
+///
+/// | surface | radiance |
+/// | --- | --- |
+/// | unlit | its base colour, on both sides |
+/// | emissive | the emitted radiance, on the front; on both sides if double sided |
+/// | any but unlit | + what its lobes scatter of light that arrives ([`Bsdf`]) |
+///
+/// At every surface a path meets, light is looked for in two ways: a light is drawn (an emissive triangle by its power, a
+/// direction of the environment by its brightness, punctual lights all, or one by what it would send), and a direction is drawn by
+/// how the surface scatters. What both may find is weighted by the power heuristic (Veach and Guibas 1995). Unlit surfaces send the
+/// colour they show, and are found by the second way alone. Paths end by Russian roulette, or after the world's bounces: nothing
+/// else is left out or cut off, so the mean over points and paths is exact, and depends on the point and the eye alone.
+///
+/// With [`Irradiance`] a path ends where it comes to what is known, that is, at the next diffuse surface; and what arrives at a
+/// point's own diffuse lobes from other surfaces is known as well. That is faster by far, and off by what patches do not tell:
+/// their mean stands for every point of them.
+pub struct Transport {
+    tracer: Arc<Tracer>,
+    world: World,
+    options: TransportOptions,
+    lights: Lights,
+    media: Media,
+    irradiance: Option<Arc<Irradiance>>,
+}
+
+/// Where a path has come to.
+struct Path {
+    random: PathRandom,
+    inside: Inside,
+    /// How many lights were drawn at its first surface for each direction that was.
+    lights_a_path: f64,
+}
+
+/// Light on its way back along a path: from where, in which direction, and how likely that was drawn.
+#[derive(Clone, Copy)]
+struct Step {
+    from: SurfacePoint,
+    position: DVec3,
+    direction: DVec3,
+    /// 1/sr; none where no light that is drawn could have been it.
+    density: Option<f64>,
+}
+
+/// What of the scene's light is known.
+#[derive(Clone, Copy)]
+enum Known<'a> {
+    Nothing,
+    /// Where it will be.
+    Patches(&'a Patches),
+    All(&'a Irradiance),
+}
+
+/// What a path found.
+struct Arriving {
+    /// Light that came straight from where lights are drawn, too.
+    drawn: DVec3,
+    /// Other light.
+    other: DVec3,
+    /// How far the first surface is.
+    distance: f64,
+    /// Where what arrives at diffuse lobes is known, and what of that is sent on.
+    onward: Option<(Place, DVec3)>,
+}
+
+/// What a patch finds in one direction, as irradiance/π.
+pub(crate) struct Found {
+    pub drawn: Vec3,
+    pub other: Vec3,
+    pub distance: f64,
+    /// Where more comes from, the share of it, and a uniform number.
+    pub onward: Option<(Place, Vec3, f64)>,
+}
+
+/// After so many scatterings Russian roulette begins.
+const SURE_SCATTERINGS: u32 = 3;
+/// A surface that is nearer than so many patches is too near for them to tell.
+const NEAR: f64 = 2.0;
+
+impl Transport {
+    /// Prepares the scene in `tracer` in a world.
+    pub fn new(tracer: Arc<Tracer>, world: World, options: TransportOptions) -> Self {
+        let scene = tracer.scene();
+        let (lights, media) = (Lights::of(scene, &world), Media::of(scene));
+        Self { tracer, world, options, lights, media, irradiance: None }
+    }
+
+    /// The same with light that is known already, of the same scene and world.
+    pub fn with_irradiance(self, irradiance: Arc<Irradiance>) -> Self {
+        Self { irradiance: Some(irradiance), ..self }
+    }
+
+    /// The scene it lights.
+    pub(crate) fn scene(&self) -> &Scene {
+        self.tracer.scene()
+    }
+
+    /// The world's bounces.
+    pub(crate) fn bounces(&self) -> Option<u32> {
+        self.world.bounces
+    }
+
+    /// What one ray of a patch finds, `index` of those of the patch that begins with `seed`.
+    pub(crate) fn look_around(
+        &self,
+        seed: SurfacePoint,
+        from: PatchPoint,
+        index: u32,
+        patches: &Patches,
+    ) -> Found {
+        let scene = self.scene();
+        let PatchPoint { point, is_front } = from;
+        let place = Place::of(scene, point, is_front);
+        let geometric = scene.area_normal(point.triangle).normalize_or_zero();
+        let geometric = if is_front { geometric } else { -geometric };
+        let at = MaterialPoint {
+            position: place.position,
+            surface: Surface { metallic: 0.0, specular: 0.0, ..Surface::default() },
+            frame: Frame::new(geometric, place.normal, DVec3::ZERO),
+            material: scene.parts[place.part as usize].material,
+        };
+        let inside = self.media.beside(at.material, is_front);
+        let random = PathRandom::new(seed, place.normal, index);
+        let mut path = Path { random, inside, lights_a_path: 1.0 };
+        let interface = self.media.interface(at.material, &inside, is_front);
+        let bsdf = Bsdf::new(&at.surface, at.frame, interface);
+        let lobes = bsdf.toward(place.normal);
+        let mut found = Found {
+            drawn: self.direct(point, &at, &lobes, &mut path).total().as_vec3(),
+            other: Vec3::ZERO,
+            distance: f64::INFINITY,
+            onward: None,
+        };
+        if let Some(scattered) = lobes.sample(path.random.next3()) {
+            let step = Step {
+                from: point,
+                position: at.position,
+                direction: scattered.incident,
+                density: scattered.density,
+            };
+            let weight = scattered.weight.own;
+            let arriving = self.arriving(step, &mut path, Known::Patches(patches));
+            found.drawn += (weight * arriving.drawn).as_vec3();
+            found.other = (weight * arriving.other).as_vec3();
+            found.distance = arriving.distance;
+            found.onward =
+                arriving.onward.map(|(place, share)| (place, (weight * share).as_vec3(), path.random.next()));
+        }
+        found
+    }
+
+    /// What a surface scatters toward the eye of light that one path finds.
+    fn scattered(&self, point: SurfacePoint, at: &MaterialPoint, outgoing: DVec3, path: &mut Path) -> Split {
+        let dispersed = self.disperse(at, path);
+        let is_front = at.frame.geometric.dot(outgoing) >= 0.0;
+        let interface = self.media.interface(at.material, &path.inside, is_front);
+        let bsdf = Bsdf::new(&at.surface, at.frame, interface);
+        let lobes = bsdf.toward(outgoing);
+        let mut sum = self.direct(point, at, &lobes, path);
+        if let Some(scattered) = lobes.sample(path.random.next3()) {
+            let step = self.step(point, at, &scattered, path);
+            let Arriving { drawn, other, .. } = self.arriving(step, path, Known::Nothing);
+            sum += split(scattered.weight, drawn + other);
+        }
+        split(sum, dispersed)
+    }
+
+    /// What a surface scatters toward the eye where irradiance is known, but for what that tells: of drawn lights all, of other
+    /// light what sharp lobes send.
+    fn scattered_beside(
+        &self,
+        point: SurfacePoint,
+        at: &MaterialPoint,
+        eye: DVec3,
+        inside: Inside,
+        irradiance: &Irradiance,
+    ) -> Split {
+        let outgoing = (eye - at.position).normalize_or_zero();
+        let is_front = at.frame.geometric.dot(outgoing) >= 0.0;
+        let paths = self.options.paths.max(1);
+        let draws = self.lights.draws(self.options.light_samples.max(1));
+        let lights_a_path = f64::from(draws) / f64::from(paths);
+        let bsdf = Bsdf::new(&at.surface, at.frame, self.media.interface(at.material, &inside, is_front));
+        let lobes = bsdf.toward(outgoing);
+        let mut drawn = Split::default();
+        for index in 0..draws {
+            let mut path = Path { random: PathRandom::new(point, eye, index), inside, lights_a_path };
+            drawn += self.direct_by(point, at, &mut path, |sample| {
+                let (Parts { spread, sharp }, own) = lobes.scatter_parts(sample.from);
+                let share = sample.density.map_or(1.0, |density| heuristic(density * lights_a_path, own));
+                // Of spread light only lamps are looked for in two ways.
+                let of_spread = sample.density.filter(|_| sample.is_near).map_or(1.0, |density| {
+                    heuristic(density * lights_a_path, lobes.spread_density(sample.from))
+                });
+                Split { own: spread * of_spread + sharp.own * share, carried: sharp.carried * share }
+            });
+        }
+        let mut found = Split::default();
+        for index in 0..paths {
+            let random = PathRandom::new(point, -eye, index);
+            let mut path = Path { random, inside, lights_a_path };
+            found += self.looked_for(point, at, &lobes, &mut path);
+            let dispersed = self.disperse(at, &mut path);
+            found += match path.inside.channel {
+                None => self.sharp(point, at, &lobes, &mut path, irradiance),
+                Some(_) => {
+                    let interface = self.media.interface(at.material, &path.inside, is_front);
+                    let bsdf = Bsdf::new(&at.surface, at.frame, interface);
+                    split(self.sharp(point, at, &bsdf.toward(outgoing), &mut path, irradiance), dispersed)
+                }
+            };
+        }
+        drawn * (1.0 / f64::from(draws)) + found * (1.0 / f64::from(paths))
+    }
+
+    /// What spread lobes send of lamps, as one direction finds them that is drawn by how the surface scatters.
+    fn looked_for(
+        &self,
+        point: SurfacePoint,
+        at: &MaterialPoint,
+        lobes: &Toward<'_, '_>,
+        path: &mut Path,
+    ) -> Split {
+        if !self.lights.has_emitters() {
+            return Split::default();
+        }
+        let Some((direction, density)) = lobes.sample_spread(path.random.next2()) else {
+            return Split::default();
+        };
+        let light = self.lamp_along(point, at, direction, density, path);
+        if light == DVec3::ZERO {
+            return Split::default();
+        }
+        let (Parts { spread, .. }, _) = lobes.scatter_parts(direction);
+        Split { own: spread * light / density, carried: DVec3::ZERO }
+    }
+
+    /// What sharp lobes send of all light that one path finds, where irradiance is known.
+    fn sharp(
+        &self,
+        point: SurfacePoint,
+        at: &MaterialPoint,
+        lobes: &Toward<'_, '_>,
+        path: &mut Path,
+        irradiance: &Irradiance,
+    ) -> Split {
+        let Some(scattered) = lobes.sample_sharp(path.random.next3()) else { return Split::default() };
+        let step = self.step(point, at, &scattered, path);
+        let arriving = self.arriving(step, path, Known::All(irradiance));
+        let sent_on = arriving.onward.map_or(DVec3::ZERO, |(place, share)| {
+            share * irradiance.total(&place).unwrap_or_default().as_dvec3()
+        });
+        split(scattered.weight, arriving.drawn + arriving.other + sent_on)
+    }
+
+    /// Goes where a surface scatters, through it if it must.
+    fn step(&self, from: SurfacePoint, at: &MaterialPoint, scattered: &Scattered, path: &mut Path) -> Step {
+        if scattered.crosses {
+            let enters = at.frame.geometric.dot(scattered.incident) < 0.0;
+            self.media.cross(&mut path.inside, at.material, enters);
+        }
+        let (direction, density) = (scattered.incident, scattered.density);
+        Step { from, position: at.position, direction, density }
+    }
+
+    /// Follows one colour from here on, where the glass bends each differently: its share of the light.
+    fn disperse(&self, at: &MaterialPoint, path: &mut Path) -> DVec3 {
+        if path.inside.channel.is_some()
+            || !self.media.disperses(at.material)
+            || at.surface.transmission <= 0.0
+        {
+            return DVec3::ONE;
+        }
+        let channel = ((path.random.next() * 3.0) as usize).min(2);
+        path.inside.channel = Some(channel);
+        DVec3::from_array(std::array::from_fn(|k| if k == channel { 3.0 } else { 0.0 }))
+    }
+
+    /// What lights that are drawn send by way of a surface.
+    fn direct(
+        &self,
+        point: SurfacePoint,
+        at: &MaterialPoint,
+        lobes: &Toward<'_, '_>,
+        path: &mut Path,
+    ) -> Split {
+        self.direct_by(point, at, path, |sample| {
+            let (sent, own) = lobes.scatter(sample.from);
+            sent * sample.density.map_or(1.0, |density| heuristic(density, own))
+        })
+    }
+
+    /// The same by what is sent on of the light of a sample.
+    fn direct_by(
+        &self,
+        point: SurfacePoint,
+        at: &MaterialPoint,
+        path: &mut Path,
+        send: impl Fn(&LightSample) -> Split,
+    ) -> Split {
+        let mut sum = Split::default();
+        let (inside, random) = (path.inside, &mut path.random);
+        self.lights.sample(
+            self.scene(),
+            &self.world,
+            at.position,
+            || random.next(),
+            |sample: LightSample| {
+                if sample.light == Vec3::ZERO {
+                    return;
+                }
+                let sent = send(&sample);
+                if sent.total() == DVec3::ZERO || self.tracer.occluded(point, sample.source) {
+                    return;
+                }
+                let way = if sample.is_near { at.position.distance(sample.source) } else { f64::INFINITY };
+                sum += split(sent, sample.light.as_dvec3() * self.media.attenuation(&inside, way));
+            },
+        );
+        sum
+    }
+
+    /// What a lamp sends straight from a direction that was drawn with a density, less what lamps that are drawn tell of it.
+    fn lamp_along(
+        &self,
+        from: SurfacePoint,
+        at: &MaterialPoint,
+        direction: DVec3,
+        density: f64,
+        path: &Path,
+    ) -> DVec3 {
+        let Some(hit) = self.tracer.first_met(from, direction) else { return DVec3::ZERO };
+        let toward = hit.point.position(self.scene()) - at.position;
+        let of_light = self.lights.density_of_emitter(hit.point.triangle, toward);
+        if of_light == 0.0 {
+            return DVec3::ZERO;
+        }
+        let share = heuristic(density, of_light * path.lights_a_path);
+        let light = emitted(self.scene(), hit.point, -direction).as_dvec3() * share;
+        light * self.media.attenuation(&path.inside, hit.t)
+    }
+
+    /// The radiance that arrives along a step, and all that comes after it as far as it is not known.
+    fn arriving(&self, mut step: Step, path: &mut Path, known: Known<'_>) -> Arriving {
+        let scene = self.scene();
+        let most = self.bounces().unwrap_or(u32::MAX);
+        let mut found =
+            Arriving { drawn: DVec3::ZERO, other: DVec3::ZERO, distance: f64::INFINITY, onward: None };
+        let mut throughput = DVec3::ONE;
+        for scatterings in 1u32.. {
+            let hit = self.tracer.first_met(step.from, step.direction);
+            let length = hit.map_or(f64::INFINITY, |hit| hit.t);
+            throughput *= self.media.attenuation(&path.inside, length);
+            let Some(Hit { point, t }) = hit else {
+                let of_light = self.lights.density_of_environment(&self.world, step.direction);
+                let light = throughput * self.world.radiance(step.direction).as_dvec3();
+                found.add(light, step.density, of_light, scatterings, path);
+                return found;
+            };
+            if scatterings == 1 {
+                found.distance = t;
+            }
+            let outgoing = -step.direction;
+            let shines = emitted(scene, point, outgoing).as_dvec3();
+            if shines != DVec3::ZERO {
+                let toward = point.position(scene) - step.position;
+                let of_light = self.lights.density_of_emitter(point.triangle, toward);
+                found.add(throughput * shines, step.density, of_light, scatterings, path);
+            }
+            if scatterings > most || scene.material_of(point.triangle).unlit {
+                return found;
+            }
+            let at = MaterialPoint::of(scene, point, self.options.scattering);
+            throughput *= self.disperse(&at, path);
+            let is_front = at.frame.geometric.dot(outgoing) >= 0.0;
+            let interface = self.media.interface(at.material, &path.inside, is_front);
+            let bsdf = Bsdf::new(&at.surface, at.frame, interface);
+            let lobes = bsdf.toward(outgoing);
+            let scattered = match known.place(scene, point, is_front, t) {
+                None => {
+                    found.other += throughput * self.direct(point, &at, &lobes, path).total();
+                    let Some(scattered) = lobes.sample(path.random.next3()) else { return found };
+                    throughput *= scattered.weight.total();
+                    scattered
+                }
+                Some(place) => {
+                    // What is own is known; what is carried is followed.
+                    let Split { own, carried } = lobes.albedo();
+                    let [of_own, of_carried] = [own, carried].map(DVec3::element_sum);
+                    if of_carried > 0.0 {
+                        found.other += throughput * self.direct(point, &at, &lobes, path).carried;
+                    }
+                    let ends = of_own / (of_own + of_carried);
+                    if of_carried == 0.0 || path.random.next() < ends {
+                        let share = if of_carried == 0.0 { 1.0 } else { ends };
+                        found.onward = (of_own > 0.0).then(|| (place, throughput * own / share));
+                        return found;
+                    }
+                    let Some(scattered) = lobes.sample_sharp(path.random.next3()) else { return found };
+                    throughput *= scattered.weight.carried / (1.0 - ends);
+                    scattered
+                }
+            };
+            if scatterings >= SURE_SCATTERINGS || throughput == DVec3::ZERO {
+                let lives = throughput.max_element().min(0.95);
+                if path.random.next() >= lives {
+                    return found;
+                }
+                throughput /= lives;
+            }
+            step = self.step(point, &at, &scattered, path);
+        }
+        found
+    }
+}
+
+impl Arriving {
+    /// Light that was found after so many scatterings by a direction of some density; drawn lights find it with another.
+    fn add(&mut self, light: DVec3, density: Option<f64>, of_light: f64, scatterings: u32, path: &Path) {
+        let drawn = if scatterings == 1 { of_light * path.lights_a_path } else { of_light };
+        let light = light * density.map_or(1.0, |own| heuristic(own, drawn));
+        let sum = if scatterings == 1 && of_light > 0.0 { &mut self.drawn } else { &mut self.other };
+        *sum += light;
+    }
+}
+
+impl Known<'_> {
+    /// A place that a path came to over a distance, if what arrives there is known.
+    fn place(self, scene: &Scene, point: SurfacePoint, is_front: bool, distance: f64) -> Option<Place> {
+        let (spacing, place) = match self {
+            Self::Nothing => return None,
+            Self::Patches(patches) => (patches.spacing(), Place::of(scene, point, is_front)),
+            Self::All(irradiance) => (irradiance.spacing(), Place::of(scene, point, is_front)),
+        };
+        let is_known = || match self {
+            Self::Nothing => false,
+            Self::Patches(patches) => patches.knows(&place),
+            Self::All(irradiance) => irradiance.total(&place).is_some(),
+        };
+        (distance >= NEAR * spacing && is_known()).then_some(place)
+    }
+}
+
+/// What is left of a split light.
+fn split(light: Split, share: DVec3) -> Split {
+    Split { own: light.own * share, carried: light.carried * share }
+}
+
+/// The share of a way of sampling with density `own` in what another with density `other` finds as well (Veach and Guibas 1995,
+/// the power heuristic): own²/(own² + other²).
+fn heuristic(own: f64, other: f64) -> f64 {
+    let ratio = other / own;
+    1.0 / (1.0 + ratio * ratio)
+}
+
+impl Radiance for Transport {
+    fn leaving(&self, point: SurfacePoint, eye: DVec3) -> Leaving {
+        let scene = self.scene();
+        let outgoing = (eye - point.position(scene)).normalize_or_zero();
+        let emitted = emitted(scene, point, outgoing);
+        if scene.material_of(point.triangle).unlit || outgoing == DVec3::ZERO {
+            return Leaving::own(emitted);
+        }
+        let at = MaterialPoint::of(scene, point, self.options.scattering);
+        let is_front = at.frame.geometric.dot(outgoing) >= 0.0;
+        let inside = self.media.beside(at.material, is_front);
+        let interface = self.media.interface(at.material, &inside, is_front);
+        let bsdf = Bsdf::new(&at.surface, at.frame, interface);
+        let lobes = bsdf.toward(outgoing);
+        let place = Place::of(scene, point, is_front);
+        let known = self.irradiance.as_deref().and_then(|known| Some((known, known.indirect(&place)?)));
+        let scattered = match known {
+            Some((known, light)) => {
+                let told = light.as_dvec3() * lobes.spread_albedo();
+                self.scattered_beside(point, &at, eye, inside, known)
+                    + Split { own: told, carried: DVec3::ZERO }
+            }
+            None => {
+                let paths = self.options.paths.max(1);
+                let one = |index| {
+                    let random = PathRandom::new(point, eye, index);
+                    let mut path = Path { random, inside, lights_a_path: 1.0 };
+                    self.scattered(point, &at, outgoing, &mut path)
+                };
+                (0..paths).map(one).fold(Split::default(), |sum, path| sum + path) * (1.0 / f64::from(paths))
+            }
+        };
+        let [_, carried_share] = lobes.coverage_shares();
+        Leaving {
+            own: emitted + scattered.own.as_vec3(),
+            carried: scattered.carried.as_vec3(),
+            carried_share: carried_share as f32,
+        }
+    }
+
+    fn from_infinity(&self, direction: DVec3) -> Vec3 {
+        self.world.seen(direction.normalize_or_zero())
+    }
+}
+
+#[cfg(test)]
+mod tests;

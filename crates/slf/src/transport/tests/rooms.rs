@@ -1,0 +1,169 @@
+//! Light that goes to and fro, against what is known of it in closed form.
+
+use super::*;
+use crate::IrradianceOptions;
+
+/// The six walls of a box, seen from without.
+fn outside(low: DVec3, high: DVec3, material: &Material) -> Vec<Rectangle> {
+    let size = high - low;
+    let [x, y, z] = [DVec3::X * size.x, DVec3::Y * size.y, DVec3::Z * size.z];
+    let faces = [(low, x, z), (high, -z, -x), (low, y, x), (high, -x, -y), (low, z, y), (high, -y, -z)];
+    faces.map(|(corner, side, other)| Rectangle(corner, side, other, material.clone())).into()
+}
+
+/// The same seen from within.
+fn inside(low: DVec3, high: DVec3, material: &Material) -> Vec<Rectangle> {
+    let turned = |Rectangle(corner, side, other, material)| Rectangle(corner, other, side, material);
+    outside(low, high, material).into_iter().map(turned).collect()
+}
+
+fn transport(scene: Scene, world: World, paths: u32) -> Transport {
+    let options = TransportOptions { paths, ..TransportOptions::default() };
+    Transport::new(Arc::new(Tracer::new(Arc::new(scene))), world, options)
+}
+
+fn with_known(transport: Transport) -> Transport {
+    let irradiance =
+        Irradiance::solve(&transport, IrradianceOptions { patches: 6000, rays: 128 }, &Unwatched).unwrap();
+    transport.with_irradiance(Arc::new(irradiance))
+}
+
+fn dark() -> World {
+    World::uniform(Vec3::ZERO)
+}
+
+/// The mean of what leaves points all over some triangles toward an eye.
+fn mean(transport: &Transport, eye: DVec3, triangles: std::ops::Range<u32>) -> Vec3 {
+    let points = triangles.flat_map(|triangle| {
+        (0..64).map(move |k| {
+            let u = (DVec2::new(0.754_877_666, 0.569_840_291) * f64::from(k) + 0.5).fract();
+            let barycentric = if u.x + u.y > 1.0 { DVec2::ONE - u } else { u };
+            SurfacePoint { triangle, barycentric }
+        })
+    });
+    let all: Vec<Vec3> = points.map(|point| transport.toward(point, eye)).collect();
+    all.iter().sum::<Vec3>() / all.len() as f32
+}
+
+#[test]
+fn a_closed_room_that_glows_has_its_series_sum() {
+    // L = Le/(1 − ρ), whatever the room: every wall sends what it gets and its own.
+    for (albedo, glow) in [(0.5f32, 1.0f32), (0.8, 0.25)] {
+        let color = Vec3::new(albedo, albedo / 2.0, 0.0);
+        let wall =
+            Material { base_color: color.extend(1.0), emissive: Vec3::splat(glow), ..Material::of_lambert() };
+        let expected = glow / (Vec3::ONE - color);
+        let room = || scene_of(&inside(DVec3::ZERO, DVec3::new(2.0, 1.0, 1.5), &wall), &[]);
+        let eye = DVec3::new(1.0, 0.5, 0.7);
+        let by_paths = mean(&transport(room(), dark(), 64), eye, 0..12);
+        assert!((by_paths / expected - 1.0).abs().max_element() < 0.01, "{by_paths}, not {expected}");
+        let known = mean(&with_known(transport(room(), dark(), 8)), eye, 0..12);
+        assert!((known / expected - 1.0).abs().max_element() < 0.01, "known: {known}, not {expected}");
+        // The control: after two bounces the rest of the series is missing.
+        let cut = mean(&transport(room(), World { bounces: Some(1), ..dark() }, 64), eye, 0..12);
+        assert!(cut.x < 0.95 * expected.x, "{cut}");
+    }
+}
+
+#[test]
+fn a_closed_box_lit_from_without_stays_dark() {
+    let wall = Material { base_color: Vec4::new(0.8, 0.8, 0.8, 1.0), ..Material::of_lambert() };
+    // Walls of some thickness.
+    let mut walls = inside(DVec3::splat(-1.0), DVec3::ONE, &wall);
+    walls.extend(outside(DVec3::splat(-1.02), DVec3::splat(1.02), &wall));
+    let lamp = light(LightKind::Point, DVec3::new(2.0, 3.0, 1.0), DVec3::ZERO);
+    let scene = scene_of(&walls, &[lamp]);
+    let sky = World::uniform(Vec3::splat(0.5));
+    for transport in [transport(scene.clone(), sky.clone(), 32), with_known(transport(scene.clone(), sky, 4))]
+    {
+        let within = mean(&transport, DVec3::ZERO, 0..12).max_element();
+        let without = mean(&transport, DVec3::new(9.0, 9.0, 9.0), 12..24).max_element();
+        assert!(without > 0.1 && within <= 1e-3 * without, "{within} within, {without} without");
+    }
+    // The control: a box without its floor.
+    let open = scene_of(&walls[1..6], &[]);
+    let open = with_known(transport(open, World::uniform(Vec3::ONE), 4));
+    assert!(mean(&open, DVec3::ZERO, 0..10).max_element() > 0.05);
+}
+
+#[test]
+fn a_white_floor_under_an_even_sky_is_as_bright_as_the_sky() {
+    let of =
+        |paths| transport(scene_of(&[floor(Material::of_lambert())], &[]), World::uniform(Vec3::ONE), paths);
+    for transport in [of(64), with_known(of(4))] {
+        let found = mean(&transport, ABOVE, 0..2);
+        assert!((found - 1.0).abs().max_element() < 0.01, "{found}");
+    }
+}
+
+/// A slab of glass, its upper face first, over a glowing floor.
+fn slab(ior: f32, volume: Option<Volume>, thickness: f64) -> Scene {
+    let glass = Material {
+        transmission: Scalar::plain(1.0),
+        workflow: Workflow::MetallicRoughness { metallic: Scalar::plain(0.0), roughness: Scalar::plain(0.0) },
+        ior,
+        volume,
+        ..Material::default()
+    };
+    let mut walls = outside(DVec3::new(-9.0, 1.0, -9.0), DVec3::new(9.0, 1.0 + thickness, 9.0), &glass);
+    walls.swap(0, 1);
+    let glow = Material { emissive: Vec3::ONE, base_color: Vec4::ZERO, ..Material::of_lambert() };
+    walls.push(Rectangle(DVec3::new(-50.0, 0.0, 50.0), DVec3::X * 100.0, DVec3::Z * -100.0, glow));
+    scene_of(&walls, &[])
+}
+
+/// A point in the middle of the slab's upper face, and an eye far above it.
+const ON_SLAB: SurfacePoint = SurfacePoint { triangle: 0, barycentric: DVec2::new(0.0, 0.5) };
+const FAR_ABOVE: DVec3 = DVec3::new(0.0, 400.0, 0.0);
+
+#[test]
+fn beers_law_holds_through_a_slab() {
+    let color = Vec3::new(0.5, 0.25, 1.0);
+    for (thickness, distance) in [(0.5, 1.0), (2.0, 0.5)] {
+        let volume = Volume { attenuation_color: color, attenuation_distance: distance };
+        let found = transport(slab(1.0, Some(volume), thickness), dark(), 16).toward(ON_SLAB, FAR_ABOVE);
+        let expected = color.powf((thickness / distance) as f32);
+        assert!((found - expected).abs().max_element() < 1e-4, "{found}, not {expected}");
+    }
+    // The control: nothing is lost where nothing attenuates.
+    let clear = Volume { attenuation_color: color, attenuation_distance: f64::INFINITY };
+    assert_eq!(transport(slab(1.0, Some(clear), 0.5), dark(), 16).toward(ON_SLAB, FAR_ABOVE), Vec3::ONE);
+}
+
+#[test]
+fn a_slab_of_glass_lets_through_what_its_faces_do() {
+    // Seen straight on: (1 − r)/(1 + r) of both faces with all that goes to and fro, r = 0.04.
+    let clear = Volume { attenuation_color: Vec3::ONE, attenuation_distance: f64::INFINITY };
+    let found = transport(slab(1.5, Some(clear), 0.5), dark(), 1 << 14).toward(ON_SLAB, FAR_ABOVE);
+    assert!((found.y - 0.96 / 1.04).abs() < 4e-3, "{found}");
+    // A wall that is thin lets 0.96 through, and so does the other.
+    let thin = transport(slab(1.5, None, 0.5), dark(), 1 << 14).toward(ON_SLAB, FAR_ABOVE);
+    assert!((thin.y - 0.96 / 1.04).abs() < 4e-3, "{thin}");
+}
+
+#[test]
+fn what_is_known_agrees_with_whole_paths() {
+    // A room with a lamp, a matte box and a box of rough metal.
+    let white = Material { base_color: Vec4::new(0.7, 0.6, 0.5, 1.0), ..Material::of_lambert() };
+    let metal = Material {
+        base_color: Vec4::new(0.9, 0.7, 0.4, 1.0),
+        workflow: Workflow::MetallicRoughness { metallic: Scalar::plain(1.0), roughness: Scalar::plain(0.4) },
+        ..Material::default()
+    };
+    let lamp = Material { emissive: Vec3::splat(8.0), base_color: Vec4::ZERO, ..Material::of_lambert() };
+    let mut walls = outside(DVec3::new(0.4, 0.0, 0.4), DVec3::new(0.8, 0.5, 0.8), &metal);
+    walls.extend(outside(DVec3::new(1.1, 0.0, 0.5), DVec3::new(1.5, 0.7, 0.9), &white));
+    walls.extend(inside(DVec3::ZERO, DVec3::new(2.0, 1.2, 1.5), &white));
+    walls.push(Rectangle(DVec3::new(0.8, 1.19, 0.6), DVec3::X * 0.4, DVec3::Z * 0.3, lamp));
+    let scene = || scene_of(&walls, &[]);
+    let eye = DVec3::new(0.2, 0.9, 1.4);
+    let of_faces = |transport: Transport| -> Vec<Vec3> {
+        (0..18).map(|face| mean(&transport, eye, 2 * face..2 * face + 2)).collect()
+    };
+    let paths = of_faces(transport(scene(), dark(), 256));
+    let known = of_faces(with_known(transport(scene(), dark(), 64)));
+    for (face, (a, b)) in paths.iter().zip(&known).enumerate() {
+        let near = (*a - *b).abs().max_element() < 0.03 * a.max_element() + 0.004;
+        assert!(near, "face {face}: {a} by paths, {b} known");
+    }
+}
