@@ -44,7 +44,7 @@ impl Scene {
     }
 
     /// The radiance that the surface sends by itself: the base colour of an unlit material, else the emissive
-    /// factor × texture. Whether the back sends it too is for the caller ([`Material::double_sided`]).
+    /// factor × texture. Whether the back sends it too is for the caller ([`crate::Material::double_sided`]).
     pub fn emitted(&self, point: SurfacePoint) -> Vec3 {
         let material = self.material_of(point.triangle);
         if material.unlit {

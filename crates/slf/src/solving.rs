@@ -41,7 +41,7 @@ pub struct IrradianceOptions {
 
 impl Default for IrradianceOptions {
     fn default() -> Self {
-        Self { patches: 40_000, rays: 128 }
+        Self { patches: 24_000, rays: 96 }
     }
 }
 

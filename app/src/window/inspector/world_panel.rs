@@ -2,7 +2,7 @@
 
 use crate::window::Action;
 use crate::window::controls::{proportional, row, rows};
-use egui::{Button, DragValue, Ui};
+use egui::{Button, ComboBox, DragValue, Ui};
 use glam::{DVec3, Vec3};
 use scene::{Backdrop, Environment, World};
 use session::{Command, Document};
@@ -24,7 +24,7 @@ pub fn world_panel(ui: &mut Ui, document: &Document, actions: &mut Vec<Action>) 
     let kind = kind_of(scene.world.as_ref());
     rows(ui, "world", |ui| {
         let tip = "What shines on the scene from everywhere. Drop an equirectangular .hdr or .exr on the window to use it.";
-        row(ui, "Environment", tip, |ui| environment_buttons(ui, kind, &shown, actions));
+        row(ui, "Environment", tip, |ui| environment_choice(ui, kind, &shown, actions));
         if let Some(source) = source(&shown) {
             row(ui, "Source", "Where the environment is from.", |ui| {
                 ui.add(egui::Label::new(source).truncate())
@@ -79,34 +79,39 @@ fn source(world: &World) -> Option<String> {
     Some(name.map_or_else(|| map.name.clone(), |name| name.to_string_lossy().into_owned()))
 }
 
-fn environment_buttons(ui: &mut Ui, kind: Kind, shown: &World, actions: &mut Vec<Action>) -> egui::Response {
-    ui.horizontal_wrapped(|ui| {
-        let mut chosen = None;
-        for (of, label, tip) in [
-            (Kind::Own, "Scene's own", "What the scene brings; a scene without light has the studio."),
-            (Kind::Studio, "Studio", "A soft neutral studio."),
-            (Kind::Color, "Color", "The same radiance from everywhere."),
-            (Kind::File, "File…", "An equirectangular picture, .hdr or .exr."),
-        ] {
-            if ui.add(Button::selectable(kind == of, label)).on_hover_text(tip).clicked() {
-                chosen = Some(of);
+fn environment_choice(ui: &mut Ui, kind: Kind, shown: &World, actions: &mut Vec<Action>) -> egui::Response {
+    let choices = [
+        (Kind::Own, "The scene's own", "What the scene brings; a scene without light has the studio."),
+        (Kind::Studio, "Studio", "A soft neutral studio."),
+        (Kind::Color, "Color", "The same radiance from everywhere."),
+        (Kind::File, "Picture…", "An equirectangular picture, .hdr or .exr."),
+    ];
+    let label = choices.iter().find(|(of, ..)| *of == kind).map_or("", |(_, label, _)| label);
+    let mut chosen = None;
+    let response = ComboBox::from_id_salt("environment")
+        .selected_text(label)
+        .show_ui(ui, |ui| {
+            for (of, label, tip) in choices {
+                if ui.selectable_label(kind == of, label).on_hover_text(tip).clicked() {
+                    chosen = Some(of);
+                }
             }
+        })
+        .response;
+    match chosen {
+        Some(Kind::Own) => actions.push(Command::SetWorld(None).into()),
+        Some(Kind::Studio) => actions.push(Command::SetWorld(Some(World::studio())).into()),
+        Some(Kind::Color) => {
+            let color = match shown.environment {
+                Environment::Uniform(color) if color != Vec3::ZERO => color,
+                _ => Vec3::splat(0.5),
+            };
+            actions.push(Command::SetWorld(Some(World::uniform(color))).into());
         }
-        match chosen {
-            Some(Kind::Own) => actions.push(Command::SetWorld(None).into()),
-            Some(Kind::Studio) => actions.push(Command::SetWorld(Some(World::studio())).into()),
-            Some(Kind::Color) => {
-                let color = match shown.environment {
-                    Environment::Uniform(color) if color != Vec3::ZERO => color,
-                    _ => Vec3::splat(0.5),
-                };
-                actions.push(Command::SetWorld(Some(World::uniform(color))).into());
-            }
-            Some(Kind::File) => actions.push(Action::ChooseEnvironment),
-            None => {}
-        }
-    })
-    .response
+        Some(Kind::File) => actions.push(Action::ChooseEnvironment),
+        None => {}
+    }
+    response
 }
 
 fn backdrop_buttons(ui: &mut Ui, backdrop: &mut Backdrop) -> egui::Response {

@@ -1,5 +1,6 @@
 //! Light fields, baked as coarse as a picture allows.
 
+use super::kept_light::LightQuality;
 use super::light::light;
 use crate::error::SessionError;
 use crate::jobs::Steps;
@@ -39,6 +40,6 @@ fn bake_with(
     options: &BakeOptions,
     steps: &dyn Steps,
 ) -> Result<Salf, SessionError> {
-    let light = light(tracer, camera, &*steps.begin("light"))?;
+    let light = light(tracer, camera, LightQuality::Fine, &*steps.begin("light"))?;
     Ok(salf::bake(tracer, &light, camera, options, &*steps.begin("baking"))?)
 }

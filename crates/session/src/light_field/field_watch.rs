@@ -72,6 +72,7 @@ impl FieldWatch {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use super::super::kept_light::LightQuality;
     use crate::document::Document;
     use crate::light_field::light;
     use progress::Unwatched;
@@ -92,7 +93,7 @@ mod tests {
         assert!(matches!(now(&document.stage), Standing::Underway));
         let tracer = &document.stage.tracer;
         let options = salf::BakeOptions::default();
-        let light = light(tracer, &camera, &Unwatched).unwrap();
+        let light = light(tracer, &camera, LightQuality::Fine, &Unwatched).unwrap();
         let salf = Arc::new(salf::bake(tracer, &light, &camera, &options, &Unwatched).unwrap());
         let long = Duration::from_secs(60);
         let start = Instant::now();

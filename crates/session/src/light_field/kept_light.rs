@@ -1,6 +1,7 @@
 //! Irradiance that was solved for, by scene and world: no camera traces its bounces again.
 //!
-//! It is solved for on a thread of its own, which goes on whoever stops waiting, as long as the scene is open.
+//! It is solved for on a thread of its own, which goes on whoever stops waiting, as long as the scene is open: roughly first, for the
+//! pictures that come at once, then well.
 
 use progress::{Cancelled, Progress};
 use scene::World;
@@ -14,6 +15,7 @@ use trace::Tracer;
 struct Kept {
     tracer: Weak<Tracer>,
     world: World,
+    rough: OnceLock<Arc<Irradiance>>,
     irradiance: OnceLock<Arc<Irradiance>>,
     /// Bits of an f32.
     done: AtomicU32,
@@ -34,26 +36,46 @@ impl Kept {
     }
 }
 
+/// How well light is to be solved for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum LightQuality {
+    /// Well enough for a picture that is soon replaced; better, if that is known.
+    Rough,
+    /// As well as it is going to be.
+    Fine,
+}
+
+/// Light of few patches and rays: in a fraction of a second.
+const ROUGH: IrradianceOptions = IrradianceOptions { patches: 6_000, rays: 32 };
+
+impl Kept {
+    fn known(&self, quality: LightQuality) -> Option<&Arc<Irradiance>> {
+        let rough = || self.rough.get().filter(|_| quality == LightQuality::Rough);
+        self.irradiance.get().or_else(rough)
+    }
+}
+
 /// The irradiance, if it is there.
 pub(super) fn known(tracer: &Arc<Tracer>, world: &World) -> Option<Arc<Irradiance>> {
-    all().iter().find(|kept| kept.is_of(tracer, world))?.irradiance.get().cloned()
+    all().iter().find(|kept| kept.is_of(tracer, world))?.known(LightQuality::Rough).cloned()
 }
 
 /// The irradiance as soon as it is there.
 pub(super) fn wait(
     tracer: &Arc<Tracer>,
     world: &World,
+    quality: LightQuality,
     progress: &dyn Progress,
 ) -> Result<Arc<Irradiance>, Cancelled> {
     let kept = begun(tracer, world);
     loop {
-        if let Some(irradiance) = kept.irradiance.get() {
+        if let Some(irradiance) = kept.known(quality) {
             return Ok(irradiance.clone());
         }
         if kept.has_failed.load(Ordering::Acquire) {
             // Its thread is gone: here it is solved for once more.
-            return Irradiance::solve(&transport(tracer, world), IrradianceOptions::default(), progress)
-                .map(Arc::new);
+            let options = if quality == LightQuality::Rough { ROUGH } else { IrradianceOptions::default() };
+            return Irradiance::solve(&transport(tracer, world), options, progress).map(Arc::new);
         }
         progress.check()?;
         progress.report(f32::from_bits(kept.done.load(Ordering::Relaxed)));
@@ -73,6 +95,7 @@ fn begun(tracer: &Arc<Tracer>, world: &World) -> Arc<Kept> {
     let kept = Arc::new(Kept {
         tracer: Arc::downgrade(tracer),
         world: world.clone(),
+        rough: OnceLock::new(),
         irradiance: OnceLock::new(),
         done: AtomicU32::new(0),
         has_failed: AtomicBool::new(false),
@@ -96,12 +119,16 @@ fn begun(tracer: &Arc<Tracer>, world: &World) -> Arc<Kept> {
 
 fn solve(kept: &Kept, tracer: Arc<Tracer>) {
     let watch = Watch { kept, tracer: tracer.clone() };
-    let work = || Irradiance::solve(&transport(&tracer, &kept.world), IrradianceOptions::default(), &watch);
-    match std::panic::catch_unwind(std::panic::AssertUnwindSafe(work)) {
-        Ok(Ok(irradiance)) => {
-            let _ = kept.irradiance.set(Arc::new(irradiance));
-        }
-        _ => kept.has_failed.store(true, Ordering::Release),
+    let work = || {
+        let transport = transport(&tracer, &kept.world);
+        let _ = kept.rough.set(Arc::new(Irradiance::solve(&transport, ROUGH, &watch)?));
+        let fine = Irradiance::solve(&transport, IrradianceOptions::default(), &watch)?;
+        let _ = kept.irradiance.set(Arc::new(fine));
+        Ok::<_, Cancelled>(())
+    };
+    let done = std::panic::catch_unwind(std::panic::AssertUnwindSafe(work));
+    if !matches!(done, Ok(Ok(()))) {
+        kept.has_failed.store(true, Ordering::Release);
     }
 }
 
@@ -122,6 +149,8 @@ const OWN_REFERENCES: usize = 3;
 
 impl Progress for Watch<'_> {
     fn report(&self, fraction: f32) {
+        // The rough light comes first and is soon there.
+        let fraction = if self.kept.rough.get().is_some() { fraction } else { 0.0 };
         self.kept.done.fetch_max(fraction.to_bits(), Ordering::Relaxed);
     }
 

@@ -1,6 +1,6 @@
 //! The light that light fields are baked from: the one place that chooses where radiance comes from.
 
-use super::kept_light;
+use super::kept_light::{self, LightQuality};
 use glam::DVec3;
 use lens::Camera;
 use progress::{Cancelled, Progress};
@@ -18,19 +18,20 @@ const LIGHT_SAMPLES: u32 = 16;
 pub(crate) fn light(
     tracer: &Arc<Tracer>,
     camera: &Camera,
+    quality: LightQuality,
     progress: &dyn Progress,
 ) -> Result<Transport, Cancelled> {
     let transport = transport(tracer, camera, PATHS);
     if !needs_light(tracer) {
         return Ok(transport);
     }
-    let irradiance = kept_light::wait(tracer, &world(tracer, camera), progress)?;
+    let irradiance = kept_light::wait(tracer, &world(tracer, camera), quality, progress)?;
     Ok(transport.with_irradiance(irradiance))
 }
 
 /// The same as far as it is known at once: without irradiance, where that is not solved for yet, it is exact and noisy.
 pub(crate) fn light_at_once(tracer: &Arc<Tracer>, camera: &Camera) -> Transport {
-    let transport = transport(tracer, camera, 1);
+    let transport = transport(tracer, camera, PATHS);
     match kept_light::known(tracer, &world(tracer, camera)) {
         Some(irradiance) => transport.with_irradiance(irradiance),
         None => transport,

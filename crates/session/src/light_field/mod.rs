@@ -25,7 +25,8 @@ pub use store::LightFieldStore;
 
 pub(crate) use changes::Changes;
 pub(crate) use field_watch::{FieldWatch, Standing};
-pub(crate) use light::{light, light_at_once, light_for_many_points};
+pub(crate) use kept_light::LightQuality;
+pub(crate) use light::{light, light_for_many_points};
 pub(crate) use reach::Reach;
 pub(crate) use running_sum::{BakedField, Brought, FieldOptions, LightField, Plan};
 pub(crate) use serves::serves;

@@ -1,6 +1,7 @@
 //! A baked light field with its running sum, and what it takes to bring the sum up to date.
 
 use super::changes::Changes;
+use super::kept_light::LightQuality;
 use super::light::light;
 use super::modelled::Modelled;
 use super::reach::Reach;
@@ -56,6 +57,8 @@ pub(crate) struct FieldOptions {
     pub tolerance: Tolerance,
     /// What they are made on; none: the processor.
     pub gpu: Option<Gpu>,
+    /// How well the scene's light is solved for.
+    pub light: LightQuality,
 }
 
 /// A light field to look at.
@@ -104,7 +107,7 @@ impl LightField {
         let needed = BakeOptions::for_focus(&stage.tracer, camera, focus).margin_px.max(how.least_margin_px);
         let margin_px = needed + MARGIN_HEADROOM * camera.height as f64;
         let options = BakeOptions { margin_px, ..BakeOptions::default() };
-        let radiance = light(&stage.tracer, camera, &Share::new(progress, 0.0, LIGHT_SHARE))?;
+        let radiance = light(&stage.tracer, camera, how.light, &Share::new(progress, 0.0, LIGHT_SHARE))?;
         let baking = Share::new(progress, LIGHT_SHARE, 1.0);
         let salf = salf::bake(&stage.tracer, &radiance, camera, &options, &baking)?;
         Ok(Self::of(stage, Arc::new(salf), how.tolerance, how.gpu))
@@ -332,7 +335,12 @@ mod tests {
         let camera = Camera { width: 90, height: 60, ..document.camera.clone() };
         let (blank, none) = painted(&document, FocusOffset::STANDARD, |_| false);
         assert!(none.is_empty());
-        let how = FieldOptions { least_margin_px: 0.0, tolerance: Tolerance::VIEWING, gpu: None };
+        let how = FieldOptions {
+            least_margin_px: 0.0,
+            tolerance: Tolerance::VIEWING,
+            gpu: None,
+            light: LightQuality::Fine,
+        };
         let mut field = LightField::bake(stage, &camera, &blank, how, &Unwatched).unwrap();
         field.bring_up(&camera, &blank, &Unwatched).unwrap();
         field.survey(&camera, &blank);
@@ -383,7 +391,12 @@ mod tests {
         let document = quads();
         let camera = Camera { width: 90, height: 60, ..document.camera.clone() };
         let (blank, _) = painted(&document, FocusOffset::STANDARD, |_| false);
-        let how = FieldOptions { least_margin_px: 0.0, tolerance: Tolerance::VIEWING, gpu: None };
+        let how = FieldOptions {
+            least_margin_px: 0.0,
+            tolerance: Tolerance::VIEWING,
+            gpu: None,
+            light: LightQuality::Fine,
+        };
         let field = LightField::bake(&document.stage, &camera, &blank, how, &Unwatched).unwrap();
         let mut exact = field.exact();
         assert!(exact.is_twin_of(&field) && exact.summing_bytes() > 0);

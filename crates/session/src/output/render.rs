@@ -5,7 +5,7 @@ use super::renderer::Renderer;
 use crate::document::Input;
 use crate::error::SessionError;
 use crate::jobs::Steps;
-use crate::light_field::{bake, light, light_for_many_points, serves};
+use crate::light_field::{LightQuality, bake, light, light_for_many_points, serves};
 use baselines::{BaselineError, FirstHits, LayeredOptions, ScatterOptions, ViewsOptions};
 use focus::Focus;
 use lens::{Camera, Picture};
@@ -185,7 +185,7 @@ pub fn render(
             baselines::layered(&hits, camera, &options.layered, &*steps.begin("blurring"))?
         }
         Renderer::Views => {
-            let radiance = light(tracer, camera, &*steps.begin("light"))?;
+            let radiance = light(tracer, camera, LightQuality::Fine, &*steps.begin("light"))?;
             let progress = steps.begin("views");
             baselines::shift_and_add(tracer, &radiance, focus, camera, &options.views, &*progress)?
         }
@@ -316,6 +316,6 @@ fn first_hits(
     focus: &Focus,
     steps: &dyn Steps,
 ) -> Result<FirstHits, SessionError> {
-    let light = light(tracer, camera, &*steps.begin("light"))?;
+    let light = light(tracer, camera, LightQuality::Fine, &*steps.begin("light"))?;
     Ok(FirstHits::trace(tracer, &light, focus, camera, &*steps.begin("first hits"))?)
 }

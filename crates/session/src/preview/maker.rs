@@ -5,7 +5,7 @@ use super::mailbox::Shared;
 use crate::document::Stage;
 use crate::error::SessionError;
 use crate::jobs::{Urgency, among_others, guarded};
-use crate::light_field::{Changes, FieldOptions, LightField, LightFieldStore};
+use crate::light_field::{Changes, FieldOptions, LightField, LightFieldStore, LightQuality};
 use focus::Focus;
 use lens::Camera;
 use progress::Stage as Share;
@@ -116,7 +116,7 @@ impl LightFieldMaker {
 fn make(order: Order, shared: &Shared, store: Option<&LightFieldStore>) -> Result<LightField, SessionError> {
     let Order { begin, stage, camera, focus, tolerance, epoch: _ } = order;
     let bake = |least_margin_px| {
-        let how = FieldOptions { least_margin_px, tolerance, gpu: shared.gpu() };
+        let how = FieldOptions { least_margin_px, tolerance, gpu: shared.gpu(), light: LightQuality::Fine };
         let start = Instant::now();
         shared.progress.begin_step("", 0.0, BAKE_SHARE);
         let field =

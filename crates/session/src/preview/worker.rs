@@ -13,7 +13,7 @@ use crate::display::Source;
 use crate::document::Stage;
 use crate::error::SessionError;
 use crate::jobs::guarded;
-use crate::light_field::{Brought, FieldOptions, LightField, LightFieldStore, Modelled, Plan, light_at_once};
+use crate::light_field::{Brought, FieldOptions, LightField, LightFieldStore, LightQuality, Modelled, Plan, light};
 use baselines::FirstHits;
 use focus::{Focus, FocusMap};
 use lens::Camera;
@@ -286,7 +286,7 @@ impl Worker {
         }
         self.shared.begin(PreviewActivity::Tracing)?;
         let start = Instant::now();
-        let radiance = light_at_once(&stage.tracer, camera);
+        let radiance = light(&stage.tracer, camera, LightQuality::Rough, &self.shared.quick)?;
         let hits = FirstHits::trace(&stage.tracer, &radiance, focus, camera, &self.shared.quick)?;
         self.presenter.show(Made {
             picture: Source::Here(&hits.picture()),
@@ -317,7 +317,7 @@ impl Worker {
             None => {
                 self.shared.begin(PreviewActivity::RoughBaking)?;
                 let (tolerance, gpu) = (self.tolerance, self.shared.gpu());
-                let how = FieldOptions { least_margin_px: 0.0, tolerance, gpu };
+                let how = FieldOptions { least_margin_px: 0.0, tolerance, gpu, light: LightQuality::Rough };
                 self.coarse.insert(LightField::bake(stage, small, focus, how, &self.shared.quick)?)
             }
         };

@@ -5,7 +5,7 @@ use super::state::Session;
 use crate::commands::Event;
 use crate::error::SessionError;
 use crate::jobs::{JobSteps, Steps};
-use crate::light_field::light;
+use crate::light_field::{LightQuality, light};
 use crate::output::{Reference, ReferenceKind, RenderOptions, Renderer, render};
 use crate::preview::PreviewActivity;
 use baselines::FirstHits;
@@ -70,7 +70,7 @@ impl Session {
             let steps = JobSteps { progress };
             let picture = match kind {
                 ReferenceKind::Pinhole => {
-                    let radiance = light(&stage.tracer, &camera, &*steps.begin("light"))?;
+                    let radiance = light(&stage.tracer, &camera, LightQuality::Fine, &*steps.begin("light"))?;
                     let progress = steps.begin("first hits");
                     FirstHits::trace(&stage.tracer, &radiance, &focus, &camera, &*progress)?.picture()
                 }
