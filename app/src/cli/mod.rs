@@ -68,8 +68,14 @@ fn dispatch(command: Subcommand) -> Result<(), Failure> {
         Subcommand::New(arguments) => new::run(&arguments, &console),
         Subcommand::Replay(arguments) => replay::run(&arguments, &console),
         Subcommand::Unwrap(arguments) => unwrap::run(&arguments, &console),
-        Subcommand::Bake(arguments) => bake::run(&arguments, &console),
-        Subcommand::Render(arguments) => render::run(&arguments, &console),
+        Subcommand::Bake(arguments) => {
+            keep_light();
+            bake::run(&arguments, &console)
+        }
+        Subcommand::Render(arguments) => {
+            keep_light();
+            render::run(&arguments, &console)
+        }
         Subcommand::Compare(arguments) => compare::run(&arguments),
         Subcommand::Report(arguments) => report::run(&arguments, &console),
         Subcommand::Export(arguments) => export::run(&arguments, &console),
@@ -98,8 +104,9 @@ fn open_window(arguments: Arguments) -> Result<(), Failure> {
     }
     // What is measured does not depend on what the window was like when it was last closed.
     let remember = trace.is_none();
-    let folders = directories::ProjectDirs::from("", "", "focus-brush");
-    let light_fields = folders.map(|folders| LightFieldStore::new(folders.cache_dir().join("light-fields")));
+    keep_light();
+    let light_fields =
+        own_folders().map(|folders| LightFieldStore::new(folders.cache_dir().join("light-fields")));
     let options = window::WindowOptions {
         file,
         unwrap,
@@ -115,6 +122,18 @@ fn open_window(arguments: Arguments) -> Result<(), Failure> {
         let why = format!("{error:#}").replace('\n', " ");
         Failure::bad(format!("no window: {why} (`focus-brush doctor` says what is missing)"))
     })
+}
+
+/// Has the light of scenes kept from one run to the next. What is measured (`report`) is measured from the start.
+fn keep_light() {
+    if let Some(folders) = own_folders() {
+        session::keep_light_in(folders.cache_dir().join("light"));
+    }
+}
+
+/// Where the program keeps what is its own.
+fn own_folders() -> Option<directories::ProjectDirs> {
+    directories::ProjectDirs::from("", "", "focus-brush")
 }
 
 fn on_a_large_stack(work: impl FnOnce() -> Result<(), Failure> + Send + 'static) -> Result<(), Failure> {

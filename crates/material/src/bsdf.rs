@@ -51,6 +51,8 @@ struct Means {
 #[derive(Clone, Copy, Debug)]
 struct Side {
     w: DVec3,
+    /// F0 of the metal and of the dielectric.
+    f0: [DVec3; 2],
     /// A and B of the gloss.
     shares: DVec2,
     /// What the dielectric's surface leaves to its ground.
@@ -130,10 +132,11 @@ impl<'a> Bsdf<'a> {
         // F̄²Ē/(1 − F̄(1 − Ē)) (Kulla and Conty 2017).
         let multiple = [0, 1].map(|which| {
             let f90 = if which == 0 { DVec3::ONE } else { DVec3::splat(self.surface.specular) };
-            let mean = schlick_mean(self.f0[which], f90);
+            let mean = self.mean_mirrored(which, f90);
             mean * mean * kept / (DVec3::ONE - mean * (1.0 - kept))
         });
-        let back = self.f0[1] * shares.x + self.surface.specular * shares.y + multiple[1] * self.lost(shares);
+        let back =
+            self.mean_f0(1) * shares.x + self.surface.specular * shares.y + multiple[1] * self.lost(shares);
         Means { shares, multiple, beneath: DVec3::ONE - back }
     }
 
@@ -144,6 +147,30 @@ impl<'a> Bsdf<'a> {
         is_needed.then(|| Box::new(interface.rough(surface.roughness)))
     }
 
+    /// F0 of the metal and of the dielectric, by the cosine where a film changes it.
+    fn f0_at(&self, cos: f64) -> [DVec3; 2] {
+        self.surface.film.map_or(self.f0, |film| self.f0.map(|f0| film.f0(f0, cos)))
+    }
+
+    /// The mean of what `of` says of cosines over the cosine-weighted hemisphere.
+    fn mean_of(of: impl Fn(f64) -> DVec3) -> DVec3 {
+        const STEPS: usize = 12;
+        // cos² is even there.
+        (0..STEPS).map(|k| of(((k as f64 + 0.5) / STEPS as f64).sqrt())).sum::<DVec3>() / STEPS as f64
+    }
+
+    fn mean_f0(&self, which: usize) -> DVec3 {
+        self.surface.film.map_or(self.f0[which], |_| Self::mean_of(|cos| self.f0_at(cos)[which]))
+    }
+
+    fn mean_mirrored(&self, which: usize, f90: DVec3) -> DVec3 {
+        let f0 = self.f0[which];
+        self.surface.film.map_or_else(
+            || schlick_mean(f0, f90),
+            |film| Self::mean_of(|cos| schlick(film.f0(f0, cos), f90, cos)),
+        )
+    }
+
     fn seen(&self, outgoing: DVec3) -> Seen {
         let frame = self.frame.facing(outgoing);
         let from_front = self.frame.geometric.dot(outgoing) >= 0.0;
@@ -152,13 +179,13 @@ impl<'a> Bsdf<'a> {
     }
 
     fn side(&self, w: DVec3) -> Side {
-        let (mut shares, mut beneath) = (DVec2::ZERO, DVec3::ONE);
+        let (mut shares, mut beneath, f0) = (DVec2::ZERO, DVec3::ONE, self.f0_at(w.z.abs()));
         if let Some(means) = &self.means {
             shares = self.gloss_shares(w);
             let multiple = means.multiple[1] * self.lost(shares);
-            beneath -= self.f0[1] * shares.x + self.surface.specular * shares.y + multiple;
+            beneath -= f0[1] * shares.x + self.surface.specular * shares.y + multiple;
         }
-        Side { w, shares, beneath, coat: self.coat_albedo(w), sheen: self.sheen_albedo(w) }
+        Side { w, f0, shares, beneath, coat: self.coat_albedo(w), sheen: self.sheen_albedo(w) }
     }
 
     /// For light toward one direction.
@@ -247,10 +274,10 @@ impl<'a> Bsdf<'a> {
         let (under_coat, under_sheen) = (1.0 - side.coat, 1.0 - side.sheen);
         let shares = side.shares;
         let lost = self.lost(shares);
-        let mut all = Split::mirrored(self.f0[0] * shares.x + shares.y, self.ggx.mean_alpha()) * metal;
+        let mut all = Split::mirrored(side.f0[0] * shares.x + shares.y, self.ggx.mean_alpha()) * metal;
         all += Split::own(self.multiple(0) * lost) * metal;
         let f90 = DVec3::splat(self.surface.specular);
-        all += Split::mirrored(self.f0[1] * shares.x + f90 * shares.y, self.ggx.mean_alpha()) * dielectric;
+        all += Split::mirrored(side.f0[1] * shares.x + f90 * shares.y, self.ggx.mean_alpha()) * dielectric;
         all += Split::own(self.multiple(1) * lost) * dielectric;
         let ground = side.beneath;
         let share = self.surface.diffuse_transmission;
@@ -394,7 +421,8 @@ impl<'a> Bsdf<'a> {
     fn mirrored_at(&self, cos: f64) -> DVec3 {
         let [metal, dielectric, _] = self.shares;
         let f90 = DVec3::splat(self.surface.specular);
-        schlick(self.f0[0], DVec3::ONE, cos) * metal + schlick(self.f0[1], f90, cos) * dielectric
+        let [of_metal, of_dielectric] = self.f0_at(cos);
+        schlick(of_metal, DVec3::ONE, cos) * metal + schlick(of_dielectric, f90, cos) * dielectric
     }
 
     /// The coupling of a ground beneath the dielectric's surface.
@@ -444,11 +472,11 @@ impl<'a> Bsdf<'a> {
     fn odds(&self, seen: &Seen) -> Odds {
         let [metal, dielectric, glass] = self.shares;
         let mean = |color: DVec3| color.element_sum() / 3.0;
-        let Side { shares, coat, sheen: cloth, .. } = seen.side;
+        let Side { f0, shares, coat, sheen: cloth, .. } = seen.side;
         let lost = self.lost(shares);
         let beneath = (1.0 - coat) * (1.0 - cloth);
-        let gloss = self.f0[0] * (metal * shares.x) + metal * shares.y;
-        let gloss = gloss + (self.f0[1] * shares.x + self.surface.specular * shares.y) * dielectric;
+        let gloss = f0[0] * (metal * shares.x) + metal * shares.y;
+        let gloss = gloss + (f0[1] * shares.x + self.surface.specular * shares.y) * dielectric;
         let multiple = (self.multiple(0) * metal + self.multiple(1) * dielectric) * lost;
         let ground = seen.side.beneath * dielectric;
         let share = self.surface.diffuse_transmission;

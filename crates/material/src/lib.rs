@@ -7,7 +7,7 @@
 //! * [`Split`]: what obeys the paint (*own*: scattered diffusely, and rough gloss) and what does not (*carried*: mirrored, let
 //!   through).
 //! * `ggx`: microfacets. `fresnel`: what an interface mirrors. `albedo`: what a lobe sends back in all, tabulated. `interface`: the
-//!   two sides of glass. `sheen`: cloth.
+//!   two sides of glass. `sheen`: cloth. `film`: iridescence.
 //!
 //! Energy is neither made nor lost: what single scattering on microfacets loses is given back by reciprocal lobes (Kulla and
 //! Conty 2017), and what an upper lobe mirrors is taken from what lies beneath it on both ways. [`Scattering::Single`] leaves
@@ -15,6 +15,7 @@
 
 mod albedo;
 mod bsdf;
+mod film;
 mod frame;
 mod fresnel;
 mod ggx;
@@ -25,6 +26,7 @@ mod sheen;
 mod surface;
 
 pub use bsdf::{Bsdf, Parts, Scattered, Toward};
+pub use film::Film;
 pub use frame::Frame;
 pub use fresnel::{dielectric_reflectance, reflectance_of_ior, schlick};
 pub use interface::Interface;

@@ -1,5 +1,6 @@
 //! What a material says at one point, textures looked up.
 
+use crate::Film;
 use glam::DVec3;
 
 /// Whether light that meets microfacets more than once counts.
@@ -55,6 +56,8 @@ pub struct Surface {
     pub diffuse_transmission: f64,
     /// Its colour, linear RGB.
     pub diffuse_transmission_color: DVec3,
+    /// A thin film on metal and dielectric (KHR_materials_iridescence).
+    pub film: Option<Film>,
     /// A coat on top.
     pub clearcoat: Option<Clearcoat>,
     /// Cloth's fuzz, beneath the coat.
@@ -78,6 +81,7 @@ impl Default for Surface {
             is_thin: true,
             diffuse_transmission: 0.0,
             diffuse_transmission_color: DVec3::ONE,
+            film: None,
             clearcoat: None,
             sheen: None,
             scattering: Scattering::Multiple,

@@ -39,7 +39,7 @@ pub use error::SessionError;
 pub use jobs::{JobId, JobProgress, JobStatus, Steps, Waker, guarded};
 pub use light_field::{
     ApertureCell, ApertureImage, DENSE_SAMPLE_BYTES, KeptVisibility, LightFieldStore, Modelled, ModelledRow,
-    TexelStatistics, bake, bake_unpacked, write_salf,
+    TexelStatistics, bake, bake_unpacked, keep_light_in, write_salf,
 };
 pub use output::{
     Aov, BlurHistogram, MOST_CELLS_A_SIDE, Reference, ReferenceKind, RenderCost, RenderOptions, Rendered,

@@ -29,6 +29,11 @@ impl Irradiance {
         Self { patches, direct, indirect }
     }
 
+    /// Irradiance/π by patch: direct and indirect. With the scene and the options it was solved with, all there is to keep.
+    pub fn values(&self) -> [&[Vec3]; 2] {
+        [&self.direct, &self.indirect]
+    }
+
     /// How many patches there are.
     pub fn len(&self) -> usize {
         self.direct.len()

@@ -1,7 +1,7 @@
 //! What a surface point is made of and how it lies, its textures looked up.
 
 use glam::{DVec2, DVec3, Vec3};
-use material::{Clearcoat, Frame, Scattering, Sheen, Surface};
+use material::{Clearcoat, Film, Frame, Scattering, Sheen, Surface};
 use scene::{Anisotropy, Scene, SurfacePoint, Workflow};
 
 /// Stands for an infinite index of refraction, which glTF writes as 0: a mirror.
@@ -96,6 +96,16 @@ fn surface(scene: &Scene, point: SurfacePoint, scattering: Scattering) -> Surfac
         diffuse_transmission: through.map_or(0.0, |through| scalar(&through.factor)),
         diffuse_transmission_color: through
             .map_or(DVec3::ONE, |through| color(scene.tint_at(&through.color, point))),
+        film: material.iridescence.as_ref().map(|film| {
+            let [least, most] = film.thickness.map(f64::from);
+            let share =
+                film.thickness_texture.map_or(1.0, |texture| f64::from(scene.texture_at(&texture, point).y));
+            Film {
+                factor: scalar(&film.factor),
+                ior: f64::from(film.ior),
+                thickness: least + (most - least) * share,
+            }
+        }),
         clearcoat: material
             .clearcoat
             .as_ref()

@@ -13,6 +13,7 @@ use crate::transport::{Found, Transport};
 use glam::Vec3;
 use progress::{Cancelled, Progress};
 use rayon::prelude::*;
+use scene::Scene;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Passes after which light has died away, whatever the albedo (0.9⁶⁴ is a thousandth).
@@ -58,6 +59,19 @@ impl Irradiance {
         let patches = Patches::of(transport.scene(), options.patches);
         let (direct, indirect) = solve(transport, &patches, options.rays.max(1), progress)?;
         Ok(Self::new(patches, direct, indirect))
+    }
+
+    /// The irradiance whose values ([`Irradiance::values`]) were kept, of the same scene and options; `None` if they cannot be its.
+    pub fn of_values(
+        scene: &Scene,
+        options: IrradianceOptions,
+        [direct, indirect]: [Vec<Vec3>; 2],
+    ) -> Option<Self> {
+        let patches = Patches::of(scene, options.patches);
+        let fits = |values: &[Vec3]| {
+            values.len() == patches.all().len() && values.iter().all(|value| value.is_finite())
+        };
+        (fits(&direct) && fits(&indirect)).then(|| Self::new(patches, direct, indirect))
     }
 }
 

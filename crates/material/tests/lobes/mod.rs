@@ -1,7 +1,7 @@
 //! Lobes to be tested, directions to test them in, and numbers to draw with.
 
 use glam::DVec3;
-use material::{Clearcoat, Interface, Sheen, Surface};
+use material::{Clearcoat, Film, Interface, Sheen, Surface};
 
 /// A dielectric of this roughness.
 pub fn plastic(roughness: f64) -> Surface {
@@ -23,6 +23,7 @@ pub fn all() -> Vec<(&'static str, Surface)> {
     let coat = |roughness| Some(Clearcoat { factor: 0.8, roughness });
     let cloth = Some(Sheen { color: DVec3::new(0.9, 0.5, 0.2), roughness: 0.4 });
     let color = DVec3::new(0.8, 0.4, 0.1);
+    let soap = Some(Film { factor: 0.9, ior: 1.4, thickness: 380.0 });
     vec![
         ("rough metal", metal(0.6)),
         ("smooth gold", Surface { base_color: color, ..metal(0.35) }),
@@ -39,6 +40,8 @@ pub fn all() -> Vec<(&'static str, Surface)> {
         ("thin pane", Surface { transmission: 0.7, base_color: color, ..plastic(0.5) }),
         ("leaf", Surface { diffuse_transmission: 0.6, diffuse_transmission_color: color, ..plastic(0.6) }),
         ("lacquer", Surface { clearcoat: coat(0.35), base_color: color, ..metal(0.5) }),
+        ("soap on plastic", Surface { film: soap, base_color: color, ..plastic(0.4) }),
+        ("anodised metal", Surface { film: soap, base_color: color, ..metal(0.5) }),
         ("velvet", Surface { sheen: cloth, base_color: color, ..plastic(0.9) }),
         (
             "all at once",

@@ -15,6 +15,7 @@ mod undo;
 
 pub use camera_edit::CameraEdit;
 pub use input::{CameraChoice, Input, InputKind};
+pub(crate) use light_hash::light_hash;
 pub use open_document::Document;
 pub use picking::{SurfaceHit, chief_ray, pick, view_ray};
 pub use scene_camera::camera_of;

@@ -71,8 +71,8 @@ impl FieldWatch {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
     use super::super::kept_light::LightQuality;
+    use super::*;
     use crate::document::Document;
     use crate::light_field::light;
     use progress::Unwatched;

@@ -3,9 +3,11 @@
 //! It is solved for on a thread of its own, which goes on whoever stops waiting, as long as the scene is open: roughly first, for the
 //! pictures that come at once, then well.
 
+use super::light_file;
 use progress::{Cancelled, Progress};
 use scene::World;
 use slf::{Irradiance, IrradianceOptions, Scattering, Transport, TransportOptions};
+use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError, Weak};
 use std::time::Duration;
@@ -20,6 +22,14 @@ struct Kept {
     /// Bits of an f32.
     done: AtomicU32,
     has_failed: AtomicBool,
+}
+
+/// Where light is kept from one run of the program to the next.
+static FOLDER: OnceLock<PathBuf> = OnceLock::new();
+
+/// Has light kept in a folder from one run of the program to the next; the first one that is named counts.
+pub fn keep_light_in(folder: PathBuf) {
+    let _ = FOLDER.set(folder);
 }
 
 /// Worlds that are kept of one scene: that one looks at, and that one turns back to.
@@ -120,9 +130,19 @@ fn begun(tracer: &Arc<Tracer>, world: &World) -> Arc<Kept> {
 fn solve(kept: &Kept, tracer: Arc<Tracer>) {
     let watch = Watch { kept, tracer: tracer.clone() };
     let work = || {
+        let options = IrradianceOptions::default();
+        let file =
+            FOLDER.get().and_then(|folder| light_file::path(folder, tracer.scene(), &kept.world, options));
+        if let Some(found) = file.as_ref().and_then(|file| light_file::read(file, tracer.scene(), options)) {
+            let _ = kept.irradiance.set(Arc::new(found));
+            return Ok(());
+        }
         let transport = transport(&tracer, &kept.world);
         let _ = kept.rough.set(Arc::new(Irradiance::solve(&transport, ROUGH, &watch)?));
-        let fine = Irradiance::solve(&transport, IrradianceOptions::default(), &watch)?;
+        let fine = Irradiance::solve(&transport, options, &watch)?;
+        if let Some(file) = &file {
+            light_file::write(file, &fine);
+        }
         let _ = kept.irradiance.set(Arc::new(fine));
         Ok::<_, Cancelled>(())
     };

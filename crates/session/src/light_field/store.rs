@@ -113,7 +113,7 @@ impl LightFieldStore {
 }
 
 /// Tells this build of the program from others, which may bake otherwise.
-fn build() -> Option<String> {
+pub(super) fn build() -> Option<String> {
     let program = std::env::current_exe().and_then(std::fs::metadata).ok()?;
     let modified = program.modified().ok()?.duration_since(SystemTime::UNIX_EPOCH).ok()?;
     Some(format!("{} {modified:?}", program.len()))

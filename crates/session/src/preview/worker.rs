@@ -13,7 +13,9 @@ use crate::display::Source;
 use crate::document::Stage;
 use crate::error::SessionError;
 use crate::jobs::guarded;
-use crate::light_field::{Brought, FieldOptions, LightField, LightFieldStore, LightQuality, Modelled, Plan, light};
+use crate::light_field::{
+    Brought, FieldOptions, LightField, LightFieldStore, LightQuality, Modelled, Plan, light,
+};
 use baselines::FirstHits;
 use focus::{Focus, FocusMap};
 use lens::Camera;
