@@ -32,6 +32,15 @@ pub(crate) struct LightSample {
     pub density: Option<f64>,
 }
 
+/// How often lights are drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Draws {
+    /// Draws in all.
+    pub all: u32,
+    /// The first of them, in which punctual lights are among them.
+    pub punctual: u32,
+}
+
 /// So many punctual lights are all asked; of more one is drawn by what it would send.
 const FEW: usize = 3;
 
@@ -48,22 +57,21 @@ impl Lights {
         !self.emitters.is_empty()
     }
 
-    /// How often lights are to be drawn, where so often would do for lamps and sky: once where there is nothing to draw.
-    pub fn draws(&self, wanted: u32) -> u32 {
-        let is_even = self.environment.is_none() && self.emitters.is_empty();
-        match (is_even, self.punctual <= FEW) {
-            (true, true) => 1,
-            (true, false) => wanted.min(4),
-            (false, _) => wanted,
-        }
+    /// How often lamps and sky are to be drawn, and how often punctual lights, where so often would do: what is the same every time
+    /// is asked once.
+    pub fn draws(&self, wanted: u32) -> Draws {
+        let has_areas = self.environment.is_some() || !self.emitters.is_empty();
+        let punctual = if self.punctual <= FEW { 1 } else { wanted.min(4) };
+        Draws { all: if has_areas { wanted.max(punctual) } else { punctual }, punctual }
     }
 
-    /// Draws lights for a position, each kind once; `draw` gives uniform numbers.
+    /// Draws lights for a position, each kind once, punctual ones if they are wanted; `draw` gives uniform numbers.
     pub fn sample(
         &self,
         scene: &Scene,
         world: &World,
         position: DVec3,
+        with_punctual: bool,
         mut draw: impl FnMut() -> f64,
         mut visit: impl FnMut(LightSample),
     ) {
@@ -85,6 +93,9 @@ impl Lights {
                     density: Some(sample.density),
                 });
             }
+        }
+        if !with_punctual {
+            return;
         }
         let near = |light: &scene::Light| light.kind != scene::LightKind::Directional;
         let arrivals = || {

@@ -12,6 +12,8 @@ pub(crate) struct PathRandom {
     index: u32,
     seed: u32,
     dimension: u32,
+    /// The four dimensions that this one is among.
+    four: [f32; 4],
     state: u64,
 }
 
@@ -30,14 +32,19 @@ impl PathRandom {
             index: index & 0xffff,
             seed: scramble as u32,
             dimension: 0,
+            four: [0.0; 4],
             state: mix(seed ^ u64::from(index) << 32),
         }
     }
 
     pub fn next(&mut self) -> f64 {
         if self.dimension < SPREAD {
+            let within = self.dimension % 4;
+            if within == 0 {
+                self.four = sobol_burley::sample_4d(self.index, self.dimension / 4, self.seed);
+            }
             self.dimension += 1;
-            return f64::from(sobol_burley::sample(self.index, self.dimension - 1, self.seed));
+            return f64::from(self.four[within as usize]);
         }
         self.state = mix(self.state);
         (self.state >> 11) as f64 / (1u64 << 53) as f64

@@ -212,19 +212,25 @@ impl Transport {
         let is_front = at.frame.geometric.dot(outgoing) >= 0.0;
         let paths = self.options.paths.max(1);
         let draws = self.lights.draws(self.options.light_samples.max(1));
-        let lights_a_path = f64::from(draws) / f64::from(paths);
+        let lights_a_path = f64::from(draws.all) / f64::from(paths);
+        let of_punctual = f64::from(draws.all) / f64::from(draws.punctual);
         let bsdf = Bsdf::new(&at.surface, at.frame, self.media.interface(at.material, &inside, is_front));
         let lobes = bsdf.toward(outgoing);
         let mut drawn = Split::default();
-        for index in 0..draws {
+        for index in 0..draws.all {
             let mut path = Path { random: PathRandom::new(point, eye, index), inside, lights_a_path };
-            drawn += self.direct_by(point, at, &mut path, |sample| {
+            drawn += self.direct_by(point, at, &mut path, index < draws.punctual, |sample| {
                 let (Parts { spread, sharp }, own) = lobes.scatter_parts(sample.from);
-                let share = sample.density.map_or(1.0, |density| heuristic(density * lights_a_path, own));
+                let share =
+                    sample.density.map_or(of_punctual, |density| heuristic(density * lights_a_path, own));
                 // Of spread light only lamps are looked for in two ways.
-                let of_spread = sample.density.filter(|_| sample.is_near).map_or(1.0, |density| {
-                    heuristic(density * lights_a_path, lobes.spread_density(sample.from))
-                });
+                let of_spread = match sample.density {
+                    None => of_punctual,
+                    Some(density) if sample.is_near => {
+                        heuristic(density * lights_a_path, lobes.spread_density(sample.from))
+                    }
+                    Some(_) => 1.0,
+                };
                 Split { own: spread * of_spread + sharp.own * share, carried: sharp.carried * share }
             });
         }
@@ -243,7 +249,7 @@ impl Transport {
                 }
             };
         }
-        drawn * (1.0 / f64::from(draws)) + found * (1.0 / f64::from(paths))
+        drawn * (1.0 / f64::from(draws.all)) + found * (1.0 / f64::from(paths))
     }
 
     /// What spread lobes send of lamps, as one direction finds them that is drawn by how the surface scatters.
@@ -317,7 +323,7 @@ impl Transport {
         lobes: &Toward<'_, '_>,
         path: &mut Path,
     ) -> Split {
-        self.direct_by(point, at, path, |sample| {
+        self.direct_by(point, at, path, true, |sample| {
             let (sent, own) = lobes.scatter(sample.from);
             sent * sample.density.map_or(1.0, |density| heuristic(density, own))
         })
@@ -329,6 +335,7 @@ impl Transport {
         point: SurfacePoint,
         at: &MaterialPoint,
         path: &mut Path,
+        with_punctual: bool,
         send: impl Fn(&LightSample) -> Split,
     ) -> Split {
         let mut sum = Split::default();
@@ -337,6 +344,7 @@ impl Transport {
             self.scene(),
             &self.world,
             at.position,
+            with_punctual,
             || random.next(),
             |sample: LightSample| {
                 if sample.light == Vec3::ZERO {
