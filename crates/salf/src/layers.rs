@@ -209,7 +209,8 @@ impl Group {
     /// Its samples, as if each saw the whole aperture: one with its mean radiance over its share of the cell; where that
     /// varies, one a quadrant.
     pub fn samples(&self, radiance: &dyn Radiance, view: &View, cell: Cell) -> Vec<Found> {
-        let emitted: Vec<Vec3> = self.members.iter().map(|m| toward_aperture(radiance, view, m)).collect();
+        let emitted: Vec<Vec3> =
+            self.members.iter().map(|m| toward_aperture(radiance, view, m, self.members.len())).collect();
         let quadrants = self.quadrants();
         let mean = |rays: &Range<usize>| emitted[rays.clone()].iter().sum::<Vec3>() / rays.len() as f32;
         let low = quadrants.iter().map(mean).fold(Vec3::INFINITY, Vec3::min);
@@ -269,9 +270,10 @@ fn mean_inverse_depth(members: &[Member]) -> f64 {
     members.iter().map(|m| m.inverse_depth).sum::<f64>() / members.len() as f64
 }
 
-fn toward_aperture(radiance: &dyn Radiance, view: &View, member: &Member) -> Vec3 {
+/// What a member sends to the aperture's middle; it is one of `count` whose mean is wanted.
+fn toward_aperture(radiance: &dyn Radiance, view: &View, member: &Member, count: usize) -> Vec3 {
     match member.point {
-        Some(point) => radiance.toward(point, view.eye),
+        Some(point) => radiance.leaving_among(point, view.eye, count).total(),
         None => radiance.from_infinity(view.chief_ray(member.pixel).direction.normalize()),
     }
 }

@@ -16,7 +16,7 @@ use trace::{Hit, Leaving, Radiance, Tracer};
 /// How light is gathered.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TransportOptions {
-    /// Paths for each point and eye. Their noise is that of the picture where each surface point is asked once; where many points
+    /// Paths for each point and eye, fewer where the mean of many points is wanted ([`Radiance::leaving_among`]). Their noise is that of the picture where each surface point is asked once; where many points
     /// fall into a pixel, as in the ground truth, one will do.
     pub paths: u32,
     /// Lights that are drawn for each point and eye, where irradiance is known; elsewhere each path draws one.
@@ -206,12 +206,12 @@ impl Transport {
         at: &MaterialPoint,
         eye: DVec3,
         inside: Inside,
-        irradiance: &Irradiance,
+        (irradiance, count): (&Irradiance, usize),
     ) -> Split {
         let outgoing = (eye - at.position).normalize_or_zero();
         let is_front = at.frame.geometric.dot(outgoing) >= 0.0;
-        let paths = self.options.paths.max(1);
-        let draws = self.lights.draws(self.options.light_samples.max(1));
+        let paths = among(self.options.paths, count);
+        let draws = self.lights.draws(among(self.options.light_samples, count));
         let lights_a_path = f64::from(draws.all) / f64::from(paths);
         let of_punctual = f64::from(draws.all) / f64::from(draws.punctual);
         let bsdf = Bsdf::new(&at.surface, at.frame, self.media.interface(at.material, &inside, is_front));
@@ -482,6 +482,12 @@ impl Known<'_> {
     }
 }
 
+/// How many of `wanted` each of so many points takes, whose mean is wanted: as many as it would alone, up to four points.
+fn among(wanted: u32, count: usize) -> u32 {
+    const ALONE: u32 = 4;
+    (wanted * ALONE).div_ceil(count.max(ALONE as usize) as u32).max(1)
+}
+
 /// What is left of a split light.
 fn split(light: Split, share: DVec3) -> Split {
     Split { own: light.own * share, carried: light.carried * share }
@@ -496,6 +502,10 @@ fn heuristic(own: f64, other: f64) -> f64 {
 
 impl Radiance for Transport {
     fn leaving(&self, point: SurfacePoint, eye: DVec3) -> Leaving {
+        self.leaving_among(point, eye, 1)
+    }
+
+    fn leaving_among(&self, point: SurfacePoint, eye: DVec3, count: usize) -> Leaving {
         let scene = self.scene();
         let outgoing = (eye - point.position(scene)).normalize_or_zero();
         let emitted = emitted(scene, point, outgoing);
@@ -513,11 +523,11 @@ impl Radiance for Transport {
         let scattered = match known {
             Some((known, light)) => {
                 let told = light.as_dvec3() * lobes.spread_albedo();
-                self.scattered_beside(point, &at, eye, inside, known)
+                self.scattered_beside(point, &at, eye, inside, (known, count))
                     + Split { own: told, carried: DVec3::ZERO }
             }
             None => {
-                let paths = self.options.paths.max(1);
+                let paths = among(self.options.paths, count);
                 let one = |index| {
                     let random = PathRandom::new(point, eye, index);
                     let mut path = Path { random, inside, lights_a_path: 1.0 };

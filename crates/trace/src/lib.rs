@@ -35,6 +35,11 @@ pub trait Radiance: Sync {
     #[allow(clippy::wrong_self_convention, reason = "light comes from infinity; nothing is converted")]
     fn from_infinity(&self, direction: DVec3) -> Vec3;
 
+    /// The same of one of `count` points whose mean is wanted: each may be told less well.
+    fn leaving_among(&self, point: SurfacePoint, eye: DVec3, _count: usize) -> Leaving {
+        self.leaving(point, eye)
+    }
+
     /// All of [`Self::leaving`].
     fn toward(&self, point: SurfacePoint, eye: DVec3) -> Vec3 {
         self.leaving(point, eye).total()
