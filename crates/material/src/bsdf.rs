@@ -152,6 +152,12 @@ impl<'a> Bsdf<'a> {
         self.surface.film.map_or(self.f0, |film| self.f0.map(|f0| film.f0(f0, cos)))
     }
 
+    /// The same for all facets that are seen from a direction: rough ones show themselves less askew than the surface does.
+    fn f0_toward(&self, w: DVec3) -> [DVec3; 2] {
+        let alpha = if self.ggx.is_smooth() { 0.0 } else { self.ggx.mean_alpha() };
+        self.f0_at((w.z.abs() + alpha) / (1.0 + alpha))
+    }
+
     /// The mean of what `of` says of cosines over the cosine-weighted hemisphere.
     fn mean_of(of: impl Fn(f64) -> DVec3) -> DVec3 {
         const STEPS: usize = 12;
@@ -179,11 +185,12 @@ impl<'a> Bsdf<'a> {
     }
 
     fn side(&self, w: DVec3) -> Side {
-        let (mut shares, mut beneath, f0) = (DVec2::ZERO, DVec3::ONE, self.f0_at(w.z.abs()));
+        let (mut shares, mut beneath, f0) = (DVec2::ZERO, DVec3::ONE, self.f0_toward(w));
         if let Some(means) = &self.means {
             shares = self.gloss_shares(w);
             let multiple = means.multiple[1] * self.lost(shares);
-            beneath -= f0[1] * shares.x + self.surface.specular * shares.y + multiple;
+            let back = f0[1] * shares.x + self.surface.specular * shares.y + multiple;
+            beneath = (DVec3::ONE - back).clamp(DVec3::ZERO, DVec3::ONE);
         }
         Side { w, f0, shares, beneath, coat: self.coat_albedo(w), sheen: self.sheen_albedo(w) }
     }
@@ -274,10 +281,14 @@ impl<'a> Bsdf<'a> {
         let (under_coat, under_sheen) = (1.0 - side.coat, 1.0 - side.sheen);
         let shares = side.shares;
         let lost = self.lost(shares);
-        let mut all = Split::mirrored(side.f0[0] * shares.x + shares.y, self.ggx.mean_alpha()) * metal;
+        let mut all =
+            Split::mirrored((side.f0[0] * shares.x + shares.y).max(DVec3::ZERO), self.ggx.mean_alpha())
+                * metal;
         all += Split::own(self.multiple(0) * lost) * metal;
         let f90 = DVec3::splat(self.surface.specular);
-        all += Split::mirrored(side.f0[1] * shares.x + f90 * shares.y, self.ggx.mean_alpha()) * dielectric;
+        all +=
+            Split::mirrored((side.f0[1] * shares.x + f90 * shares.y).max(DVec3::ZERO), self.ggx.mean_alpha())
+                * dielectric;
         all += Split::own(self.multiple(1) * lost) * dielectric;
         let ground = side.beneath;
         let share = self.surface.diffuse_transmission;
@@ -422,7 +433,9 @@ impl<'a> Bsdf<'a> {
         let [metal, dielectric, _] = self.shares;
         let f90 = DVec3::splat(self.surface.specular);
         let [of_metal, of_dielectric] = self.f0_at(cos);
-        schlick(of_metal, DVec3::ONE, cos) * metal + schlick(of_dielectric, f90, cos) * dielectric
+        let mirrored =
+            schlick(of_metal, DVec3::ONE, cos) * metal + schlick(of_dielectric, f90, cos) * dielectric;
+        mirrored.max(DVec3::ZERO)
     }
 
     /// The coupling of a ground beneath the dielectric's surface.

@@ -155,8 +155,10 @@ fn nothing_sends_more_than_it_gets_and_the_closed_form_agrees() {
             assert!(sent.max_element() < 1.005 + 4.0 * error, "{name}, cos {cos}: {sent} ± {error}");
             let told = bsdf.albedo(toward(cos, 0.7)).total();
             let off = (told - sent).abs().max_element();
-            // Coat and sheen lose a little that the closed form does not know; rough glass mirrors by its mean angle.
-            assert!(off < 0.12, "{name}, cos {cos}: told {told}, sent {sent}");
+            // Coat and sheen lose a little that the closed form does not know; rough glass mirrors by its mean angle, and so does a
+            // film, whose colours change fast at grazing angles.
+            let most = if surface.film.is_some() { 0.2 } else { 0.12 };
+            assert!(off < most, "{name}, cos {cos}: told {told}, sent {sent}");
             let [own, carried] = bsdf.coverage_shares(toward(cos, 0.7));
             assert!((own + carried - 1.0).abs() < 1e-12 && own >= 0.0 && carried >= 0.0);
         }
