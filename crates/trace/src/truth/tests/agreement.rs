@@ -156,6 +156,49 @@ fn both_estimators_agree() {
     assert!(shares.iter().all(|(share, _)| *share >= SHARE), "{shares:?}");
 }
 
+/// The same light, a share of it carried.
+struct Mirroring(Shaded, f32);
+
+impl Radiance for Mirroring {
+    fn leaving(&self, point: SurfacePoint, eye: DVec3) -> Leaving {
+        let (all, share) = (self.0.toward(point, eye), self.1);
+        Leaving { own: all * (1.0 - share), carried: all * share, carried_share: share }
+    }
+    fn from_infinity(&self, direction: DVec3) -> Vec3 {
+        self.0.from_infinity(direction)
+    }
+}
+
+/// An estimate of light of which a share is carried; the sky is not painted.
+fn carrying(share: f32, focus: &[FocusOffset; 7], estimator: Estimator, seed: u32) -> Estimate {
+    let (camera, options) = small(128);
+    let scene = stage();
+    let tracer = Tracer::new(scene.clone());
+    let focus = ByPart(scene.clone(), focus.to_vec());
+    let light = Mirroring(Shaded(scene), share);
+    render(&tracer, &light, &focus, &camera, &TruthOptions { estimator, seed, ..options }, &Unwatched)
+        .unwrap()
+}
+
+#[test]
+fn carried_light_keeps_the_focus_of_the_lens() {
+    let [(_, standard), .., (_, painted)] = focuses();
+    // Half of it carried: both estimators part it alike.
+    let [a, b] = [(Estimator::Sensor, 1), (Estimator::Surface, 2)]
+        .map(|(estimator, seed)| carrying(0.5, &painted, estimator, seed));
+    let share = share_in_agreement(&a, &b);
+    assert!(share >= SHARE_OF_FEW, "{share}");
+    // All of it: paint changes nothing, where nothing else is painted.
+    let unpainted = carrying(0.0, &standard, Estimator::Sensor, 5);
+    let mirrored =
+        |carried| share_in_agreement(&carrying(carried, &painted, Estimator::Sensor, 4), &unpainted);
+    let share = mirrored(1.0);
+    assert!(share >= SHARE_OF_FEW, "{share}");
+    // The control: its own light moves.
+    let share = mirrored(0.0);
+    assert!(share < 0.9, "{share}");
+}
+
 /// A bright square, whose level says how wide it is blurred.
 fn square() -> Arc<scene::Scene> {
     let square = rectangle(DVec3::new(-0.25, -0.25, -3.0), DVec3::X * 0.5, DVec3::Y * 0.5);
