@@ -7,6 +7,7 @@ use scene::{
 };
 use std::f64::consts::{FRAC_1_PI, PI};
 
+mod mirrors;
 mod rooms;
 
 fn grey() -> Material {

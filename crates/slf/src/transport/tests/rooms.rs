@@ -142,6 +142,47 @@ fn a_slab_of_glass_lets_through_what_its_faces_do() {
 }
 
 #[test]
+fn a_body_within_another_of_its_kind_is_not_seen() {
+    // Between equal media nothing is mirrored: a block in a block lets through what one block does, but for its own colour.
+    let body = |color: Vec3| Material {
+        transmission: Scalar::plain(1.0),
+        workflow: Workflow::MetallicRoughness { metallic: Scalar::plain(0.0), roughness: Scalar::plain(0.0) },
+        volume: Some(Volume { attenuation_color: color, attenuation_distance: 1.0 }),
+        ..Material::default()
+    };
+    let scene = |inner_ior: f32| {
+        let mut scene =
+            slab(1.5, Some(Volume { attenuation_color: Vec3::ONE, attenuation_distance: 1.0 }), 2.0);
+        let inner = Material { ior: inner_ior, ..body(Vec3::new(0.5, 1.0, 1.0)) };
+        let all = outside(DVec3::new(-8.0, 1.5, -8.0), DVec3::new(8.0, 2.0, 8.0), &inner);
+        let inner = scene_of(&all, &[]);
+        let (vertices, parts) = (scene.positions.len() as u32, scene.parts.len() as u32);
+        let triangles = scene.triangles.len() as u32;
+        scene.positions.extend(inner.positions);
+        scene.uv[0].extend(&inner.uv[0]);
+        scene.triangles.extend(inner.triangles.iter().map(|triangle| Triangle {
+            vertices: triangle.vertices.map(|vertex| vertex + vertices),
+            part: triangle.part + parts,
+        }));
+        scene.parts.extend(inner.parts.into_iter().map(|part| Part {
+            material: part.material + parts,
+            triangles: part.triangles.start + triangles..part.triangles.end + triangles,
+            ..part
+        }));
+        scene.materials.extend(inner.materials);
+        scene
+    };
+    let through = |ior| transport(scene(ior), dark(), 1 << 14).toward(ON_SLAB, FAR_ABOVE);
+    let alike = through(1.5);
+    assert!((alike.y - 0.96 / 1.04).abs() < 4e-3, "{alike}");
+    // Red is lost in the inner body alone, over half a unit.
+    assert!((alike.x / alike.y - 0.5f32.sqrt()).abs() < 5e-3, "{alike}");
+    // The control: another medium mirrors where it begins and ends.
+    let other = through(2.4);
+    assert!(other.y < alike.y - 0.05, "{other}");
+}
+
+#[test]
 fn what_is_known_agrees_with_whole_paths() {
     // A room with a lamp, a matte box and a box of rough metal.
     let white = Material { base_color: Vec4::new(0.7, 0.6, 0.5, 1.0), ..Material::of_lambert() };
