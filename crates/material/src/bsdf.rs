@@ -615,6 +615,11 @@ impl Toward<'_, '_> {
         (weight.total() != DVec3::ZERO).then_some(Scattered { weight, ..scattered })
     }
 
+    /// The normal as it is shaded, on the eye's side.
+    pub fn normal(&self) -> DVec3 {
+        self.seen.frame.normal
+    }
+
     /// [`Bsdf::coverage_shares`].
     pub fn coverage_shares(&self) -> [f64; 2] {
         self.bsdf.shares_of(self.bsdf.albedo_of(&self.seen))

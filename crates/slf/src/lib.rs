@@ -1,7 +1,7 @@
 //! The surface light field: radiance leaving a surface point.
 //!
 //! [`Transport`] traces it by paths. `material_point` looks up what a point is made of; `lights` draws what may shine on it:
-//! `punctual` (the laws of point, spot and directional lights), `emitters` (emissive surfaces), `environment_light`. `media` knows
+//! `punctual` (the laws of point, spot and directional lights), `emitters` (emissive surfaces), `environment_light` (and `open_sky`, what it sends where nothing shades). `media` knows
 //! what bodies a path is in; `path_random` has its numbers. [`Irradiance`] keeps what was scattered before, for
 //! every camera; `solving` finds it.
 
@@ -11,6 +11,7 @@ mod irradiance;
 mod lights;
 mod material_point;
 mod media;
+mod open_sky;
 mod path_random;
 mod punctual;
 mod solving;

@@ -10,6 +10,8 @@ use crate::path_random::PathRandom;
 use glam::{DVec3, Vec3};
 use material::{Bsdf, Frame, Parts, Scattered, Scattering, Split, Surface, Toward};
 use scene::{Scene, SurfacePoint, World};
+use std::cell::Cell;
+use std::f64::consts::PI;
 use std::sync::Arc;
 use trace::{Hit, Leaving, Radiance, Tracer};
 
@@ -216,11 +218,20 @@ impl Transport {
         let of_punctual = f64::from(draws.all) / f64::from(draws.punctual);
         let bsdf = Bsdf::new(&at.surface, at.frame, self.media.interface(at.material, &inside, is_front));
         let lobes = bsdf.toward(outgoing);
+        // What the sky would send, did nothing shade it, is known: it is put in for what its samples would find of it, so that they
+        // only tell what is missing (a control variate: the mean stays).
+        let normal = lobes.normal();
+        let unshaded = self.lights.unshaded(&self.world, normal);
+        let drawn_unshaded = Cell::new(DVec3::ZERO);
         let mut drawn = Split::default();
         for index in 0..draws.all {
             let mut path = Path { random: PathRandom::new(point, eye, index), inside, lights_a_path };
             drawn += self.direct_by(point, at, &mut path, index < draws.punctual, |sample| {
                 let (Parts { spread, sharp }, own) = lobes.scatter_parts(sample.from);
+                if sample.density.is_some() && !sample.is_near {
+                    let light = sample.light.as_dvec3() * normal.dot(sample.from).max(0.0);
+                    drawn_unshaded.set(drawn_unshaded.get() + light);
+                }
                 let share =
                     sample.density.map_or(of_punctual, |density| heuristic(density * lights_a_path, own));
                 // Of spread light only lamps are looked for in two ways.
@@ -235,6 +246,11 @@ impl Transport {
             });
         }
         let mut found = Split::default();
+        if let Some(unshaded) = unshaded {
+            let missing = drawn_unshaded.get() / (PI * f64::from(draws.all));
+            let known = lobes.spread_albedo() * (unshaded - missing) * f64::from(paths);
+            found += Split { own: known, carried: DVec3::ZERO };
+        }
         for index in 0..paths {
             let random = PathRandom::new(point, -eye, index);
             let mut path = Path { random, inside, lights_a_path };
