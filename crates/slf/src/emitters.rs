@@ -121,6 +121,6 @@ fn mean_emission(scene: &Scene, triangle: u32) -> f64 {
 }
 
 /// The unit square onto the triangle, area for area (Heitz 2019): no fold, so spread points stay spread.
-fn uniform_barycentric(u: DVec2) -> DVec2 {
+pub(crate) fn uniform_barycentric(u: DVec2) -> DVec2 {
     if u.y > u.x { DVec2::new(0.5 * u.x, u.y - 0.5 * u.x) } else { DVec2::new(u.x - 0.5 * u.y, 0.5 * u.y) }
 }

@@ -6,7 +6,6 @@
 //! of one texel is the corner of four cells: nowhere is the radiance more than four times what its cell was chosen for, so it
 //! neither vanishes nor sparkles. All that shines has a density above 0.
 
-use crate::open_sky::OpenSky;
 use glam::{DVec2, DVec3, Vec3};
 use scene::{Environment, EnvironmentMap, World};
 use std::f64::consts::TAU;
@@ -16,7 +15,6 @@ use std::sync::Arc;
 #[derive(Debug)]
 pub(crate) struct EnvironmentLight {
     map: Arc<EnvironmentMap>,
-    open_sky: OpenSky,
     /// The probabilities of rows of cells, summed up from the top; begins with 0.
     rows: Vec<f64>,
     /// Of each row those of its cells, given the row, summed up from the left; each begins with 0.
@@ -50,13 +48,7 @@ impl EnvironmentLight {
         }
         let rows_sum: f64 = rows.iter().sum();
         let rows = running(&rows);
-        (rows_sum > 0.0 && rows_sum.is_finite()).then(|| Self {
-            open_sky: OpenSky::of(map),
-            map: map.clone(),
-            rows,
-            cells,
-            sines,
-        })
+        (rows_sum > 0.0 && rows_sum.is_finite()).then(|| Self { map: map.clone(), rows, cells, sines })
     }
 
     /// The cells of a row, given the row.
@@ -76,11 +68,6 @@ impl EnvironmentLight {
         let flat = (1.0 - sine * sine).max(0.0).sqrt();
         let direction = DVec3::new(longitude.x * flat, sine, longitude.z * flat);
         (direction, self.density_of_cell(row, column))
-    }
-
-    /// Irradiance/π of a surface that nothing shades, by its normal in the environment's own axes.
-    pub fn unshaded(&self, normal: DVec3) -> DVec3 {
-        self.open_sky.at(normal)
     }
 
     /// The density, 1/sr, with which a direction is drawn.

@@ -2,16 +2,19 @@
 //!
 //! The surface is parted into patches ([`patches`]): what lies in one cell of a lattice, of one part, and faces about one way. Each
 //! knows the light that arrives at it: *direct* (of lights that are drawn, as far as nothing stands between) and *indirect* (all else),
-//! solved for bounce by bounce (`solving`). Between patches it is interpolated by place and normal, so that it has no borders but those of parts, and what
-//! faces away, a wall's other side above all, has no say. What a surface sends of it is its diffuse lobes' times E/π.
+//! solved for bounce by bounce (`solving`). Between patches it is interpolated by place and normal, so that it has no borders but
+//! those of parts, and what faces away, a wall's other side above all, has no say. What a surface sends of it is its diffuse lobes'
+//! times E/π. Beside them it knows what the sky sends where nothing shades (`open_sky`).
 
 mod lattice;
 pub(crate) mod patches;
 pub(crate) mod place;
 
-use glam::Vec3;
+use crate::open_sky::OpenSky;
+use glam::{DVec3, Vec3};
 use patches::Patches;
 use place::Place;
+use scene::World;
 
 /// Light that arrives at every patch of a scene's surface.
 #[derive(Debug)]
@@ -21,32 +24,23 @@ pub struct Irradiance {
     direct: Vec<Vec3>,
     /// And all other.
     indirect: Vec<Vec3>,
+    sky: Option<OpenSky>,
 }
 
 impl Irradiance {
-    /// Of what was solved for: irradiance/π by patch.
-    pub(crate) fn new(patches: Patches, direct: Vec<Vec3>, indirect: Vec<Vec3>) -> Self {
-        Self { patches, direct, indirect }
+    /// Of what was solved for: irradiance/π by patch, in a world.
+    pub(crate) fn new(patches: Patches, [direct, indirect]: [Vec<Vec3>; 2], world: &World) -> Self {
+        Self { patches, direct, indirect, sky: OpenSky::of(world) }
     }
 
-    /// Irradiance/π by patch: direct and indirect. With the scene and the options it was solved with, all there is to keep.
+    /// Irradiance/π by patch: direct and indirect. With scene, world and the options it was solved with, all there is to keep.
     pub fn values(&self) -> [&[Vec3]; 2] {
         [&self.direct, &self.indirect]
     }
 
-    /// How many patches there are.
-    pub fn len(&self) -> usize {
-        self.direct.len()
-    }
-
-    /// Whether there are none.
-    pub fn is_empty(&self) -> bool {
-        self.direct.is_empty()
-    }
-
-    /// Bytes it takes.
-    pub fn bytes(&self) -> usize {
-        self.patches.bytes() + 2 * size_of::<Vec3>() * self.len()
+    /// Irradiance/π that the environment would send, did nothing shade the surface of this normal; none where it is not drawn.
+    pub(crate) fn unshaded(&self, world: &World, normal: DVec3) -> Option<DVec3> {
+        self.sky.as_ref().map(|sky| sky.at(world, normal))
     }
 
     /// The side of a patch, world units.
@@ -56,19 +50,18 @@ impl Irradiance {
 
     /// Indirect irradiance/π at a place; `None` where no patch is.
     pub(crate) fn indirect(&self, place: &Place) -> Option<Vec3> {
-        let (mut sum, mut weights) = (Vec3::ZERO, 0.0);
-        self.patches.visit_around(place, |patch, weight| {
-            sum += self.indirect[patch as usize] * weight;
-            weights += weight;
-        });
-        (weights > 0.0).then(|| sum / weights)
+        self.interpolated(place, |patch| self.indirect[patch])
     }
 
     /// All irradiance/π at a place; `None` where no patch is.
     pub(crate) fn total(&self, place: &Place) -> Option<Vec3> {
+        self.interpolated(place, |patch| self.direct[patch] + self.indirect[patch])
+    }
+
+    fn interpolated(&self, place: &Place, of: impl Fn(usize) -> Vec3) -> Option<Vec3> {
         let (mut sum, mut weights) = (Vec3::ZERO, 0.0);
         self.patches.visit_around(place, |patch, weight| {
-            sum += (self.direct[patch as usize] + self.indirect[patch as usize]) * weight;
+            sum += of(patch as usize) * weight;
             weights += weight;
         });
         (weights > 0.0).then(|| sum / weights)

@@ -123,12 +123,6 @@ impl Lights {
         }
     }
 
-    /// Irradiance/π that the environment would send, did nothing shade the surface of this normal; none where it is not drawn.
-    pub fn unshaded(&self, world: &World, normal: DVec3) -> Option<DVec3> {
-        let environment = self.environment.as_ref()?;
-        Some(environment.unshaded(world.unturned(normal)) * f64::from(world.strength))
-    }
-
     /// The density, 1/sr, with which [`Self::sample`] draws a direction (unit) from the environment.
     pub fn density_of_environment(&self, world: &World, direction: DVec3) -> f64 {
         self.environment.as_ref().map_or(0.0, |environment| environment.density(world.unturned(direction)))

@@ -1,11 +1,9 @@
 //! What a surface point is made of and how it lies, its textures looked up.
 
+use crate::media::ior_of;
 use glam::{DVec2, DVec3, Vec3};
 use material::{Clearcoat, Film, Frame, Scattering, Sheen, Surface};
 use scene::{Anisotropy, Scene, SurfacePoint, Workflow};
-
-/// Stands for an infinite index of refraction, which glTF writes as 0: a mirror.
-const INFINITE_IOR: f64 = 1e6;
 
 /// A surface point as light finds it.
 #[derive(Clone, Copy, Debug)]
@@ -73,7 +71,7 @@ fn surface(scene: &Scene, point: SurfacePoint, scattering: Scattering) -> Surfac
             base_color,
             metallic: scalar(metallic),
             roughness: scalar(roughness),
-            ior: if material.ior == 0.0 { INFINITE_IOR } else { f64::from(material.ior) },
+            ior: ior_of(material),
             specular: scalar(&material.specular),
             specular_color: scene.tint_at(&material.specular_color, point).as_dvec3(),
             ..Surface::default()

@@ -2,9 +2,17 @@
 
 use glam::DVec3;
 use material::{Interface, attenuation, dispersed_ior};
-use scene::Scene;
+use scene::{Material, Scene};
 use std::collections::HashMap;
 use std::sync::OnceLock;
+
+/// Stands for an infinite index of refraction, which glTF writes as 0: a mirror.
+const INFINITE_IOR: f64 = 1e6;
+
+/// The index of refraction of a material.
+pub(crate) fn ior_of(material: &Material) -> f64 {
+    if material.ior == 0.0 { INFINITE_IOR } else { f64::from(material.ior) }
+}
 
 /// Wavelengths that stand for red, green and blue where glass disperses, nm: the peaks of sRGB's primaries.
 const WAVELENGTHS: [f64; 3] = [611.4, 549.1, 464.2];
@@ -58,7 +66,7 @@ impl Media {
             .materials
             .iter()
             .map(|material| {
-                let ior = if material.ior == 0.0 { 1e6 } else { f64::from(material.ior) };
+                let ior = ior_of(material);
                 let dispersion = f64::from(material.dispersion);
                 let is_solid = material.volume.is_some() && material.transmission.factor > 0.0;
                 let plain = number(ior);

@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
-use scene::EnvironmentMap;
+use scene::{Environment, EnvironmentMap, World};
 use std::f64::consts::{PI, TAU};
 
 /// Irradiance/π by the normal, over longitude and latitude as an environment's picture has them.
@@ -17,7 +17,15 @@ const NORMALS: [u32; 2] = [256, 128];
 const CELLS: [usize; 2] = [128, 64];
 
 impl OpenSky {
-    pub fn of(map: &EnvironmentMap) -> Self {
+    /// None where the world is dark or the same everywhere: such light is not drawn.
+    pub fn of(world: &World) -> Option<Self> {
+        match &world.environment {
+            Environment::Map(map) if world.strength > 0.0 => Some(Self::of_map(map)),
+            _ => None,
+        }
+    }
+
+    fn of_map(map: &EnvironmentMap) -> Self {
         let cells = cells(map);
         let mut values =
             EnvironmentMap { name: String::new(), width: NORMALS[0], height: NORMALS[1], texels: Vec::new() };
@@ -36,9 +44,9 @@ impl OpenSky {
         Self { values }
     }
 
-    /// At a normal (unit) in the environment's own axes.
-    pub fn at(&self, normal: DVec3) -> DVec3 {
-        self.values.radiance(normal).as_dvec3()
+    /// At a normal (unit) in the world that it was made of.
+    pub fn at(&self, world: &World, normal: DVec3) -> DVec3 {
+        self.values.radiance(world.unturned(normal)).as_dvec3() * f64::from(world.strength)
     }
 }
 
@@ -82,7 +90,10 @@ mod tests {
             (0..width * height).map(|k| if k / width < height / 2 { [1.0; 3] } else { [0.25; 3] }).collect();
         texels[(16 * width + 70) as usize] = [2000.0; 3];
         let map = EnvironmentMap { name: "sky".into(), width, height, texels };
-        let sky = OpenSky::of(&map);
+        let world =
+            World { environment: Environment::Map(map.clone().into()), ..World::uniform(glam::Vec3::ZERO) };
+        let sky = OpenSky::of(&world).unwrap();
+        assert!(OpenSky::of(&World::uniform(glam::Vec3::ONE)).is_none());
         let sun = map.direction_at(DVec2::new(70.5, 16.5));
         let texel = (PI / f64::from(height)).powi(2) * map.latitude(16.5).cos();
         for normal in
@@ -91,7 +102,7 @@ mod tests {
             let normal = normal.normalize();
             let share = (1.0 + normal.y) / 2.0;
             let expected = share + 0.25 * (1.0 - share) + 1999.0 * texel * normal.dot(sun).max(0.0) / PI;
-            let found = sky.at(normal).x;
+            let found = sky.at(&world, normal).x;
             assert!((found / expected - 1.0).abs() < 0.012, "{normal}: {found}, not {expected}");
         }
     }

@@ -13,7 +13,7 @@ use crate::transport::{Found, Transport};
 use glam::Vec3;
 use progress::{Cancelled, Progress};
 use rayon::prelude::*;
-use scene::Scene;
+use scene::{Scene, World};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Passes after which light has died away, whatever the albedo (0.9⁶⁴ is a thousandth).
@@ -57,21 +57,23 @@ impl Irradiance {
         progress: &dyn Progress,
     ) -> Result<Self, Cancelled> {
         let patches = Patches::of(transport.scene(), options.patches);
-        let (direct, indirect) = solve(transport, &patches, options.rays.max(1), progress)?;
-        Ok(Self::new(patches, direct, indirect))
+        let values = solve(transport, &patches, options.rays.max(1), progress)?;
+        Ok(Self::new(patches, values, transport.world()))
     }
 
-    /// The irradiance whose values ([`Irradiance::values`]) were kept, of the same scene and options; `None` if they cannot be its.
+    /// The irradiance whose values ([`Irradiance::values`]) were kept, of the same scene, world and options; `None` if they cannot be
+    /// its.
     pub fn of_values(
         scene: &Scene,
+        world: &World,
         options: IrradianceOptions,
-        [direct, indirect]: [Vec<Vec3>; 2],
+        values: [Vec<Vec3>; 2],
     ) -> Option<Self> {
         let patches = Patches::of(scene, options.patches);
-        let fits = |values: &[Vec3]| {
+        let fits = |values: &Vec<Vec3>| {
             values.len() == patches.all().len() && values.iter().all(|value| value.is_finite())
         };
-        (fits(&direct) && fits(&indirect)).then(|| Self::new(patches, direct, indirect))
+        values.iter().all(fits).then(|| Self::new(patches, values, world))
     }
 }
 
@@ -81,7 +83,7 @@ fn solve(
     patches: &Patches,
     rays: u32,
     progress: &dyn Progress,
-) -> Result<(Vec<Vec3>, Vec<Vec3>), Cancelled> {
+) -> Result<[Vec<Vec3>; 2], Cancelled> {
     let done = AtomicUsize::new(0);
     let all = patches.all();
     let gathered: Vec<Gathered> = all
@@ -95,7 +97,7 @@ fn solve(
         .collect::<Result<_, Cancelled>>()?;
     let direct: Vec<Vec3> = gathered.iter().map(|found| found.direct).collect();
     let mut indirect: Vec<Vec3> = gathered.iter().map(|found| found.indirect).collect();
-    let passes = transport.bounces().map_or(PASSES, |bounces| bounces.min(PASSES));
+    let passes = transport.world().bounces.map_or(PASSES, |bounces| bounces.min(PASSES));
     for _ in 0..passes {
         progress.check()?;
         let next: Vec<Vec3> = gathered
@@ -116,7 +118,7 @@ fn solve(
         }
     }
     let smooth = (0..all.len()).into_par_iter().map(|at| joined(patches, &gathered, &indirect, at)).collect();
-    Ok((direct, smooth))
+    Ok([direct, smooth])
 }
 
 /// Sends the rays of a patch.

@@ -18,8 +18,8 @@ use trace::{Hit, Leaving, Radiance, Tracer};
 /// How light is gathered.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TransportOptions {
-    /// Paths for each point and eye, fewer where the mean of many points is wanted ([`Radiance::leaving_among`]). Their noise is that of the picture where each surface point is asked once; where many points
-    /// fall into a pixel, as in the ground truth, one will do.
+    /// Paths for each point and eye, fewer where the mean of many points is wanted ([`Radiance::leaving_among`]). Their noise is that
+    /// of the picture where each surface point is asked once; where many points fall into a pixel, as in the ground truth, one will do.
     pub paths: u32,
     /// Lights that are drawn for each point and eye, where irradiance is known; elsewhere each path draws one.
     pub light_samples: u32,
@@ -130,9 +130,9 @@ impl Transport {
         self.tracer.scene()
     }
 
-    /// The world's bounces.
-    pub(crate) fn bounces(&self) -> Option<u32> {
-        self.world.bounces
+    /// The world it stands in.
+    pub(crate) fn world(&self) -> &World {
+        &self.world
     }
 
     /// What one ray of a patch finds, `index` of those of the patch that begins with `seed`.
@@ -167,12 +167,7 @@ impl Transport {
             onward: None,
         };
         if let Some(scattered) = lobes.sample(path.random.next3()) {
-            let step = Step {
-                from: point,
-                position: at.position,
-                direction: scattered.incident,
-                density: scattered.density,
-            };
+            let step = self.step(point, &at, &scattered, &mut path);
             let weight = scattered.weight.own;
             let arriving = self.arriving(step, &mut path, Known::Patches(patches));
             found.drawn += (weight * arriving.drawn).as_vec3();
@@ -221,7 +216,7 @@ impl Transport {
         // What the sky would send, did nothing shade it, is known: it is put in for what its samples would find of it, so that they
         // only tell what is missing (a control variate: the mean stays).
         let normal = lobes.normal();
-        let unshaded = self.lights.unshaded(&self.world, normal);
+        let unshaded = irradiance.unshaded(&self.world, normal);
         let drawn_unshaded = Cell::new(DVec3::ZERO);
         let mut drawn = Split::default();
         for index in 0..draws.all {
@@ -400,7 +395,7 @@ impl Transport {
     /// The radiance that arrives along a step, and all that comes after it as far as it is not known.
     fn arriving(&self, mut step: Step, path: &mut Path, known: Known<'_>) -> Arriving {
         let scene = self.scene();
-        let most = self.bounces().unwrap_or(u32::MAX);
+        let most = self.world.bounces.unwrap_or(u32::MAX);
         let mut found =
             Arriving { drawn: DVec3::ZERO, other: DVec3::ZERO, distance: f64::INFINITY, onward: None };
         let mut throughput = DVec3::ONE;

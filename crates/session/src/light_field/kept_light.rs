@@ -85,7 +85,7 @@ pub(super) fn wait(
         if kept.has_failed.load(Ordering::Acquire) {
             // Its thread is gone: here it is solved for once more.
             let options = if quality == LightQuality::Rough { ROUGH } else { IrradianceOptions::default() };
-            return Irradiance::solve(&transport(tracer, world), options, progress).map(Arc::new);
+            return Irradiance::solve(&unknown(tracer, world.clone(), 1, 1), options, progress).map(Arc::new);
         }
         progress.check()?;
         progress.report(f32::from_bits(kept.done.load(Ordering::Relaxed)));
@@ -133,11 +133,13 @@ fn solve(kept: &Kept, tracer: Arc<Tracer>) {
         let options = IrradianceOptions::default();
         let file =
             FOLDER.get().and_then(|folder| light_file::path(folder, tracer.scene(), &kept.world, options));
-        if let Some(found) = file.as_ref().and_then(|file| light_file::read(file, tracer.scene(), options)) {
+        if let Some(found) =
+            file.as_ref().and_then(|file| light_file::read(file, tracer.scene(), &kept.world, options))
+        {
             let _ = kept.irradiance.set(Arc::new(found));
             return Ok(());
         }
-        let transport = transport(&tracer, &kept.world);
+        let transport = unknown(&tracer, kept.world.clone(), 1, 1);
         let _ = kept.rough.set(Arc::new(Irradiance::solve(&transport, ROUGH, &watch)?));
         let fine = Irradiance::solve(&transport, options, &watch)?;
         if let Some(file) = &file {
@@ -152,10 +154,11 @@ fn solve(kept: &Kept, tracer: Arc<Tracer>) {
     }
 }
 
-fn transport(tracer: &Arc<Tracer>, world: &World) -> Transport {
+/// Light of a scene in a world of which nothing is known yet: this many paths and lights a point.
+pub(super) fn unknown(tracer: &Arc<Tracer>, world: World, paths: u32, light_samples: u32) -> Transport {
     let single = tracer.scene().single_scattering;
     let scattering = if single { Scattering::Single } else { Scattering::Multiple };
-    Transport::new(tracer.clone(), world.clone(), TransportOptions { paths: 1, light_samples: 1, scattering })
+    Transport::new(tracer.clone(), world, TransportOptions { paths, light_samples, scattering })
 }
 
 /// Goes on as long as anybody else has the scene.

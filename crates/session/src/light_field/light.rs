@@ -5,7 +5,7 @@ use glam::DVec3;
 use lens::Camera;
 use progress::{Cancelled, Progress};
 use scene::World;
-use slf::{Scattering, Transport, TransportOptions};
+use slf::Transport;
 use std::sync::Arc;
 use trace::Tracer;
 
@@ -55,11 +55,5 @@ fn world(tracer: &Tracer, camera: &Camera) -> World {
 }
 
 fn transport(tracer: &Arc<Tracer>, camera: &Camera, paths: u32) -> Transport {
-    let single = tracer.scene().single_scattering;
-    let scattering = if single { Scattering::Single } else { Scattering::Multiple };
-    Transport::new(
-        tracer.clone(),
-        world(tracer, camera),
-        TransportOptions { paths, light_samples: LIGHT_SAMPLES, scattering },
-    )
+    kept_light::unknown(tracer, world(tracer, camera), paths, LIGHT_SAMPLES)
 }

@@ -38,7 +38,12 @@ pub(super) fn path(
 }
 
 /// Reads the irradiance of a scene. What cannot be read is as good as none.
-pub(super) fn read(path: &Path, scene: &Scene, options: IrradianceOptions) -> Option<Irradiance> {
+pub(super) fn read(
+    path: &Path,
+    scene: &Scene,
+    world: &World,
+    options: IrradianceOptions,
+) -> Option<Irradiance> {
     if std::fs::metadata(path).ok()?.len() > MOST_BYTES {
         return None;
     }
@@ -56,7 +61,7 @@ pub(super) fn read(path: &Path, scene: &Scene, options: IrradianceOptions) -> Op
         .map(|rgb| Vec3::new(number(rgb), number(&rgb[4..]), number(&rgb[8..])))
         .collect();
     let (direct, indirect) = all.split_at(all.len() / 2);
-    Irradiance::of_values(scene, options, [direct.to_vec(), indirect.to_vec()])
+    Irradiance::of_values(scene, world, options, [direct.to_vec(), indirect.to_vec()])
 }
 
 /// Keeps irradiance. That it cannot be kept only costs time later.
@@ -128,18 +133,18 @@ mod tests {
         let (scene, irradiance) = solved(&world);
         let path_of = |world: &World| path(folder.path(), &scene, world, OPTIONS).unwrap();
         let at = path_of(&world);
-        assert!(read(&at, &scene, OPTIONS).is_none());
+        assert!(read(&at, &scene, &world, OPTIONS).is_none());
         write(&at, &irradiance);
-        let again = read(&at, &scene, OPTIONS).unwrap();
+        let again = read(&at, &scene, &world, OPTIONS).unwrap();
         assert_eq!(again.values(), irradiance.values());
         assert_ne!(path_of(&World { strength: 2.0, ..world.clone() }), at);
         // Of other options it has another number of patches; a damaged one is none.
-        assert!(read(&at, &scene, IrradianceOptions { patches: 5, rays: 8 }).is_none());
+        assert!(read(&at, &scene, &world, IrradianceOptions { patches: 5, rays: 8 }).is_none());
         let mut bytes = std::fs::read(&at).unwrap();
         bytes[40] ^= 1;
         std::fs::write(&at, &bytes).unwrap();
-        assert!(read(&at, &scene, OPTIONS).is_none());
+        assert!(read(&at, &scene, &world, OPTIONS).is_none());
         std::fs::write(&at, &bytes[..7]).unwrap();
-        assert!(read(&at, &scene, OPTIONS).is_none());
+        assert!(read(&at, &scene, &world, OPTIONS).is_none());
     }
 }

@@ -5,6 +5,7 @@ use super::state::Session;
 use crate::commands::Event;
 use crate::document::{AdjustedView, CameraEdit, Stage};
 use crate::error::SessionError;
+use crate::jobs::JobProgress;
 use crate::light_field::{Changes, serves};
 use focus::{Changed, union};
 use glam::DVec2;
@@ -119,38 +120,21 @@ impl Session {
         Camera { width: scaled(camera.width), height: scaled(camera.height), ..camera.clone() }
     }
 
-    /// Has faces seen from behind, or not: prepares the stage anew in the background.
+    /// Has faces seen from behind, or not.
     pub(super) fn set_back_faces(&mut self, back_faces: BackFaces) -> Result<(), SessionError> {
-        self.jobs.iter().filter(|job| job.label == FACING).for_each(|job| job.progress.cancel());
-        let generation = self.generation;
-        let stage = self.opened()?.stage.clone();
-        if stage.scene.back_faces != back_faces {
-            self.start(FACING.into(), move |progress| {
-                Ok(Outcome::Staged(Box::new(stage.with_back_faces(back_faces, progress)?), generation))
-            })?;
-        }
-        Ok(())
+        let is_new = self.opened()?.stage.scene.back_faces != back_faces;
+        self.restage(FACING, is_new, move |stage, progress| stage.with_back_faces(back_faces, progress))
     }
 
-    /// Gives the scene another world: prepares the stage anew in the background.
+    /// Gives the scene another world.
     pub(super) fn set_world(&mut self, world: Option<World>) -> Result<(), SessionError> {
-        self.jobs.iter().filter(|job| job.label == WORLD).for_each(|job| job.progress.cancel());
-        let generation = self.generation;
-        let stage = self.opened()?.stage.clone();
-        if stage.scene.world != world {
-            self.start(WORLD.into(), move |progress| {
-                Ok(Outcome::Staged(Box::new(stage.with_world(world, progress)?), generation))
-            })?;
-        }
-        Ok(())
+        let is_new = self.opened()?.stage.scene.world != world;
+        self.restage(WORLD, is_new, move |stage, progress| stage.with_world(world, progress))
     }
 
     /// The same with an environment's file, seen as it is; turn, strength and bounces stay.
     pub(super) fn load_environment(&mut self, file: PathBuf) -> Result<(), SessionError> {
-        self.jobs.iter().filter(|job| job.label == WORLD).for_each(|job| job.progress.cancel());
-        let generation = self.generation;
-        let stage = self.opened()?.stage.clone();
-        self.start(WORLD.into(), move |progress| {
+        self.restage(WORLD, true, move |stage, progress| {
             let before = stage.scene.world.as_ref();
             let of_file = WorldFile::of_environment(&file);
             let world = WorldFile {
@@ -159,9 +143,25 @@ impl Session {
                 bounces: before.and_then(|world| world.bounces),
                 ..of_file
             };
-            let world = world.load()?;
-            Ok(Outcome::Staged(Box::new(stage.with_world(Some(world), progress)?), generation))
-        })?;
+            stage.with_world(Some(world.load()?), progress)
+        })
+    }
+
+    /// Prepares the stage anew in the background, in place of what goes on under the same label; not if nothing is new.
+    fn restage(
+        &mut self,
+        label: &str,
+        is_new: bool,
+        work: impl FnOnce(&Stage, &JobProgress) -> Result<Stage, SessionError> + Send + 'static,
+    ) -> Result<(), SessionError> {
+        self.jobs.iter().filter(|job| job.label == label).for_each(|job| job.progress.cancel());
+        let generation = self.generation;
+        let stage = self.opened()?.stage.clone();
+        if is_new {
+            self.start(label.into(), move |progress| {
+                Ok(Outcome::Staged(Box::new(work(&stage, progress)?), generation))
+            })?;
+        }
         Ok(())
     }
 

@@ -78,10 +78,6 @@ impl Lattice {
             }
         }
     }
-
-    pub fn bytes(&self) -> usize {
-        self.cells.capacity() * 20 + size_of_val(self.numbers.as_slice())
-    }
 }
 
 #[cfg(test)]

@@ -2,6 +2,7 @@
 
 use super::lattice::Lattice;
 use super::place::Place;
+use crate::emitters::uniform_barycentric;
 use glam::{DVec2, DVec3, IVec3};
 use scene::{Scene, SurfacePoint};
 use std::collections::HashMap;
@@ -112,10 +113,6 @@ impl Patches {
         self.lattice.spacing
     }
 
-    pub fn bytes(&self) -> usize {
-        self.lattice.bytes() + size_of_val(self.patches.as_slice()) + size_of_val(self.points.as_slice())
-    }
-
     pub fn all(&self) -> &[Patch] {
         &self.patches
     }
@@ -204,12 +201,11 @@ fn facing(normal: DVec3) -> u8 {
     2 * axis + u8::from(normal[usize::from(axis)] < 0.0)
 }
 
-/// Point `k` of `count` spread over a triangle (Roberts 2018; Heitz 2019), none on its border.
+/// Point `k` of `count` spread over a triangle (Roberts 2018), none on its border.
 fn barycentric(k: u32, count: u32) -> DVec2 {
     if count == 1 {
         return DVec2::splat(1.0 / 3.0);
     }
     const STEPS: DVec2 = DVec2::new(0.754_877_666_246_692_8, 0.569_840_290_998_053_3);
-    let u = (STEPS * f64::from(k) + 0.5).fract();
-    if u.y > u.x { DVec2::new(0.5 * u.x, u.y - 0.5 * u.x) } else { DVec2::new(u.x - 0.5 * u.y, 0.5 * u.y) }
+    uniform_barycentric((STEPS * f64::from(k) + 0.5).fract())
 }
