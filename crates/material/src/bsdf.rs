@@ -2,9 +2,7 @@
 
 mod glass;
 mod odds;
-mod toward;
-
-pub use toward::Toward;
+pub(crate) mod toward;
 
 use odds::{Choice, Odds};
 
@@ -189,13 +187,6 @@ impl<'a> Bsdf<'a> {
             beneath = (DVec3::ONE - back).clamp(DVec3::ZERO, DVec3::ONE);
         }
         Side { w, f0, shares, beneath, coat: self.coat_albedo(w), sheen: self.sheen_albedo(w) }
-    }
-
-    /// For light toward one direction.
-    pub fn toward(&self, outgoing: DVec3) -> Toward<'_, 'a> {
-        let seen = self.seen(outgoing);
-        let odds = self.odds(&seen);
-        Toward::new(self, seen, odds)
     }
 
     /// Light sent toward `outgoing` for light from `incident`, 1/sr, without the cosine; mirrors and clear glass, which have

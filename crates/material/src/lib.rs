@@ -25,7 +25,8 @@ mod points;
 mod sheen;
 mod surface;
 
-pub use bsdf::{Bsdf, Parts, Scattered, Toward};
+pub use bsdf::toward::Toward;
+pub use bsdf::{Bsdf, Parts, Scattered};
 pub use film::Film;
 pub use frame::Frame;
 pub use fresnel::{dielectric_reflectance, reflectance_of_ior, schlick};

@@ -13,11 +13,16 @@ pub struct Toward<'b, 'a> {
     odds: Odds,
 }
 
-impl<'b, 'a> Toward<'b, 'a> {
-    pub(super) fn new(bsdf: &'b Bsdf<'a>, seen: Seen, odds: Odds) -> Self {
-        Self { bsdf, seen, odds }
+impl<'a> Bsdf<'a> {
+    /// For light toward one direction.
+    pub fn toward(&self, outgoing: DVec3) -> Toward<'_, 'a> {
+        let seen = self.seen(outgoing);
+        let odds = self.odds(&seen);
+        Toward { bsdf: self, seen, odds }
     }
+}
 
+impl Toward<'_, '_> {
     /// [`Bsdf::evaluate`] times the cosine, and [`Bsdf::density`].
     pub fn scatter(&self, incident: DVec3) -> (Split, f64) {
         let value = self.bsdf.value(&self.seen, incident);
