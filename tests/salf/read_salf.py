@@ -14,7 +14,7 @@ import struct
 import sys
 from collections import namedtuple
 
-VERSION = 4
+VERSION = 5
 MAGIC = b"FBSALF\r\n"
 LONGEST_TEXT = 65536
 LARGEST_SIDE = 16384
@@ -27,7 +27,7 @@ RECORD = struct.Struct("<HHHH3s5s")
 
 # seen: None if it sees the whole aperture, else rows of bits, row 0 at v = -1, column 0 the lowest bit.
 Sample = namedtuple(
-    "Sample", "form center half_size inverse_depth weight tilt radiance triangle barycentric seen"
+    "Sample", "form center half_size inverse_depth weight tilt radiance triangle barycentric is_carried seen"
 )
 Block = namedtuple("Block", "corner starts")
 
@@ -259,7 +259,7 @@ class Salf:
         require(bool(self.blocks) == bool(self.records), "samples of no block")
         require(not self.blocks or self.blocks[0].starts == (0,) * 5, "samples of no block")
         for plane in self.planes:
-            self.check_triangle(plane[0])
+            require(plane[0] == NO_TRIANGLE or plane[0] < self.triangles, "a triangle that the scene does not have")
             require(all(map(math.isfinite, plane[1:])), "a plane that is not finite")
         for index, block in enumerate(self.blocks):
             ordered = all(start <= end for start, end in zip(block.starts, self.ends(index)))
@@ -284,7 +284,8 @@ class Salf:
         else:
             self.check_triangle(triangle)
             barycentric = file.numbers("2d")
-        count = file.number("B")
+        told = file.number("B")
+        count, is_carried = told & 0x7F, told >> 7 == 1
         require(count in (0, 1, 4), f"{count} words of visibility")
         seen = None
         if count:
@@ -293,7 +294,8 @@ class Salf:
             seen = [bits >> side * row & (1 << side) - 1 for row in range(side)]
         require(all(map(math.isfinite, (*numbers, *(barycentric or ())))), "a sample that is not finite")
         return Sample(
-            "loose", (cx, cy), (hx, hy), inverse_depth, weight, (tx, ty), tuple(radiance), triangle, barycentric, seen
+            "loose", (cx, cy), (hx, hy), inverse_depth, weight, (tx, ty), tuple(radiance), triangle, barycentric,
+            is_carried, seen
         )
 
     def samples(self):
@@ -308,7 +310,7 @@ class Salf:
         fields = Fields(self.codes[code : ends[4]])
         records = self.records[RECORD.size * record : RECORD.size * ends[0]]
         for place, number, b1, b2, inverse_depth, rgb in RECORD.iter_unpack(records):
-            level, form, view = place >> 8 & 7, place >> 11 & 3, place >> 13
+            level, form, view = place >> 8 & 7, place >> 11 & 3, place >> 13 & 3
             is_patch, is_quadrant = form == 2, form == 3
             require(level <= (3 if is_quadrant else 4) and view <= 2, "a sample that makes no sense")
             inverse_depth = f24(inverse_depth)
@@ -336,6 +338,8 @@ class Salf:
                 require(number < len(planes), f"block {index}")
                 triangle, *shares = planes[number]
                 barycentric = (b1 / 65535, b2 / 65535)
+                if triangle == NO_TRIANGLE:
+                    triangle = barycentric = None
             bits = int.from_bytes(rgb, "little")
             quantum = 2.0 ** ((bits & 0x7F) - 74)
             weight, *tilt = (f32(f32(scale) * share) for share in shares)
@@ -349,6 +353,7 @@ class Salf:
                 tuple((bits >> at & 0x7FF) * quantum for at in (7, 18, 29)),
                 triangle,
                 barycentric,
+                place >> 15 == 1,
                 fields.field(8 * view) if view else None,
             )
         require((word, patch) == ends[2:4], f"block {index}")

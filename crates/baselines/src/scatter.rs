@@ -69,7 +69,7 @@ pub fn scatter(
     let stop = if baked_radius > 0.0 { optics.aperture_radius / baked_radius } else { 1.0 };
     let sets = ray_sets(camera, options);
     let radius_px = |sample: &Sample| {
-        let offset = sample.surface.map_or_else(|| focus.at_infinity(), |point| focus.at(point));
+        let offset = sample.focus(focus);
         optics.splat_radius_px(optics.kappa(f64::from(sample.inverse_depth), offset))
     };
     let samples = salf.samples.to_vec();

@@ -19,6 +19,7 @@ pub fn star(center: DVec2, half_px: f64, radiance: f32) -> Sample {
         tilt: Vec2::ZERO,
         radiance: Vec3::splat(radiance),
         surface: None,
+        is_carried: false,
         visibility: Visibility::Open,
     }
 }

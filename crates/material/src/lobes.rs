@@ -15,6 +15,11 @@ pub struct Split {
 /// Gloss is all own from this α on.
 const ROUGH: f64 = 0.25;
 
+/// Whether anything that a lobe of this α mirrors is carried.
+pub(crate) fn is_carried(alpha: f64) -> bool {
+    alpha < ROUGH
+}
+
 impl Split {
     /// All of it.
     pub fn total(self) -> DVec3 {

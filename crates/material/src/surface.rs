@@ -1,6 +1,8 @@
 //! What a material says at one point, textures looked up.
 
 use crate::Film;
+use crate::ggx::Ggx;
+use crate::lobes::is_carried;
 use glam::DVec3;
 
 /// Whether light that meets microfacets more than once counts.
@@ -106,6 +108,21 @@ impl Surface {
             ..Self::default()
         }
     }
+
+    /// The width of the narrowest lobe that carries light: how far apart two directions must be, rad, for what it mirrors or lets
+    /// through to differ; 0 of a mirror, `None` where all light is own. A reflected GGX lobe is 2.6 α wide, at half its height.
+    pub fn carried_width(&self) -> Option<f64> {
+        const WIDTH: f64 = 2.6;
+        let is_glass = self.metallic < 1.0 && self.transmission > 0.0;
+        let is_gloss = self.metallic > 0.0 || self.transmission < 1.0 && self.specular > 0.0;
+        let alpha = Ggx::new(self.roughness, self.anisotropy).mean_alpha();
+        let coat = self.clearcoat.filter(|coat| coat.factor > 0.0);
+        let coat = coat.map(|coat| Ggx::new(coat.roughness, 0.0).mean_alpha());
+        let lobes = [(is_glass, alpha), (is_gloss && is_carried(alpha), alpha)];
+        let lobes = lobes.into_iter().filter(|(is_there, _)| *is_there).map(|(_, alpha)| alpha);
+        let narrowest = lobes.chain(coat.filter(|&alpha| is_carried(alpha))).reduce(f64::min);
+        narrowest.map(|alpha| WIDTH * alpha)
+    }
 }
 
 /// What is left of light after `length` in a medium that leaves `color` after `distance` (KHR_materials_volume; Beer's law):
@@ -143,6 +160,20 @@ mod tests {
         assert_eq!(dispersed_ior(1.5, 0.0, 400.0), 1.5);
         let abbe = (1.5 - 1.0) / (dispersed_ior(1.5, 0.4, 486.1) - dispersed_ior(1.5, 0.4, 656.3));
         assert!((abbe - 50.0).abs() < 1e-9, "{abbe}");
+    }
+
+    #[test]
+    fn the_narrowest_lobe_that_carries_light_is_told() {
+        let width = |surface: Surface| surface.carried_width();
+        let rough = Surface { metallic: 0.0, roughness: 0.5, ..Surface::default() };
+        assert_eq!(width(rough), None, "α = 0.25 is all own");
+        let shiny = Surface { roughness: 0.2, ..rough };
+        assert!((width(shiny).unwrap() - 2.6 * 0.04).abs() < 1e-6);
+        assert_eq!(width(Surface { specular: 0.0, ..shiny }), None);
+        let coat = Some(Clearcoat { factor: 0.5, roughness: 0.1 });
+        assert!((width(Surface { clearcoat: coat, ..rough }).unwrap() - 0.026).abs() < 1e-6);
+        assert!(width(Surface { transmission: 0.3, ..rough }).is_some(), "what is let through is carried");
+        assert!(width(Surface { roughness: 0.0, ..shiny }).unwrap() < 1e-2);
     }
 
     #[test]

@@ -19,7 +19,7 @@ use crate::sample::{Sample, Visibility};
 use crate::samples::{Found, Packer, Samples, block_corner};
 use crate::surface_patches;
 use crate::view::View;
-use crate::visibility::{self, Fineness, Patterns};
+use crate::visibility::{self, Fineness, Patterns, Seen};
 use glam::{DVec2, IVec2};
 use lens::Camera;
 use progress::{Cancelled, Progress, Stage};
@@ -45,6 +45,7 @@ struct FirstLook {
     density: Density,
     depths: Depths,
     has_gap: bool,
+    has_pane: bool,
     /// Its nearest surfaces, each with its samples as if they saw all.
     nearest: Vec<(Candidate, Vec<Found>)>,
 }
@@ -159,7 +160,8 @@ impl Baker<'_> {
             (self.candidate(cell, &layers, group), group.samples(self.radiance, self.view, cell))
         });
         let nearest = nearest.collect();
-        FirstLook { cell, density, depths: layers.depths(cell), has_gap: layers.has_gap, nearest }
+        let (has_gap, has_pane) = (layers.has_gap, layers.has_pane);
+        FirstLook { cell, density, depths: layers.depths(cell), has_gap, has_pane, nearest }
     }
 
     fn candidate(&self, cell: Cell, layers: &Layers, group: &Group) -> Candidate {
@@ -175,46 +177,52 @@ impl Baker<'_> {
     fn second_look(&self, occluders: &Occluders, look: &FirstLook, samples: &mut Vec<Found>) {
         let FirstLook { cell, density, .. } = *look;
         // The quadrants of a cell see about the same: they are not asked one by one.
-        let mut push = |seeing: Visibility, found: Vec<Found>| {
-            samples.extend(found.into_iter().map(|found| {
-                let sample = Sample { visibility: seeing.clone(), ..found.sample };
-                Found { sample, ..found }
-            }));
+        let mut push = |seen: Vec<Seen>, found: Vec<Found>| {
+            samples.extend(found.iter().flat_map(|found| seen.iter().filter_map(|seen| past(found, seen))));
         };
         let is_pinhole = self.view.optics.aperture_radius == 0.0;
-        if is_pinhole || !look.has_gap && !occluders.may_reveal(cell, look.depths.nearest) {
+        let may_show =
+            look.has_pane || !is_pinhole && (look.has_gap || occluders.may_reveal(cell, look.depths.nearest));
+        if !may_show {
             for (index, (candidate, found)) in look.nearest.iter().enumerate() {
-                if let Some(seeing) = self.visibility(occluders, cell, candidate, index) {
-                    push(seeing, found.clone());
-                }
+                push(self.visibility(occluders, cell, candidate, index), found.clone());
             }
             return;
         }
         let layers = self.layers(cell, density, true);
         for (index, group) in layers.groups.iter().enumerate() {
             let candidate = self.candidate(cell, &layers, group);
-            if let Some(seeing) = self.visibility(occluders, cell, &candidate, index) {
-                push(seeing, group.samples(self.radiance, self.view, cell));
+            let seen = self.visibility(occluders, cell, &candidate, index);
+            if !seen.is_empty() {
+                push(seen, group.samples(self.radiance, self.view, cell));
             }
         }
     }
 
-    /// What a cell's `index`-th surface sees; `None` if nothing.
+    /// What a cell's `index`-th surface sees.
     fn visibility(
         &self,
         occluders: &Occluders,
         cell: Cell,
         candidate: &Candidate,
         index: usize,
-    ) -> Option<Visibility> {
+    ) -> Vec<Seen> {
         let Self { tracer, view, patterns, .. } = self;
         let Candidate { center, inverse_depth, slope, viewpoint, is_in_front } = *candidate;
         let is_open =
             || is_in_front && !occluders.may_occlude(&Footprint { center, cell, inverse_depth, slope });
         if view.optics.aperture_radius == 0.0 || is_open() {
-            return Some(Visibility::Open);
+            return vec![(Visibility::Open, 1.0)];
         }
         let (fineness, number) = (Fineness::of(view, inverse_depth), Patterns::number_of(cell, index));
         visibility::visibility(tracer, view, patterns, viewpoint, fineness, number, |_| true)
     }
+}
+
+/// A sample past what hides a part of the aperture from it, or lets only a share of its light through.
+fn past(found: &Found, (seen, share): &Seen) -> Option<Found> {
+    let sample = &found.sample;
+    let visibility = sample.visibility.and(seen)?;
+    let (weight, tilt) = (sample.weight * share, sample.tilt * *share);
+    Some(Found { sample: Sample { visibility, weight, tilt, ..sample.clone() }, ..*found })
 }

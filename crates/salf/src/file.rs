@@ -4,7 +4,7 @@
 //!
 //! ```text
 //! magic        8 bytes   "FBSALF\r\n"
-//! version      u32       4
+//! version      u32       5
 //! source       path      the scene or project it was baked from
 //! triangles    u32       of that scene: what surface addresses count in
 //! camera       see `write_camera`
@@ -148,6 +148,7 @@ mod tests {
             tilt: Vec2::new(0.1, 0.2),
             radiance: Vec3::new(1.0, 2.0, 3.0),
             surface: Some(SurfacePoint { triangle: 6, barycentric: DVec2::new(0.1, 0.7) }),
+            is_carried: true,
             visibility: Visibility::Cells { words: Box::new([1, 2, 3, u64::MAX]) },
         };
         let background =

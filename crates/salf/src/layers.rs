@@ -4,21 +4,29 @@ use crate::domain::{Cell, CellPart, Density};
 use crate::jitter::Net;
 use crate::occluders::{Depths, Occluders};
 use crate::options::BakeOptions;
+use crate::outgoing::{self, Outgoing, Sent, TowardCells};
 use crate::placement::Placement;
-use crate::sample::{Sample, Visibility};
+use crate::sample::Sample;
 use crate::samples::Found;
 use crate::view::View;
 use glam::{DVec2, Vec3};
 use scene::SurfacePoint;
 use std::ops::Range;
-use trace::{Beam, Hit, Radiance, Tracer, Viewpoint};
+use trace::{Beam, Hit, Leaving, Radiance, Tracer, Viewpoint};
 
 /// Surfaces along one chief ray beyond which nothing is looked for.
 const DEEPEST_LAYER: usize = 12;
 
+/// The same where some of them may be half there, and let others show.
+const DEEPEST_PANE: usize = 48;
+
 /// Parallax, px, up to which what a nearer surface hides of a cell and what it does not are samples of their own: the outline
 /// is nearly sharp on them, and few rays from either would not tell how much of both together it hides.
 const JUST_BEHIND_PX: f64 = 1.0;
+
+/// What panes leave of a cell's rays may differ by so much within one sample: along the edge of a pane that is in focus, what lies
+/// behind it and what lies beside it are samples of their own.
+const SAME_PANES: f32 = 0.05;
 
 /// Where a chief ray of a cell meets a surface, or goes to infinity.
 #[derive(Clone, Copy, Debug)]
@@ -31,6 +39,12 @@ pub struct Member {
     pub point: Option<SurfacePoint>,
     /// 1/z.
     pub inverse_depth: f64,
+    /// How much of it is there, in (0, 1].
+    pub opacity: f32,
+    /// How much of it the aperture's middle sees past what is in front of it.
+    pub through: f32,
+    /// The same where nothing hides it that is there as a whole.
+    panes: f32,
 }
 
 /// Members of one cell that lie on one smooth surface.
@@ -57,6 +71,8 @@ pub struct Layers {
     pub depth_range: [f32; 2],
     /// Whether a nearest surface is sampled elsewhere and so not among the groups.
     pub has_gap: bool,
+    /// Whether a nearest surface is there in part, so that others show behind it.
+    pub has_pane: bool,
 }
 
 /// Traces the chief rays of a cell: to the nearest surface, or, if `hidden`, through all of them.
@@ -68,7 +84,8 @@ pub fn trace_cell(
     density: Density,
     hidden: bool,
 ) -> Layers {
-    let mut layers = Layers { groups: Vec::new(), depth_range: [0.0, f32::INFINITY], has_gap: false };
+    let mut layers =
+        Layers { groups: Vec::new(), depth_range: [0.0, f32::INFINITY], has_gap: false, has_pane: false };
     let net = Net::new(density.rays_a_side().ilog2(), cell.corner.as_uvec2().to_array());
     let ray_side = cell.side as f64 / density.rays_a_side() as f64;
     let corner_of = |ray: usize| {
@@ -83,7 +100,11 @@ pub fn trace_cell(
         });
         let beam = view.beam(corner_of(first), ray_side * Beam::MOST_RAYS.isqrt() as f64);
         let rays = pixels.map(|pixel| view.chief_ray(pixel));
-        let most = if hidden { DEEPEST_LAYER } else { 1 };
+        let most = match (hidden, tracer.blends()) {
+            (false, _) => 1,
+            (true, false) => DEEPEST_LAYER,
+            (true, true) => DEEPEST_PANE,
+        };
         let met: Vec<(usize, Hit)> = if hidden {
             tracer.all_hits(&beam, &rays, most)
         } else {
@@ -113,17 +134,21 @@ impl Layers {
         pixel: DVec2,
         hits: impl Iterator<Item = Option<Hit>>,
     ) {
-        let mut nearest = 0.0;
+        let (mut nearest, mut through, mut panes) = (0.0, 1.0, 1.0);
         for (layer, hit) in hits.enumerate() {
             let inverse_depth = hit.map_or(0.0, |hit| 1.0 / hit.t);
             let point = hit.map(|hit| hit.point);
+            let opacity = point.map_or(1.0, |point| tracer.scene().opacity(point));
             if layer == 0 {
+                self.has_pane |= opacity < 1.0;
                 nearest = inverse_depth;
                 let [near, far] = &mut self.depth_range;
                 *near = near.max(inverse_depth as f32);
                 *far = far.min(inverse_depth as f32);
             }
-            let member = Member { sub_cells, pixel, point, inverse_depth };
+            let member = Member { sub_cells, pixel, point, inverse_depth, opacity, through, panes };
+            through *= 1.0 - opacity;
+            panes *= if opacity < 1.0 { 1.0 - opacity } else { 1.0 };
             let is_sampled_here = point.is_none_or(|point| !placement.is_on_surface(point.triangle));
             if is_sampled_here {
                 self.add(tracer, view, member, layer == 0, nearest);
@@ -143,6 +168,7 @@ impl Layers {
             let expected = first.inverse_depth + group.slope.dot(member.pixel - first.pixel);
             group.part == part
                 && group.is_just_behind == is_just_behind
+                && (member.panes - first.panes).abs() <= SAME_PANES
                 && (member.inverse_depth - expected).abs() * parallax_px <= Occluders::SAME_SURFACE_PX
                 && group.members.last().is_none_or(|last| last.sub_cells != member.sub_cells)
         };
@@ -206,21 +232,60 @@ impl Group {
         }
     }
 
-    /// Its samples, as if each saw the whole aperture: one with its mean radiance over its share of the cell; where that
-    /// varies, one a quadrant.
+    /// Its samples, as if nothing hid the aperture: one with its mean radiance over its share of the cell; where that
+    /// varies, one a quadrant. Where it sends carried light, too, that has its own ([`Outgoing`]). None if the aperture is a point
+    /// that sees nothing of it.
     pub fn samples(&self, radiance: &dyn Radiance, view: &View, cell: Cell) -> Vec<Found> {
-        let emitted: Vec<Vec3> =
-            self.members.iter().map(|m| toward_aperture(radiance, view, m, self.members.len())).collect();
+        let is_pinhole = view.optics.aperture_radius == 0.0;
+        let share = |member: &Member| member.opacity * if is_pinhole { member.through } else { 1.0 };
+        let shares: Vec<f32> = self.members.iter().map(share).collect();
+        if shares.iter().all(|&share| share == 0.0) {
+            return Vec::new();
+        }
+        let seed = cell.corner.as_uvec2().to_array();
+        let width = nearest(&self.members, self.center(cell))
+            .point
+            .and_then(|point| radiance.carried_width(point, view.eye));
+        let side = width.map_or(1, |width| outgoing::cells_a_side(view, self.mean_inverse_depth(), width));
+        let points = || self.members.iter().filter_map(|member| member.point);
+        if side > 1 {
+            let points: Vec<_> = points().zip(shares.iter().copied()).collect();
+            let asked = TowardCells::ask(radiance, view, &points, side, seed);
+            return self.glossy_samples(cell, &shares, &asked);
+        }
+        let sent = match width {
+            Some(_) if !is_pinhole => {
+                outgoing::toward_places(radiance, view, &points().collect::<Vec<_>>(), seed)
+            }
+            _ => self.members.iter().map(|m| toward_middle(radiance, view, m, self.members.len())).collect(),
+        };
+        let mean = |rays: &Range<usize>| mean(rays, |ray| (sent[ray], shares[ray]));
+        let part = |rays: Range<usize>| {
+            mean(&rays).kinds().map(|kind| self.sample(cell, rays.clone(), &shares, kind)).collect::<Vec<_>>()
+        };
+        self.parts(cell, view, |rays| mean(rays).total()).into_iter().flat_map(part).collect()
+    }
+
+    /// The same where carried light is told on cells of the aperture: it is one for all members.
+    fn glossy_samples(&self, cell: Cell, shares: &[f32], asked: &TowardCells) -> Vec<Found> {
+        let all = 0..self.members.len();
+        let mean =
+            Sent::mean(asked.of_points.iter().zip(shares).map(|(sent, share)| (sent.leaving(), *share)));
+        let own = mean.kinds().filter(|kind| !kind.is_carried);
+        let kinds = own.chain(asked.carried(&mean));
+        kinds.map(|kind| self.sample(cell, all.clone(), shares, kind)).collect()
+    }
+
+    /// Its members, or those of each quadrant, if their radiance varies.
+    fn parts(&self, cell: Cell, view: &View, mean: impl Fn(&Range<usize>) -> Vec3) -> Vec<Range<usize>> {
         let quadrants = self.quadrants();
-        let mean = |rays: &Range<usize>| emitted[rays.clone()].iter().sum::<Vec3>() / rays.len() as f32;
-        let low = quadrants.iter().map(mean).fold(Vec3::INFINITY, Vec3::min);
-        let high = quadrants.iter().map(mean).fold(Vec3::ZERO, Vec3::max);
+        let low = quadrants.iter().map(&mean).fold(Vec3::INFINITY, Vec3::min);
+        let high = quadrants.iter().map(&mean).fold(Vec3::ZERO, Vec3::max);
         let even = (BakeOptions::EVEN_PER_PX * view.tolerance_px) as f32;
         let is_even = (high - low).max_element() <= even * high.max_element();
         // Light from outside the frame is spread over eight cells and more.
-        let all = 0..emitted.len();
-        let parts = if is_even || cell.side > 1 { vec![all] } else { quadrants };
-        parts.into_iter().map(|rays| self.sample(cell, rays.clone(), mean(&rays))).collect()
+        let all = 0..self.members.len();
+        if is_even || cell.side > 1 { vec![all] } else { quadrants }
     }
 
     /// The members of each quadrant that has any.
@@ -235,23 +300,32 @@ impl Group {
         parts.scan(0, following).collect()
     }
 
-    /// The sample that some of its members make.
-    fn sample(&self, cell: Cell, members: Range<usize>, radiance: Vec3) -> Found {
+    /// The sample that some of its members make, of these shares, of one kind of light.
+    fn sample(&self, cell: Cell, members: Range<usize>, shares: &[f32], kind: Outgoing) -> Found {
+        let there = shares[members.clone()].iter().sum::<f32>() / members.len() as f32;
         let members = &self.members[members];
         let sub_cells = sub_cells_of(members);
         let CellPart { center, half_size, weight } = cell.part(sub_cells);
+        let share = f64::from(there * kind.share);
         let sample = Sample {
             center: center.as_vec2(),
             half_size: half_size.as_vec2(),
             inverse_depth: mean_inverse_depth(members) as f32,
-            weight: weight as f32,
-            tilt: (self.tilt * weight).as_vec2(),
-            radiance,
+            weight: (weight * share) as f32,
+            tilt: (self.tilt * weight * share).as_vec2(),
+            radiance: kind.radiance,
             surface: nearest(members, center).point,
-            visibility: Visibility::Open,
+            is_carried: kind.is_carried,
+            visibility: kind.toward,
         };
         Found { sample, part_of: Some((cell, sub_cells)) }
     }
+}
+
+/// What some rays send in the mean. Where none of them is there, they count alike.
+fn mean(rays: &Range<usize>, of: impl Fn(usize) -> (Leaving, f32)) -> Sent {
+    let is_there = rays.clone().any(|ray| of(ray).1 > 0.0);
+    Sent::mean(rays.clone().map(|ray| (of(ray).0, if is_there { of(ray).1 } else { 1.0 })))
 }
 
 /// Of some members, at least one, the nearest to a place in the picture.
@@ -271,10 +345,10 @@ fn mean_inverse_depth(members: &[Member]) -> f64 {
 }
 
 /// What a member sends to the aperture's middle; it is one of `count` whose mean is wanted.
-fn toward_aperture(radiance: &dyn Radiance, view: &View, member: &Member, count: usize) -> Vec3 {
+fn toward_middle(radiance: &dyn Radiance, view: &View, member: &Member, count: usize) -> Leaving {
     match member.point {
-        Some(point) => radiance.leaving_among(point, view.eye, count).total(),
-        None => radiance.from_infinity(view.chief_ray(member.pixel).direction.normalize()),
+        Some(point) => radiance.leaving_among(point, view.eye, count),
+        None => Leaving::own(radiance.from_infinity(view.chief_ray(member.pixel).direction.normalize())),
     }
 }
 
@@ -306,7 +380,15 @@ mod tests {
         let member = |ray: usize| {
             let sub_cells = Density::Coarse.sub_cells(ray);
             let pixel = cell.part(sub_cells).center - DVec2::new(shift, 0.0);
-            Member { sub_cells, pixel, point: None, inverse_depth: 0.0 }
+            Member {
+                sub_cells,
+                pixel,
+                point: None,
+                inverse_depth: 0.0,
+                opacity: 1.0,
+                through: 1.0,
+                panes: 1.0,
+            }
         };
         let members = (0..Density::Coarse.rays()).map(member).collect();
         let (tilt, slope) = (DVec2::ZERO, DVec2::ZERO);

@@ -1,7 +1,8 @@
 //! What the light field holds.
 
 use glam::{Vec2, Vec3};
-use scene::SurfacePoint;
+use lens::FocusOffset;
+use scene::{SurfaceField, SurfacePoint};
 
 /// A patch of surface as the aperture sees it.
 ///
@@ -14,6 +15,10 @@ use scene::SurfacePoint;
 ///
 /// which is exact: |n·(P − U)| is linear in U as long as the aperture does not cross the patch's plane, and
 /// where it does, each side of the patch is a sample of its own.
+///
+/// What a patch sends need not be one sample: its own and its carried light are two, which share its weight; where something
+/// half there covers part of its view, or where its light changes over the aperture, samples that see disjoint parts of the
+/// aperture stand for it, each with its weight and its radiance.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sample {
     /// Centre of its footprint in the pinhole picture, px (x right, y down, the frame's corner at 0).
@@ -30,8 +35,37 @@ pub struct Sample {
     pub radiance: Vec3,
     /// Its address on the surface (and so in the atlas); `None` for the background.
     pub surface: Option<SurfacePoint>,
+    /// Whether its light is carried: mirrored or let through, so that it keeps the standard focus whatever is painted there.
+    pub is_carried: bool,
     /// What of the aperture it sees.
     pub visibility: Visibility,
+}
+
+impl Sample {
+    /// How it is focused by a paint.
+    pub fn focus(&self, paint: &dyn SurfaceField<FocusOffset>) -> FocusOffset {
+        Address { surface: self.surface, is_carried: self.is_carried }.focus(paint)
+    }
+}
+
+/// Where paint for a sample is looked up.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Address {
+    /// See [`Sample::surface`].
+    pub surface: Option<SurfacePoint>,
+    /// See [`Sample::is_carried`].
+    pub is_carried: bool,
+}
+
+impl Address {
+    /// What a paint says there; carried light has none.
+    pub fn focus(&self, paint: &dyn SurfaceField<FocusOffset>) -> FocusOffset {
+        match (self.is_carried, self.surface) {
+            (true, _) => FocusOffset::STANDARD,
+            (false, Some(point)) => paint.at(point),
+            (false, None) => paint.at_infinity(),
+        }
+    }
 }
 
 /// What of the square aperture [−R, R]² a sample sees.
@@ -48,6 +82,19 @@ pub enum Visibility {
 }
 
 impl Visibility {
+    /// What both see; `None` if that is nothing.
+    pub fn and(&self, other: &Self) -> Option<Self> {
+        let (Self::Cells { words: a }, Self::Cells { words: b }) = (self, other) else {
+            return Some(if *self == Self::Open { other.clone() } else { self.clone() });
+        };
+        let finer = |words: &[u64], other: &[u64]| match *words {
+            [word] if other.len() == 4 => finer(word).into(),
+            _ => words.to_vec(),
+        };
+        let words: Box<[u64]> = finer(a, b).iter().zip(finer(b, a)).map(|(a, b)| a & b).collect();
+        words.iter().any(|&word| word != 0).then_some(Self::Cells { words })
+    }
+
     /// Cells a side of a field of cells.
     pub fn side_of(words: &[u64]) -> usize {
         8 * words.len().isqrt()
@@ -61,9 +108,41 @@ impl Visibility {
     }
 }
 
+/// 8 × 8 cells as 16 × 16.
+pub(crate) fn finer(word: u64) -> [u64; 4] {
+    let mut words = [0u64; 4];
+    for row in 0..16 {
+        let bits = word >> (row / 2 * 8) & 0xFF;
+        let doubled = (0..8).map(|k| (bits >> k & 1) * (3 << (2 * k))).sum::<u64>();
+        words[row / 4] |= doubled << (row % 4 * 16);
+    }
+    words
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn coarse_cells_become_four_each() {
+        assert_eq!(
+            finer(1 | 1 << 15 | 1 << 63),
+            [3 | 3 << 16 | (3 << 14) << 32 | (3 << 14) << 48, 0, 0, 0xC000_C000 << 32]
+        );
+        for word in [0, u64::MAX, 0x0123_4567_89AB_CDEF] {
+            assert_eq!(finer(word).iter().map(|w| w.count_ones()).sum::<u32>(), 4 * word.count_ones());
+        }
+    }
+
+    #[test]
+    fn what_both_see() {
+        let cells = |words: &[u64]| Visibility::Cells { words: words.into() };
+        assert_eq!(Visibility::Open.and(&cells(&[5])), Some(cells(&[5])));
+        assert_eq!(cells(&[5]).and(&Visibility::Open), Some(cells(&[5])));
+        assert_eq!(cells(&[5]).and(&cells(&[6])), Some(cells(&[4])));
+        assert_eq!(cells(&[5]).and(&cells(&[2])), None);
+        assert_eq!(cells(&[1]).and(&cells(&[2 | 1 << 17, 0, 7, 0])), Some(cells(&[2 | 1 << 17, 0, 0, 0])));
+    }
 
     #[test]
     fn rows_of_bits() {

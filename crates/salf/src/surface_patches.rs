@@ -7,9 +7,10 @@
 
 use crate::domain::Domain;
 use crate::jitter::jitter;
+use crate::outgoing::{Outgoing, Sent};
 use crate::sample::Sample;
 use crate::view::View;
-use crate::visibility::{self, Fineness, Patterns};
+use crate::visibility::{self, Fineness, Patterns, Seen};
 use glam::{DVec2, DVec3};
 use scene::SurfacePoint;
 use trace::{Radiance, Tracer, Viewpoint};
@@ -103,7 +104,7 @@ fn patch(
     point: SurfacePoint,
     piece: Piece,
     normal: DVec3,
-) -> Option<Sample> {
+) -> Vec<Sample> {
     let optics = &view.optics;
     let position = piece.center();
     // w(P, U) = dA·n·(U − P)/(z³ tan²θ), linear in U.
@@ -112,7 +113,7 @@ fn patch(
     let tilt = normal.truncate() * (optics.aperture_radius * density);
     let largest = weight + tilt.abs().element_sum();
     if largest <= 0.0 {
-        return None;
+        return Vec::new();
     }
     let pixel = view.camera.pixel_from_q(optics.chief(position));
     let inverse_depth = 1.0 / position.z;
@@ -120,7 +121,7 @@ fn patch(
     let seed = [point.triangle, (jitter(point.barycentric.x.to_bits() as u32, 0, 0)[0] * 1e9) as u32];
     let is_on_side = |u: DVec2| weight + tilt.dot(u) > 0.0;
     let from = Viewpoint::Surface(point);
-    let visibility = visibility::visibility(
+    let seen = visibility::visibility(
         tracer,
         view,
         patterns,
@@ -128,18 +129,31 @@ fn patch(
         fineness,
         Patterns::some_number(seed),
         is_on_side,
-    )?;
+    );
+    if seen.is_empty() {
+        return Vec::new();
+    }
     let rim = view.aperture_point(tilt.signum());
-    Some(Sample {
-        center: pixel.as_vec2(),
-        half_size: piece.half_size_px(view, largest).as_vec2(),
-        inverse_depth: inverse_depth as f32,
-        weight: weight as f32,
-        tilt: tilt.as_vec2(),
-        radiance: radiance.toward(point, rim),
-        surface: Some(point),
-        visibility,
-    })
+    let there = tracer.scene().opacity(point);
+    let kinds: Vec<_> = Sent::mean([(radiance.leaving(point, rim), 1.0)]).kinds().collect();
+    let past = |(visibility, share): Seen| {
+        let sample = move |kind: Outgoing| {
+            let share = there * share * kind.share;
+            Sample {
+                center: pixel.as_vec2(),
+                half_size: piece.half_size_px(view, largest).as_vec2(),
+                inverse_depth: inverse_depth as f32,
+                weight: weight as f32 * share,
+                tilt: tilt.as_vec2() * share,
+                radiance: kind.radiance,
+                surface: Some(point),
+                is_carried: kind.is_carried,
+                visibility: visibility.clone(),
+            }
+        };
+        kinds.clone().into_iter().map(sample)
+    };
+    seen.into_iter().filter(|_| there > 0.0).flat_map(past).collect()
 }
 
 /// Cuts a triangle by its longest projected side until every piece is about a pixel, or an eighth of its own circle of

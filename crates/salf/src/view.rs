@@ -1,7 +1,7 @@
 //! The baked camera, ready for rays: pixels to chief rays, aperture points to the world.
 
 use glam::{DVec2, DVec3};
-use lens::{Camera, Optics};
+use lens::{ApertureSampler, Camera, Optics};
 use scene::Scene;
 use trace::{Beam, Ray, Square};
 
@@ -9,6 +9,8 @@ use trace::{Beam, Ray, Square};
 pub struct View<'a> {
     pub camera: &'a Camera,
     pub optics: Optics,
+    /// Draws places of the aperture that light passes.
+    pub open_aperture: ApertureSampler,
     /// The aperture's centre.
     pub eye: DVec3,
     right: DVec3,
@@ -25,6 +27,7 @@ impl<'a> View<'a> {
         Self {
             camera,
             optics,
+            open_aperture: ApertureSampler::new(&camera.aperture),
             eye: camera.position(),
             right: camera.world_direction(DVec3::X),
             up: camera.world_direction(DVec3::Y),

@@ -5,7 +5,7 @@ use crate::jitter::{Net, jitter};
 use crate::sample::Visibility;
 use crate::view::View;
 use glam::DVec2;
-use trace::{PlaceSet, Places, Tracer, Viewpoint};
+use trace::{PlaceSet, Places, Sight, Tracer, Viewpoint};
 
 /// How much of its cell, along each axis, the places of a ray are spread over, of 16 cells a side.
 ///
@@ -98,7 +98,11 @@ impl Patterns {
     }
 }
 
-/// The cells of the aperture that a point sees: one ray each, of the pattern of a `number`. `None` if it sees none.
+/// A part of the aperture that a point sees, and how much of it: less than 1 past what is half there.
+pub type Seen = (Visibility, f32);
+
+/// The cells of the aperture that a point sees, by how much of it: one ray each, of the pattern of a `number`. None if it sees
+/// none.
 ///
 /// `is_on_side` tells which aperture points lie on the side of the surface that the point stands for.
 pub fn visibility(
@@ -109,19 +113,53 @@ pub fn visibility(
     fineness: Fineness,
     number: u32,
     is_on_side: impl Fn(DVec2) -> bool,
-) -> Option<Visibility> {
+) -> Vec<Seen> {
     let places = patterns.of(fineness, number);
-    let hidden = tracer.hidden_places(from, &view.aperture_square(), places);
+    let Sight { hidden, shares } = tracer.sight(from, &view.aperture_square(), places);
     let seen = (places.all() - hidden).iter().filter(|&cell| is_on_side(places.at(cell)));
-    let seen: PlaceSet = seen.collect();
-    let words = &seen.words()[..fineness.cells_a_side().pow(2) / 64];
-    if words.iter().all(|&word| word == 0) {
-        return None;
+    let part = |seen: PlaceSet| {
+        let words = &seen.words()[..fineness.cells_a_side().pow(2) / 64];
+        match words.iter().all(|&word| word == u64::MAX) {
+            true => Visibility::Open,
+            false => Visibility::Cells { words: words.into() },
+        }
+    };
+    match shares {
+        None => {
+            let seen: PlaceSet = seen.collect();
+            if seen.is_empty() { Vec::new() } else { vec![(part(seen), 1.0)] }
+        }
+        Some(shares) => {
+            let levels = levels(seen.map(|cell| (shares[cell], cell)).collect());
+            levels.into_iter().map(|(share, cells)| (part(cells.into_iter().collect()), share)).collect()
+        }
     }
-    if words.iter().all(|&word| word == u64::MAX) {
-        return Some(Visibility::Open);
+}
+
+/// Shares that differ by no more than this part of them are one.
+const SAME_SHARE: f32 = 1.0 / 1024.0;
+
+/// So many different shares are told; of more, only so many steps between the least and the largest.
+const MOST_SHARES: usize = 16;
+
+/// Cells by how much is seen of them. The mean stays what it is, however few levels tell it.
+fn levels(mut cells: Vec<(f32, usize)>) -> Vec<(f32, Vec<usize>)> {
+    cells.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+    let Some((&(least, _), &(largest, _))) = cells.first().zip(cells.last()) else { return Vec::new() };
+    let level = |cells: &[(f32, usize)]| {
+        let mean = cells.iter().map(|(share, _)| share).sum::<f32>() / cells.len() as f32;
+        (mean, cells.iter().map(|(_, cell)| *cell).collect())
+    };
+    let alike: Vec<_> = cells.chunk_by(|a, b| b.0 - a.0 <= SAME_SHARE * b.0).collect();
+    let is_told =
+        alike.iter().all(|cells| cells[cells.len() - 1].0 - cells[0].0 <= 2.0 * SAME_SHARE * cells[0].0);
+    if is_told && alike.len() <= MOST_SHARES {
+        return alike.into_iter().map(level).collect();
     }
-    Some(Visibility::Cells { words: words.into() })
+    let step = |share: f32| {
+        (((share - least) / (largest - least) * MOST_SHARES as f32) as usize).min(MOST_SHARES - 1)
+    };
+    cells.chunk_by(|a, b| step(a.0) == step(b.0)).map(level).collect()
 }
 
 #[cfg(test)]
@@ -148,6 +186,27 @@ mod tests {
         let spreads = [0, 0, 1, 1, 2, 3, 4].map(Fineness::Fine);
         assert_eq!(found[..2], [Fineness::Coarse; 2]);
         assert_eq!(found[2..], spreads);
+    }
+
+    #[test]
+    fn shares_are_told_by_few_levels_that_keep_the_mean() {
+        let cells =
+            |share: &dyn Fn(usize) -> f32| (0..256).map(|cell| (share(cell), cell)).collect::<Vec<_>>();
+        assert_eq!(levels(Vec::new()), Vec::new());
+        assert_eq!(levels(cells(&|_| 0.5)).len(), 1);
+        assert_eq!(levels(cells(&|cell| [0.5, 0.25, 1.0][cell % 3])).len(), 3);
+        for share in [|cell: usize| (cell as f32 + 1.0) / 256.0, |cell: usize| 0.5 + 1e-5 * cell as f32] {
+            let found = levels(cells(&share));
+            assert!(found.len() <= MOST_SHARES);
+            let mut all: Vec<_> = found.iter().flat_map(|(_, cells)| cells.clone()).collect();
+            all.sort();
+            assert!(all.into_iter().eq(0..256));
+            let [mean, wanted] = [
+                found.iter().map(|(share, cells)| share * cells.len() as f32).sum::<f32>(),
+                (0..256).map(share).sum::<f32>(),
+            ];
+            assert!((mean / wanted - 1.0).abs() < 1e-5, "{mean} {wanted}");
+        }
     }
 
     #[test]

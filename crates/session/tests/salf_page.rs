@@ -7,6 +7,7 @@ use glam::{DMat4, DVec3};
 use lens::{Aperture, ApertureMask, ApertureShape, Camera, FocusOffset};
 use progress::Unwatched;
 use salf::{Salf, SalfFile, Sample, Visibility};
+use scene::{AlphaMode, Material, Scalar, Workflow};
 use serde_json::Value;
 use session::{Input, RenderOptions, render_input, write_salf};
 use sha2::{Digest, Sha256};
@@ -82,6 +83,7 @@ fn assert_same(ours: &Sample, theirs: &Value) {
             assert_eq!(point.barycentric.as_vec2().to_array(), barycentric, "{theirs}");
         }
     }
+    assert_eq!(Some(ours.is_carried), theirs["is_carried"].as_bool(), "{theirs}");
     match &ours.visibility {
         Visibility::Open => assert!(theirs["seen"].is_null(), "{theirs}"),
         Visibility::Cells { words } => {
@@ -106,6 +108,11 @@ impl Baked {
 
     /// Bakes the small scene for a camera that may be changed first.
     fn of(change: impl FnOnce(&mut Camera)) -> Self {
+        Self::of_materials(change, |_| ())
+    }
+
+    /// The same where its materials are changed, too.
+    fn of_materials(change: impl FnOnce(&mut Camera), materials: impl FnOnce(&mut [Material])) -> Self {
         let folder = tempfile::tempdir().unwrap();
         let scene = folder.path().join("quads.glb");
         tiny_glb::write(&scene);
@@ -114,7 +121,9 @@ impl Baked {
         let mut camera = Camera { width: 60, height: 40, background: Some([0.1, 0.05, 0.2]), ..lens };
         change(&mut camera);
         let focus = focus::Focus::constant(input.scene.clone(), FocusOffset::STANDARD);
-        let tracer = Arc::new(Tracer::new(input.scene.clone()));
+        let mut changed = (*input.scene).clone();
+        materials(&mut changed.materials);
+        let tracer = Arc::new(Tracer::new(changed.into()));
         let salf = Arc::new(RenderOptions::default().bake(&tracer, &camera, &focus, &Unwatched).unwrap());
         let baked = Self { folder, salf };
         write_salf(&baked.path(), &scene, &input.scene, &baked.salf).unwrap();
@@ -128,6 +137,18 @@ impl Baked {
             let shape = ApertureShape::Polygon { blades: 5, rotation: 0.3, roundness: 0.2 };
             camera.aperture = Aperture { shape, ratio: 1.3 };
         })
+    }
+
+    /// From the front, the card half there and the wall a mirror.
+    fn of_glass_and_gloss() -> Self {
+        let scalar = |factor| Scalar { factor, texture: None };
+        let change = |materials: &mut [Material]| {
+            let [wall, card, ..] = materials else { panic!("two materials") };
+            (card.alpha, card.base_color.w) = (AlphaMode::Blend, 0.4);
+            wall.unlit = false;
+            wall.workflow = Workflow::MetallicRoughness { metallic: scalar(0.9), roughness: scalar(0.1) };
+        };
+        Self::of_materials(|camera| camera.focus_distance = 1.0, change)
     }
 
     /// From the left, in the card's plane: the card is edge-on, the sky behind it is seen.
@@ -214,6 +235,7 @@ fn a_reader_by_the_page_finds_every_sample_as_we_do() {
     for (baked, forms, side) in [
         (Baked::from_the_front(), ["whole_cell", "part_of_cell", "part_of_quadrant"], 8),
         (Baked::from_the_side(), ["whole_cell", "part_of_cell", "patch"], 16),
+        (Baked::of_glass_and_gloss(), ["whole_cell", "part_of_cell", "part_of_quadrant"], 16),
     ] {
         let found = lines(&baked.path());
         assert_eq!(found.len(), baked.salf.samples.len());
@@ -334,7 +356,7 @@ fn a_malformed_file_is_told_in_one_line() {
     refused(&[&good[..], &[0]].concat(), "more bytes");
     // What a checksum does not tell: place and value, by what is wrong then.
     for (at, value, why) in [
-        (8, 5, "version 5"),
+        (8, 6, "version 6"),
         (12, 0xFF, "picture without a size"),
         (14, 0xFF, "a text of"),
         (24, 1, "triangle"),

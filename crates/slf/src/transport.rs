@@ -555,6 +555,17 @@ impl Radiance for Transport {
         }
     }
 
+    fn carried_width(&self, point: SurfacePoint, eye: DVec3) -> Option<f64> {
+        let scene = self.scene();
+        let material = scene.material_of(point.triangle);
+        let outgoing = (eye - point.position(scene)).normalize_or_zero();
+        if material.unlit || outgoing == DVec3::ZERO {
+            return None;
+        }
+        let at = MaterialPoint::of(scene, point, self.options.scattering);
+        at.surface.carried_width()
+    }
+
     fn from_infinity(&self, direction: DVec3) -> Vec3 {
         self.world.seen(direction.normalize_or_zero())
     }

@@ -5,8 +5,8 @@ use crate::lens_in_use::{LARGEST_OFFSET, NodeFocus};
 use crate::nodes::Nodes;
 use lens::FocusOffset;
 use rayon::prelude::*;
-use salf::Samples;
-use scene::{SurfaceField, SurfacePoint};
+use salf::{Address, Samples};
+use scene::SurfaceField;
 
 /// Focus of all nodes, block by block; a block on which nothing is painted has none.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -103,9 +103,8 @@ impl Paint {
 }
 
 /// What is painted at a surface address, or on the background; an offset that is not valid counts as nothing.
-fn offset(surface: Option<SurfacePoint>, focus: &dyn SurfaceField<FocusOffset>) -> NodeFocus {
-    let offset = surface.map_or_else(|| focus.at_infinity(), |point| focus.at(point));
-    NodeFocus::of(offset.or_standard())
+fn offset(address: Address, focus: &dyn SurfaceField<FocusOffset>) -> NodeFocus {
+    NodeFocus::of(address.focus(focus).or_standard())
 }
 
 /// Sets the focus of a node from those below it; a sample keeps its own.

@@ -21,7 +21,7 @@ mod watertight;
 
 pub use beam::Beam;
 pub use ray::{Hit, Ray};
-pub use sight::{PlaceSet, Places, Square, Viewpoint};
+pub use sight::{PlaceSet, Places, Sight, Square, Viewpoint};
 pub use tracer::Tracer;
 
 use glam::{DVec3, Vec3};
@@ -38,6 +38,12 @@ pub trait Radiance: Sync {
     /// The same of one of `count` points whose mean is wanted: each may be told less well.
     fn leaving_among(&self, point: SurfacePoint, eye: DVec3, _count: usize) -> Leaving {
         self.leaving(point, eye)
+    }
+
+    /// How fast the carried light of a point changes with where the eye is: the width of its narrowest lobe, rad, 0 of a mirror.
+    /// `None` where nothing is carried.
+    fn carried_width(&self, _point: SurfacePoint, _eye: DVec3) -> Option<f64> {
+        None
     }
 
     /// All of [`Self::leaving`].

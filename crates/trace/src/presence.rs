@@ -1,13 +1,27 @@
-//! Whether a surface point is there: masks and blending.
+//! Whether surface points are there: masks and blending.
 
 use crate::Ray;
 use crate::random::{mix, unit};
 use scene::{Scene, SurfacePoint};
 
-/// Whether `point` is there for `ray`: if a number drawn for the ray and the triangle falls below the point's
-/// opacity. Under a mask the opacity is 0 or 1 and the draw decides nothing.
-pub(crate) fn is_there(scene: &Scene, point: SurfacePoint, ray: &Ray) -> bool {
-    draw(ray, point.triangle) < f64::from(scene.opacity(point))
+/// How surfaces that are half there are met.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Presence {
+    /// By this ray or not, by chance: the mean over many rays is right.
+    Drawn,
+    /// By every ray, if they are there at all: whoever asks shares its light out by opacity.
+    Shared,
+}
+
+impl Presence {
+    /// Whether `point` is there for `ray`. Under a mask the opacity is 0 or 1, and both agree.
+    pub fn is_met(self, scene: &Scene, point: SurfacePoint, ray: &Ray) -> bool {
+        let opacity = f64::from(scene.opacity(point));
+        match self {
+            Self::Drawn => draw(ray, point.triangle) < opacity,
+            Self::Shared => opacity > 0.0,
+        }
+    }
 }
 
 /// A number in [0, 1), uniform over rays and triangles, the same every time.

@@ -23,6 +23,32 @@ pub use square::Square;
 pub(crate) use viewpoint::Eye;
 pub use viewpoint::Viewpoint;
 
+/// What a viewpoint sees of places on a square.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sight {
+    /// The places that it does not see.
+    pub hidden: PlaceSet,
+    /// How much of each it sees past what is half there, in (0, 1], whether hidden or not; none where there is no such thing.
+    pub shares: Option<Box<[f32; PlaceSet::MOST]>>,
+}
+
+impl Sight {
+    /// All but what is hidden.
+    pub(crate) fn past(hidden: PlaceSet) -> Self {
+        Self { hidden, shares: None }
+    }
+
+    /// Looks at a place past something of an opacity.
+    pub(crate) fn dim(&mut self, place: usize, opacity: f32) {
+        if opacity >= 1.0 {
+            self.hidden |= std::iter::once(place).collect();
+        } else if opacity > 0.0 {
+            let shares = self.shares.get_or_insert_with(|| Box::new([1.0; PlaceSet::MOST]));
+            shares[place] *= 1.0 - opacity;
+        }
+    }
+}
+
 /// A viewpoint and the square it looks at.
 pub(crate) struct Looking<'a> {
     eye: Eye,

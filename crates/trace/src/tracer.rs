@@ -4,12 +4,12 @@ mod beams;
 
 use crate::hierarchy::Hierarchy;
 use crate::local_space::LocalSpace;
-use crate::presence::is_there;
-use crate::sight::{Eye, Looking, Outline, PlaceSet, Places, Square, Viewpoint};
+use crate::presence::Presence;
+use crate::sight::{Eye, Looking, Outline, PlaceSet, Places, Sight, Square, Viewpoint};
 use crate::watertight::{Crossing, ShearedRay, has_area, in_plane};
 use crate::{Hit, Ray};
 use glam::DVec3;
-use scene::{Scene, SurfacePoint};
+use scene::{AlphaMode, Scene, SurfacePoint};
 use std::sync::Arc;
 
 /// Answers what a ray meets.
@@ -21,12 +21,13 @@ use std::sync::Arc;
 ///   or not finite hit nothing.
 /// * An eye sees no face from behind unless it is double sided ([`scene::Scene::hides_back`]): its rays pass the backs of
 ///   others. Light passes neither side. So [`Self::first_hit`], [`Self::any_hit`], [`Self::hidden`] and
-///   [`Self::hidden_places`] say what is seen, [`Self::occluded`] says what light meets.
+///   [`Self::sight`] say what is seen, [`Self::occluded`] says what light meets.
 /// * Points that a material's opacity takes away are not met (see
 ///   [`scene::AlphaMode`]): under a mask a point is there where the opacity reaches the cutoff; under
 ///   blending it is there *for a given ray* with the probability of its opacity, decided by a hash of the ray
 ///   and the triangle, so that sums over many rays see the right transmittance and each ray still gives the
-///   same answer every time.
+///   same answer every time. Those that ask for many rays at once ([`Self::first_hits`], [`Self::all_hits`], [`Self::sight`])
+///   meet it with every ray, and are told, or ask, how much of it is there.
 pub struct Tracer {
     scene: Arc<Scene>,
     space: LocalSpace,
@@ -86,6 +87,11 @@ impl Tracer {
         &self.scene
     }
 
+    /// Whether any surface may be half there.
+    pub fn blends(&self) -> bool {
+        self.scene.materials.iter().any(|material| material.alpha == AlphaMode::Blend)
+    }
+
     /// Bytes that the hierarchy and its triangles take, the scene itself not counted.
     pub fn bytes(&self) -> usize {
         self.hierarchy.bytes()
@@ -95,12 +101,22 @@ impl Tracer {
 
     /// The first surface that an eye at the ray's origin sees along it.
     pub fn first_hit(&self, ray: &Ray) -> Option<Hit> {
+        self.first(ray, Presence::Drawn)
+    }
+
+    /// The same, where what is there in part is met.
+    fn first_shared(&self, ray: &Ray) -> Option<Hit> {
+        self.first(ray, Presence::Shared)
+    }
+
+    #[inline(always)]
+    fn first(&self, ray: &Ray, presence: Presence) -> Option<Hit> {
         let local = self.space.ray(ray)?;
         let sheared = ShearedRay::new(ray.origin, ray.direction);
         let mut nearest = Nearest { hit: None, t_max: ray.t_max };
         self.hierarchy.walk(&local, local.local_t(ray.t_max), |leaf| {
             for triangle in &self.triangles[leaf] {
-                self.take(&mut nearest, triangle, ray, &sheared);
+                self.take(&mut nearest, triangle, ray, &sheared, presence);
             }
             Some(local.local_t(nearest.t_max))
         });
@@ -119,7 +135,7 @@ impl Tracer {
             for triangle in &self.triangles[leaf] {
                 let Some(crossing) = sheared.cross(&triangle.corners) else { continue };
                 if !in_plane(&triangle.corners, origin) {
-                    self.take_crossing(&mut nearest, triangle, &ray, &crossing);
+                    self.take_crossing(&mut nearest, triangle, &ray, &crossing, Presence::Drawn);
                 }
             }
             Some(local.local_t(nearest.t_max))
@@ -129,9 +145,17 @@ impl Tracer {
 
     /// Takes a triangle for the nearest that an eye sees, if it is.
     #[inline(always)]
-    fn take(&self, nearest: &mut Nearest, triangle: &LeafTriangle, ray: &Ray, sheared: &ShearedRay) -> bool {
+    fn take(
+        &self,
+        nearest: &mut Nearest,
+        triangle: &LeafTriangle,
+        ray: &Ray,
+        sheared: &ShearedRay,
+        presence: Presence,
+    ) -> bool {
         let Some(crossing) = sheared.cross(&triangle.corners) else { return false };
-        (crossing.from_front || !triangle.hides_back) && self.take_crossing(nearest, triangle, ray, &crossing)
+        (crossing.from_front || !triangle.hides_back)
+            && self.take_crossing(nearest, triangle, ray, &crossing, presence)
     }
 
     /// Takes a triangle for the nearest, if it is.
@@ -142,6 +166,7 @@ impl Tracer {
         triangle: &LeafTriangle,
         ray: &Ray,
         crossing: &Crossing,
+        presence: Presence,
     ) -> bool {
         let t = crossing.t;
         let is_nearer = t < nearest.t_max
@@ -150,7 +175,7 @@ impl Tracer {
             return false;
         }
         let point = SurfacePoint { triangle: triangle.index, barycentric: crossing.barycentric };
-        let is_met = !triangle.may_be_transparent || is_there(&self.scene, point, ray);
+        let is_met = !triangle.may_be_transparent || presence.is_met(&self.scene, point, ray);
         if is_met {
             *nearest = Nearest { hit: Some(Hit { point, t }), t_max: t };
         }
@@ -200,18 +225,20 @@ impl Tracer {
         self.any(ray, |triangle, crossing| !triangle.hides_back || crossing.from_front)
     }
 
-    /// The `places` of a square that something hides from a viewpoint: of each what [`Self::hidden`] (or, from infinity,
-    /// [`Self::any_hit`]) says of the ray to it, to the precision of f32 in u and v, for the cost of a few.
-    pub fn hidden_places(&self, from: Viewpoint, square: &Square, places: &Places) -> PlaceSet {
+    /// What a viewpoint sees of the `places` of a square: of each what [`Self::hidden`] (or, from infinity, [`Self::any_hit`])
+    /// says of the ray to it, to the precision of f32 in u and v, for the cost of a few; but what is half there hides by its
+    /// share.
+    pub fn sight(&self, from: Viewpoint, square: &Square, places: &Places) -> Sight {
         let (eye, skip) = match from {
             Viewpoint::Surface(point) => (Eye::At(point.position(&self.scene)), Some(point.triangle)),
             Viewpoint::Infinity(direction) => (Eye::Toward(direction.normalize_or_zero()), None),
         };
         let looking = Looking::new(eye, square, places, &self.space);
-        let (all, mut hidden) = (places.all(), self.behind_own_face(from, square, places));
+        let all = places.all();
+        let mut sight = Sight::past(self.behind_own_face(from, square, places));
         self.hierarchy.walk_within(&looking.shaft(&self.space), f32::INFINITY, |leaf| {
             for place in leaf {
-                let near = looking.may_hide(&self.outlines[place]) - hidden;
+                let near = looking.may_hide(&self.outlines[place]) - sight.hidden;
                 let triangle = &self.triangles[place];
                 if near.is_empty() || skip == Some(triangle.index) {
                     continue;
@@ -221,12 +248,15 @@ impl Tracer {
                 if triangle.hides_back && !new.is_empty() && looking.sees_front(&triangle.corners) {
                     new = PlaceSet::default();
                 }
-                let is_cut = triangle.may_be_transparent && !new.is_empty();
-                hidden |= if is_cut { self.opaque_of(triangle, &looking, places, new) } else { new };
+                if triangle.may_be_transparent && !new.is_empty() {
+                    self.dim(&mut sight, triangle, &looking, places, new);
+                } else {
+                    sight.hidden |= new;
+                }
             }
-            if hidden == all { f32::NEG_INFINITY } else { f32::INFINITY }
+            if sight.hidden == all { f32::NEG_INFINITY } else { f32::INFINITY }
         });
-        hidden
+        sight
     }
 
     /// Those of the places of a square that the back of the viewpoint's own face would be seen from.
@@ -243,24 +273,24 @@ impl Tracer {
         places.all().iter().filter(|&place| is_behind(square.at(places.at(place)))).collect()
     }
 
-    /// Those of some places whose rays a triangle is there for.
+    /// Takes from the sight of some places what a triangle in between takes: its opacity where their rays meet it.
     #[cold]
-    fn opaque_of(
+    fn dim(
         &self,
+        sight: &mut Sight,
         triangle: &LeafTriangle,
         looking: &Looking,
         places: &Places,
         some: PlaceSet,
-    ) -> PlaceSet {
-        let is_opaque = |&place: &usize| {
+    ) {
+        for place in some.iter() {
             let ray = looking.ray(places.at(place));
-            let crossing = ShearedRay::new(ray.origin, ray.direction).cross(&triangle.corners);
-            crossing.is_some_and(|crossing| {
-                let point = SurfacePoint { triangle: triangle.index, barycentric: crossing.barycentric };
-                is_there(&self.scene, point, &ray)
-            })
-        };
-        some.iter().filter(is_opaque).collect()
+            let Some(crossing) = ShearedRay::new(ray.origin, ray.direction).cross(&triangle.corners) else {
+                continue;
+            };
+            let point = SurfacePoint { triangle: triangle.index, barycentric: crossing.barycentric };
+            sight.dim(place, self.scene.opacity(point));
+        }
     }
 
     /// Whether a ray meets any triangle that `counts`.
@@ -278,7 +308,7 @@ impl Tracer {
                     continue;
                 }
                 let point = SurfacePoint { triangle: triangle.index, barycentric: crossing.barycentric };
-                if !triangle.may_be_transparent || is_there(&self.scene, point, ray) {
+                if !triangle.may_be_transparent || Presence::Drawn.is_met(&self.scene, point, ray) {
                     met = true;
                     return None;
                 }

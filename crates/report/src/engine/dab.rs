@@ -27,11 +27,12 @@ impl Dabbed {
     pub fn new(salf: &Salf, focus: Arc<dyn SurfaceField<FocusOffset> + Send>) -> Self {
         let middle = glam::Vec2::new(salf.camera.width as f32, salf.camera.height as f32) / 2.0;
         let spots = salf.samples.runs().flat_map(|run| run.indices.clone().zip(run.spots()));
-        let mut nearest: Vec<(u32, Spot)> = spots.filter(|(_, spot)| spot.surface.is_some()).collect();
+        let mut nearest: Vec<(u32, Spot)> =
+            spots.filter(|(_, spot)| spot.address.surface.is_some()).collect();
         let distance = |spot: &Spot| spot.center.distance_squared(middle);
         nearest.sort_by(|(_, a), (_, b)| distance(a).total_cmp(&distance(b)));
         nearest.truncate(SAMPLES);
-        let points = nearest.iter().filter_map(|(_, spot)| spot.surface.map(key)).collect();
+        let points = nearest.iter().filter_map(|(_, spot)| spot.address.surface.map(key)).collect();
         let optics = salf.camera.optics();
         // With an anchor of 1 the blur is the same at any depth; without an aperture there is none.
         let kappa = optics.kappa_for_circle_px(CIRCLE_PX).unwrap_or(0.0);

@@ -55,6 +55,7 @@ fn sample(cell: Cell, inverse_depth: f32, visibility: Visibility) -> Sample {
         tilt: Vec2::ZERO,
         radiance: radiance(cell.corner.x, cell.corner.y),
         surface: None,
+        is_carried: false,
         visibility,
     }
 }

@@ -9,6 +9,8 @@ use scene::SurfacePoint;
 use std::io::{self, Read, Write};
 
 const BACKGROUND: u32 = u32::MAX;
+/// Beside how many words tell the visibility: that the light is carried.
+const CARRIED: u8 = 0x80;
 
 pub fn write_samples(to: &mut impl Write, samples: &Samples) -> io::Result<()> {
     let Samples { chunks, records, planes, sub_cells, patches, codes, loose } = samples;
@@ -83,7 +85,8 @@ fn read_chunk(from: &mut impl Read) -> Result<Chunk, SalfFileError> {
 }
 
 fn write_sample(to: &mut impl Write, sample: &Sample) -> io::Result<()> {
-    let Sample { center, half_size, inverse_depth, weight, tilt, radiance, surface, visibility } = sample;
+    let Sample { center, half_size, inverse_depth, weight, tilt, radiance, surface, is_carried, visibility } =
+        sample;
     write_f32s(to, &[center.x, center.y, half_size.x, half_size.y, *inverse_depth, *weight, tilt.x, tilt.y])?;
     write_f32s(to, &radiance.to_array())?;
     match surface {
@@ -93,10 +96,11 @@ fn write_sample(to: &mut impl Write, sample: &Sample) -> io::Result<()> {
             write_f64s(to, &point.barycentric.to_array())?;
         }
     }
+    let carried = if *is_carried { CARRIED } else { 0 };
     match visibility {
-        Visibility::Open => to.write_all(&[0]),
+        Visibility::Open => to.write_all(&[carried]),
         Visibility::Cells { words } => {
-            to.write_all(&[words.len() as u8])?;
+            to.write_all(&[words.len() as u8 | carried])?;
             words.iter().try_for_each(|word| to.write_all(&word.to_le_bytes()))
         }
     }
@@ -111,13 +115,14 @@ fn read_sample(from: &mut impl Read) -> Result<Sample, SalfFileError> {
             Some(SurfacePoint { triangle, barycentric })
         }
     };
-    let visibility = match bytes(from)? {
-        [0] => Visibility::Open,
-        [count @ (1 | 4)] => {
+    let [told] = bytes(from)?;
+    let visibility = match told & !CARRIED {
+        0 => Visibility::Open,
+        count @ (1 | 4) => {
             let words = (0..count).map(|_| Ok(u64::from_le_bytes(bytes(from)?)));
             Visibility::Cells { words: words.collect::<Result<_, SalfFileError>>()? }
         }
-        [count] => return Err(SalfFileError::Damaged(format!("{count} words of visibility"))),
+        count => return Err(SalfFileError::Damaged(format!("{count} words of visibility"))),
     };
     let finite = [cx, cy, hx, hy, inverse_depth, weight, tx, ty, r, g, b].iter().all(|x| x.is_finite());
     let addressed = surface.is_none_or(|point| point.barycentric.is_finite());
@@ -132,6 +137,7 @@ fn read_sample(from: &mut impl Read) -> Result<Sample, SalfFileError> {
         tilt: Vec2::new(tx, ty),
         radiance: Vec3::new(r, g, b),
         surface,
+        is_carried: told & CARRIED != 0,
         visibility,
     })
 }

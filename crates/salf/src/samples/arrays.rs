@@ -77,8 +77,12 @@ impl Samples {
     pub(crate) fn counts(&self) -> [usize; 3] {
         let partial = self.records.iter().filter(|record| record.is_partial()).count()
             + self.loose.iter().filter(|sample| sample.visibility != Visibility::Open).count();
-        let background = self.records.iter().filter(|record| record.plane == Record::BACKGROUND).count()
-            + self.loose.iter().filter(|sample| sample.surface.is_none()).count();
+        let of_chunks = (0..self.chunks.len()).map(|chunk| {
+            let [start, end] = [chunk, chunk + 1].map(|chunk| self.starts(chunk).records as usize);
+            self.records[start..end].iter().filter(|record| self.surface_of(chunk, record).is_none()).count()
+        });
+        let background =
+            of_chunks.sum::<usize>() + self.loose.iter().filter(|sample| sample.surface.is_none()).count();
         [self.len() - partial, partial, background]
     }
 
@@ -129,7 +133,7 @@ impl Samples {
     }
 
     pub(super) fn surface_of(&self, chunk: usize, record: &Record) -> Option<SurfacePoint> {
-        let plane = self.plane_of(chunk, record)?;
+        let plane = self.plane_of(chunk, record).filter(|plane| plane.triangle != Plane::NO_TRIANGLE)?;
         Some(SurfacePoint { triangle: plane.triangle, barycentric: record.barycentric() })
     }
 }

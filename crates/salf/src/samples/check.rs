@@ -1,6 +1,7 @@
 //! Whether samples that were read make sense.
 
 use crate::samples::arrays::{Samples, Starts};
+use crate::samples::plane::Plane;
 use crate::samples::record::{Record, Shape};
 use glam::IVec2;
 
@@ -11,7 +12,9 @@ impl Samples {
     /// Whether all that refers to something finds it, with surfaces among `triangles`; else what does not.
     pub(crate) fn check(&self, triangles: u32) -> Result<(), String> {
         let lies_elsewhere = |triangle: u32| triangle >= triangles;
-        if self.planes.iter().any(|plane| lies_elsewhere(plane.triangle))
+        let is_of_scene =
+            |plane: &Plane| plane.triangle == Plane::NO_TRIANGLE || !lies_elsewhere(plane.triangle);
+        if !self.planes.iter().all(is_of_scene)
             || self.loose.iter().any(|s| s.surface.is_some_and(|point| lies_elsewhere(point.triangle)))
         {
             return Err("a sample lies on a triangle that the scene does not have".into());

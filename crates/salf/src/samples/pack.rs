@@ -93,24 +93,25 @@ impl Packer {
             Visibility::Open => None,
             Visibility::Cells { words } => Some(Visibility::side_of(words) as u8),
         };
-        let kind = is_inside.then_some(Kind { pixel, level, shape, cells })?;
+        let kind = is_inside.then_some(Kind { pixel, level, shape, cells, is_carried: sample.is_carried })?;
         let inverse_depth = Float24::new(sample.inverse_depth)?;
         let place = (self.corner + pixel).as_uvec2();
         let chance = jitter(place.x, place.y, self.part.records.len() as u32);
         let radiance = Rgb40::new(sample.radiance, chance)?;
         let largest = sample.tilt.abs().max_element().max(sample.weight.abs());
-        let patch = match shape {
-            Shape::Patch => {
+        let (patch, scale) = match part_of {
+            Some((cell, sub_cells)) => (None, cell.part(*sub_cells).weight as f32),
+            None => {
                 let fraction = sample.center - sample.center.floor();
-                Some(Patch::new(fraction, sample.half_size, Float24::new(largest)?)?)
+                (Some(Patch::new(fraction, sample.half_size, Float24::new(largest)?)?), largest)
             }
-            Shape::WholeCell | Shape::PartOfCell | Shape::PartOfQuadrant(_) => None,
         };
-        let scale = if patch.is_some() { largest } else { sample.weight };
+        let triangle = sample.surface.map_or(Plane::NO_TRIANGLE, |point| point.triangle);
+        let (weight, tilt) = (sample.weight / scale, sample.tilt / scale);
         let plane = match sample.surface {
-            Some(point) => self.plane(point.triangle, sample.weight / scale, sample.tilt / scale)?,
-            None if patch.is_none() && sample.tilt == Vec2::ZERO => Record::BACKGROUND,
-            None => return None,
+            None if patch.is_some() => return None,
+            None if weight == 1.0 && tilt == Vec2::ZERO => Record::BACKGROUND,
+            _ => self.plane(triangle, weight, tilt)?,
         };
         let barycentric = sample.surface.map_or(DVec2::ZERO, |point| point.barycentric);
         // Nothing fails from here on.

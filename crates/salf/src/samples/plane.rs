@@ -8,12 +8,14 @@ use half::f16;
 pub(crate) struct Plane {
     pub triangle: u32,
     /// Toward the aperture's centre, and its change with u and v, as half floats: for cells as a share of their
-    /// weight, for patches of their largest.
+    /// weight alone, for patches of their largest.
     pub weights: [u16; 3],
 }
 
 impl Plane {
     pub const BYTES: usize = size_of::<Self>();
+    /// The triangle of what lies on none: the background, seen past something that is half there.
+    pub const NO_TRIANGLE: u32 = u32::MAX;
 
     pub fn to_bytes(self) -> [u8; Self::BYTES] {
         let mut bytes = [0; Self::BYTES];

@@ -54,10 +54,11 @@ pub struct Kind {
     pub shape: Shape,
     /// Cells a side of its visibility; none if it sees the whole aperture.
     pub cells: Option<u8>,
+    pub is_carried: bool,
 }
 
 impl Kind {
-    /// In 16 bits: x and y 4 each, level or quadrant 3, shape 2, visibility 3.
+    /// In 16 bits: x and y 4 each, level or quadrant 3, shape 2, visibility 2, carried 1.
     fn place(self) -> u16 {
         let (shape, level) = match self.shape {
             Shape::WholeCell => (0, self.level),
@@ -70,7 +71,8 @@ impl Kind {
             Some(8) => 1,
             Some(_) => 2,
         };
-        (self.pixel.x | self.pixel.y << 4 | i32::from(level) << 8 | shape << 11 | cells << 13) as u16
+        let of_place = self.pixel.x | self.pixel.y << 4 | i32::from(level) << 8;
+        (of_place | shape << 11 | cells << 13 | i32::from(self.is_carried) << 15) as u16
     }
 
     /// `None` if it makes no sense.
@@ -83,7 +85,7 @@ impl Kind {
             2 => (Shape::Patch, level, 4),
             _ => (Shape::PartOfQuadrant(level), 0, 3),
         };
-        let cells = match bits(13, 3) {
+        let cells = match bits(13, 2) {
             0 => None,
             1 => Some(8),
             2 => Some(16),
@@ -94,6 +96,7 @@ impl Kind {
             level,
             shape,
             cells,
+            is_carried: bits(15, 1) == 1,
         })
     }
 
@@ -121,7 +124,13 @@ impl Record {
     /// Whether it sees but a part of the aperture.
     #[inline]
     pub fn is_partial(&self) -> bool {
-        self.place >> 13 != 0
+        self.place >> 13 & 3 != 0
+    }
+
+    /// See [`crate::Sample::is_carried`].
+    #[inline]
+    pub fn is_carried(&self) -> bool {
+        self.place >> 15 != 0
     }
 
     /// Its barycentrics.
@@ -216,7 +225,8 @@ mod tests {
             for cells in [None, Some(8), Some(16)] {
                 let levels = if shape == Shape::PartOfQuadrant(2) { 0..1 } else { 0..5 };
                 for level in levels {
-                    let kind = Kind { pixel: IVec2::new(3, 14), level, shape, cells };
+                    let is_carried = level % 2 == 1;
+                    let kind = Kind { pixel: IVec2::new(3, 14), level, shape, cells, is_carried };
                     let depth = Float24::new(0.3).unwrap();
                     let radiance = Rgb40::new(Vec3::new(0.1, 2.0, 0.7), [0.5; 3]).unwrap();
                     let record = Record::new(kind, 17, DVec2::new(0.0, 1.0), depth, radiance);
@@ -239,6 +249,6 @@ mod tests {
     #[test]
     fn places_that_make_no_sense_are_told() {
         let sound = (0..=u16::MAX).filter(|&place| Kind::of(place).is_some());
-        assert_eq!(sound.count(), 256 * (5 * 3 + 4) * 3);
+        assert_eq!(sound.count(), 256 * (5 * 3 + 4) * 3 * 2);
     }
 }

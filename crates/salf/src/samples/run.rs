@@ -1,13 +1,12 @@
 //! Reading packed samples: a run of them in order, or the surface addresses of any.
 
-use crate::sample::{Sample, Visibility};
+use crate::sample::{Address, Sample, Visibility};
 use crate::samples::arrays::{Samples, Starts};
 use crate::samples::masks::MaskReader;
 use crate::samples::plane::Plane;
 use crate::samples::record::{Kind, Record, Shape};
 use glam::{DVec2, IVec2, Vec2};
 use rayon::prelude::*;
-use scene::SurfacePoint;
 use std::ops::Range;
 
 /// Samples that are not packed go in runs of this many.
@@ -20,8 +19,8 @@ pub struct Spot {
     pub center: Vec2,
     /// See [`Sample::inverse_depth`].
     pub inverse_depth: f32,
-    /// See [`Sample::surface`].
-    pub surface: Option<SurfacePoint>,
+    /// See [`Sample::surface`] and [`Sample::is_carried`].
+    pub address: Address,
 }
 
 /// Samples that follow each other: of one block of the picture, or those that are not packed.
@@ -36,7 +35,8 @@ pub struct Run<'a> {
 
 impl Spot {
     pub(super) fn of(sample: &Sample) -> Self {
-        Self { center: sample.center, inverse_depth: sample.inverse_depth, surface: sample.surface }
+        let address = Address { surface: sample.surface, is_carried: sample.is_carried };
+        Self { center: sample.center, inverse_depth: sample.inverse_depth, address }
     }
 }
 
@@ -47,18 +47,19 @@ pub struct Addresses<'a> {
 }
 
 impl Addresses<'_> {
-    /// The surface address of a sample; `None` for the background.
+    /// The address of a sample.
     #[inline]
-    pub fn of(&mut self, index: u32) -> Option<SurfacePoint> {
+    pub fn of(&mut self, index: u32) -> Address {
         let samples = self.samples;
         let Some(record) = samples.records.get(index as usize) else {
-            return samples.loose[index as usize - samples.records.len()].surface;
+            return Spot::of(&samples.loose[index as usize - samples.records.len()]).address;
         };
         let run = match &self.run {
             Some(run) if run.indices.contains(&index) => run,
             _ => self.run.insert(samples.run(samples.run_of(index))),
         };
-        samples.surface_of(run.chunk?, record)
+        let surface = run.chunk.and_then(|chunk| samples.surface_of(chunk, record));
+        Address { surface, is_carried: record.is_carried() }
     }
 }
 
@@ -248,7 +249,10 @@ impl<'a> Decoder<'a> {
         Spot {
             center: self.footprint(record.kind())[0],
             inverse_depth: record.inverse_depth.get(),
-            surface: self.samples.surface_of(self.chunk, record),
+            address: Address {
+                surface: self.samples.surface_of(self.chunk, record),
+                is_carried: record.is_carried(),
+            },
         }
     }
 
@@ -264,6 +268,7 @@ impl<'a> Decoder<'a> {
             tilt: Vec2::new(tilt_x, tilt_y),
             radiance: record.radiance.get(),
             surface: self.samples.surface_of(self.chunk, record),
+            is_carried: record.is_carried(),
             visibility,
         }
     }

@@ -38,6 +38,7 @@ fn found(count: u32) -> Vec<Found> {
                 tilt: Vec2::new(b - 0.5, c) * weight,
                 radiance: Vec3::new(a, b, c) * 3.0,
                 surface: Some(point),
+                is_carried: k % 5 == 2,
                 visibility,
             };
             if is_patch {
@@ -92,7 +93,7 @@ fn packed_samples_are_what_they_were() {
             assert_eq!(samples.get(index as u32), sample);
             assert_eq!(samples.spot(index as u32), Spot::of(&sample));
         }
-        assert_eq!(addresses.of(index as u32), sample.surface);
+        assert_eq!(addresses.of(index as u32), Spot::of(&sample).address);
     }
     let spots: Vec<_> = samples.runs().flat_map(|run| run.spots()).collect();
     assert!(spots.into_iter().eq(samples.iter().map(|sample| Spot::of(&sample))));

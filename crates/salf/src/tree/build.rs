@@ -1,7 +1,7 @@
 //! Building the hierarchy, block by block.
 
 use crate::salf::Salf;
-use crate::sample::{Sample, Visibility};
+use crate::sample::{Sample, Visibility, finer};
 use crate::tree::grid::{Content, Grid};
 use crate::tree::{BLOCK_PX, Block, LEVELS, Node};
 use glam::{IVec2, Vec2, Vec3};
@@ -153,7 +153,7 @@ impl Builder<'_> {
             && weigh_alike(&a.node, &b.node)
             && match (&a.cells, &b.cells) {
                 (None, None) => true,
-                (Some(a), Some(b)) => a.distance(b) <= ALIKE,
+                (Some(a), Some(b)) => a.distance(b) <= ALIKE && a.overlaps(b),
                 _ => false,
             }
     }
@@ -347,22 +347,16 @@ impl Cells {
         (0..256).filter(is_seen).map(|k| (node.weight + node.tilt.dot(cell(k))).max(0.0)).sum()
     }
 
+    /// Whether there are cells that both see.
+    fn overlaps(&self, other: &Self) -> bool {
+        self.0.iter().zip(other.0).any(|(a, b)| a & b != 0)
+    }
+
     /// The share of cells that differ.
     fn distance(&self, other: &Self) -> f32 {
         let differing: u32 = self.0.iter().zip(other.0).map(|(a, b)| (a ^ b).count_ones()).sum();
         differing as f32 / 256.0
     }
-}
-
-/// 8 × 8 cells as 16 × 16.
-fn finer(word: u64) -> [u64; 4] {
-    let mut words = [0u64; 4];
-    for row in 0..16 {
-        let bits = word >> (row / 2 * 8) & 0xFF;
-        let doubled = (0..8).map(|k| (bits >> k & 1) * (3 << (2 * k))).sum::<u64>();
-        words[row / 4] |= doubled << (row % 4 * 16);
-    }
-    words
 }
 
 #[cfg(test)]
@@ -371,17 +365,6 @@ mod tests {
     use glam::DVec2;
     use lens::Camera;
     use scene::SurfacePoint;
-
-    #[test]
-    fn coarse_cells_become_four_each() {
-        assert_eq!(
-            finer(1 | 1 << 15 | 1 << 63),
-            [3 | 3 << 16 | (3 << 14) << 32 | (3 << 14) << 48, 0, 0, 0xC000_C000 << 32]
-        );
-        for word in [0, u64::MAX, 0x0123_4567_89AB_CDEF] {
-            assert_eq!(finer(word).iter().map(|w| w.count_ones()).sum::<u32>(), 4 * word.count_ones());
-        }
-    }
 
     #[test]
     fn most_is_a_majority() {
@@ -402,6 +385,7 @@ mod tests {
                 tilt: Vec2::ZERO,
                 radiance: Vec3::splat(if (x, y) == (3, 3) { 100.0 } else { x as f32 * 0.01 }),
                 surface: Some(SurfacePoint { triangle: k, barycentric: DVec2::ZERO }),
+                is_carried: false,
                 visibility: Visibility::Open,
             }
         };

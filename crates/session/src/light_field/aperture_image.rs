@@ -128,7 +128,7 @@ impl KeptVisibility {
             Some(field.index.samples_reading(&texels)).filter(|found| !found.is_empty())
         })?;
         let mut addresses = field.salf.samples.addresses();
-        let mut position = |index: u32| Some(addresses.of(index)?.position(&stage.scene));
+        let mut position = |index: u32| Some(addresses.of(index).surface?.position(&stage.scene));
         let near =
             samples.into_iter().filter_map(|index| Some((position(index)?.distance(hit.position), index)));
         let (distance, index) = near.min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)))?;

@@ -5,10 +5,9 @@
 
 use focus::Focus;
 use glam::DVec2;
-use lens::{Camera, FocusOffset};
+use lens::Camera;
 use rayon::prelude::*;
 use salf::{LARGEST_MARGIN_HEIGHTS, Salf, Spot};
-use scene::SurfaceField;
 
 /// Which samples of a light field reach the frame with a circle of confusion that is wider than the baked margin.
 ///
@@ -107,8 +106,7 @@ impl<'a> Look<'a> {
 
     /// The radius of its circle of confusion, px.
     fn radius_px(&self, spot: &Spot) -> f64 {
-        let offset: FocusOffset =
-            spot.surface.map_or_else(|| self.focus.at_infinity(), |point| self.focus.at(point));
+        let offset = spot.address.focus(self.focus);
         let kappa = self.optics.kappa(f64::from(spot.inverse_depth), offset.or_standard());
         self.optics.splat_radius_px(kappa).abs()
     }

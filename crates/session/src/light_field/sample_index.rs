@@ -2,7 +2,7 @@
 
 use atlas::Atlas;
 use glam::DVec2;
-use salf::Salf;
+use salf::{Address, Salf};
 use std::collections::HashMap;
 
 /// Side of a tile, texels: a tile's texels are the bits of a u64.
@@ -23,7 +23,9 @@ impl SampleIndex {
     pub fn new(salf: &Salf, atlas: &Atlas) -> Self {
         let mut addresses = salf.samples.addresses();
         let count = salf.samples.len() as u32;
-        let positions = (0..count).map(|index| Some(atlas.position_of(addresses.of(index)?)));
+        // Paint does not move carried light.
+        let painted = |address: Address| address.surface.filter(|_| !address.is_carried);
+        let positions = (0..count).map(|index| Some(atlas.position_of(painted(addresses.of(index))?)));
         Self::of_positions([atlas.width, atlas.height], positions)
     }
 

@@ -193,6 +193,7 @@ impl Hard {
                 tilt: Vec2::new(self.tilt, (mixed % 5) as f32 * -0.1 * self.tilt),
                 radiance: bright * Vec3::new(1e-3, 0.5, (mixed % 9) as f32),
                 surface: Some(SurfacePoint { triangle: index, barycentric: DVec2::ZERO }),
+                is_carried: false,
                 visibility,
             }
         };

@@ -41,6 +41,7 @@ fn light_field() -> Arc<Salf> {
             tilt: Vec2::new((mixed % 7) as f32 * 0.03, (mixed % 5) as f32 * -0.04),
             radiance: if index == 1234 { Vec3::splat(1e6) } else { Vec3::new(1e-3, 0.5, (mixed % 9) as f32) },
             surface: Some(SurfacePoint { triangle: index, barycentric: DVec2::ZERO }),
+            is_carried: false,
             visibility,
         }
     };
@@ -277,6 +278,7 @@ fn ripple_of_wall(slope: f64, tilt: f64, across: bool) -> f64 {
                 tilt,
                 radiance: Vec3::ONE,
                 surface: None,
+                is_carried: false,
                 visibility: Visibility::Open,
             });
         }
@@ -307,6 +309,7 @@ fn what_sees_one_cell_loses_no_light() {
             tilt: Vec2::ZERO,
             radiance: Vec3::ONE,
             surface: Some(SurfacePoint { triangle: index, barycentric: DVec2::ZERO }),
+            is_carried: false,
             visibility: Visibility::Cells { words: words.into() },
         }
     };
@@ -375,6 +378,7 @@ fn a_bright_sample_of_a_large_cell_sends_all_its_light() {
         tilt: Vec2::ZERO,
         radiance: Vec3::splat(radiance),
         surface: Some(SurfacePoint { triangle: 0, barycentric: DVec2::ZERO }),
+        is_carried: false,
         visibility: Visibility::Open,
     };
     for radiance in [3.0, 12.0, 300.0] {
@@ -399,6 +403,7 @@ fn pictures_of_any_width_are_summed() {
             tilt: Vec2::ZERO,
             radiance: Vec3::ONE,
             surface: Some(SurfacePoint { triangle: index, barycentric: DVec2::ZERO }),
+            is_carried: false,
             visibility: Visibility::Open,
         };
         let samples = (0..width * 20).map(sample).collect();
@@ -446,6 +451,7 @@ fn light_stays_within_reach() {
             tilt: Vec2::new(random() - 0.5, random() - 0.5),
             radiance: Vec3::ONE,
             surface: Some(SurfacePoint { triangle: 0, barycentric: DVec2::ZERO }),
+            is_carried: false,
             visibility,
         };
         let samples = vec![sample].into();

@@ -1,6 +1,7 @@
 //! What the rays of a beam meet.
 
 use super::{LeafTriangle, Nearest, Tracer};
+use crate::presence::Presence;
 use crate::watertight::{ShearedRay, ShearedRays};
 use crate::{Beam, Hit, Ray};
 use glam::DVec3;
@@ -46,11 +47,12 @@ impl<'a> Bundle<'a> {
 }
 
 impl Tracer {
-    /// What each ray of a beam meets first: the same as [`Self::first_hit`] says, for the cost of a few. At most
+    /// What each ray of a beam meets first: the same as [`Self::first_hit`] says, for the cost of a few; but what is there in
+    /// part is met by all. At most
     /// [`Beam::MOST_RAYS`] rays; all start at the beam's origin and lie between its edges.
     pub fn first_hits(&self, beam: &Beam, rays: &[Ray]) -> [Option<Hit>; Beam::MOST_RAYS] {
         let Some(bundle) = Bundle::new(rays) else {
-            return std::array::from_fn(|at| rays.get(at).and_then(|ray| self.first_hit(ray)));
+            return std::array::from_fn(|at| rays.get(at).and_then(|ray| self.first_shared(ray)));
         };
         let mut nearest: [_; Beam::MOST_RAYS] =
             std::array::from_fn(|at| Nearest { hit: None, t_max: bundle.ray(at).t_max });
@@ -64,7 +66,7 @@ impl Tracer {
             let mut is_changed = false;
             for triangle in &self.triangles[leaf] {
                 bundle.each_near(triangle, |at, ray, sheared| {
-                    is_changed |= self.take(&mut nearest[at], triangle, ray, sheared);
+                    is_changed |= self.take(&mut nearest[at], triangle, ray, sheared, Presence::Shared);
                 });
             }
             if is_changed {
@@ -75,7 +77,7 @@ impl Tracer {
         nearest.map(|nearest| nearest.hit)
     }
 
-    /// All that the rays of a beam meet, one behind the other, at most `most` on each: what [`Self::first_hit`] says of
+    /// All that the rays of a beam meet, one behind the other, at most `most` on each: what [`Self::first_hits`] says of
     /// the ray, of the ray behind that hit, and so on. Pairs of a ray's index and a hit, ray by ray; rays as those of
     /// [`Self::first_hits`].
     pub fn all_hits(&self, beam: &Beam, rays: &[Ray], most: usize) -> Vec<(usize, Hit)> {
@@ -85,7 +87,7 @@ impl Tracer {
             for triangle in &self.triangles[leaf] {
                 bundle.each_near(triangle, |at, ray, sheared| {
                     let mut only = Nearest { hit: None, t_max: ray.t_max };
-                    self.take(&mut only, triangle, ray, sheared);
+                    self.take(&mut only, triangle, ray, sheared, Presence::Shared);
                     found.extend(only.hit.map(|hit| (at, hit)));
                 });
             }
@@ -109,7 +111,7 @@ impl Tracer {
         let along = |(at, ray): (usize, &Ray)| {
             let mut ray = *ray;
             let next = move || {
-                let hit = self.first_hit(&ray)?;
+                let hit = self.first_shared(&ray)?;
                 ray = Ray { t_min: hit.t, skip: Some(hit.point.triangle), ..ray };
                 Some((at, hit))
             };

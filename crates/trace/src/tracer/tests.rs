@@ -105,7 +105,7 @@ fn the_rays_of_a_beam_meet_what_they_meet_alone() {
                 for _ in 0..most {
                     let found = tracer.first_hits(&beam, &rays);
                     for (ray, found) in rays.iter().zip(found) {
-                        let alone = tracer.first_hit(ray);
+                        let alone = tracer.first_shared(ray);
                         assert_eq!(found.map(key), alone.map(key), "{beam:?} {ray:?}");
                         hits += usize::from(alone.is_some());
                     }
@@ -404,7 +404,7 @@ fn sight_is_what_single_rays_see() {
         let direction = random.in_cube();
         for infinite in [false, true] {
             let viewpoint = if infinite { Viewpoint::Infinity(direction) } else { Viewpoint::Surface(point) };
-            let hidden_places = tracer.hidden_places(viewpoint, &square, &places);
+            let hidden_places = tracer.sight(viewpoint, &square, &places).hidden;
             for (k, &place) in found.iter().enumerate() {
                 let is_hidden = if infinite {
                     tracer.any_hit(&ray(square.at(place), direction))
@@ -435,9 +435,9 @@ fn no_place_shows_between_triangles() {
         let square = Square { center: 3.0 * toward, right, up: toward.cross(right) };
         let places = Places::new(&places(&mut random));
         let point = SurfacePoint { triangle: inner, barycentric: DVec2::new(random.unit(), 0.0) };
-        let inside = tracer.hidden_places(Viewpoint::Surface(point), &square, &places);
+        let inside = tracer.sight(Viewpoint::Surface(point), &square, &places).hidden;
         assert_eq!(inside, places.all());
-        let outside = tracer.hidden_places(Viewpoint::Infinity(toward), &square, &places);
+        let outside = tracer.sight(Viewpoint::Infinity(toward), &square, &places).hidden;
         assert!(outside.is_empty());
     }
 }
@@ -449,9 +449,39 @@ fn sight_goes_through_what_is_cut_away() {
     let toward = Viewpoint::Surface(SurfacePoint { triangle: 4, barycentric: DVec2::splat(0.3) });
     for (opacity, hidden) in [(0.4, 0), (0.6, 2)] {
         let tracer = window(AlphaMode::Mask(0.5), opacity);
-        let found = tracer.hidden_places(toward, &square, &place);
+        let found = tracer.sight(toward, &square, &place).hidden;
         assert_eq!(found.iter().count(), hidden);
     }
+}
+
+#[test]
+fn panes_let_their_shares_through() {
+    // Three panes one behind the other, the last over the right half alone.
+    let pane = |opacity: f32, z: f64, left: f64| {
+        let glass = Material {
+            alpha: AlphaMode::Blend,
+            base_color: glam::Vec4::new(1.0, 1.0, 1.0, opacity),
+            ..white()
+        };
+        (rectangle(DVec3::new(left, -9.0, z), 9.0 * DVec3::X, 18.0 * DVec3::Y), glass)
+    };
+    let card = (rectangle(DVec3::new(-1.0, -1.0, 0.0), 2.0 * DVec3::X, 2.0 * DVec3::Y), white());
+    let tracer =
+        Tracer::new(scene_of(&[card, pane(0.25, 1.0, -4.5), pane(0.5, 2.0, -4.5), pane(0.9, 3.0, 0.0)]));
+    let square = Square { center: DVec3::new(0.0, 0.0, 5.0), right: DVec3::X, up: DVec3::Y };
+    let places = Places::new(&[DVec2::new(-0.7, 0.3), DVec2::new(0.8, -0.4)]);
+    let from = Viewpoint::Surface(SurfacePoint { triangle: 0, barycentric: DVec2::splat(0.3) });
+    let sight = tracer.sight(from, &square, &places);
+    assert!(sight.hidden.is_empty(), "half there is not there and not away");
+    let shares = sight.shares.expect("there are panes");
+    assert!((shares[0] - 0.375).abs() < 1e-6 && (shares[1] - 0.0375).abs() < 1e-6, "{:?}", &shares[..2]);
+    // Rays by chance have the same mean.
+    let passes = (0..4000).filter(|k| {
+        let source = square.at(DVec2::new(-0.9 + f64::from(*k) * 2e-4, 0.3));
+        !tracer.hidden(SurfacePoint { triangle: 0, barycentric: DVec2::splat(0.3) }, source)
+    });
+    let mean = passes.count() as f64 / 4000.0;
+    assert!((mean - 0.375).abs() < 0.03, "{mean}");
 }
 
 #[test]

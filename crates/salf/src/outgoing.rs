@@ -1,0 +1,279 @@
+//! What a surface sends toward the aperture, in the least form that tells it.
+//!
+//! Own light changes little over the aperture, and is one radiance. Carried light of a lobe of width ω, as seen from the whole
+//! aperture, which spans the angle δ there, needs about 6 δ/ω radiances a side; where it is thrown as an image of c px, no more
+//! than c over the tolerance can be told apart. It is asked for on so many cells, which are joined again where they are alike.
+//!
+//! Own and carried light share the weight of their patch, as they share its coverage, so each is divided by its share.
+
+use crate::jitter::jitter;
+use crate::sample::Visibility;
+use crate::view::View;
+use glam::{DVec2, Vec3};
+use scene::SurfacePoint;
+use trace::{Leaving, Radiance};
+
+/// Cells a side at most that carried light is told on.
+const MOST_CELLS: usize = 8;
+
+/// Cells that a lobe as wide as the aperture is seen needs, a side.
+const CELLS_A_WIDTH: f64 = 6.0;
+
+/// Cells are joined whose light differs from their mean by at most this share of all the light that is sent.
+const ALIKE: f32 = 0.05;
+
+/// Shares of coverage are told in steps of one over this: few of them, so that few planes differ, and exact in 11 bits.
+const STEPS: f32 = 128.0;
+
+/// Light toward the aperture, and what of the weight of its patch it has.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Outgoing {
+    pub radiance: Vec3,
+    pub share: f32,
+    pub is_carried: bool,
+    /// The part of the aperture that it is sent toward.
+    pub toward: Visibility,
+}
+
+/// Means of what some points send.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Sent {
+    own: Vec3,
+    carried: Vec3,
+    carried_share: f32,
+    weight: f32,
+}
+
+impl Sent {
+    /// Of points of these weights.
+    pub fn mean(of: impl IntoIterator<Item = (Leaving, f32)>) -> Self {
+        let mut sum = Self::default();
+        for (Leaving { own, carried, carried_share }, weight) in of {
+            sum.own += own * weight;
+            sum.carried += carried * weight;
+            sum.carried_share += carried_share * weight;
+            sum.weight += weight;
+        }
+        let by = 1.0 / sum.weight;
+        Self { own: sum.own * by, carried: sum.carried * by, carried_share: sum.carried_share * by, ..sum }
+    }
+
+    /// As of one point.
+    pub fn leaving(&self) -> Leaving {
+        Leaving { own: self.own, carried: self.carried, carried_share: self.carried_share }
+    }
+
+    /// All light, own and carried.
+    pub fn total(&self) -> Vec3 {
+        self.own + self.carried
+    }
+
+    /// The share of carried light, in steps; neither none nor all where there is both.
+    fn share(&self) -> f32 {
+        let share = (self.carried_share * STEPS).round() / STEPS;
+        let least = if self.carried_share > 0.0 { 1.0 / STEPS } else { 0.0 };
+        let most = if self.own != Vec3::ZERO { 1.0 - 1.0 / STEPS } else { 1.0 };
+        share.clamp(least, most)
+    }
+
+    /// Its two kinds of light, each toward the whole aperture.
+    pub fn kinds(&self) -> impl Iterator<Item = Outgoing> + use<> {
+        let share = self.share();
+        let [own, carried] = [(self.own, 1.0 - share, false), (self.carried, share, true)];
+        [own, carried].into_iter().filter(|(_, share, _)| *share > 0.0).map(|(light, share, is_carried)| {
+            Outgoing { radiance: light / share, share, is_carried, toward: Visibility::Open }
+        })
+    }
+}
+
+/// How many cells a side the carried light of a point of inverse depth `inverse_depth` is asked for on, whose narrowest lobe is
+/// `width` rad wide.
+pub fn cells_a_side(view: &View, inverse_depth: f64, width: f64) -> usize {
+    let circle_px = view.optics.circle_of_confusion_px(view.optics.standard_kappa(inverse_depth));
+    let of_lobe = CELLS_A_WIDTH * 2.0 * view.optics.aperture_radius * inverse_depth / width;
+    let wanted = (circle_px / view.tolerance_px).min(of_lobe);
+    // Without an aperture there is nothing to tell apart, 0/0.
+    if wanted > 1.0 { (wanted.min(MOST_CELLS as f64).ceil() as usize).next_power_of_two() } else { 1 }
+}
+
+/// What points send toward the open aperture, each toward a place of its own.
+pub fn toward_places(
+    radiance: &dyn Radiance,
+    view: &View,
+    points: &[SurfacePoint],
+    seed: [u32; 2],
+) -> Vec<Leaving> {
+    // Roberts's sequence: fractions of the plastic number's powers.
+    const STEP: DVec2 = DVec2::new(0.754_877_666_246_692_8, 0.569_840_290_998_053_3);
+    let [x, y, _] = jitter(seed[0], seed[1], 1 << 20);
+    let place = |k: usize| {
+        let at = (DVec2::new(x, y) + STEP * k as f64).fract();
+        view.aperture_point(view.open_aperture.sample(at.x, at.y))
+    };
+    let sent = |(k, &point): (usize, &SurfacePoint)| radiance.leaving_among(point, place(k), points.len());
+    points.iter().enumerate().map(sent).collect()
+}
+
+/// What points send toward each cell of the aperture.
+pub struct TowardCells {
+    /// Of each point, toward those cells that it was asked for.
+    pub of_points: Vec<Sent>,
+    side: usize,
+    /// Carried light of all points toward each cell, row by row from v = −1.
+    carried: Vec<Vec3>,
+}
+
+impl TowardCells {
+    /// Asks points of these weights toward `side` × `side` cells: each cell is asked by as many points, neighbours ask for
+    /// cells apart.
+    pub fn ask(
+        radiance: &dyn Radiance,
+        view: &View,
+        points: &[(SurfacePoint, f32)],
+        side: usize,
+        seed: [u32; 2],
+    ) -> Self {
+        let cells = side * side;
+        let count = cells * points.len().div_ceil(cells);
+        let bits = cells.ilog2();
+        let mut of_points: Vec<Vec<(Leaving, f32)>> = vec![Vec::new(); points.len()];
+        let mut of_cells: Vec<Vec<(Leaving, f32)>> = vec![Vec::new(); cells];
+        let turn = (jitter(seed[0], seed[1], 1 << 21)[0] * cells as f64) as usize;
+        for asked in 0..count {
+            let at = asked * points.len() / count;
+            let (point, weight) = points[at];
+            let cell = ((asked % cells) as u32).reverse_bits() >> (u32::BITS - bits);
+            let [row, column] = crate::domain::Cell::row_and_column(cell as usize ^ turn);
+            let [x, y, _] = jitter(seed[0], seed[1], (1 << 22) + asked as u32);
+            let place = DVec2::new(column as f64 + x, row as f64 + y) * (2.0 / side as f64) - 1.0;
+            let leaving = radiance.leaving_among(point, view.aperture_point(place), count);
+            of_points[at].push((leaving, weight));
+            of_cells[row * side + column].push((leaving, weight));
+        }
+        Self {
+            of_points: of_points.into_iter().map(Sent::mean).collect(),
+            side,
+            carried: of_cells.into_iter().map(|sent| Sent::mean(sent).carried).collect(),
+        }
+    }
+
+    /// Carried light on as few parts of the aperture as tell it, of points that send `all` on the mean.
+    pub fn carried(&self, all: &Sent) -> Vec<Outgoing> {
+        let mut parts = Vec::new();
+        let differs = ALIKE * all.total().max_element();
+        self.join([0, 0], self.side, differs, &mut parts);
+        let share = all.share();
+        let part = |(light, word): (Vec3, u64)| Outgoing {
+            radiance: light / share,
+            share,
+            is_carried: true,
+            toward: if word == u64::MAX {
+                Visibility::Open
+            } else {
+                Visibility::Cells { words: [word].into() }
+            },
+        };
+        parts.into_iter().map(part).collect()
+    }
+
+    /// Joins the cells of a square of them, if they are alike; else those of its quarters.
+    fn join(&self, [row, column]: [usize; 2], side: usize, differs: f32, parts: &mut Vec<(Vec3, u64)>) {
+        let lights = (0..side * side).map(|k| self.carried[(row + k / side) * self.side + column + k % side]);
+        let mean = lights.clone().sum::<Vec3>() / (side * side) as f32;
+        if lights.into_iter().all(|light| (light - mean).abs().max_element() <= differs) {
+            let finer = MOST_CELLS / self.side;
+            let bits = u64::MAX >> (64 - side * finer) << (column * finer);
+            let rows = row * finer..(row + side) * finer;
+            parts.push((mean, rows.fold(0, |word, row| word | bits << (8 * row))));
+            return;
+        }
+        for quarter in 0..4 {
+            let half = side / 2;
+            self.join([row + quarter / 2 * half, column + quarter % 2 * half], half, differs, parts);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DVec3;
+    use lens::Camera;
+
+    /// A mirror that shows something bright toward the right of the aperture, over a ground of its own.
+    struct Mirror;
+
+    impl Radiance for Mirror {
+        fn leaving(&self, _point: SurfacePoint, eye: DVec3) -> Leaving {
+            let carried = Vec3::splat(if eye.x > 0.25 { 8.0 } else { 0.5 });
+            Leaving { own: Vec3::splat(0.3), carried, carried_share: 0.25 }
+        }
+        fn from_infinity(&self, _direction: DVec3) -> Vec3 {
+            Vec3::ZERO
+        }
+    }
+
+    #[test]
+    fn carried_light_is_told_on_as_few_cells_as_it_needs() {
+        let camera = Camera { width: 64, height: 64, aperture_radius: 0.5, ..Camera::default() };
+        let view = View::new(&camera, 2.0);
+        let points = vec![(SurfacePoint { triangle: 0, barycentric: DVec2::ZERO }, 1.0); 16];
+        let asked = TowardCells::ask(&Mirror, &view, &points, 4, [3, 5]);
+        let all =
+            Sent::mean(points.iter().map(|(point, weight)| (Mirror.leaving(*point, DVec3::ZERO), *weight)));
+        let parts = asked.carried(&all);
+        // The left half as two quarters, and the right one cell by cell: three quarters of it are bright.
+        assert_eq!(parts.len(), 2 + 8, "{parts:?}");
+        let mut seen = 0;
+        for part in &parts {
+            let Visibility::Cells { words } = &part.toward else { panic!("a part: {part:?}") };
+            assert_eq!(seen & words[0], 0, "parts do not overlap");
+            seen |= words[0];
+            assert!((part.share, part.is_carried) == (0.25, true));
+        }
+        assert_eq!(seen, u64::MAX);
+        let light = |part: &Outgoing| match &part.toward {
+            Visibility::Open => part.radiance.x,
+            Visibility::Cells { words } => part.radiance.x * words[0].count_ones() as f32 / 64.0,
+        };
+        let sum: f32 = parts.iter().map(light).sum::<f32>() * 0.25;
+        let expected = 0.75 * 0.5 + 0.25 * 8.0;
+        assert!((sum - expected).abs() < 0.8, "{sum} for {expected}: cells on the edge are either");
+        // What is the same toward all is one.
+        let even = TowardCells { carried: vec![Vec3::ONE; 16], ..asked };
+        assert_eq!(even.carried(&all).len(), 1);
+        assert_eq!(even.carried(&all)[0].toward, Visibility::Open);
+    }
+
+    #[test]
+    fn kinds_share_the_weight_and_keep_the_light() {
+        for share in [0.0, 0.001, 0.3, 0.999, 1.0] {
+            for own in [0.0, 2.0] {
+                let sent = Sent::mean([(
+                    Leaving {
+                        own: Vec3::splat(own),
+                        carried: Vec3::splat(4.0 * share),
+                        carried_share: share,
+                    },
+                    0.5,
+                )]);
+                let kinds: Vec<_> = sent.kinds().collect();
+                assert_eq!(kinds.iter().map(|kind| kind.share).sum::<f32>(), 1.0);
+                let light: Vec3 = kinds.iter().map(|kind| kind.radiance * kind.share).sum();
+                assert!((light - sent.total()).abs().max_element() < 1e-5, "{share}, {own}: {kinds:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn narrow_lobes_far_out_of_focus_need_the_most_cells() {
+        let camera = Camera { width: 1920, height: 1080, aperture_radius: 0.02, ..Camera::default() };
+        let view = View::new(&camera, 2.0);
+        let focus = 1.0 / camera.focus_distance;
+        let of = |inverse_depth: f64, width: f64| cells_a_side(&view, inverse_depth, width);
+        assert_eq!((of(focus, 0.0), of(1.0, 0.0), of(1.0, 0.65)), (1, 8, 1));
+        assert!((2..8).contains(&of(1.0, 0.06)), "{}", of(1.0, 0.06));
+        let pinhole = Camera { aperture_radius: 0.0, ..camera };
+        assert_eq!(cells_a_side(&View::new(&pinhole, 2.0), 1.0, 0.0), 1);
+    }
+}
