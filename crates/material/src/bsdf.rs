@@ -19,7 +19,8 @@ use std::f64::consts::{FRAC_1_PI, TAU};
 /// A coat lies over sheen, and that over a mixture of metal, of a dielectric over a diffuse ground, and of glass. What an upper
 /// lobe mirrors is missing beneath it, for the eye and for the light alike: the diffuse ground is coupled,
 /// (1 − E(o))(1 − E(i))/(1 − Ē), which keeps all energy; beneath coat and sheen the smaller of both shares is left, which
-/// loses some. Both are reciprocal, as glTF's own mixing by the angle of one direction is not.
+/// loses some. Both are reciprocal, as clearcoat's mixing by the angle of one direction is not. [`Scattering::Single`] is glTF's
+/// appendix B to the letter instead.
 #[derive(Clone, Debug)]
 pub struct Bsdf<'a> {
     surface: Surface,
@@ -388,7 +389,7 @@ impl<'a> Bsdf<'a> {
         }
         if let (Some(coat), false, Some(h)) = (self.surface.clearcoat, self.coat.is_smooth(), half(o, i)) {
             let mirrored = COAT_F0 + (1.0 - COAT_F0) * rise(o.dot(h));
-            let light = coat.factor * mirrored * microfacets(&self.coat, o, i, h);
+            let light = coat.factor * mirrored * self.microfacets(&self.coat, o, i, h);
             sharp += Split::mirrored(DVec3::splat(light), self.coat.mean_alpha());
         }
         let share = seen.frame.terminator(incident);
@@ -402,7 +403,7 @@ impl<'a> Bsdf<'a> {
         }
         let (o, i) = (eye.w, light.w);
         let single =
-            half(o, i).map_or(DVec3::ZERO, |h| self.mirrored_at(o.dot(h)) * microfacets(&self.ggx, o, i, h));
+            half(o, i).map_or(DVec3::ZERO, |h| self.mirrored_at(o.dot(h)) * self.microfacets(&self.ggx, o, i, h));
         Split::mirrored(single, self.ggx.mean_alpha())
     }
 
@@ -413,6 +414,15 @@ impl<'a> Bsdf<'a> {
         let lost = self.lost(eye.shares) * self.lost(light.shares);
         let spread = if lost > 0.0 { lost * FRAC_1_PI / self.lost(means.shares) } else { 0.0 };
         (means.multiple[0] * metal + means.multiple[1] * dielectric) * spread
+    }
+
+    /// D·G₂/(4 cos cos): what facets that mirror all send on.
+    fn microfacets(&self, ggx: &Ggx, o: DVec3, i: DVec3, h: DVec3) -> f64 {
+        let seen = match self.surface.scattering {
+            Scattering::Multiple => ggx.seen_from_both(o, i),
+            Scattering::Single => ggx.seen_from_each(o, i),
+        };
+        ggx.density_of_normals(h) * seen / (4.0 * o.z * i.z)
     }
 
     /// What facets of metal and dielectric mirror at an angle.
@@ -438,7 +448,19 @@ impl<'a> Bsdf<'a> {
         if share == 0.0 {
             return DVec3::ZERO;
         }
-        self.surface.base_color * self.coupled(eye, light) * share
+        let ground = match self.surface.scattering {
+            Scattering::Multiple => self.coupled(eye, light),
+            Scattering::Single => self.left_by_facets(eye.w, light.w) * FRAC_1_PI,
+        };
+        self.surface.base_color * ground * share
+    }
+
+    /// What the dielectric's facets leave to its ground as glTF's appendix B.3 mixes them: 1 − F, at the angle of the facet that would
+    /// mirror one direction to the other.
+    fn left_by_facets(&self, o: DVec3, i: DVec3) -> DVec3 {
+        let Some(h) = half(o, i) else { return DVec3::ONE };
+        let [_, f0] = self.f0_at(o.dot(h));
+        DVec3::ONE - schlick(f0, DVec3::splat(self.surface.specular), o.dot(h))
     }
 
     fn diffuse_across(&self, eye: &Side, light: &Side) -> Split {
@@ -544,9 +566,4 @@ fn cosine_weighted(u: DVec2) -> DVec3 {
     let (sin, cos) = (TAU * u.x).sin_cos();
     let flat = u.y.sqrt();
     DVec3::new(flat * cos, flat * sin, (1.0 - u.y).max(0.0).sqrt())
-}
-
-/// D·G₂/(4 cos cos): what facets that mirror all send on.
-fn microfacets(ggx: &Ggx, o: DVec3, i: DVec3, h: DVec3) -> f64 {
-    ggx.density_of_normals(h) * ggx.seen_from_both(o, i) / (4.0 * o.z * i.z)
 }

@@ -58,8 +58,8 @@ impl Ggx {
         1.0 / (1.0 + self.lambda(o) + self.lambda(i))
     }
 
-    /// The same for directions on opposite sides, not correlated (Walter et al. 2007).
-    pub fn seen_across(&self, o: DVec3, i: DVec3) -> f64 {
+    /// The same, not correlated: for directions on opposite sides (Walter et al. 2007), and in glTF's appendix B.
+    pub fn seen_from_each(&self, o: DVec3, i: DVec3) -> f64 {
         self.seen(o) * self.seen(i)
     }
 

@@ -10,8 +10,8 @@
 //!   two sides of glass. `sheen`: cloth. `film`: iridescence.
 //!
 //! Energy is neither made nor lost: what single scattering on microfacets loses is given back by reciprocal lobes (Kulla and
-//! Conty 2017), and what an upper lobe mirrors is taken from what lies beneath it on both ways. [`Scattering::Single`] leaves
-//! the former out, to compare with renderers that do.
+//! Conty 2017), and what an upper lobe mirrors is taken from what lies beneath it on both ways. [`Scattering::Single`] is
+//! glTF's appendix B to the letter, to compare with renderers that do so.
 
 mod albedo;
 mod bsdf;

@@ -1,6 +1,6 @@
 //! Glass: what it mirrors, what it lets through, and what multiple scattering on its facets gives back.
 
-use super::{Bsdf, Scattered, Seen, cosine_weighted, flipped, half, microfacets};
+use super::{Bsdf, Scattered, Seen, cosine_weighted, flipped, half};
 use crate::Split;
 use crate::fresnel::dielectric_reflectance;
 use crate::ggx::Ggx;
@@ -25,7 +25,7 @@ impl Bsdf<'_> {
             return Split::default();
         }
         let single = half(o, i)
-            .map_or(0.0, |h| dielectric_reflectance(o.dot(h), eta) * microfacets(&self.ggx, o, i, h));
+            .map_or(0.0, |h| dielectric_reflectance(o.dot(h), eta) * self.microfacets(&self.ggx, o, i, h));
         let stays = self.glass_returned(seen, i);
         (Split::mirrored(DVec3::splat(single), self.ggx.mean_alpha()) + Split::own(DVec3::splat(stays)))
             * share
@@ -39,7 +39,7 @@ impl Bsdf<'_> {
         }
         let single = match self.surface.is_thin {
             true => half(o, flipped(i)).map_or(0.0, |h| {
-                (1.0 - dielectric_reflectance(o.dot(h), eta)) * microfacets(&self.ggx, o, flipped(i), h)
+                (1.0 - dielectric_reflectance(o.dot(h), eta)) * self.microfacets(&self.ggx, o, flipped(i), h)
             }),
             false => through_facets(&self.ggx, o, i, eta),
         };
@@ -160,7 +160,7 @@ fn through_facets(ggx: &Ggx, o: DVec3, i: DVec3, eta: f64) -> f64 {
     let Some(h) = refracting(o, i, eta) else { return 0.0 };
     let (from, to) = (o.dot(h), i.dot(h));
     let crosses = 1.0 - dielectric_reflectance(from, eta);
-    let seen = ggx.seen_across(o, flipped_up(i)) * ggx.density_of_normals(h);
+    let seen = ggx.seen_from_each(o, flipped_up(i)) * ggx.density_of_normals(h);
     let value = (from * to / (o.z * i.z)).abs() * crosses * seen / (from + eta * to).powi(2);
     // Equal media bend nothing: all normals refract alike, and the lobe is the direction itself.
     if value.is_finite() { value } else { 0.0 }
