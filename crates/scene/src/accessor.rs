@@ -27,7 +27,7 @@ pub(crate) fn component_of(code: u64) -> Option<Component> {
 }
 
 /// The value at the start of `bytes`, as stored. Every one of them is exact in f64.
-fn read(component: Component, bytes: &[u8]) -> f64 {
+pub(crate) fn read(component: Component, bytes: &[u8]) -> f64 {
     match component {
         Component::I8 => f64::from(bytes[0] as i8),
         Component::U8 => f64::from(bytes[0]),

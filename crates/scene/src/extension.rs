@@ -4,9 +4,11 @@ use crate::document::Document;
 use crate::error::Fault;
 
 /// Read and honoured.
-pub(crate) const SUPPORTED: [&str; 19] = [
+pub(crate) const SUPPORTED: [&str; 23] = [
     "EXT_mesh_gpu_instancing",
+    "EXT_meshopt_compression",
     "EXT_texture_webp",
+    "KHR_draco_mesh_compression",
     "KHR_lights_punctual",
     "KHR_materials_anisotropy",
     "KHR_materials_clearcoat",
@@ -21,7 +23,9 @@ pub(crate) const SUPPORTED: [&str; 19] = [
     "KHR_materials_unlit",
     "KHR_materials_volume",
     "KHR_mesh_quantization",
+    "KHR_meshopt_compression",
     "KHR_node_visibility",
+    "KHR_texture_basisu",
     "KHR_texture_transform",
     "KHR_materials_iridescence",
 ];
@@ -38,7 +42,7 @@ const HARMLESS: [&str; 6] = [
 
 /// The names in `extensionsUsed`.
 pub(crate) fn used<'a>(document: &'a Document<'_>) -> impl Iterator<Item = &'a str> {
-    document.typed().extensions_used()
+    document.typed().extensions_used().chain(document.decoded.iter().copied())
 }
 
 /// The names in `extensionsRequired`.
@@ -50,7 +54,7 @@ pub(crate) fn required<'a>(document: &'a Document<'_>) -> impl Iterator<Item = &
 pub(crate) fn check(document: &Document<'_>) -> Result<(), Fault> {
     let is_strange = |extension: &&str| !SUPPORTED.contains(extension) && !HARMLESS.contains(extension);
     if let Some(extension) = required(document).find(is_strange) {
-        return Err(Fault::Extension { cure: cure(extension).into(), extension: extension.into() });
+        return Err(Fault::Extension { cure: "export the scene without it".into(), extension: extension.into() });
     }
     for extension in used(document).filter(is_strange) {
         document
@@ -59,15 +63,3 @@ pub(crate) fn check(document: &Document<'_>) -> Result<(), Fault> {
     Ok(())
 }
 
-fn cure(extension: &str) -> &'static str {
-    match extension {
-        "KHR_draco_mesh_compression" => {
-            "export without Draco compression, or decompress with: gltf-transform copy IN OUT"
-        }
-        "EXT_meshopt_compression" | "KHR_meshopt_compression" => {
-            "export without meshopt compression, or decompress with: gltf-transform copy IN OUT"
-        }
-        "KHR_texture_basisu" => "export with PNG, JPEG or WebP textures",
-        _ => "export the scene without it",
-    }
-}

@@ -1,14 +1,22 @@
-//! Decoding images: PNG, JPEG and WebP, 8 or 16 bits, grey, palette or colour, within limits.
+//! Decoding images: PNG, JPEG and WebP, 8 or 16 bits, grey, palette or colour, and KTX 2 with Basis Universal textures, within
+//! limits.
 
 use crate::document::{Document, named};
 use crate::error::Fault;
 use crate::{Image, ImageLevel};
+use basisu::{DecodeFlags, TargetFormat, Transcoder};
 use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader, Limits};
 use std::borrow::Cow;
 use std::io::Cursor;
 
+/// What KTX 2 files begin with.
+const KTX2: [u8; 12] = *b"\xABKTX 20\xBB\r\n\x1A\n";
+
 /// glTF's name of an image format, for those that glTF knows.
 pub(crate) fn mime_type(bytes: &[u8]) -> Option<&'static str> {
+    if bytes.starts_with(&KTX2) {
+        return Some("image/ktx2");
+    }
     match image::guess_format(bytes).ok()? {
         ImageFormat::Png => Some("image/png"),
         ImageFormat::Jpeg => Some("image/jpeg"),
@@ -45,8 +53,9 @@ impl Document<'_> {
             Some("image/png") => ImageFormat::Png,
             Some("image/jpeg") => ImageFormat::Jpeg,
             Some("image/webp") => ImageFormat::WebP,
+            Some("image/ktx2") => return self.basis_image(index, &bytes, &place),
             _ => {
-                return Err(Fault::Malformed { place, what: "is neither PNG, JPEG nor WebP".into() });
+                return Err(Fault::Malformed { place, what: "is neither PNG, JPEG, WebP nor KTX 2".into() });
             }
         };
         let broken = |error: image::ImageError| Fault::Malformed {
@@ -59,17 +68,7 @@ impl Document<'_> {
         reader.limits(limits);
         let decoder = reader.into_decoder().map_err(broken)?;
         let (width, height) = decoder.dimensions();
-        let texels = u64::from(width) * u64::from(height);
-        if texels > self.budget.options.max_texels {
-            let limit = self.budget.options.max_texels;
-            return Err(Fault::TooBig {
-                what: format!("{place}: {width}×{height} texels, the limit is {limit}"),
-            });
-        }
-        self.budget.work(texels + bytes.len() as u64 / 8, &place)?;
-        if texels == 0 {
-            return Err(Fault::Malformed { place, what: "has no texels".into() });
-        }
+        let texels = self.texels([width, height], bytes.len(), &place)?;
         let deep = decoder.color_type().bytes_per_pixel() / decoder.color_type().channel_count() > 1;
         let size = texels * if deep { 8 } else { 4 };
         // The decoder's own picture exists beside the converted one.
@@ -85,11 +84,46 @@ impl Document<'_> {
         if let Cow::Owned(bytes) = bytes {
             self.budget.release(bytes.len() as u64);
         }
+        Ok(Image { name: self.image_name(index), width, height, texels })
+    }
+
+    /// Decodes the largest level of a Basis Universal texture.
+    fn basis_image(&self, index: usize, bytes: &[u8], place: &str) -> Result<Image, Fault> {
+        let broken =
+            |error: basisu::Error| Fault::Malformed { place: place.into(), what: format!("cannot be decoded: {error:?}") };
+        // What it announces, before anything is made room for.
+        let sides = [20, 24].map(|at| bytes.get(at..at + 4).and_then(|bytes| bytes.try_into().ok()));
+        let [width, height] = sides.map(|side| side.map_or(0, u32::from_le_bytes));
+        let texels = self.texels([width, height], bytes.len(), place)?;
+        self.budget.memory(4 * texels, place)?;
+        let texture = Transcoder::new(bytes).map_err(broken)?;
+        if texture.base_dimensions() != (width, height) {
+            return Err(Fault::Malformed { place: place.into(), what: "tells two sizes".into() });
+        }
+        let texels = texture.transcode(0, TargetFormat::Rgba32, DecodeFlags::NONE).map_err(broken)?;
+        Ok(Image { name: self.image_name(index), width, height, texels: ImageLevel::Bits8(texels) })
+    }
+
+    /// How many texels an image of these sides has, if that is within the limits.
+    fn texels(&self, [width, height]: [u32; 2], bytes: usize, place: &str) -> Result<u64, Fault> {
+        let texels = u64::from(width) * u64::from(height);
+        let limit = self.budget.options.max_texels;
+        if texels > limit {
+            let what = format!("{place}: {width}×{height} texels, the limit is {limit}");
+            return Err(Fault::TooBig { what });
+        }
+        self.budget.work(texels + bytes as u64 / 8, place)?;
+        if texels == 0 {
+            return Err(Fault::Malformed { place: place.into(), what: "has no texels".into() });
+        }
+        Ok(texels)
+    }
+
+    fn image_name(&self, index: usize) -> String {
         let file = self.typed().as_json().images.get(index);
         let uri = file.and_then(|file| file.uri.clone());
         let uri = uri.filter(|uri| crate::data_uri::data_uri(uri).is_none());
         let name = file.and_then(|file| named(file.name.as_deref())).or(uri);
-        let name = name.unwrap_or_else(|| format!("image {index}"));
-        Ok(Image { name, width, height, texels })
+        name.unwrap_or_else(|| format!("image {index}"))
     }
 }

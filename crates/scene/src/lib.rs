@@ -23,6 +23,7 @@ mod assembly;
 mod attribute_name;
 mod back_faces;
 mod budget;
+mod compressed;
 mod container;
 mod data_uri;
 mod document;

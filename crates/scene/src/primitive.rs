@@ -55,9 +55,6 @@ impl Primitive {
             return Ok(None);
         }
         document.sound_below(&format!("{place}/extensions"))?;
-        if file.extension_value("KHR_draco_mesh_compression").is_some() {
-            document.warn(format!("{place}: its Draco-compressed form is ignored, the plain one is read"));
-        }
         let attributes = Attributes { document, file, place: format!("{place}/attributes") };
         document.sound(&attributes.place)?;
         let position_place = format!("{}/POSITION", attributes.place);

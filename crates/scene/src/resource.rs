@@ -65,6 +65,7 @@ impl<'a> Document<'a> {
             return Err(Fault::NoData { place: own });
         };
         let bytes: &[u8] = match (source, self.chunk) {
+            _ if self.buffers[index].get().is_some() => self.buffers[index].get().map_or(&[], Vec::as_slice),
             (Source::Uri(uri), _) => {
                 let cell = &self.buffers[index];
                 if cell.get().is_none() {

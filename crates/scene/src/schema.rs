@@ -438,11 +438,11 @@ static SKIN: Spec = Spec {
 
 static TEXTURE: Spec = Spec {
     optional: &[("name", Text), ("sampler", Index("samplers")), ("source", Index("images"))],
-    extensions: &[("EXT_texture_webp", &TEXTURE_WEBP)],
+    extensions: &[("EXT_texture_webp", &TEXTURE_OTHER), ("KHR_texture_basisu", &TEXTURE_OTHER)],
     ..NONE
 };
 
-static TEXTURE_WEBP: Spec = Spec { required: &[("source", Index("images"))], ..NONE };
+static TEXTURE_OTHER: Spec = Spec { required: &[("source", Index("images"))], ..NONE };
 
 static LIGHTS: Spec = Spec { required: &[("lights", List(&LIGHT))], ..NONE };
 

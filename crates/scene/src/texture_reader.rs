@@ -45,15 +45,18 @@ impl<'a> TextureReader<'a> {
         }))
     }
 
-    /// The first of a texture's images that can be read: WebP, then the plain one.
+    /// The first of a texture's images that can be read: Basis Universal, WebP, then the plain one.
     fn texture_image(&mut self, texture: &gltf::Texture<'_>, place: &str) -> Option<u32> {
-        let webp = texture.extension_value("EXT_texture_webp").and_then(|webp| integer(webp.get("source")?));
+        let of_extension = |name: &str| {
+            let index = texture.extension_value(name).and_then(|value| integer(value.get("source")?));
+            (index.map(|index| index as usize), format!("{place}/extensions/{name}/source"))
+        };
         // The typed view relies on the source to be there.
         let json = self.document.typed().as_json().textures.get(texture.index());
         let plain = json.map(|texture| texture.source.value()).filter(|&i| i < self.document.len("images"));
-        let webp = (webp.map(|index| index as usize), format!("{place}/extensions/EXT_texture_webp/source"));
+        let plain = (plain, format!("{place}/source"));
         let (mut is_told, mut sources) = (false, 0);
-        for (source, place) in [webp, (plain, format!("{place}/source"))] {
+        for (source, place) in [of_extension("KHR_texture_basisu"), of_extension("EXT_texture_webp"), plain] {
             if let Err(fault) = self.document.sound(&place) {
                 self.document.warn(format!("{fault}; the texture is white"));
                 is_told = true;
