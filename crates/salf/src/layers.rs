@@ -12,7 +12,7 @@ use crate::view::View;
 use glam::{DVec2, Vec3};
 use scene::SurfacePoint;
 use std::ops::Range;
-use trace::{Beam, Hit, Leaving, Radiance, Tracer, Viewpoint};
+use trace::{Among, Beam, Hit, Leaving, Radiance, Tracer, Viewpoint};
 
 /// Surfaces along one chief ray beyond which nothing is looked for.
 const DEEPEST_LAYER: usize = 12;
@@ -253,11 +253,12 @@ impl Group {
             let asked = TowardCells::ask(radiance, view, &points, side, seed);
             return self.glossy_samples(cell, &shares, &asked);
         }
+        let among = |at: usize| outgoing::among(seed, at, self.members.len());
         let sent = match width {
             Some(_) if !is_pinhole => {
                 outgoing::toward_places(radiance, view, &points().collect::<Vec<_>>(), seed)
             }
-            _ => self.members.iter().map(|m| toward_middle(radiance, view, m, self.members.len())).collect(),
+            _ => self.members.iter().enumerate().map(|(at, m)| toward_middle(radiance, view, m, among(at))).collect(),
         };
         let mean = |rays: &Range<usize>| mean(rays, |ray| (sent[ray], shares[ray]));
         let part = |rays: Range<usize>| {
@@ -344,10 +345,10 @@ fn mean_inverse_depth(members: &[Member]) -> f64 {
     members.iter().map(|m| m.inverse_depth).sum::<f64>() / members.len() as f64
 }
 
-/// What a member sends to the aperture's middle; it is one of `count` whose mean is wanted.
-fn toward_middle(radiance: &dyn Radiance, view: &View, member: &Member, count: usize) -> Leaving {
+/// What a member sends to the aperture's middle.
+fn toward_middle(radiance: &dyn Radiance, view: &View, member: &Member, among: Among) -> Leaving {
     match member.point {
-        Some(point) => radiance.leaving_among(point, view.eye, count),
+        Some(point) => radiance.leaving_among(point, view.eye, among),
         None => Leaving::own(radiance.from_infinity(view.chief_ray(member.pixel).direction.normalize())),
     }
 }

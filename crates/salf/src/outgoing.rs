@@ -11,7 +11,7 @@ use crate::sample::Visibility;
 use crate::view::View;
 use glam::{DVec2, Vec3};
 use scene::SurfacePoint;
-use trace::{Leaving, Radiance};
+use trace::{Among, Leaving, Radiance};
 
 /// Cells a side at most that carried light is told on.
 const MOST_CELLS: usize = 8;
@@ -96,6 +96,12 @@ pub fn cells_a_side(view: &View, inverse_depth: f64, width: f64) -> usize {
     if wanted > 1.0 { (wanted.min(MOST_CELLS as f64).ceil() as usize).next_power_of_two() } else { 1 }
 }
 
+/// The `index`-th of `count` points of a cell.
+pub fn among(seed: [u32; 2], index: usize, count: usize) -> Among {
+    let seed = u64::from(seed[0]) << 32 | u64::from(seed[1]);
+    Among { seed, index: index as u32, count: count as u32 }
+}
+
 /// What points send toward the open aperture, each toward a place of its own.
 pub fn toward_places(
     radiance: &dyn Radiance,
@@ -110,7 +116,7 @@ pub fn toward_places(
         let at = (DVec2::new(x, y) + STEP * k as f64).fract();
         view.aperture_point(view.open_aperture.sample(at.x, at.y))
     };
-    let sent = |(k, &point): (usize, &SurfacePoint)| radiance.leaving_among(point, place(k), points.len());
+    let sent = |(k, &point): (usize, &SurfacePoint)| radiance.leaving_among(point, place(k), among(seed, k, points.len()));
     points.iter().enumerate().map(sent).collect()
 }
 
@@ -146,7 +152,7 @@ impl TowardCells {
             let [row, column] = crate::domain::Cell::row_and_column(cell as usize ^ turn);
             let [x, y, _] = jitter(seed[0], seed[1], (1 << 22) + asked as u32);
             let place = DVec2::new(column as f64 + x, row as f64 + y) * (2.0 / side as f64) - 1.0;
-            let leaving = radiance.leaving_among(point, view.aperture_point(place), count);
+            let leaving = radiance.leaving_among(point, view.aperture_point(place), among(seed, asked, count));
             of_points[at].push((leaving, weight));
             of_cells[row * side + column].push((leaving, weight));
         }

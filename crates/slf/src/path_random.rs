@@ -5,8 +5,8 @@ use scene::SurfacePoint;
 
 /// A stream of uniform numbers in [0, 1).
 ///
-/// Its first numbers are points of a Sobol' sequence, Owen-scrambled apart for every point (Burley 2020), so that the paths of one
-/// point are spread evenly over their first scatterings and lights; then come independent ones.
+/// Its first numbers are points of a Sobol' sequence, Owen-scrambled apart for every seed (Burley 2020), so that the paths of one
+/// seed are spread evenly over their first scatterings and lights; then come independent ones.
 #[derive(Clone, Debug)]
 pub(crate) struct PathRandom {
     index: u32,
@@ -21,11 +21,14 @@ pub(crate) struct PathRandom {
 const SPREAD: u32 = 24;
 
 impl PathRandom {
-    /// Of path `index` of light from a point toward an eye.
-    pub fn new(point: SurfacePoint, eye: DVec3, index: u32) -> Self {
+    /// The seed for light from a point toward an eye.
+    pub fn seed(point: SurfacePoint, eye: DVec3) -> u64 {
         let numbers = point.barycentric.to_array().into_iter().chain(eye.to_array());
-        let seed =
-            numbers.fold(mix(u64::from(point.triangle)), |state, number| mix(state ^ number.to_bits()));
+        numbers.fold(mix(u64::from(point.triangle)), |state, number| mix(state ^ number.to_bits()))
+    }
+
+    /// Of path `index` of those of a seed.
+    pub fn new(seed: u64, index: u32) -> Self {
         // A Sobol' sequence has 2¹⁶ points here; then another scramble goes on.
         let scramble = mix(seed ^ u64::from(index >> 16));
         Self {

@@ -13,7 +13,7 @@ use scene::{Scene, SurfacePoint, World};
 use std::cell::Cell;
 use std::f64::consts::PI;
 use std::sync::Arc;
-use trace::{Hit, Leaving, Radiance, Tracer};
+use trace::{Among, Hit, Leaving, Radiance, Tracer};
 
 /// How light is gathered.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -155,7 +155,7 @@ impl Transport {
             material: scene.parts[place.part as usize].material,
         };
         let inside = self.media.beside(at.material, is_front);
-        let random = PathRandom::new(seed, place.normal, index);
+        let random = PathRandom::new(PathRandom::seed(seed, place.normal), index);
         let mut path = Path { random, inside, lights_a_path: 1.0 };
         let interface = self.media.interface(at.material, &inside, is_front);
         let bsdf = Bsdf::new(&at.surface, at.frame, interface);
@@ -203,12 +203,12 @@ impl Transport {
         at: &MaterialPoint,
         eye: DVec3,
         inside: Inside,
-        (irradiance, count): (&Irradiance, usize),
+        (irradiance, among): (&Irradiance, Among),
     ) -> Split {
         let outgoing = (eye - at.position).normalize_or_zero();
         let is_front = at.frame.geometric.dot(outgoing) >= 0.0;
-        let paths = among(self.options.paths, count);
-        let draws = self.lights.draws(among(self.options.light_samples, count));
+        let paths = each_of(among, self.options.paths);
+        let draws = self.lights.draws(each_of(among, self.options.light_samples));
         let lights_a_path = f64::from(draws.all) / f64::from(paths);
         let of_punctual = f64::from(draws.all) / f64::from(draws.punctual);
         let bsdf = Bsdf::new(&at.surface, at.frame, self.media.interface(at.material, &inside, is_front));
@@ -220,7 +220,8 @@ impl Transport {
         let drawn_unshaded = Cell::new(DVec3::ZERO);
         let mut drawn = Split::default();
         for index in 0..draws.all {
-            let mut path = Path { random: PathRandom::new(point, eye, index), inside, lights_a_path };
+            let random = PathRandom::new(among.seed, among.index * draws.all + index);
+            let mut path = Path { random, inside, lights_a_path };
             drawn += self.direct_by(point, at, &mut path, index < draws.punctual, |sample| {
                 let (Parts { spread, sharp }, own) = lobes.scatter_parts(sample.from);
                 if sample.density.is_some() && !sample.is_near {
@@ -247,7 +248,7 @@ impl Transport {
             found += Split { own: known, carried: DVec3::ZERO };
         }
         for index in 0..paths {
-            let random = PathRandom::new(point, -eye, index);
+            let random = PathRandom::new(!among.seed, among.index * paths + index);
             let mut path = Path { random, inside, lights_a_path };
             found += self.looked_for(point, at, &lobes, &mut path);
             let dispersed = self.disperse(at, &mut path);
@@ -494,9 +495,9 @@ impl Known<'_> {
 }
 
 /// How many of `wanted` each of so many points takes, whose mean is wanted: as many as it would alone, up to four points.
-fn among(wanted: u32, count: usize) -> u32 {
+fn each_of(among: Among, wanted: u32) -> u32 {
     const ALONE: u32 = 4;
-    (wanted * ALONE).div_ceil(count.max(ALONE as usize) as u32).max(1)
+    (wanted * ALONE).div_ceil(among.count.max(ALONE)).max(1)
 }
 
 /// What is left of a split light.
@@ -513,10 +514,10 @@ fn heuristic(own: f64, other: f64) -> f64 {
 
 impl Radiance for Transport {
     fn leaving(&self, point: SurfacePoint, eye: DVec3) -> Leaving {
-        self.leaving_among(point, eye, 1)
+        self.leaving_among(point, eye, Among { seed: PathRandom::seed(point, eye), index: 0, count: 1 })
     }
 
-    fn leaving_among(&self, point: SurfacePoint, eye: DVec3, count: usize) -> Leaving {
+    fn leaving_among(&self, point: SurfacePoint, eye: DVec3, among: Among) -> Leaving {
         let scene = self.scene();
         let outgoing = (eye - point.position(scene)).normalize_or_zero();
         let emitted = emitted(scene, point, outgoing);
@@ -534,13 +535,13 @@ impl Radiance for Transport {
         let scattered = match known {
             Some((known, light)) => {
                 let told = light.as_dvec3() * lobes.spread_albedo();
-                self.scattered_beside(point, &at, eye, inside, (known, count))
+                self.scattered_beside(point, &at, eye, inside, (known, among))
                     + Split { own: told, carried: DVec3::ZERO }
             }
             None => {
-                let paths = among(self.options.paths, count);
+                let paths = each_of(among, self.options.paths);
                 let one = |index| {
-                    let random = PathRandom::new(point, eye, index);
+                    let random = PathRandom::new(among.seed, among.index * paths + index);
                     let mut path = Path { random, inside, lights_a_path: 1.0 };
                     self.scattered(point, &at, outgoing, &mut path)
                 };

@@ -35,8 +35,8 @@ pub trait Radiance: Sync {
     #[allow(clippy::wrong_self_convention, reason = "light comes from infinity; nothing is converted")]
     fn from_infinity(&self, direction: DVec3) -> Vec3;
 
-    /// The same of one of `count` points whose mean is wanted: each may be told less well.
-    fn leaving_among(&self, point: SurfacePoint, eye: DVec3, _count: usize) -> Leaving {
+    /// The same of one of several points whose mean is wanted: each may be told less well.
+    fn leaving_among(&self, point: SurfacePoint, eye: DVec3, _among: Among) -> Leaving {
         self.leaving(point, eye)
     }
 
@@ -50,6 +50,17 @@ pub trait Radiance: Sync {
     fn toward(&self, point: SurfacePoint, eye: DVec3) -> Vec3 {
         self.leaving(point, eye).total()
     }
+}
+
+/// Which of several points it is whose mean is wanted. What is drawn for all of them is spread evenly over all.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Among {
+    /// The same for all of them, another one elsewhere.
+    pub seed: u64,
+    /// Below `count`.
+    pub index: u32,
+    /// How many they are.
+    pub count: u32,
 }
 
 /// The radiance that leaves a point toward another, linear RGB, by what the focus paint does with it.
