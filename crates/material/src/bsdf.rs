@@ -402,8 +402,8 @@ impl<'a> Bsdf<'a> {
             return Split::default();
         }
         let (o, i) = (eye.w, light.w);
-        let single =
-            half(o, i).map_or(DVec3::ZERO, |h| self.mirrored_at(o.dot(h)) * self.microfacets(&self.ggx, o, i, h));
+        let single = half(o, i)
+            .map_or(DVec3::ZERO, |h| self.mirrored_at(o.dot(h)) * self.microfacets(&self.ggx, o, i, h));
         Split::mirrored(single, self.ggx.mean_alpha())
     }
 

@@ -258,7 +258,12 @@ impl Group {
             Some(_) if !is_pinhole => {
                 outgoing::toward_places(radiance, view, &points().collect::<Vec<_>>(), seed)
             }
-            _ => self.members.iter().enumerate().map(|(at, m)| toward_middle(radiance, view, m, among(at))).collect(),
+            _ => self
+                .members
+                .iter()
+                .enumerate()
+                .map(|(at, m)| toward_middle(radiance, view, m, among(at)))
+                .collect(),
         };
         let mean = |rays: &Range<usize>| mean(rays, |ray| (sent[ray], shares[ray]));
         let part = |rays: Range<usize>| {

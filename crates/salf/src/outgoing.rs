@@ -116,7 +116,9 @@ pub fn toward_places(
         let at = (DVec2::new(x, y) + STEP * k as f64).fract();
         view.aperture_point(view.open_aperture.sample(at.x, at.y))
     };
-    let sent = |(k, &point): (usize, &SurfacePoint)| radiance.leaving_among(point, place(k), among(seed, k, points.len()));
+    let sent = |(k, &point): (usize, &SurfacePoint)| {
+        radiance.leaving_among(point, place(k), among(seed, k, points.len()))
+    };
     points.iter().enumerate().map(sent).collect()
 }
 
@@ -152,7 +154,8 @@ impl TowardCells {
             let [row, column] = crate::domain::Cell::row_and_column(cell as usize ^ turn);
             let [x, y, _] = jitter(seed[0], seed[1], (1 << 22) + asked as u32);
             let place = DVec2::new(column as f64 + x, row as f64 + y) * (2.0 / side as f64) - 1.0;
-            let leaving = radiance.leaving_among(point, view.aperture_point(place), among(seed, asked, count));
+            let leaving =
+                radiance.leaving_among(point, view.aperture_point(place), among(seed, asked, count));
             of_points[at].push((leaving, weight));
             of_cells[row * side + column].push((leaving, weight));
         }

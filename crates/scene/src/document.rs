@@ -25,8 +25,8 @@ pub(crate) struct Document<'a> {
     warnings: RefCell<Warnings>,
     /// The buffers that were needed so far.
     pub buffers: Vec<OnceCell<Vec<u8>>>,
-    /// Extensions that it had, and that were taken out ([`compressed`]).
-    pub decoded: Vec<&'static str>,
+    /// Extensions that it used and that it required, and that were taken out ([`compressed`]).
+    pub decoded: [Vec<&'static str>; 2],
 }
 
 /// More warnings than this are counted, not kept.
@@ -53,7 +53,7 @@ impl<'a> Document<'a> {
         check_version(&Object::new(&root, String::new())?)?;
         let (typed, faults) = mending::typed(&root, &budget)?;
         let buffers = (0..mending::len(&root, "buffers")).map(|_| OnceCell::new()).collect();
-        let (warnings_so_far, decoded) = (RefCell::default(), Vec::new());
+        let (warnings_so_far, decoded) = (RefCell::default(), Default::default());
         let document =
             Self { root, typed, faults, chunk, folder, budget, warnings: warnings_so_far, buffers, decoded };
         for warning in warnings {
@@ -64,17 +64,15 @@ impl<'a> Document<'a> {
 
     /// The same with another text, which has a further buffer of these bytes. Extensions of compressed meshes count as read.
     pub fn with(mut self, mut root: Value, bytes: Vec<u8>) -> Result<Self, Fault> {
-        for list in ["extensionsUsed", "extensionsRequired"] {
+        for (list, decoded) in ["extensionsUsed", "extensionsRequired"].into_iter().zip(&mut self.decoded) {
             let Some(Value::Array(names)) = root.get_mut(list) else { continue };
-            let is_plain = |name: &Value| !compressed::EXTENSIONS.iter().any(|extension| name == extension);
-            names.retain(is_plain);
+            let has = |extension: &&str| names.iter().any(|name| name == extension);
+            decoded.extend(compressed::EXTENSIONS.into_iter().filter(has));
+            names.retain(|name| !decoded.iter().any(|extension| name == extension));
             if names.is_empty() {
                 root.as_object_mut().map(|root| root.remove(list));
             }
         }
-        let uses = self.typed.extensions_used().chain(self.typed.extensions_required());
-        let decoded = compressed::EXTENSIONS.into_iter().filter(|name| uses.clone().any(|used| used == *name));
-        self.decoded = self.decoded.iter().copied().chain(decoded).collect();
         self.budget.memory(bytes.len() as u64, "the meshes that it holds compressed")?;
         if let Some(Value::Array(buffers)) = root.get_mut("buffers") {
             buffers.push(serde_json::json!({ "byteLength": bytes.len() }));

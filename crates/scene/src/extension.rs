@@ -42,19 +42,22 @@ const HARMLESS: [&str; 6] = [
 
 /// The names in `extensionsUsed`.
 pub(crate) fn used<'a>(document: &'a Document<'_>) -> impl Iterator<Item = &'a str> {
-    document.typed().extensions_used().chain(document.decoded.iter().copied())
+    document.typed().extensions_used().chain(document.decoded[0].iter().copied())
 }
 
 /// The names in `extensionsRequired`.
 pub(crate) fn required<'a>(document: &'a Document<'_>) -> impl Iterator<Item = &'a str> {
-    document.typed().extensions_required()
+    document.typed().extensions_required().chain(document.decoded[1].iter().copied())
 }
 
 /// Refuses a document that requires what is not supported; warns of what is ignored and shows.
 pub(crate) fn check(document: &Document<'_>) -> Result<(), Fault> {
     let is_strange = |extension: &&str| !SUPPORTED.contains(extension) && !HARMLESS.contains(extension);
     if let Some(extension) = required(document).find(is_strange) {
-        return Err(Fault::Extension { cure: "export the scene without it".into(), extension: extension.into() });
+        return Err(Fault::Extension {
+            cure: "export the scene without it".into(),
+            extension: extension.into(),
+        });
     }
     for extension in used(document).filter(is_strange) {
         document
@@ -62,4 +65,3 @@ pub(crate) fn check(document: &Document<'_>) -> Result<(), Fault> {
     }
     Ok(())
 }
-

@@ -89,8 +89,10 @@ impl Document<'_> {
 
     /// Decodes the largest level of a Basis Universal texture.
     fn basis_image(&self, index: usize, bytes: &[u8], place: &str) -> Result<Image, Fault> {
-        let broken =
-            |error: basisu::Error| Fault::Malformed { place: place.into(), what: format!("cannot be decoded: {error:?}") };
+        let broken = |error: basisu::Error| Fault::Malformed {
+            place: place.into(),
+            what: format!("cannot be decoded: {error:?}"),
+        };
         // What it announces, before anything is made room for.
         let sides = [20, 24].map(|at| bytes.get(at..at + 4).and_then(|bytes| bytes.try_into().ok()));
         let [width, height] = sides.map(|side| side.map_or(0, u32::from_le_bytes));

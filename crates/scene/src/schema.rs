@@ -152,8 +152,12 @@ static ANIMATION_SAMPLER: Spec = Spec {
     ..NONE
 };
 
-static BUFFER: Spec =
-    Spec { required: &[("byteLength", COUNT)], optional: &[("name", Text), ("uri", Text)], ..NONE };
+static BUFFER: Spec = Spec {
+    required: &[("byteLength", COUNT)],
+    optional: &[("name", Text), ("uri", Text)],
+    extensions: &[("EXT_meshopt_compression", &NONE), ("KHR_meshopt_compression", &NONE)],
+    ..NONE
+};
 
 static BUFFER_VIEW: Spec = Spec {
     required: &[("buffer", Index("buffers")), ("byteLength", COUNT)],

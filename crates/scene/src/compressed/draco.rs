@@ -20,8 +20,12 @@ pub(super) fn decode(document: &Document<'_>, plain: &mut Plain, is_required: bo
         let count = primitives.and_then(Value::as_array).map_or(0, Vec::len);
         for index in 0..count {
             let place = format!("/meshes/{mesh}/primitives/{index}");
-            let Some(primitive) = document.value().pointer(&place).and_then(Value::as_object) else { continue };
-            let Some(compressed) = primitive.get("extensions").and_then(|all| all.get(EXTENSION)) else { continue };
+            let Some(primitive) = document.value().pointer(&place).and_then(Value::as_object) else {
+                continue;
+            };
+            let Some(compressed) = primitive.get("extensions").and_then(|all| all.get(EXTENSION)) else {
+                continue;
+            };
             if is_required || !has_plain_form(document, primitive) {
                 let place = format!("{place}/extensions/{EXTENSION}");
                 let Some(compressed) = compressed.as_object() else {
@@ -66,9 +70,11 @@ impl Compressed<'_> {
             .with_max_decoded_bytes(left / 4);
         document.budget.work(encoded.len() as u64, &self.place)?;
         let mut mesh = Mesh::new();
-        MeshDecoder::new()
-            .decode(&mut DecoderBuffer::new(encoded).with_limits(limits), &mut mesh)
-            .map_err(|error| self.malformed("bufferView", format!("cannot be decoded: {error} (export the scene again)")))?;
+        MeshDecoder::new().decode(&mut DecoderBuffer::new(encoded).with_limits(limits), &mut mesh).map_err(
+            |error| {
+                self.malformed("bufferView", format!("cannot be decoded: {error} (export the scene again)"))
+            },
+        )?;
         let points = mesh.num_points();
         let corners = mesh.faces().iter().flatten().map(|corner| corner.0);
         if corners.clone().any(|corner| corner as usize >= points) {
@@ -84,7 +90,8 @@ impl Compressed<'_> {
             let place = format!("attributes/{semantic}");
             let id = integer(id).and_then(|id| u32::try_from(id).ok());
             let attribute = id.and_then(|id| mesh.attribute_by_unique_id(id));
-            let attribute = attribute.ok_or_else(|| self.malformed(&place, "is not among the decoded attributes"))?;
+            let attribute =
+                attribute.ok_or_else(|| self.malformed(&place, "is not among the decoded attributes"))?;
             let (accessor, bytes) = self.accessor(semantic, attribute, points)?;
             attributes.push((semantic.clone(), add(plain, document, &self.place, accessor, &bytes)?));
         }
@@ -100,10 +107,17 @@ impl Compressed<'_> {
     }
 
     /// An attribute in the form of the accessor that the primitive has for it, and its bytes.
-    fn accessor(&self, semantic: &str, attribute: &PointAttribute, points: usize) -> Result<(Value, Vec<u8>), Fault> {
+    fn accessor(
+        &self,
+        semantic: &str,
+        attribute: &PointAttribute,
+        points: usize,
+    ) -> Result<(Value, Vec<u8>), Fault> {
         let place = format!("attributes/{semantic}");
         let index = self.primitive.get("attributes").and_then(|all| integer(all.get(semantic)?));
-        let Some(index) = index else { return Err(self.malformed(&place, "the primitive has no such attribute")) };
+        let Some(index) = index else {
+            return Err(self.malformed(&place, "the primitive has no such attribute"));
+        };
         let accessor = self.document.item("accessors", index as usize, &self.place)?;
         let component = accessor.get("componentType").and_then(integer).and_then(component_of);
         let shape = accessor.get("type").and_then(Value::as_str).and_then(Shape::of);
@@ -116,7 +130,8 @@ impl Compressed<'_> {
             return Err(self.malformed(&place, what));
         }
         self.document.budget.work((points * components) as u64, &self.place)?;
-        let values = Values::of(attribute).ok_or_else(|| self.malformed(&place, "has a type that glTF lacks"))?;
+        let values =
+            Values::of(attribute).ok_or_else(|| self.malformed(&place, "has a type that glTF lacks"))?;
         let mut bytes = Vec::with_capacity(points * shape.size(component));
         let (mut low, mut high) = (vec![f64::INFINITY; components], vec![f64::NEG_INFINITY; components]);
         for point in 0..points {

@@ -38,11 +38,13 @@ pub(super) fn decode(document: &Document<'_>, plain: &mut Plain, is_required: bo
 
 /// Whether a buffer stands only for what its views are decoded to.
 fn is_fallback(document: &Document<'_>, buffer: Option<usize>) -> bool {
-    let buffer = buffer.and_then(|buffer| document.item("buffers", buffer, "").ok().map(|item| (buffer, item)));
+    let buffer =
+        buffer.and_then(|buffer| document.item("buffers", buffer, "").ok().map(|item| (buffer, item)));
     buffer.is_none_or(|(index, buffer)| {
         buffer.get("uri").is_none() && !(index == 0 && document.chunk.is_some())
             || EXTENSIONS.iter().any(|name| {
-                let flag = buffer.get("extensions").and_then(|extensions| extensions.get(name)?.get("fallback"));
+                let flag =
+                    buffer.get("extensions").and_then(|extensions| extensions.get(name)?.get("fallback"));
                 flag == Some(&Value::Bool(true))
             })
     })
