@@ -18,19 +18,29 @@
 //! | `energy` | light is neither made nor lost |
 //! | `sampling` | aperture points have the density of the transmission |
 //! | `masks` | aperture pictures without light, with little, with very many texels |
+//! | `lobes` | how a surface scatters: energy, reciprocity, density |
+//! | `rooms` | light that goes to and fro, and the sky |
+//! | `glass` | what is let through |
+//! | `mirrors` | what is mirrored keeps the standard focus |
+//! | `panes` | half there is half there |
 
 mod aperture_plane;
 mod case;
 mod defocus;
 mod energy;
 mod furnace;
+mod glass;
 mod light_field;
+mod lobes;
 mod masks;
 mod measure;
+mod mirrors;
 mod offsets;
+mod panes;
 mod random;
 mod ranges;
 mod rays;
+mod rooms;
 mod sampling;
 mod scaling;
 mod scenery;
@@ -57,6 +67,11 @@ pub fn suite() -> Vec<Case> {
         energy::CASES,
         sampling::CASES,
         masks::CASES,
+        lobes::CASES,
+        rooms::CASES,
+        glass::CASES,
+        mirrors::CASES,
+        panes::CASES,
     ]
     .concat()
 }

@@ -14,6 +14,11 @@ impl Random {
         ((x ^ (x >> 31)) >> 11) as f64 / (1u64 << 53) as f64
     }
 
+    /// Three in [0, 1).
+    pub fn three(&mut self) -> [f64; 3] {
+        std::array::from_fn(|_| self.unit())
+    }
+
     /// In [−1, 1)³.
     pub fn in_cube(&mut self) -> DVec3 {
         DVec3::from_array(std::array::from_fn(|_| 2.0 * self.unit() - 1.0))

@@ -28,6 +28,30 @@ impl Mesh {
         Self::rectangle(DVec3::new(-half, -half, -depth), DVec3::X * 2.0 * half, DVec3::Y * 2.0 * half)
     }
 
+    /// A box between two corners, seen from without.
+    pub fn cuboid(low: DVec3, high: DVec3) -> Self {
+        let size = high - low;
+        let [x, y, z] = [DVec3::X * size.x, DVec3::Y * size.y, DVec3::Z * size.z];
+        let faces = [(high, -z, -x), (low, x, z), (low, y, x), (high, -x, -y), (low, z, y), (high, -y, -z)];
+        faces
+            .into_iter()
+            .fold(Self::default(), |all, (corner, side, other)| all.and(Self::rectangle(corner, side, other)))
+    }
+
+    /// Together with another.
+    pub fn and(mut self, other: Self) -> Self {
+        let first = self.positions.len() as u32;
+        self.positions.extend(other.positions);
+        self.triangles.extend(other.triangles.into_iter().map(|corners| corners.map(|v| v + first)));
+        self
+    }
+
+    /// Seen from the other side.
+    pub fn turned(mut self) -> Self {
+        self.triangles.iter_mut().for_each(|[_, b, c]| std::mem::swap(b, c));
+        self
+    }
+
     /// A sphere of `rings` × 2·`rings` quads, closed exactly: neighbours share their vertices.
     pub fn sphere(center: DVec3, radius: f64, rings: u32) -> Self {
         let columns = 2 * rings;
@@ -64,8 +88,15 @@ impl Mesh {
 
 /// A scene in which each mesh is a part (and a node) of its own, unlit in its radiance and seen from both sides.
 pub fn scene_of<'a>(meshes: impl IntoIterator<Item = (&'a Mesh, [f32; 3])>) -> Arc<Scene> {
+    let unlit =
+        |[r, g, b]: [f32; 3]| Material { base_color: Vec4::new(r, g, b, 1.0), ..Material::of_unlit() };
+    made_of(meshes.into_iter().map(|(mesh, radiance)| (mesh, unlit(radiance))))
+}
+
+/// The same of any materials.
+pub fn made_of<'a>(meshes: impl IntoIterator<Item = (&'a Mesh, Material)>) -> Arc<Scene> {
     let mut scene = Scene::default();
-    for (index, (mesh, [r, g, b])) in meshes.into_iter().enumerate() {
+    for (index, (mesh, material)) in meshes.into_iter().enumerate() {
         let first_vertex = scene.positions.len() as u32;
         let first = scene.triangles.len() as u32;
         let index = index as u32;
@@ -80,11 +111,7 @@ pub fn scene_of<'a>(meshes: impl IntoIterator<Item = (&'a Mesh, [f32; 3])>) -> A
             has_uv: [false; 2],
             mirrored: false,
         });
-        scene.materials.push(Material {
-            name: format!("material {index}"),
-            base_color: Vec4::new(r, g, b, 1.0),
-            ..Material::of_unlit()
-        });
+        scene.materials.push(Material { name: format!("material {index}"), ..material });
     }
     Arc::new(scene)
 }

@@ -1,0 +1,72 @@
+//! What a mirror shows is the ordinary lens's picture of the mirrored scene, whatever is painted on the mirror.
+
+use crate::case::{Case, Effort, Finding};
+use crate::measure::rms_difference;
+use crate::scenery::{Mesh, made_of};
+use crate::shot::{Shot, picture_of};
+use focus::Focus;
+use glam::{DVec3, Vec4};
+use lens::{Camera, FocusOffset};
+use progress::{Cancelled, Progress};
+use salf::Salf;
+use scene::{Material, Scalar, Workflow};
+
+pub const CASES: &[Case] = &[Case {
+    name: "a mirror and the mirrored scene",
+    reason: "A mirror's light keeps the standard κ of where it is mirrored, and so shows what the lens sees behind it.",
+    control: "its light taken for its own: the paint moves it",
+    check: mirror,
+}];
+
+/// Cards that show their colour, at some depths behind the camera, or in front of it beyond the mirror's plane.
+fn cards(is_mirrored: bool) -> Vec<(Mesh, Material)> {
+    const MIRROR: f64 = -4.0;
+    let cards =
+        [(-0.6, 0.1, 1.0, 0.9), (0.4, -0.9, 2.0, 0.5), (0.9, 0.6, 5.0, 0.7), (-20.0, -20.0, 9.0, 0.3)];
+    cards
+        .map(|(x, y, z, bright)| {
+            let place = if is_mirrored { 2.0 * MIRROR - z } else { z };
+            let side = if x < -9.0 { 40.0 } else { 0.7 };
+            let color = Vec4::new(bright, bright * 0.5, 0.3, 1.0);
+            let material = Material { base_color: color, ..Material::of_unlit() };
+            (Mesh::rectangle(DVec3::new(x, y, place), DVec3::X * side, DVec3::Y * side), material)
+        })
+        .into()
+}
+
+fn mirror(effort: Effort, progress: &dyn Progress) -> Result<Finding, Cancelled> {
+    let camera = Camera {
+        width: 60,
+        height: 40,
+        yfov: 0.8,
+        focus_distance: 6.0,
+        aperture_radius: 0.1,
+        sensor_height: 0.05,
+        ..Camera::default()
+    };
+    let silver = Material {
+        workflow: Workflow::MetallicRoughness { metallic: Scalar::plain(1.0), roughness: Scalar::plain(0.0) },
+        ..Material::default()
+    };
+    let mut meshes = cards(false);
+    meshes.push((Mesh::wall(4.0, 20.0), silver));
+    let of = |meshes: &[(Mesh, Material)]| {
+        Shot::new(made_of(meshes.iter().map(|(mesh, material)| (mesh, material.clone()))), camera.clone())
+    };
+    let (shot, mirrored) = (of(&meshes), of(&cards(true)));
+    let wanted = mirrored.truth(FocusOffset::STANDARD, effort.pick(1024, 256), progress)?;
+    let paint = FocusOffset { t: 1.06, anchor: 1.0 };
+    let focus: Focus = shot.focus(paint);
+    let salf = shot.salf(paint, progress)?;
+    let own = Salf { samples: salf.samples.changed(|sample| sample.is_carried = false), ..salf.clone() };
+    let splat = rms_difference(&picture_of(salf, &focus, progress)?, &wanted);
+    let traced = rms_difference(&shot.truth(paint, effort.pick(1024, 256), progress)?, &wanted);
+    let control = rms_difference(&picture_of(own, &focus, progress)?, &wanted);
+    let limits = [("splat", 0.008), ("truth", 0.01)];
+    Ok(Finding::of(
+        "painted, the mirrored scene's picture: RMS ≤ 0.008 of 0.3 … 0.9",
+        limits,
+        [splat, traced],
+        [control, 0.0],
+    ))
+}

@@ -1,0 +1,173 @@
+//! Light that goes to and fro between walls, what keeps it out, and a sky with a small sun.
+
+use crate::case::{Case, Effort, Finding};
+use crate::measure::worst;
+use crate::scenery::{Mesh, made_of};
+use glam::{DVec2, DVec3, Vec3};
+use progress::{Cancelled, Progress};
+use scene::{Environment, EnvironmentMap, Light, LightKind, Material, Scene, SurfacePoint, World};
+use slf::{Irradiance, IrradianceOptions, Transport, TransportOptions};
+use std::f64::consts::PI;
+use std::sync::Arc;
+use trace::{Radiance, Tracer};
+
+pub const CASES: &[Case] = &[
+    Case {
+        name: "a closed room that glows",
+        reason: "In a closed room whose walls glow alike, light is the sum of a geometric series, L/(1 − ρ), whatever its shape.",
+        control: "two bounces",
+        check: closed_room,
+    },
+    Case {
+        name: "a closed box lit from without",
+        reason: "No light comes through walls: where light is kept, no patch of one side stands for the other.",
+        control: "a box without its floor",
+        check: closed_box,
+    },
+    Case {
+        name: "kept light has no borders",
+        reason: "What is kept is told from several patches around a place, so it changes smoothly along a wall and over its bends.",
+        control: "paths from each point by itself",
+        check: borders,
+    },
+    Case {
+        name: "a sun of five texels",
+        reason: "A sun of 5 texels among 131,072 is drawn as often as it matters: it neither vanishes nor sparkles.",
+        control: "the sky without it",
+        check: sun,
+    },
+];
+
+fn lambert(albedo: f32) -> Material {
+    Material { base_color: Vec3::splat(albedo).extend(1.0), ..Material::of_lambert() }
+}
+
+fn transport(scene: Arc<Scene>, world: World, paths: u32) -> Transport {
+    let options = TransportOptions { paths, ..TransportOptions::default() };
+    Transport::new(Arc::new(Tracer::new(scene)), world, options)
+}
+
+fn kept(transport: Transport, effort: Effort, progress: &dyn Progress) -> Result<Transport, Cancelled> {
+    let options = IrradianceOptions { patches: 6000, rays: effort.pick(256, 96) };
+    Ok(Irradiance::solve(&transport, options, progress)
+        .map(|known| transport.with_irradiance(Arc::new(known)))?)
+}
+
+/// The mean of what leaves points all over some triangles toward an eye.
+fn mean(transport: &Transport, eye: DVec3, triangles: std::ops::Range<u32>) -> f64 {
+    let points = triangles.flat_map(|triangle| {
+        (0..64).map(move |k| {
+            let u = (DVec2::new(0.754_877_666, 0.569_840_291) * f64::from(k) + 0.5).fract();
+            let barycentric = if u.x + u.y > 1.0 { DVec2::ONE - u } else { u };
+            SurfacePoint { triangle, barycentric }
+        })
+    });
+    let all: Vec<f64> = points.map(|point| f64::from(transport.toward(point, eye).y)).collect();
+    all.iter().sum::<f64>() / all.len() as f64
+}
+
+fn closed_room(effort: Effort, progress: &dyn Progress) -> Result<Finding, Cancelled> {
+    let eye = DVec3::new(1.0, 0.5, 0.7);
+    let room = Mesh::cuboid(DVec3::ZERO, DVec3::new(2.0, 1.0, 1.5)).turned();
+    let mut found = [Vec::new(), Vec::new(), Vec::new()];
+    for (albedo, glow) in [(0.5f32, 1.0f32), (0.8, 0.25)] {
+        let wall = Material { emissive: Vec3::splat(glow), ..lambert(albedo) };
+        let scene = made_of([(&room, wall)]);
+        let expected = f64::from(glow / (1.0 - albedo));
+        let world = World::uniform(Vec3::ZERO);
+        let off = |transport: &Transport| mean(transport, eye, 0..12) / expected - 1.0;
+        let paths = effort.pick(128, 32);
+        found[0].push(off(&transport(scene.clone(), world.clone(), paths)));
+        found[1].push(off(&kept(transport(scene.clone(), world.clone(), 8), effort, progress)?));
+        let cut = World { bounces: Some(1), ..world };
+        found[2].push(off(&transport(scene, cut, paths)));
+    }
+    let [by_paths, kept, cut] = found.map(worst);
+    let limits = [("by paths", 0.01), ("kept", 0.01)];
+    Ok(Finding::of("L/(1 − ρ) ± 1 %, ρ 0.5 and 0.8", limits, [by_paths, kept], [cut, cut]))
+}
+
+fn closed_box(effort: Effort, progress: &dyn Progress) -> Result<Finding, Cancelled> {
+    let within = Mesh::cuboid(-DVec3::ONE, DVec3::ONE).turned();
+    let without = Mesh::cuboid(DVec3::splat(-1.02), DVec3::splat(1.02));
+    let sky = World::uniform(Vec3::splat(0.5));
+    let scene = made_of([(&within, lambert(0.8)), (&without, lambert(0.8))]);
+    let closed = kept(transport(scene, sky.clone(), 4), effort, progress)?;
+    let outside = mean(&closed, DVec3::splat(9.0), 12..24);
+    let inside = mean(&closed, DVec3::ZERO, 0..12) / outside;
+    let mut open = within;
+    open.triangles.truncate(10);
+    let open = kept(transport(made_of([(&open, lambert(0.8))]), sky, 4), effort, progress)?;
+    let control = mean(&open, DVec3::ZERO, 0..10) / outside;
+    Ok(Finding::of("dark to 0.1 % of its outside", [("inside", 1e-3)], [inside], [control]))
+}
+
+fn borders(effort: Effort, progress: &dyn Progress) -> Result<Finding, Cancelled> {
+    let room = Mesh::cuboid(DVec3::ZERO, DVec3::new(2.0, 1.0, 1.5)).turned();
+    let mut scene = (*made_of([(&room, lambert(0.7))])).clone();
+    scene.lights.push(Light {
+        name: String::new(),
+        kind: LightKind::Point,
+        intensity: Vec3::ONE,
+        position: DVec3::new(0.6, 0.7, 0.8),
+        direction: DVec3::ZERO,
+        range: f64::INFINITY,
+    });
+    let scene = Arc::new(scene);
+    let count = effort.pick(4000, 1000);
+    // Along both triangles of each wall, a little off their common side.
+    let step = |transport: &Transport, count: u32| {
+        let along = |triangle: u32| {
+            let at = |k: u32| SurfacePoint {
+                triangle,
+                barycentric: DVec2::new(0.03 + 0.9 * f64::from(k) / f64::from(count), 0.05),
+            };
+            let light = |k| f64::from(transport.toward(at(k), DVec3::new(1.0, 0.5, 0.7)).y);
+            let all: Vec<f64> = (0..count).map(light).collect();
+            worst(all.windows(2).map(|pair| pair[1] / pair[0] - 1.0))
+        };
+        worst((0..12).map(along))
+    };
+    let world = World::uniform(Vec3::ZERO);
+    let kept = kept(transport(scene.clone(), world.clone(), 4), effort, progress)?;
+    let control = step(&transport(scene, world, 4), 50);
+    let expected = format!("≤ 1 % between neighbours of {count} points along each wall");
+    Ok(Finding::of(expected, [("step", 0.01)], [step(&kept, count)], [control]))
+}
+
+fn sun(effort: Effort, progress: &dyn Progress) -> Result<Finding, Cancelled> {
+    const SIZE: [u32; 2] = [512, 256];
+    let dim = 0.2f32;
+    let (row, glare) = (40usize, 2e4f32);
+    let map = |glare: f32| {
+        let [width, height] = SIZE;
+        let mut texels = vec![[dim; 3]; (width * height) as usize];
+        (100..105).for_each(|column| texels[row * width as usize + column] = [glare; 3]);
+        let map = EnvironmentMap { name: "sun".into(), width, height, texels };
+        let environment = Environment::Map(Arc::new(map));
+        World { environment, ..World::uniform(Vec3::ONE) }
+    };
+    let floor = Mesh::rectangle(DVec3::new(-1.0, 0.0, 1.0), DVec3::X * 2.0, DVec3::Z * -2.0);
+    let scene = made_of([(&floor, lambert(1.0))]);
+    // Texels of the map are mixed bilinearly, which moves no light to speak of at this height: 5 of them, at their latitude.
+    let polar = (row as f64 + 0.5) / f64::from(SIZE[1]) * PI;
+    let solid_angle = 5.0 * (PI / f64::from(SIZE[1])).powi(2) * polar.sin();
+    let expected = f64::from(dim) + f64::from(glare - dim) * solid_angle * polar.cos() / PI;
+    let points: Vec<_> = (0..effort.pick(400, 100))
+        .map(|k| (DVec2::new(0.754_877_666, 0.569_840_291) * f64::from(k) + 0.5).fract() * 0.49)
+        .collect();
+    let off = |transport: &Transport| {
+        let of = |&barycentric: &DVec2| {
+            let point = SurfacePoint { triangle: 0, barycentric };
+            f64::from(transport.toward(point, DVec3::new(0.3, 2.0, 0.4)).y) / expected - 1.0
+        };
+        let all: Vec<f64> = points.iter().map(of).collect();
+        let mean = all.iter().sum::<f64>() / all.len() as f64;
+        [mean.abs(), worst(all.iter().map(|value| value - mean))]
+    };
+    progress.check()?;
+    let right = off(&transport(scene.clone(), map(glare), 32));
+    let wrong = off(&transport(scene, map(dim), 32));
+    let limits = [("mean", 0.01), ("farthest from it", 0.2)];
+    Ok(Finding::of("mean right to 1 %, no point of 32 paths off by 20 %", limits, right, wrong))
+}
