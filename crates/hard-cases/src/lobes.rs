@@ -96,7 +96,12 @@ fn white_furnace(effort: Effort, _: &dyn Progress) -> Result<Finding, Cancelled>
     let right = [of(&metal), of(&plastic)];
     let single = |roughness| Surface { scattering: Scattering::Single, ..metal(roughness) };
     let limits = [("metal", 5e-3), ("plastic", 1e-2)];
-    Ok(Finding::of("metal 1 ± 0.5 %, plastic 1 ± 1 %, roughness 0.05 … 1, 5 directions each", limits, right, [of(&single), 0.0]))
+    Ok(Finding::of(
+        "metal 1 ± 0.5 %, plastic 1 ± 1 %, roughness 0.05 … 1, 5 directions each",
+        limits,
+        right,
+        [of(&single), 0.0],
+    ))
 }
 
 fn ball(effort: Effort, _: &dyn Progress) -> Result<Finding, Cancelled> {

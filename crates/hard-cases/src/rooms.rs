@@ -49,8 +49,7 @@ fn transport(scene: Arc<Scene>, world: World, paths: u32) -> Transport {
 
 fn kept(transport: Transport, effort: Effort, progress: &dyn Progress) -> Result<Transport, Cancelled> {
     let options = IrradianceOptions { patches: 6000, rays: effort.pick(256, 96) };
-    Ok(Irradiance::solve(&transport, options, progress)
-        .map(|known| transport.with_irradiance(Arc::new(known)))?)
+    Irradiance::solve(&transport, options, progress).map(|known| transport.with_irradiance(Arc::new(known)))
 }
 
 /// The mean of what leaves points all over some triangles toward an eye.

@@ -13,6 +13,7 @@ use crate::layers::{Group, Layers, trace_cell};
 use crate::margin::standard_margin_px;
 use crate::occluders::{Depths, Footprint, Occluders};
 use crate::options::BakeOptions;
+use crate::outliers::{self, Outliers};
 use crate::placement::Placement;
 use crate::salf::Salf;
 use crate::sample::{Sample, Visibility};
@@ -20,7 +21,7 @@ use crate::samples::{Found, Packer, Samples, block_corner};
 use crate::surface_patches;
 use crate::view::View;
 use crate::visibility::{self, Fineness, Patterns, Seen};
-use glam::{DVec2, IVec2};
+use glam::{DVec2, IVec2, Vec3};
 use lens::Camera;
 use progress::{Cancelled, Progress, Stage};
 use rayon::prelude::*;
@@ -58,6 +59,17 @@ pub fn bake(
     options: &BakeOptions,
     progress: &dyn Progress,
 ) -> Result<Salf, Cancelled> {
+    bake_and_tell(tracer, radiance, camera, options, progress).map(|(salf, _)| salf)
+}
+
+/// The same, with what light of outliers was spread.
+pub fn bake_and_tell(
+    tracer: &Tracer,
+    radiance: &dyn Radiance,
+    camera: &Camera,
+    options: &BakeOptions,
+    progress: &dyn Progress,
+) -> Result<(Salf, Outliers), Cancelled> {
     let view = View::new(camera, options.tolerance_px);
     let margin = standard_margin_px(tracer.scene(), &view).max(options.margin_px);
     let domain = Domain::new(camera.width, camera.height, margin);
@@ -85,23 +97,30 @@ pub fn bake(
 
     let blocks: Vec<&[FirstLook]> =
         first_looks.iter().flat_map(|row| row.chunk_by(are_of_one_block)).collect();
-    let mut parts = each_row(&blocks, &Stage::new(progress, 0.45, 1.0), |looks| {
+    let parts = each_row(&blocks, &Stage::new(progress, 0.45, 1.0), |looks| {
         let mut found = Vec::new();
         for look in *looks {
             baker.second_look(&occluders, look, &mut found);
         }
         let corner = block_corner(looks[0].cell.corner);
         let patches = patches_of_block.get(&corner).into_iter().flatten();
-        found.extend(patches.map(|patch| Found { sample: patch.clone(), part_of: None }));
-        together(corner, found, options.packs)
+        found.extend(patches.map(|patch| Found {
+            sample: patch.clone(),
+            part_of: None,
+            by_chance: Vec3::ZERO,
+        }));
+        let outliers = outliers::spread(&mut found, tracer.scene());
+        (together(corner, found, options.packs), outliers)
     })?;
+    let outliers = parts.iter().fold(Outliers::default(), |all, (_, outliers)| all.and(*outliers));
     // What lies beside the domain has no block.
     let corners: HashSet<IVec2> = blocks.iter().map(|looks| block_corner(looks[0].cell.corner)).collect();
     let mut beside: Vec<_> =
         patches_of_block.into_iter().filter(|(corner, _)| !corners.contains(corner)).collect();
     beside.sort_by_key(|(corner, _)| (corner.y, corner.x));
-    parts.extend(beside.into_iter().map(|(_, patches)| Samples::from(patches)));
-    Ok(Salf { camera: camera.clone(), margin_px: domain.margin as u32, samples: Samples::join(parts) })
+    let beside = beside.into_iter().map(|(_, patches)| Samples::from(patches));
+    let samples = Samples::join(parts.into_iter().map(|(samples, _)| samples).chain(beside));
+    Ok((Salf { camera: camera.clone(), margin_px: domain.margin as u32, samples }, outliers))
 }
 
 fn are_of_one_block(a: &FirstLook, b: &FirstLook) -> bool {

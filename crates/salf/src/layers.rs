@@ -324,7 +324,7 @@ impl Group {
             is_carried: kind.is_carried,
             visibility: kind.toward,
         };
-        Found { sample, part_of: Some((cell, sub_cells)) }
+        Found { sample, part_of: Some((cell, sub_cells)), by_chance: kind.by_chance }
     }
 }
 

@@ -31,6 +31,8 @@ pub struct Outgoing {
     pub radiance: Vec3,
     pub share: f32,
     pub is_carried: bool,
+    /// What of the radiance was found by chance ([`Leaving::by_chance`]).
+    pub by_chance: Vec3,
     /// The part of the aperture that it is sent toward.
     pub toward: Visibility,
 }
@@ -41,6 +43,7 @@ pub struct Sent {
     own: Vec3,
     carried: Vec3,
     carried_share: f32,
+    by_chance: [Vec3; 2],
     weight: f32,
 }
 
@@ -48,19 +51,27 @@ impl Sent {
     /// Of points of these weights.
     pub fn mean(of: impl IntoIterator<Item = (Leaving, f32)>) -> Self {
         let mut sum = Self::default();
-        for (Leaving { own, carried, carried_share }, weight) in of {
+        for (Leaving { own, carried, carried_share, by_chance }, weight) in of {
             sum.own += own * weight;
             sum.carried += carried * weight;
             sum.carried_share += carried_share * weight;
+            (0..2).for_each(|kind| sum.by_chance[kind] += by_chance[kind] * weight);
             sum.weight += weight;
         }
         let by = 1.0 / sum.weight;
-        Self { own: sum.own * by, carried: sum.carried * by, carried_share: sum.carried_share * by, ..sum }
+        Self {
+            own: sum.own * by,
+            carried: sum.carried * by,
+            carried_share: sum.carried_share * by,
+            by_chance: sum.by_chance.map(|light| light * by),
+            ..sum
+        }
     }
 
     /// As of one point.
     pub fn leaving(&self) -> Leaving {
-        Leaving { own: self.own, carried: self.carried, carried_share: self.carried_share }
+        let Self { own, carried, carried_share, by_chance, .. } = *self;
+        Leaving { own, carried, carried_share, by_chance }
     }
 
     /// All light, own and carried.
@@ -79,9 +90,16 @@ impl Sent {
     /// Its two kinds of light, each toward the whole aperture.
     pub fn kinds(&self) -> impl Iterator<Item = Outgoing> + use<> {
         let share = self.share();
-        let [own, carried] = [(self.own, 1.0 - share, false), (self.carried, share, true)];
-        [own, carried].into_iter().filter(|(_, share, _)| *share > 0.0).map(|(light, share, is_carried)| {
-            Outgoing { radiance: light / share, share, is_carried, toward: Visibility::Open }
+        let kinds =
+            [(self.own, 1.0 - share, false), (self.carried, share, true)].into_iter().zip(self.by_chance);
+        kinds.filter(|((_, share, _), _)| *share > 0.0).map(|((light, share, is_carried), by_chance)| {
+            Outgoing {
+                radiance: light / share,
+                share,
+                is_carried,
+                by_chance: by_chance / share,
+                toward: Visibility::Open,
+            }
         })
     }
 }
@@ -129,6 +147,8 @@ pub struct TowardCells {
     side: usize,
     /// Carried light of all points toward each cell, row by row from v = −1.
     carried: Vec<Vec3>,
+    /// What of it was found by chance.
+    by_chance: Vec<Vec3>,
 }
 
 impl TowardCells {
@@ -159,10 +179,12 @@ impl TowardCells {
             of_points[at].push((leaving, weight));
             of_cells[row * side + column].push((leaving, weight));
         }
+        let of_cells: Vec<_> = of_cells.into_iter().map(Sent::mean).collect();
         Self {
             of_points: of_points.into_iter().map(Sent::mean).collect(),
             side,
-            carried: of_cells.into_iter().map(|sent| Sent::mean(sent).carried).collect(),
+            carried: of_cells.iter().map(|sent| sent.carried).collect(),
+            by_chance: of_cells.iter().map(|sent| sent.by_chance[1]).collect(),
         }
     }
 
@@ -172,10 +194,11 @@ impl TowardCells {
         let differs = ALIKE * all.total().max_element();
         self.join([0, 0], self.side, differs, &mut parts);
         let share = all.share();
-        let part = |(light, word): (Vec3, u64)| Outgoing {
+        let part = |(light, by_chance, word): (Vec3, Vec3, u64)| Outgoing {
             radiance: light / share,
             share,
             is_carried: true,
+            by_chance: by_chance / share,
             toward: if word == u64::MAX {
                 Visibility::Open
             } else {
@@ -186,14 +209,15 @@ impl TowardCells {
     }
 
     /// Joins the cells of a square of them, if they are alike; else those of its quarters.
-    fn join(&self, [row, column]: [usize; 2], side: usize, differs: f32, parts: &mut Vec<(Vec3, u64)>) {
-        let lights = (0..side * side).map(|k| self.carried[(row + k / side) * self.side + column + k % side]);
-        let mean = lights.clone().sum::<Vec3>() / (side * side) as f32;
-        if lights.into_iter().all(|light| (light - mean).abs().max_element() <= differs) {
+    fn join(&self, [row, column]: [usize; 2], side: usize, differs: f32, parts: &mut Vec<(Vec3, Vec3, u64)>) {
+        let cells = || (0..side * side).map(|k| (row + k / side) * self.side + column + k % side);
+        let mean = |of: &[Vec3]| cells().map(|cell| of[cell]).sum::<Vec3>() / (side * side) as f32;
+        let light = mean(&self.carried);
+        if cells().all(|cell| (self.carried[cell] - light).abs().max_element() <= differs) {
             let finer = MOST_CELLS / self.side;
             let bits = u64::MAX >> (64 - side * finer) << (column * finer);
             let rows = row * finer..(row + side) * finer;
-            parts.push((mean, rows.fold(0, |word, row| word | bits << (8 * row))));
+            parts.push((light, mean(&self.by_chance), rows.fold(0, |word, row| word | bits << (8 * row))));
             return;
         }
         for quarter in 0..4 {
@@ -215,7 +239,7 @@ mod tests {
     impl Radiance for Mirror {
         fn leaving(&self, _point: SurfacePoint, eye: DVec3) -> Leaving {
             let carried = Vec3::splat(if eye.x > 0.25 { 8.0 } else { 0.5 });
-            Leaving { own: Vec3::splat(0.3), carried, carried_share: 0.25 }
+            Leaving { own: Vec3::splat(0.3), carried, carried_share: 0.25, ..Leaving::default() }
         }
         fn from_infinity(&self, _direction: DVec3) -> Vec3 {
             Vec3::ZERO
@@ -263,6 +287,7 @@ mod tests {
                         own: Vec3::splat(own),
                         carried: Vec3::splat(4.0 * share),
                         carried_share: share,
+                        ..Leaving::default()
                     },
                     0.5,
                 )]);

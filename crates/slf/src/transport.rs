@@ -12,6 +12,7 @@ use material::{Bsdf, Frame, Parts, Scattered, Scattering, Split, Surface, Toward
 use scene::{Scene, SurfacePoint, World};
 use std::cell::Cell;
 use std::f64::consts::PI;
+use std::ops::{AddAssign, Mul};
 use std::sync::Arc;
 use trace::{Among, Hit, Leaving, Radiance, Tracer};
 
@@ -180,19 +181,25 @@ impl Transport {
     }
 
     /// What a surface scatters toward the eye of light that one path finds.
-    fn scattered(&self, point: SurfacePoint, at: &MaterialPoint, outgoing: DVec3, path: &mut Path) -> Split {
+    fn scattered(
+        &self,
+        point: SurfacePoint,
+        at: &MaterialPoint,
+        outgoing: DVec3,
+        path: &mut Path,
+    ) -> Gathered {
         let dispersed = self.disperse(at, path);
         let is_front = at.frame.geometric.dot(outgoing) >= 0.0;
         let interface = self.media.interface(at.material, &path.inside, is_front);
         let bsdf = Bsdf::new(&at.surface, at.frame, interface);
         let lobes = bsdf.toward(outgoing);
-        let mut sum = self.direct(point, at, &lobes, path);
+        let mut sum = Gathered { light: self.direct(point, at, &lobes, path), by_chance: Split::default() };
         if let Some(scattered) = lobes.sample(path.random.next3()) {
             let step = self.step(point, at, &scattered, path);
             let Arriving { drawn, other, .. } = self.arriving(step, path, Known::Nothing);
-            sum += split(scattered.weight, drawn + other);
+            sum += Gathered::by(&scattered, drawn, other);
         }
-        split(sum, dispersed)
+        sum.split(dispersed)
     }
 
     /// What a surface scatters toward the eye where irradiance is known, but for what that tells: of drawn lights all, of other
@@ -204,7 +211,7 @@ impl Transport {
         eye: DVec3,
         inside: Inside,
         (irradiance, among): (&Irradiance, Among),
-    ) -> Split {
+    ) -> Gathered {
         let outgoing = (eye - at.position).normalize_or_zero();
         let is_front = at.frame.geometric.dot(outgoing) >= 0.0;
         let paths = each_of(among, self.options.paths);
@@ -241,27 +248,28 @@ impl Transport {
                 Split { own: spread * of_spread + sharp.own * share, carried: sharp.carried * share }
             });
         }
-        let mut found = Split::default();
+        let mut found = Gathered::default();
         if let Some(unshaded) = unshaded {
             let missing = drawn_unshaded.get() / (PI * f64::from(draws.all));
             let known = lobes.spread_albedo() * (unshaded - missing) * f64::from(paths);
-            found += Split { own: known, carried: DVec3::ZERO };
+            found.light += Split { own: known, carried: DVec3::ZERO };
         }
         for index in 0..paths {
             let random = PathRandom::new(!among.seed, among.index * paths + index);
             let mut path = Path { random, inside, lights_a_path };
-            found += self.looked_for(point, at, &lobes, &mut path);
+            found.light += self.looked_for(point, at, &lobes, &mut path);
             let dispersed = self.disperse(at, &mut path);
             found += match path.inside.channel {
                 None => self.sharp(point, at, &lobes, &mut path, irradiance),
                 Some(_) => {
                     let interface = self.media.interface(at.material, &path.inside, is_front);
                     let bsdf = Bsdf::new(&at.surface, at.frame, interface);
-                    split(self.sharp(point, at, &bsdf.toward(outgoing), &mut path, irradiance), dispersed)
+                    self.sharp(point, at, &bsdf.toward(outgoing), &mut path, irradiance).split(dispersed)
                 }
             };
         }
-        drawn * (1.0 / f64::from(draws.all)) + found * (1.0 / f64::from(paths))
+        let Gathered { light, by_chance } = found * (1.0 / f64::from(paths));
+        Gathered { light: light + drawn * (1.0 / f64::from(draws.all)), by_chance }
     }
 
     /// What spread lobes send of lamps, as one direction finds them that is drawn by how the surface scatters.
@@ -294,14 +302,14 @@ impl Transport {
         lobes: &Toward<'_, '_>,
         path: &mut Path,
         irradiance: &Irradiance,
-    ) -> Split {
-        let Some(scattered) = lobes.sample_sharp(path.random.next3()) else { return Split::default() };
+    ) -> Gathered {
+        let Some(scattered) = lobes.sample_sharp(path.random.next3()) else { return Gathered::default() };
         let step = self.step(point, at, &scattered, path);
         let arriving = self.arriving(step, path, Known::All(irradiance));
         let sent_on = arriving.onward.map_or(DVec3::ZERO, |(place, share)| {
             share * irradiance.total(&place).unwrap_or_default().as_dvec3()
         });
-        split(scattered.weight, arriving.drawn + arriving.other + sent_on)
+        Gathered::by(&scattered, arriving.drawn + sent_on, arriving.other)
     }
 
     /// Goes where a surface scatters, through it if it must.
@@ -477,6 +485,43 @@ impl Arriving {
     }
 }
 
+/// Light that a point sends on.
+#[derive(Clone, Copy, Default)]
+struct Gathered {
+    light: Split,
+    /// What of it single paths found where few do.
+    by_chance: Split,
+}
+
+impl Gathered {
+    /// What is sent on of light that one direction found: directly, or by further surfaces. A mirror has no other direction to
+    /// look in.
+    fn by(scattered: &Scattered, direct: DVec3, by_others: DVec3) -> Self {
+        let light = split(scattered.weight, direct + by_others);
+        let is_chance = scattered.density.is_some();
+        let by_chance = if is_chance { split(scattered.weight, by_others) } else { Split::default() };
+        Self { light, by_chance }
+    }
+
+    fn split(self, share: DVec3) -> Self {
+        Self { light: split(self.light, share), by_chance: split(self.by_chance, share) }
+    }
+}
+
+impl AddAssign for Gathered {
+    fn add_assign(&mut self, other: Self) {
+        self.light += other.light;
+        self.by_chance += other.by_chance;
+    }
+}
+
+impl Mul<f64> for Gathered {
+    type Output = Self;
+    fn mul(self, factor: f64) -> Self {
+        Self { light: self.light * factor, by_chance: self.by_chance * factor }
+    }
+}
+
 impl Known<'_> {
     /// A place that a path came to over a distance, if what arrives there is known.
     fn place(self, scene: &Scene, point: SurfacePoint, is_front: bool, distance: f64) -> Option<Place> {
@@ -532,27 +577,30 @@ impl Radiance for Transport {
         let lobes = bsdf.toward(outgoing);
         let place = Place::of(scene, point, is_front);
         let known = self.irradiance.as_deref().and_then(|known| Some((known, known.indirect(&place)?)));
-        let scattered = match known {
+        let Gathered { light, by_chance } = match known {
             Some((known, light)) => {
                 let told = light.as_dvec3() * lobes.spread_albedo();
-                self.scattered_beside(point, &at, eye, inside, (known, among))
-                    + Split { own: told, carried: DVec3::ZERO }
+                let mut beside = self.scattered_beside(point, &at, eye, inside, (known, among));
+                beside.light += Split { own: told, carried: DVec3::ZERO };
+                beside
             }
             None => {
                 let paths = each_of(among, self.options.paths);
-                let one = |index| {
+                let mut sum = Gathered::default();
+                for index in 0..paths {
                     let random = PathRandom::new(among.seed, among.index * paths + index);
                     let mut path = Path { random, inside, lights_a_path: 1.0 };
-                    self.scattered(point, &at, outgoing, &mut path)
-                };
-                (0..paths).map(one).fold(Split::default(), |sum, path| sum + path) * (1.0 / f64::from(paths))
+                    sum += self.scattered(point, &at, outgoing, &mut path);
+                }
+                sum * (1.0 / f64::from(paths))
             }
         };
         let [_, carried_share] = lobes.coverage_shares();
         Leaving {
-            own: emitted + scattered.own.as_vec3(),
-            carried: scattered.carried.as_vec3(),
+            own: emitted + light.own.as_vec3(),
+            carried: light.carried.as_vec3(),
             carried_share: carried_share as f32,
+            by_chance: [by_chance.own, by_chance.carried].map(|light| light.as_vec3()),
         }
     }
 

@@ -72,6 +72,8 @@ pub struct Leaving {
     pub carried: Vec3,
     /// The share of the point's coverage that `carried` has, in [0, 1]; `own` has the rest.
     pub carried_share: f32,
+    /// What of `own` and of `carried` single paths found where few do: it may be far off for one point, though right in the mean.
+    pub by_chance: [Vec3; 2],
 }
 
 impl Leaving {

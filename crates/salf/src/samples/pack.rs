@@ -8,7 +8,7 @@ use crate::samples::masks::MaskWriter;
 use crate::samples::numbers::{Float24, Rgb40};
 use crate::samples::plane::Plane;
 use crate::samples::record::{Kind, Patch, Record, Shape};
-use glam::{DVec2, IVec2, Vec2};
+use glam::{DVec2, IVec2, Vec2, Vec3};
 use half::f16;
 use std::collections::HashMap;
 
@@ -18,6 +18,8 @@ pub struct Found {
     pub sample: Sample,
     /// The cell that it is a part of, and which sub-cells (a bit each); none for a patch of surface.
     pub part_of: Option<(Cell, u64)>,
+    /// What of its radiance was found by chance ([`trace::Leaving::by_chance`]).
+    pub by_chance: Vec3,
 }
 
 /// Packs the samples of one block.
@@ -73,7 +75,7 @@ impl Packer {
 
     /// `None` if what it is made of is beyond what packed samples can tell.
     fn pack(&mut self, found: &Found) -> Option<()> {
-        let Found { sample, part_of } = found;
+        let Found { sample, part_of, .. } = found;
         let (pixel, level) = match part_of {
             Some((cell, _)) => (cell.corner, cell.side.ilog2() as u8),
             None => (sample.center.floor().as_ivec2(), 0),

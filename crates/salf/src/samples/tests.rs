@@ -47,7 +47,7 @@ fn found(count: u32) -> Vec<Found> {
             } else if is_background {
                 (sample.surface, sample.tilt, sample.inverse_depth) = (None, Vec2::ZERO, 0.0);
             }
-            Found { sample, part_of: (!is_patch).then_some((cell, sub_cells)) }
+            Found { sample, part_of: (!is_patch).then_some((cell, sub_cells)), by_chance: Vec3::ZERO }
         })
         .collect()
 }

@@ -243,8 +243,8 @@ impl Exposure<'_> {
         match found.point {
             Some(point) => {
                 let share = self.estimator.bright.camera_share(self.view, point, u) as f32;
-                let Leaving { own, carried, carried_share } = self.radiance.leaving(point, found.eye);
-                Leaving { own: own * share, carried: carried * share, carried_share }
+                let light = self.radiance.leaving(point, found.eye);
+                Leaving { own: light.own * share, carried: light.carried * share, ..light }
             }
             None => Leaving::own(self.radiance.from_infinity(found.direction)),
         }

@@ -162,7 +162,7 @@ struct Mirroring(Shaded, f32);
 impl Radiance for Mirroring {
     fn leaving(&self, point: SurfacePoint, eye: DVec3) -> Leaving {
         let (all, share) = (self.0.toward(point, eye), self.1);
-        Leaving { own: all * (1.0 - share), carried: all * share, carried_share: share }
+        Leaving { own: all * (1.0 - share), carried: all * share, carried_share: share, ..Leaving::default() }
     }
     fn from_infinity(&self, direction: DVec3) -> Vec3 {
         self.0.from_infinity(direction)
