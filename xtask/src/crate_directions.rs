@@ -15,7 +15,10 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("salf", &["slf", "trace", "scene", "lens", "progress"]),
     ("focus", &["atlas", "scene", "lens"]),
     ("splat", &["salf", "focus", "scene", "lens", "progress"]),
-    ("hard-cases", &["lens", "scene", "atlas", "trace", "slf", "salf", "focus", "splat", "progress"]),
+    (
+        "hard-cases",
+        &["lens", "material", "scene", "atlas", "trace", "slf", "salf", "focus", "splat", "progress"],
+    ),
     ("baselines", &["salf", "trace", "scene", "lens", "progress"]),
     ("project", &["scene", "focus", "atlas", "lens"]),
     (

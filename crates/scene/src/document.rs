@@ -2,7 +2,6 @@
 
 use crate::LoadOptions;
 use crate::budget::Budget;
-use crate::compressed;
 use crate::container::{self, Container};
 use crate::error::Fault;
 use crate::json_object::{Object, integer};
@@ -25,7 +24,7 @@ pub(crate) struct Document<'a> {
     warnings: RefCell<Warnings>,
     /// The buffers that were needed so far.
     pub buffers: Vec<OnceCell<Vec<u8>>>,
-    /// Extensions that it used and that it required, and that were taken out ([`compressed`]).
+    /// Extensions that it used and that it required, and that were taken out ([`Self::with`]).
     pub decoded: [Vec<&'static str>; 2],
 }
 
@@ -59,15 +58,20 @@ impl<'a> Document<'a> {
         for warning in warnings {
             document.warn(warning);
         }
-        compressed::plain(document)
+        Ok(document)
     }
 
-    /// The same with another text, which has a further buffer of these bytes. Extensions of compressed meshes count as read.
-    pub fn with(mut self, mut root: Value, bytes: Vec<u8>) -> Result<Self, Fault> {
+    /// The same with another text, which has a further buffer of these bytes, and without the need of some extensions.
+    pub fn with(
+        mut self,
+        mut root: Value,
+        bytes: Vec<u8>,
+        extensions: &[&'static str],
+    ) -> Result<Self, Fault> {
         for (list, decoded) in ["extensionsUsed", "extensionsRequired"].into_iter().zip(&mut self.decoded) {
             let Some(Value::Array(names)) = root.get_mut(list) else { continue };
             let has = |extension: &&str| names.iter().any(|name| name == extension);
-            decoded.extend(compressed::EXTENSIONS.into_iter().filter(has));
+            decoded.extend(extensions.iter().copied().filter(has));
             names.retain(|name| !decoded.iter().any(|extension| name == extension));
             if names.is_empty() {
                 root.as_object_mut().map(|root| root.remove(list));

@@ -9,7 +9,7 @@ use crate::primitive::Primitive;
 use crate::source::{PartSource, Source};
 use crate::triangulation::MODE_NAMES;
 use crate::{Inspection, LoadOptions, Material, Node, Scene, SceneError};
-use crate::{extension, flaws, instancing, punctual_light, skin, view};
+use crate::{compressed, extension, flaws, instancing, punctual_light, skin, view};
 use glam::{DMat4, Vec3};
 use progress::{Progress, Unwatched};
 use std::collections::HashMap;
@@ -118,7 +118,7 @@ fn read(path: &Path, options: &LoadOptions, progress: &dyn Progress) -> Result<(
 
 fn parse<'a>(path: &Path, bytes: &'a [u8], options: &LoadOptions) -> Result<Document<'a>, Fault> {
     let folder = crate::document::folder_of(path).map_err(Fault::Unreadable)?;
-    let document = Document::parse(bytes, folder, options)?;
+    let document = compressed::plain(Document::parse(bytes, folder, options)?)?;
     extension::check(&document)?;
     Ok(document)
 }

@@ -271,6 +271,32 @@ impl Material {
         self.alpha != AlphaMode::Opaque
     }
 
+    /// Whether any of it differs from point to point by a texture.
+    pub fn has_textures(&self) -> bool {
+        let scalar = |scalar: &Scalar| scalar.texture.is_some();
+        let tint = |tint: &Tint| tint.texture.is_some();
+        let of_workflow = match &self.workflow {
+            Workflow::MetallicRoughness { metallic, roughness } => scalar(metallic) || scalar(roughness),
+            Workflow::SpecularGlossiness { specular, glossiness } => tint(specular) || scalar(glossiness),
+        };
+        of_workflow
+            || self.base_color_texture.is_some()
+            || self.emissive_texture.is_some()
+            || self.normal_map.is_some()
+            || scalar(&self.specular)
+            || tint(&self.specular_color)
+            || scalar(&self.transmission)
+            || self.clearcoat.is_some_and(|coat| {
+                scalar(&coat.factor) || scalar(&coat.roughness) || coat.normal_map.is_some()
+            })
+            || self.sheen.is_some_and(|sheen| tint(&sheen.color) || scalar(&sheen.roughness))
+            || self.anisotropy.is_some_and(|anisotropy| anisotropy.texture.is_some())
+            || self.iridescence.is_some_and(|film| scalar(&film.factor) || film.thickness_texture.is_some())
+            || self
+                .diffuse_transmission
+                .is_some_and(|through| scalar(&through.factor) || tint(&through.color))
+    }
+
     /// Whether it sends light of its own: unlit, or emissive.
     pub fn emits(&self) -> bool {
         self.unlit || self.emissive != Vec3::ZERO

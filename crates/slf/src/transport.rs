@@ -214,12 +214,14 @@ impl Transport {
     ) -> Gathered {
         let outgoing = (eye - at.position).normalize_or_zero();
         let is_front = at.frame.geometric.dot(outgoing) >= 0.0;
-        let paths = each_of(among, self.options.paths);
+        let bsdf = Bsdf::new(&at.surface, at.frame, self.media.interface(at.material, &inside, is_front));
+        let lobes = bsdf.toward(outgoing);
+        // Where nothing is sharp, paths only look for lamps that are large.
+        let wanted = if lobes.is_spread() { self.options.paths / 4 } else { self.options.paths };
+        let paths = each_of(among, wanted);
         let draws = self.lights.draws(each_of(among, self.options.light_samples));
         let lights_a_path = f64::from(draws.all) / f64::from(paths);
         let of_punctual = f64::from(draws.all) / f64::from(draws.punctual);
-        let bsdf = Bsdf::new(&at.surface, at.frame, self.media.interface(at.material, &inside, is_front));
-        let lobes = bsdf.toward(outgoing);
         // What the sky would send, did nothing shade it, is known: it is put in for what its samples would find of it, so that they
         // only tell what is missing (a control variate: the mean stays).
         let normal = lobes.normal();
@@ -602,6 +604,12 @@ impl Radiance for Transport {
             carried_share: carried_share as f32,
             by_chance: [by_chance.own, by_chance.carried].map(|light| light.as_vec3()),
         }
+    }
+
+    fn varies_within(&self, point: SurfacePoint) -> bool {
+        let scene = self.scene();
+        let material = scene.material_of(point.triangle);
+        material.unlit || !scene.colors.is_empty() || material.has_textures()
     }
 
     fn carried_width(&self, point: SurfacePoint, eye: DVec3) -> Option<f64> {

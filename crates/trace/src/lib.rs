@@ -46,6 +46,12 @@ pub trait Radiance: Sync {
         None
     }
 
+    /// Whether what leaves may differ between neighbouring points that are closer together than a pixel, as it does where there are
+    /// textures.
+    fn varies_within(&self, _point: SurfacePoint) -> bool {
+        true
+    }
+
     /// All of [`Self::leaving`].
     fn toward(&self, point: SurfacePoint, eye: DVec3) -> Vec3 {
         self.leaving(point, eye).total()

@@ -98,6 +98,11 @@ impl Toward<'_, '_> {
         (weight.total() != DVec3::ZERO).then_some(Scattered { weight, ..scattered })
     }
 
+    /// Whether all lobes are spread ([`Parts`]).
+    pub fn is_spread(&self) -> bool {
+        self.odds.without_spread().is_none()
+    }
+
     /// The normal as it is shaded, on the eye's side.
     pub fn normal(&self) -> DVec3 {
         self.seen.frame.normal

@@ -1,6 +1,6 @@
 //! Compressed primitives: KHR_draco_mesh_compression.
 
-use super::{Plain, number};
+use super::plain::{Plain, number};
 use crate::accessor::{Component, Shape, component_of};
 use crate::document::Document;
 use crate::error::Fault;

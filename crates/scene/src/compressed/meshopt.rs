@@ -1,6 +1,6 @@
 //! Compressed buffer views: EXT_meshopt_compression, and KHR_meshopt_compression, which adds a filter for colours.
 
-use super::{Plain, number};
+use super::plain::{Plain, number};
 use crate::document::Document;
 use crate::error::Fault;
 use meshopt::ffi;

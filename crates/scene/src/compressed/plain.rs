@@ -1,0 +1,53 @@
+//! The plain document while it is being made.
+
+use crate::error::Fault;
+use crate::json_object::integer;
+use serde_json::{Map, Value, json};
+
+/// The document that is being made.
+pub(super) struct Plain {
+    pub root: Value,
+    /// Of the buffer that is added.
+    pub bytes: Vec<u8>,
+    /// The index that it will have.
+    pub buffer: usize,
+}
+
+impl Plain {
+    /// Appends bytes; where they begin.
+    pub fn append(&mut self, bytes: &[u8]) -> usize {
+        self.bytes.resize(self.bytes.len().next_multiple_of(8), 0);
+        let start = self.bytes.len();
+        self.bytes.extend_from_slice(bytes);
+        start
+    }
+
+    /// Adds an entry to a collection; its index.
+    pub fn add(&mut self, collection: &str, entry: Value) -> usize {
+        let list = self.root.as_object_mut().map(|root| root.entry(collection).or_insert_with(|| json!([])));
+        let Some(Value::Array(list)) = list else { return 0 };
+        list.push(entry);
+        list.len() - 1
+    }
+
+    /// Takes an extension from what is at `place`.
+    pub fn forget(&mut self, place: &str, extension: &str) {
+        let Some(Value::Object(entry)) = self.root.pointer_mut(place) else { return };
+        if let Some(Value::Object(extensions)) = entry.get_mut("extensions") {
+            extensions.remove(extension);
+            if extensions.is_empty() {
+                entry.remove("extensions");
+            }
+        }
+    }
+}
+
+/// A non-negative integer of an object, 0 where it is absent.
+pub(super) fn number(object: &Map<String, Value>, key: &str, place: &str) -> Result<usize, Fault> {
+    match object.get(key) {
+        None => Ok(0),
+        Some(value) => integer(value).and_then(|number| usize::try_from(number).ok()).ok_or_else(|| {
+            Fault::Malformed { place: format!("{place}/{key}"), what: "is no index or size".into() }
+        }),
+    }
+}
