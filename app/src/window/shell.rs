@@ -75,6 +75,8 @@ pub struct Shell {
     title: String,
     adapter: String,
     showing_demo: bool,
+    /// Whether the display is darker because of the scene, not by the user's choice.
+    is_dimmed: bool,
     opening: Option<PathBuf>,
     /// When the picture began to be summed, in the window's time.
     drawing_since: Option<f64>,
@@ -136,6 +138,7 @@ impl Shell {
             adapter: state
                 .map_or_else(|| "no graphics adapter".into(), |state| state.adapter.get_info().name),
             showing_demo: false,
+            is_dimmed: false,
             opening: None,
             drawing_since: None,
             player: options.replay.map(Player::new),
@@ -240,7 +243,21 @@ impl Shell {
     fn take_events(&mut self, context: &Context) {
         for event in self.session.poll() {
             match event {
-                Event::Opened => self.document_opened(context),
+                Event::Opened => {
+                    // What another scene needed is no choice of the user's.
+                    if std::mem::take(&mut self.is_dimmed) {
+                        self.settings.display_stops = 0.0;
+                    }
+                    self.document_opened(context);
+                }
+                Event::Glaring(stops) if self.settings.display_stops == 0.0 => {
+                    (self.settings.display_stops, self.is_dimmed) = (stops.max(-10.0), true);
+                    let stops = -stops;
+                    self.toasts.notice(format!(
+                        "Shown {stops} stops darker: its lights are that bright (Lens, Display)"
+                    ));
+                }
+                Event::Glaring(_) => {}
                 Event::SurfaceChanged => {
                     if let Some(document) = self.session.document() {
                         self.paint.upload_surface(document, context);

@@ -22,6 +22,8 @@ pub enum Event {
     SelectionChanged,
     /// The brush changed (by picking).
     BrushChanged,
+    /// The scene that was opened is so bright that the screen must show it this many stops darker, or shows nothing but white.
+    Glaring(f32),
     /// A new preview is ready: [`crate::Session::preview`].
     PreviewReady(u64),
     /// A picture to compare with is ready: [`crate::Session::reference`].

@@ -2,6 +2,7 @@
 //!
 //! Tone, the pixels as the screen has them, and what of them changed since somebody looked.
 
+mod glare;
 mod live_picture;
 mod picture_ring;
 mod screen;
@@ -13,6 +14,7 @@ pub use screen::Screen;
 pub use tone::{Display, ScreenPixel, Tone, to_screen};
 pub use tone_curve::ToneCurve;
 
+pub(crate) use glare::stops_for;
 pub(crate) use live_picture::Source;
 pub(crate) use picture_ring::{PictureRing, Rectangle, whole};
 pub(crate) use screen::{Content, Patch};

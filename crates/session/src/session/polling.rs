@@ -4,6 +4,7 @@ use super::outcome::Outcome;
 use super::recovery::Recovery;
 use super::state::Session;
 use crate::commands::Event;
+use crate::display::stops_for;
 use crate::document::Undo;
 use crate::error::SessionError;
 
@@ -25,6 +26,9 @@ impl Session {
         }
         self.finished = news.finished;
         if let Some((_, field)) = news.field.filter(|(generation, _)| *generation == self.generation) {
+            if self.field.is_none() {
+                self.events.extend(stops_for(&field.salf).map(Event::Glaring));
+            }
             self.field = Some(field);
             self.fields += 1;
         }
