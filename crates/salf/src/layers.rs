@@ -253,7 +253,7 @@ impl Group {
             let asked = TowardCells::ask(radiance, view, &points, side, seed);
             return self.glossy_samples(cell, &shares, &asked);
         }
-        let among = |at: usize| outgoing::among(seed, at, self.members.len());
+        let among = |at: usize, count: usize| outgoing::among(seed, at, count);
         let sent = match width {
             Some(_) if !is_pinhole => {
                 outgoing::toward_places(radiance, view, &points().collect::<Vec<_>>(), seed)
@@ -273,22 +273,22 @@ impl Group {
         &self,
         radiance: &dyn Radiance,
         view: &View,
-        among: impl Fn(usize) -> Among,
+        among: impl Fn(usize, usize) -> Among,
     ) -> Vec<Leaving> {
         const TOGETHER: usize = 4;
-        const ALIKE: f32 = 0.05;
+        const ALIKE: f32 = 0.02;
         let count = self.members.len();
         let is_plain = self.members[0].point.is_some_and(|point| !radiance.varies_within(point));
         if !is_plain || count < TOGETHER * TOGETHER {
             return (0..count)
-                .map(|at| toward_middle(radiance, view, &self.members[at], among(at)))
+                .map(|at| toward_middle(radiance, view, &self.members[at], among(at, count)))
                 .collect();
         }
         // Along Morton's curve those of a quadrant follow each other; its middle ones lie inwards.
         let groups = count.div_ceil(TOGETHER);
         let of_group = |group: usize, number: usize| {
             let at = (group * TOGETHER + (3 * group + group / TOGETHER) % TOGETHER).min(count - 1);
-            toward_middle(radiance, view, &self.members[at], among(number))
+            toward_middle(radiance, view, &self.members[at], among(number, groups))
         };
         let far = [0, groups - 1].map(|group| of_group(group, usize::from(group > 0)));
         let [first, last] = far.each_ref().map(Leaving::total);
