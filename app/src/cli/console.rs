@@ -68,6 +68,10 @@ impl Steps for Console {
             Box::new(Lines { label: label.to_owned(), last: Mutex::new((Instant::now(), 0.0)) })
         }
     }
+
+    fn tell(&self, sentence: &str) {
+        eprintln!("{sentence}");
+    }
 }
 
 /// A bar on a terminal; it goes when the step is over.

@@ -7,6 +7,9 @@ use progress::{Progress, Unwatched};
 pub trait Steps: Sync {
     /// The next step begins; its progress goes to what is returned.
     fn begin(&self, label: &str) -> Box<dyn Progress + '_>;
+
+    /// A step found something worth a sentence.
+    fn tell(&self, _sentence: &str) {}
 }
 
 /// Nobody watches.
