@@ -264,7 +264,9 @@ impl Group {
         let part = |rays: Range<usize>| {
             mean(&rays).kinds().map(|kind| self.sample(cell, rays.clone(), &shares, kind)).collect::<Vec<_>>()
         };
-        self.parts(cell, view, |rays| mean(rays).total()).into_iter().flat_map(part).collect()
+        // Few paths tell what a quadrant carries: it may differ by more.
+        let even = if width.is_some() { 2.0 } else { 1.0 } * BakeOptions::EVEN_PER_PX * view.tolerance_px;
+        self.parts(cell, even as f32, |rays| mean(rays).total()).into_iter().flat_map(part).collect()
     }
 
     /// What each member sends to the aperture's middle. Where only light tells one from the next, a few of them stand for all: two
@@ -314,12 +316,11 @@ impl Group {
         kinds.map(|kind| self.sample(cell, all.clone(), shares, kind)).collect()
     }
 
-    /// Its members, or those of each quadrant, if their radiance varies.
-    fn parts(&self, cell: Cell, view: &View, mean: impl Fn(&Range<usize>) -> Vec3) -> Vec<Range<usize>> {
+    /// Its members, or those of each quadrant, if their radiance varies by more than this share of the largest.
+    fn parts(&self, cell: Cell, even: f32, mean: impl Fn(&Range<usize>) -> Vec3) -> Vec<Range<usize>> {
         let quadrants = self.quadrants();
         let low = quadrants.iter().map(&mean).fold(Vec3::INFINITY, Vec3::min);
         let high = quadrants.iter().map(&mean).fold(Vec3::ZERO, Vec3::max);
-        let even = (BakeOptions::EVEN_PER_PX * view.tolerance_px) as f32;
         let is_even = (high - low).max_element() <= even * high.max_element();
         // Light from outside the frame is spread over eight cells and more.
         let all = 0..self.members.len();
