@@ -448,7 +448,11 @@ impl eframe::App for Shell {
     }
 
     fn save(&mut self, storage: &mut dyn Storage) {
-        if let Ok(text) = serde_json::to_string(&self.settings) {
+        let mut settings = self.settings.clone();
+        if self.is_dimmed {
+            settings.display_stops = 0.0;
+        }
+        if let Ok(text) = serde_json::to_string(&settings) {
             storage.set_string(SETTINGS_KEY, text);
         }
         if let Ok(text) = serde_json::to_string(&self.layout) {
