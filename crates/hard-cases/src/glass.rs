@@ -57,8 +57,7 @@ fn through(slabs: &[(f64, f64, Material)], paths: u32) -> Vec3 {
     });
     let glow = Material { emissive: Vec3::ONE, base_color: Vec4::ZERO, ..Material::of_lambert() };
     let floor = Mesh::rectangle(DVec3::new(-50.0, 0.0, 50.0), DVec3::X * 100.0, DVec3::Z * -100.0);
-    let meshes: Vec<_> = bodies.chain([(floor, glow)]).collect();
-    let scene = made_of(meshes.iter().map(|(mesh, material)| (mesh, material.clone())));
+    let scene = made_of(bodies.chain([(floor, glow)]));
     let options = TransportOptions { paths, ..TransportOptions::default() };
     let transport = Transport::new(Arc::new(Tracer::new(scene)), World::uniform(Vec3::ZERO), options);
     // The middle of the upper face of the first body.

@@ -50,10 +50,8 @@ fn mirror(effort: Effort, progress: &dyn Progress) -> Result<Finding, Cancelled>
     };
     let mut meshes = cards(false);
     meshes.push((Mesh::wall(4.0, 20.0), silver));
-    let of = |meshes: &[(Mesh, Material)]| {
-        Shot::new(made_of(meshes.iter().map(|(mesh, material)| (mesh, material.clone()))), camera.clone())
-    };
-    let (shot, mirrored) = (of(&meshes), of(&cards(true)));
+    let of = |meshes: Vec<(Mesh, Material)>| Shot::new(made_of(meshes), camera.clone());
+    let (shot, mirrored) = (of(meshes), of(cards(true)));
     let wanted = mirrored.truth(FocusOffset::STANDARD, effort.pick(1024, 256), progress)?;
     let paint = FocusOffset { t: 1.06, anchor: 1.0 };
     let focus: Focus = shot.focus(paint);

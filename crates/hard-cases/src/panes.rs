@@ -52,8 +52,7 @@ fn middle(picture: &Picture) -> ([f64; 3], f64) {
 fn card(effort: Effort, progress: &dyn Progress) -> Result<Finding, Cancelled> {
     let [wall, card] = [[0.8f32, 0.6, 0.4], [0.2, 0.3, 0.9]];
     let meshes = [(Mesh::wall(4.0, 9.0), unlit(wall, 1.0)), (Mesh::wall(2.0, 5.0), unlit(card, 0.5))];
-    let shot =
-        Shot::new(made_of(meshes.iter().map(|(mesh, material)| (mesh, material.clone()))), camera(effort));
+    let shot = Shot::new(made_of(meshes), camera(effort));
     let off = |picture: &Picture| {
         let (mean, deviation) = middle(picture);
         let wanted = |c: usize| f64::from(wall[c] + card[c]) / 2.0;
@@ -88,7 +87,7 @@ fn stack(effort: Effort, progress: &dyn Progress) -> Result<Finding, Cancelled> 
         .chain([(Mesh::wall(4.0, 12.0), unlit(ground, 1.0))])
         .collect();
     let shot = |focus_distance: f64| {
-        let scene = made_of(meshes.iter().map(|(mesh, material)| (mesh, material.clone())));
+        let scene = made_of(meshes.clone());
         Shot::new(scene, Camera { focus_distance, ..camera(effort) })
     };
     let mut found = Vec::new();

@@ -2,6 +2,11 @@
 
 use glam::{DVec2, DVec3};
 
+/// The `k`-th of places that fill the unit square evenly (Roberts's sequence: fractions of the plastic number's powers).
+pub fn spread(k: u32) -> DVec2 {
+    (DVec2::new(0.754_877_666, 0.569_840_291) * f64::from(k) + 0.5).fract()
+}
+
 /// SplitMix64 (Steele, Lea and Flood 2014).
 pub struct Random(pub u64);
 

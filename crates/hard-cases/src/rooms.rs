@@ -2,6 +2,7 @@
 
 use crate::case::{Case, Effort, Finding};
 use crate::measure::worst;
+use crate::random::spread;
 use crate::scenery::{Mesh, made_of};
 use glam::{DVec2, DVec3, Vec3};
 use progress::{Cancelled, Progress};
@@ -56,7 +57,7 @@ fn kept(transport: Transport, effort: Effort, progress: &dyn Progress) -> Result
 fn mean(transport: &Transport, eye: DVec3, triangles: std::ops::Range<u32>) -> f64 {
     let points = triangles.flat_map(|triangle| {
         (0..64).map(move |k| {
-            let u = (DVec2::new(0.754_877_666, 0.569_840_291) * f64::from(k) + 0.5).fract();
+            let u = spread(k);
             let barycentric = if u.x + u.y > 1.0 { DVec2::ONE - u } else { u };
             SurfacePoint { triangle, barycentric }
         })
@@ -152,9 +153,7 @@ fn sun(effort: Effort, progress: &dyn Progress) -> Result<Finding, Cancelled> {
     let polar = (row as f64 + 0.5) / f64::from(SIZE[1]) * PI;
     let solid_angle = 5.0 * (PI / f64::from(SIZE[1])).powi(2) * polar.sin();
     let expected = f64::from(dim) + f64::from(glare - dim) * solid_angle * polar.cos() / PI;
-    let points: Vec<_> = (0..effort.pick(400, 100))
-        .map(|k| (DVec2::new(0.754_877_666, 0.569_840_291) * f64::from(k) + 0.5).fract() * 0.49)
-        .collect();
+    let points: Vec<_> = (0..effort.pick(400, 100)).map(|k| spread(k) * 0.49).collect();
     let off = |transport: &Transport| {
         let of = |&barycentric: &DVec2| {
             let point = SurfacePoint { triangle: 0, barycentric };

@@ -2,6 +2,7 @@
 
 use glam::{DVec3, Vec4};
 use scene::{Material, Node, Part, Scene, Triangle};
+use std::borrow::Borrow;
 use std::sync::Arc;
 
 /// A mesh: positions and triangles.
@@ -94,9 +95,10 @@ pub fn scene_of<'a>(meshes: impl IntoIterator<Item = (&'a Mesh, [f32; 3])>) -> A
 }
 
 /// The same of any materials.
-pub fn made_of<'a>(meshes: impl IntoIterator<Item = (&'a Mesh, Material)>) -> Arc<Scene> {
+pub fn made_of(meshes: impl IntoIterator<Item = (impl Borrow<Mesh>, Material)>) -> Arc<Scene> {
     let mut scene = Scene::default();
     for (index, (mesh, material)) in meshes.into_iter().enumerate() {
+        let mesh = mesh.borrow();
         let first_vertex = scene.positions.len() as u32;
         let first = scene.triangles.len() as u32;
         let index = index as u32;

@@ -243,9 +243,8 @@ impl Group {
             return Vec::new();
         }
         let seed = cell.corner.as_uvec2().to_array();
-        let width = nearest(&self.members, self.center(cell))
-            .point
-            .and_then(|point| radiance.carried_width(point, view.eye));
+        let width =
+            nearest(&self.members, self.center(cell)).point.and_then(|point| radiance.carried_width(point));
         let side = width.map_or(1, |width| outgoing::cells_a_side(view, self.mean_inverse_depth(), width));
         let points = || self.members.iter().filter_map(|member| member.point);
         if side > 1 {
@@ -253,12 +252,11 @@ impl Group {
             let asked = TowardCells::ask(radiance, view, &points, side, seed);
             return self.glossy_samples(cell, &shares, &asked);
         }
-        let among = |at: usize, count: usize| outgoing::among(seed, at, count);
         let sent = match width {
             Some(_) if !is_pinhole => {
                 outgoing::toward_places(radiance, view, &points().collect::<Vec<_>>(), seed)
             }
-            _ => self.toward_middle(radiance, view, among),
+            _ => self.toward_middle(radiance, view, seed),
         };
         let mean = |rays: &Range<usize>| mean(rays, |ray| (sent[ray], shares[ray]));
         let part = |rays: Range<usize>| {
@@ -271,26 +269,22 @@ impl Group {
 
     /// What each member sends to the aperture's middle. Where only light tells one from the next, a few of them stand for all: two
     /// that lie apart, or if these differ one of every four.
-    fn toward_middle(
-        &self,
-        radiance: &dyn Radiance,
-        view: &View,
-        among: impl Fn(usize, usize) -> Among,
-    ) -> Vec<Leaving> {
+    fn toward_middle(&self, radiance: &dyn Radiance, view: &View, seed: [u32; 2]) -> Vec<Leaving> {
         const TOGETHER: usize = 4;
         const ALIKE: f32 = 0.02;
         let count = self.members.len();
+        let sent = |at: usize, number: usize, of: usize| {
+            member_to_middle(radiance, view, &self.members[at], outgoing::among(seed, number, of))
+        };
         let is_plain = self.members[0].point.is_some_and(|point| !radiance.varies_within(point));
         if !is_plain || count < TOGETHER * TOGETHER {
-            return (0..count)
-                .map(|at| toward_middle(radiance, view, &self.members[at], among(at, count)))
-                .collect();
+            return (0..count).map(|at| sent(at, at, count)).collect();
         }
         // Along Morton's curve those of a quadrant follow each other; its middle ones lie inwards.
         let groups = count.div_ceil(TOGETHER);
         let of_group = |group: usize, number: usize| {
             let at = (group * TOGETHER + (3 * group + group / TOGETHER) % TOGETHER).min(count - 1);
-            toward_middle(radiance, view, &self.members[at], among(number, groups))
+            sent(at, number, groups)
         };
         let far = [0, groups - 1].map(|group| of_group(group, usize::from(group > 0)));
         let [first, last] = far.each_ref().map(Leaving::total);
@@ -309,10 +303,8 @@ impl Group {
     /// The same where carried light is told on cells of the aperture: it is one for all members.
     fn glossy_samples(&self, cell: Cell, shares: &[f32], asked: &TowardCells) -> Vec<Found> {
         let all = 0..self.members.len();
-        let mean =
-            Sent::mean(asked.of_points.iter().zip(shares).map(|(sent, share)| (sent.leaving(), *share)));
-        let own = mean.kinds().filter(|kind| !kind.is_carried);
-        let kinds = own.chain(asked.carried(&mean));
+        let own = asked.all.kinds().filter(|kind| !kind.is_carried);
+        let kinds = own.chain(asked.carried());
         kinds.map(|kind| self.sample(cell, all.clone(), shares, kind)).collect()
     }
 
@@ -384,7 +376,7 @@ fn mean_inverse_depth(members: &[Member]) -> f64 {
 }
 
 /// What a member sends to the aperture's middle.
-fn toward_middle(radiance: &dyn Radiance, view: &View, member: &Member, among: Among) -> Leaving {
+fn member_to_middle(radiance: &dyn Radiance, view: &View, member: &Member, among: Among) -> Leaving {
     match member.point {
         Some(point) => radiance.leaving_among(point, view.eye, among),
         None => Leaving::own(radiance.from_infinity(view.chief_ray(member.pixel).direction.normalize())),

@@ -142,8 +142,8 @@ pub fn toward_places(
 
 /// What points send toward each cell of the aperture.
 pub struct TowardCells {
-    /// Of each point, toward those cells that it was asked for.
-    pub of_points: Vec<Sent>,
+    /// What the points send toward all cells in the mean.
+    pub all: Sent,
     side: usize,
     /// Carried light of all points toward each cell, row by row from v = −1.
     carried: Vec<Vec3>,
@@ -180,30 +180,27 @@ impl TowardCells {
             of_cells[row * side + column].push((leaving, weight));
         }
         let of_cells: Vec<_> = of_cells.into_iter().map(Sent::mean).collect();
+        let of_points = of_points.into_iter().map(|sent| Sent::mean(sent).leaving());
         Self {
-            of_points: of_points.into_iter().map(Sent::mean).collect(),
+            all: Sent::mean(of_points.zip(points.iter().map(|(_, weight)| *weight))),
             side,
             carried: of_cells.iter().map(|sent| sent.carried).collect(),
             by_chance: of_cells.iter().map(|sent| sent.by_chance[1]).collect(),
         }
     }
 
-    /// Carried light on as few parts of the aperture as tell it, of points that send `all` on the mean.
-    pub fn carried(&self, all: &Sent) -> Vec<Outgoing> {
+    /// Carried light on as few parts of the aperture as tell it.
+    pub fn carried(&self) -> Vec<Outgoing> {
         let mut parts = Vec::new();
-        let differs = ALIKE * all.total().max_element();
+        let differs = ALIKE * self.all.total().max_element();
         self.join([0, 0], self.side, differs, &mut parts);
-        let share = all.share();
+        let share = self.all.share();
         let part = |(light, by_chance, word): (Vec3, Vec3, u64)| Outgoing {
             radiance: light / share,
             share,
             is_carried: true,
             by_chance: by_chance / share,
-            toward: if word == u64::MAX {
-                Visibility::Open
-            } else {
-                Visibility::Cells { words: [word].into() }
-            },
+            toward: Visibility::of(&[word]),
         };
         parts.into_iter().map(part).collect()
     }
@@ -252,9 +249,7 @@ mod tests {
         let view = View::new(&camera, 2.0);
         let points = vec![(SurfacePoint { triangle: 0, barycentric: DVec2::ZERO }, 1.0); 16];
         let asked = TowardCells::ask(&Mirror, &view, &points, 4, [3, 5]);
-        let all =
-            Sent::mean(points.iter().map(|(point, weight)| (Mirror.leaving(*point, DVec3::ZERO), *weight)));
-        let parts = asked.carried(&all);
+        let parts = asked.carried();
         // The left half as two quarters, and the right one cell by cell: three quarters of it are bright.
         assert_eq!(parts.len(), 2 + 8, "{parts:?}");
         let mut seen = 0;
@@ -274,8 +269,8 @@ mod tests {
         assert!((sum - expected).abs() < 0.8, "{sum} for {expected}: cells on the edge are either");
         // What is the same toward all is one.
         let even = TowardCells { carried: vec![Vec3::ONE; 16], ..asked };
-        assert_eq!(even.carried(&all).len(), 1);
-        assert_eq!(even.carried(&all)[0].toward, Visibility::Open);
+        assert_eq!(even.carried().len(), 1);
+        assert_eq!(even.carried()[0].toward, Visibility::Open);
     }
 
     #[test]

@@ -82,6 +82,14 @@ pub enum Visibility {
 }
 
 impl Visibility {
+    /// What these cells make up, one word of them or four.
+    pub fn of(words: &[u64]) -> Self {
+        match words.iter().all(|&word| word == u64::MAX) {
+            true => Self::Open,
+            false => Self::Cells { words: words.into() },
+        }
+    }
+
     /// What both see; `None` if that is nothing.
     pub fn and(&self, other: &Self) -> Option<Self> {
         let (Self::Cells { words: a }, Self::Cells { words: b }) = (self, other) else {

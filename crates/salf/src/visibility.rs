@@ -117,13 +117,7 @@ pub fn visibility(
     let places = patterns.of(fineness, number);
     let Sight { hidden, shares } = tracer.sight(from, &view.aperture_square(), places);
     let seen = (places.all() - hidden).iter().filter(|&cell| is_on_side(places.at(cell)));
-    let part = |seen: PlaceSet| {
-        let words = &seen.words()[..fineness.cells_a_side().pow(2) / 64];
-        match words.iter().all(|&word| word == u64::MAX) {
-            true => Visibility::Open,
-            false => Visibility::Cells { words: words.into() },
-        }
-    };
+    let part = |seen: PlaceSet| Visibility::of(&seen.words()[..fineness.cells_a_side().pow(2) / 64]);
     match shares {
         None => {
             let seen: PlaceSet = seen.collect();

@@ -13,28 +13,26 @@ use crate::error::Fault;
 use plain::Plain;
 use serde_json::Value;
 
-/// The extensions that are taken out.
-const EXTENSIONS: [&str; 3] = [draco::EXTENSION, "EXT_meshopt_compression", "KHR_meshopt_compression"];
+/// Decodes what a document holds by some extensions into a plain one; all of it if they are required.
+type Decode = fn(&Document<'_>, &mut Plain, bool) -> Result<(), Fault>;
 
 /// The plain document of one that may hold compressed meshes.
 pub(crate) fn plain(document: Document<'_>) -> Result<Document<'_>, Fault> {
-    let uses = |list: &str| {
-        let names = document.value().get(list).and_then(Value::as_array).into_iter().flatten();
-        names.filter_map(Value::as_str).any(|name| EXTENSIONS.contains(&name))
-    };
-    if !uses("extensionsUsed") && !uses("extensionsRequired") {
-        return Ok(document);
-    }
-    let is_required = uses("extensionsRequired");
     // Primitives may lie in compressed views.
-    [meshopt::decode, draco::decode].into_iter().try_fold(document, |document, decode| {
+    let kinds: [(&[&'static str], Decode); 2] =
+        [(&meshopt::EXTENSIONS, meshopt::decode), (&[draco::EXTENSION], draco::decode)];
+    kinds.into_iter().try_fold(document, |document, (extensions, decode)| {
+        let lists = |list: &str| {
+            let names = document.value().get(list).and_then(Value::as_array).into_iter().flatten();
+            names.filter_map(Value::as_str).any(|name| extensions.contains(&name))
+        };
+        let is_required = lists("extensionsRequired");
+        if !is_required && !lists("extensionsUsed") {
+            return Ok(document);
+        }
         let root = document.value().clone();
         let mut plain = Plain { root, bytes: Vec::new(), buffer: document.len("buffers") };
         decode(&document, &mut plain, is_required)?;
-        if plain.bytes.is_empty() {
-            Ok(document)
-        } else {
-            document.with(plain.root, plain.bytes, &EXTENSIONS)
-        }
+        if plain.bytes.is_empty() { Ok(document) } else { document.with(plain.root, plain.bytes, extensions) }
     })
 }

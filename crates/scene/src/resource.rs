@@ -64,18 +64,15 @@ impl<'a> Document<'a> {
         let Some((declared, source)) = buffer.map(|buffer| (buffer.length(), buffer.source())) else {
             return Err(Fault::NoData { place: own });
         };
-        let bytes: &[u8] = match (source, self.chunk) {
-            _ if self.buffers[index].get().is_some() => self.buffers[index].get().map_or(&[], Vec::as_slice),
-            (Source::Uri(uri), _) => {
-                let cell = &self.buffers[index];
-                if cell.get().is_none() {
-                    let bytes = self.resource(&own, uri)?;
-                    cell.get_or_init(|| bytes);
-                }
-                cell.get().map_or(&[], Vec::as_slice)
+        let kept = &self.buffers[index];
+        let bytes: &[u8] = match (kept.get(), source, self.chunk) {
+            (Some(bytes), ..) => bytes,
+            (None, Source::Uri(uri), _) => {
+                let bytes = self.resource(&own, uri)?;
+                kept.get_or_init(|| bytes)
             }
-            (Source::Bin, Some(chunk)) if index == 0 => chunk,
-            (Source::Bin, _) => return Err(Fault::NoData { place: own }),
+            (None, Source::Bin, Some(chunk)) if index == 0 => chunk,
+            (None, Source::Bin, _) => return Err(Fault::NoData { place: own }),
         };
         if bytes.len() < declared {
             self.warn(format!("{own}/byteLength: declares {declared} bytes, but there are {}", bytes.len()));

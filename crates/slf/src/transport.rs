@@ -1,5 +1,7 @@
 //! Light transport: what surfaces send by themselves and what they scatter of each other's light, by paths.
 
+mod gathered;
+
 use crate::irradiance::Irradiance;
 use crate::irradiance::patches::{PatchPoint, Patches};
 use crate::irradiance::place::Place;
@@ -7,12 +9,12 @@ use crate::lights::{LightSample, Lights};
 use crate::material_point::{MaterialPoint, emitted};
 use crate::media::{Inside, Media};
 use crate::path_random::PathRandom;
+use gathered::{Gathered, split};
 use glam::{DVec3, Vec3};
 use material::{Bsdf, Frame, Parts, Scattered, Scattering, Split, Surface, Toward};
 use scene::{Scene, SurfacePoint, World};
 use std::cell::Cell;
 use std::f64::consts::PI;
-use std::ops::{AddAssign, Mul};
 use std::sync::Arc;
 use trace::{Among, Hit, Leaving, Radiance, Tracer};
 
@@ -487,43 +489,6 @@ impl Arriving {
     }
 }
 
-/// Light that a point sends on.
-#[derive(Clone, Copy, Default)]
-struct Gathered {
-    light: Split,
-    /// What of it single paths found where few do.
-    by_chance: Split,
-}
-
-impl Gathered {
-    /// What is sent on of light that one direction found: directly, or by further surfaces. A mirror has no other direction to
-    /// look in.
-    fn by(scattered: &Scattered, direct: DVec3, by_others: DVec3) -> Self {
-        let light = split(scattered.weight, direct + by_others);
-        let is_chance = scattered.density.is_some();
-        let by_chance = if is_chance { split(scattered.weight, by_others) } else { Split::default() };
-        Self { light, by_chance }
-    }
-
-    fn split(self, share: DVec3) -> Self {
-        Self { light: split(self.light, share), by_chance: split(self.by_chance, share) }
-    }
-}
-
-impl AddAssign for Gathered {
-    fn add_assign(&mut self, other: Self) {
-        self.light += other.light;
-        self.by_chance += other.by_chance;
-    }
-}
-
-impl Mul<f64> for Gathered {
-    type Output = Self;
-    fn mul(self, factor: f64) -> Self {
-        Self { light: self.light * factor, by_chance: self.by_chance * factor }
-    }
-}
-
 impl Known<'_> {
     /// A place that a path came to over a distance, if what arrives there is known.
     fn place(self, scene: &Scene, point: SurfacePoint, is_front: bool, distance: f64) -> Option<Place> {
@@ -545,11 +510,6 @@ impl Known<'_> {
 fn each_of(among: Among, wanted: u32) -> u32 {
     const ALONE: u32 = 4;
     (wanted * ALONE).div_ceil(among.count.max(ALONE)).max(1)
-}
-
-/// What is left of a split light.
-fn split(light: Split, share: DVec3) -> Split {
-    Split { own: light.own * share, carried: light.carried * share }
 }
 
 /// The share of a way of sampling with density `own` in what another with density `other` finds as well (Veach and Guibas 1995,
@@ -612,15 +572,12 @@ impl Radiance for Transport {
         material.unlit || !scene.colors.is_empty() || material.has_textures()
     }
 
-    fn carried_width(&self, point: SurfacePoint, eye: DVec3) -> Option<f64> {
+    fn carried_width(&self, point: SurfacePoint) -> Option<f64> {
         let scene = self.scene();
-        let material = scene.material_of(point.triangle);
-        let outgoing = (eye - point.position(scene)).normalize_or_zero();
-        if material.unlit || outgoing == DVec3::ZERO {
+        if scene.material_of(point.triangle).unlit {
             return None;
         }
-        let at = MaterialPoint::of(scene, point, self.options.scattering);
-        at.surface.carried_width()
+        MaterialPoint::of(scene, point, self.options.scattering).surface.carried_width()
     }
 
     fn from_infinity(&self, direction: DVec3) -> Vec3 {

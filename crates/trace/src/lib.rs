@@ -42,7 +42,7 @@ pub trait Radiance: Sync {
 
     /// How fast the carried light of a point changes with where the eye is: the width of its narrowest lobe, rad, 0 of a mirror.
     /// `None` where nothing is carried.
-    fn carried_width(&self, _point: SurfacePoint, _eye: DVec3) -> Option<f64> {
+    fn carried_width(&self, _point: SurfacePoint) -> Option<f64> {
         None
     }
 

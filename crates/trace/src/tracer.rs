@@ -36,6 +36,7 @@ pub struct Tracer {
     triangles: Vec<LeafTriangle>,
     /// Of the same.
     outlines: Vec<Outline>,
+    blends: bool,
 }
 
 /// A triangle as the inner loop wants it.
@@ -79,7 +80,8 @@ impl Tracer {
             })
             .collect();
         let outlines = triangles.iter().map(|triangle| Outline::new(&triangle.corners, &space)).collect();
-        Self { scene, space, hierarchy, triangles, outlines }
+        let blends = scene.materials.iter().any(|material| material.alpha == AlphaMode::Blend);
+        Self { scene, space, hierarchy, triangles, outlines, blends }
     }
 
     /// The scene it traces.
@@ -89,7 +91,7 @@ impl Tracer {
 
     /// Whether any surface may be half there.
     pub fn blends(&self) -> bool {
-        self.scene.materials.iter().any(|material| material.alpha == AlphaMode::Blend)
+        self.blends
     }
 
     /// Bytes that the hierarchy and its triangles take, the scene itself not counted.

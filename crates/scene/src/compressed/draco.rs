@@ -27,12 +27,13 @@ pub(super) fn decode(document: &Document<'_>, plain: &mut Plain, is_required: bo
                 continue;
             };
             if is_required || !has_plain_form(document, primitive) {
-                let place = format!("{place}/extensions/{EXTENSION}");
+                let own = place;
+                let place = format!("{own}/extensions/{EXTENSION}");
                 let Some(compressed) = compressed.as_object() else {
                     return Err(Fault::Malformed { place, what: "is not an object".into() });
                 };
                 let compressed = Compressed { document, primitive, compressed, place };
-                compressed.decode(plain, &format!("/meshes/{mesh}/primitives/{index}"))?;
+                compressed.decode(plain, &own)?;
             }
         }
     }

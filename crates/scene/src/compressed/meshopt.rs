@@ -6,7 +6,7 @@ use crate::error::Fault;
 use meshopt::ffi;
 use serde_json::{Map, Value, json};
 
-const EXTENSIONS: [&str; 2] = ["KHR_meshopt_compression", "EXT_meshopt_compression"];
+pub(super) const EXTENSIONS: [&str; 2] = ["KHR_meshopt_compression", "EXT_meshopt_compression"];
 
 /// Puts the bytes of each compressed view in its place, unless it has a plain form and none is required.
 pub(super) fn decode(document: &Document<'_>, plain: &mut Plain, is_required: bool) -> Result<(), Fault> {

@@ -12,7 +12,7 @@ const SHOWN: f32 = 0.8;
 /// are often in the units of a photographer's world, where a room has hundreds.
 pub(crate) fn stops_for(salf: &Salf) -> Option<f32> {
     const EACH: usize = 7;
-    let samples = salf.samples.runs().step_by(EACH).flat_map(|run| run.iter().collect::<Vec<_>>());
+    let samples = salf.samples.runs().step_by(EACH).flat_map(|run| run.iter());
     let surfaces = samples.filter(|sample| sample.surface.is_some() && sample.weight > 0.0);
     let mut lights: Vec<(f32, f32)> =
         surfaces.map(|sample| (sample.radiance.max_element(), sample.weight)).collect();
