@@ -27,7 +27,7 @@ use progress::{Cancelled, Progress, Stage};
 use rayon::prelude::*;
 use std::collections::{HashMap, HashSet};
 use std::sync::atomic::{AtomicUsize, Ordering};
-use trace::{Radiance, Tracer, Viewpoint};
+use trace::{Radiance, Spot, Tracer, Viewpoint};
 
 /// A surface of a cell, before it is known what it sees of the aperture.
 struct Candidate {
@@ -78,7 +78,7 @@ pub fn bake_and_tell(
     let baker = Baker { tracer, radiance, view: &view, placement: &placement, patterns: &patterns };
 
     let first_looks = each_row(&domain.block_rows(), &Stage::new(progress, 0.0, 0.4), |cells| {
-        cells.iter().map(|&cell| baker.first_look(cell)).collect::<Vec<_>>()
+        cells.chunk_by(are_of_one_block).flat_map(|cells| baker.first_looks(cells)).collect::<Vec<_>>()
     })?;
     let depths = first_looks.iter().flatten().map(|look| (look.cell, look.depths));
     let occluders = Occluders::new(domain, view.radius_per_kappa_px, depths);
@@ -96,12 +96,9 @@ pub fn bake_and_tell(
     }
 
     let blocks: Vec<&[FirstLook]> =
-        first_looks.iter().flat_map(|row| row.chunk_by(are_of_one_block)).collect();
+        first_looks.iter().flat_map(|row| row.chunk_by(|a, b| are_of_one_block(&a.cell, &b.cell))).collect();
     let parts = each_row(&blocks, &Stage::new(progress, 0.45, 1.0), |looks| {
-        let mut found = Vec::new();
-        for look in *looks {
-            baker.second_look(&occluders, look, &mut found);
-        }
+        let mut found = baker.second_looks(&occluders, looks);
         let corner = block_corner(looks[0].cell.corner);
         let patches = patches_of_block.get(&corner).into_iter().flatten();
         found.extend(patches.map(|patch| Found {
@@ -123,8 +120,8 @@ pub fn bake_and_tell(
     Ok((Salf { camera: camera.clone(), margin_px: domain.margin as u32, samples }, outliers))
 }
 
-fn are_of_one_block(a: &FirstLook, b: &FirstLook) -> bool {
-    block_corner(a.cell.corner) == block_corner(b.cell.corner)
+fn are_of_one_block(a: &Cell, b: &Cell) -> bool {
+    block_corner(a.corner) == block_corner(b.corner)
 }
 
 /// The samples of one block.
@@ -168,19 +165,41 @@ impl Baker<'_> {
         trace_cell(self.tracer, self.view, self.placement, cell, density, hidden)
     }
 
-    fn first_look(&self, cell: Cell) -> FirstLook {
-        let mut density = Density::Coarse;
-        let mut layers = self.layers(cell, density, false);
-        if layers.has_outline() {
-            density = Density::Fine;
-            layers = self.layers(cell, density, false);
-        }
-        let nearest = layers.groups.iter().map(|group| {
-            (self.candidate(cell, &layers, group), group.samples(self.radiance, self.view, cell))
-        });
-        let nearest = nearest.collect();
-        let (has_gap, has_pane) = (layers.has_gap, layers.has_pane);
-        FirstLook { cell, density, depths: layers.depths(cell), has_gap, has_pane, nearest }
+    /// Looks at the cells of a block.
+    fn first_looks(&self, cells: &[Cell]) -> Vec<FirstLook> {
+        let of_cell = |&cell: &Cell| {
+            let mut density = Density::Coarse;
+            let mut layers = self.layers(cell, density, false);
+            if layers.has_outline() {
+                density = Density::Fine;
+                layers = self.layers(cell, density, false);
+            }
+            (cell, density, layers)
+        };
+        let looks: Vec<_> = cells.iter().map(of_cell).collect();
+        let groups =
+            looks.iter().flat_map(|(cell, _, layers)| layers.groups.iter().map(|group| (*cell, group)));
+        let mut sampled = self.samples(&groups.collect::<Vec<_>>()).into_iter();
+        let first_look = |(cell, density, layers): (Cell, Density, Layers)| {
+            let candidates = layers.groups.iter().map(|group| self.candidate(cell, &layers, group));
+            let nearest = candidates.zip(&mut sampled).collect();
+            let (has_gap, has_pane) = (layers.has_gap, layers.has_pane);
+            FirstLook { cell, density, depths: layers.depths(cell), has_gap, has_pane, nearest }
+        };
+        looks.into_iter().map(first_look).collect()
+    }
+
+    /// The samples of surfaces that are of one block, as if they saw all.
+    fn samples(&self, groups: &[(Cell, &Group)]) -> Vec<Vec<Found>> {
+        let spots: Vec<_> =
+            groups.iter().map(|(cell, group)| group.spot(self.tracer.scene(), *cell)).collect();
+        let asked: Vec<_> = spots.iter().copied().flatten().collect();
+        let mut received = self.radiance.received(&asked, self.view.eye).into_iter();
+        let samples = |((cell, group), spot): (&(Cell, &Group), Option<Spot>)| {
+            let received = spot.and_then(|_| received.next().flatten());
+            group.samples(self.radiance, self.view, *cell, received)
+        };
+        groups.iter().zip(spots).map(samples).collect()
     }
 
     fn candidate(&self, cell: Cell, layers: &Layers, group: &Group) -> Candidate {
@@ -193,29 +212,45 @@ impl Baker<'_> {
         }
     }
 
-    fn second_look(&self, occluders: &Occluders, look: &FirstLook, samples: &mut Vec<Found>) {
-        let FirstLook { cell, density, .. } = *look;
+    /// What the looks at a block's cells found, with what it sees of the aperture, and what else is found there.
+    fn second_looks(&self, occluders: &Occluders, looks: &[FirstLook]) -> Vec<Found> {
+        let is_pinhole = self.view.optics.aperture_radius == 0.0;
+        let may_show = |look: &FirstLook| {
+            look.has_pane
+                || !is_pinhole && (look.has_gap || occluders.may_reveal(look.cell, look.depths.nearest))
+        };
+        let behind = |look: &FirstLook| {
+            let layers = self.layers(look.cell, look.density, true);
+            let seen = |(index, group): (usize, &Group)| {
+                let candidate = self.candidate(look.cell, &layers, group);
+                self.visibility(occluders, look.cell, &candidate, index)
+            };
+            let seen: Vec<_> = layers.groups.iter().enumerate().map(seen).collect();
+            let groups = layers.groups.into_iter().zip(seen).filter(|(_, seen)| !seen.is_empty());
+            groups.collect::<Vec<_>>()
+        };
+        let behind: Vec<_> = looks.iter().map(|look| may_show(look).then(|| behind(look))).collect();
+        let groups = looks
+            .iter()
+            .zip(&behind)
+            .flat_map(|(look, groups)| groups.iter().flatten().map(|(group, _)| (look.cell, group)));
+        let mut sampled = self.samples(&groups.collect::<Vec<_>>()).into_iter();
+        let mut samples = Vec::new();
         // The quadrants of a cell see about the same: they are not asked one by one.
-        let mut push = |seen: Vec<Seen>, found: Vec<Found>| {
+        let mut push = |seen: &[Seen], found: &[Found]| {
             samples.extend(found.iter().flat_map(|found| seen.iter().filter_map(|seen| past(found, seen))));
         };
-        let is_pinhole = self.view.optics.aperture_radius == 0.0;
-        let may_show =
-            look.has_pane || !is_pinhole && (look.has_gap || occluders.may_reveal(cell, look.depths.nearest));
-        if !may_show {
-            for (index, (candidate, found)) in look.nearest.iter().enumerate() {
-                push(self.visibility(occluders, cell, candidate, index), found.clone());
-            }
-            return;
-        }
-        let layers = self.layers(cell, density, true);
-        for (index, group) in layers.groups.iter().enumerate() {
-            let candidate = self.candidate(cell, &layers, group);
-            let seen = self.visibility(occluders, cell, &candidate, index);
-            if !seen.is_empty() {
-                push(seen, group.samples(self.radiance, self.view, cell));
+        for (look, behind) in looks.iter().zip(&behind) {
+            match behind {
+                None => look.nearest.iter().enumerate().for_each(|(index, (candidate, found))| {
+                    push(&self.visibility(occluders, look.cell, candidate, index), found);
+                }),
+                Some(groups) => {
+                    groups.iter().zip(&mut sampled).for_each(|((_, seen), found)| push(seen, &found))
+                }
             }
         }
+        samples
     }
 
     /// What a cell's `index`-th surface sees.

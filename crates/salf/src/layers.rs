@@ -4,15 +4,15 @@ use crate::domain::{Cell, CellPart, Density};
 use crate::jitter::Net;
 use crate::occluders::{Depths, Occluders};
 use crate::options::BakeOptions;
-use crate::outgoing::{self, Outgoing, Sent, TowardCells};
+use crate::outgoing::{self, Asked, Outgoing, Sent, TowardCells};
 use crate::placement::Placement;
 use crate::sample::Sample;
 use crate::samples::Found;
 use crate::view::View;
 use glam::{DVec2, Vec3};
-use scene::SurfacePoint;
+use scene::{Scene, SurfacePoint};
 use std::ops::Range;
-use trace::{Among, Beam, Hit, Leaving, Radiance, Tracer, Viewpoint};
+use trace::{Beam, Hit, Leaving, Radiance, Received, Spot, Tracer, Viewpoint};
 
 /// Surfaces along one chief ray beyond which nothing is looked for.
 const DEEPEST_LAYER: usize = 12;
@@ -232,31 +232,49 @@ impl Group {
         }
     }
 
+    /// What stands for it where light is told of many at once; `None` of the background, and where it is folded so that one point
+    /// does not tell of all.
+    pub fn spot(&self, scene: &Scene, cell: Cell) -> Option<Spot> {
+        const FLAT: f64 = 0.95;
+        let member = nearest(&self.members, self.center(cell));
+        let point = member.point?;
+        let normal = scene.shading_normal(point);
+        let is_alike = |member: &Member| {
+            member.point.is_some_and(|other| {
+                other.triangle == point.triangle || scene.shading_normal(other).dot(normal) >= FLAT
+            })
+        };
+        self.members.iter().all(is_alike).then_some(Spot { point, pixel: member.pixel })
+    }
+
     /// Its samples, as if nothing hid the aperture: one with its mean radiance over its share of the cell; where that
     /// varies, one a quadrant. Where it sends carried light, too, that has its own ([`Outgoing`]). None if the aperture is a point
-    /// that sees nothing of it.
-    pub fn samples(&self, radiance: &dyn Radiance, view: &View, cell: Cell) -> Vec<Found> {
+    /// that sees nothing of it. `received` is what its spot receives, where that is known.
+    pub fn samples(
+        &self,
+        radiance: &dyn Radiance,
+        view: &View,
+        cell: Cell,
+        received: Option<Received>,
+    ) -> Vec<Found> {
         let is_pinhole = view.optics.aperture_radius == 0.0;
         let share = |member: &Member| member.opacity * if is_pinhole { member.through } else { 1.0 };
         let shares: Vec<f32> = self.members.iter().map(share).collect();
         if shares.iter().all(|&share| share == 0.0) {
             return Vec::new();
         }
-        let seed = cell.corner.as_uvec2().to_array();
+        let asked = Asked { radiance, view, seed: cell.corner.as_uvec2().to_array(), received };
         let width =
             nearest(&self.members, self.center(cell)).point.and_then(|point| radiance.carried_width(point));
         let side = width.map_or(1, |width| outgoing::cells_a_side(view, self.mean_inverse_depth(), width));
         let points = || self.members.iter().filter_map(|member| member.point);
         if side > 1 {
             let points: Vec<_> = points().zip(shares.iter().copied()).collect();
-            let asked = TowardCells::ask(radiance, view, &points, side, seed);
-            return self.glossy_samples(cell, &shares, &asked);
+            return self.glossy_samples(cell, &shares, &TowardCells::ask(&asked, &points, side));
         }
         let sent = match width {
-            Some(_) if !is_pinhole => {
-                outgoing::toward_places(radiance, view, &points().collect::<Vec<_>>(), seed)
-            }
-            _ => self.toward_middle(radiance, view, seed),
+            Some(_) if !is_pinhole => outgoing::toward_places(&asked, &points().collect::<Vec<_>>()),
+            _ => self.toward_middle(&asked),
         };
         let mean = |rays: &Range<usize>| mean(rays, |ray| (sent[ray], shares[ray]));
         let part = |rays: Range<usize>| {
@@ -269,14 +287,16 @@ impl Group {
 
     /// What each member sends to the aperture's middle. Where only light tells one from the next, a few of them stand for all: two
     /// that lie apart, or if these differ one of every four.
-    fn toward_middle(&self, radiance: &dyn Radiance, view: &View, seed: [u32; 2]) -> Vec<Leaving> {
+    fn toward_middle(&self, asked: &Asked) -> Vec<Leaving> {
         const TOGETHER: usize = 4;
         const ALIKE: f32 = 0.02;
         let count = self.members.len();
-        let sent = |at: usize, number: usize, of: usize| {
-            member_to_middle(radiance, view, &self.members[at], outgoing::among(seed, number, of))
-        };
-        let is_plain = self.members[0].point.is_some_and(|point| !radiance.varies_within(point));
+        let sent =
+            |at: usize, number: usize, of: usize| member_to_middle(asked, &self.members[at], number, of);
+        let is_plain = self.members[0].point.is_some_and(|point| !asked.radiance.varies_within(point));
+        if is_plain && asked.received.is_some() {
+            return vec![sent(count / 2, 0, 1); count];
+        }
         if !is_plain || count < TOGETHER * TOGETHER {
             return (0..count).map(|at| sent(at, at, count)).collect();
         }
@@ -375,10 +395,11 @@ fn mean_inverse_depth(members: &[Member]) -> f64 {
     members.iter().map(|m| m.inverse_depth).sum::<f64>() / members.len() as f64
 }
 
-/// What a member sends to the aperture's middle.
-fn member_to_middle(radiance: &dyn Radiance, view: &View, member: &Member, among: Among) -> Leaving {
+/// What a member sends to the aperture's middle, the `index`-th of `count` that are asked.
+fn member_to_middle(asked: &Asked, member: &Member, index: usize, count: usize) -> Leaving {
+    let Asked { radiance, view, .. } = *asked;
     match member.point {
-        Some(point) => radiance.leaving_among(point, view.eye, among),
+        Some(point) => asked.leaving(point, view.eye, index, count),
         None => Leaving::own(radiance.from_infinity(view.chief_ray(member.pixel).direction.normalize())),
     }
 }
@@ -424,7 +445,7 @@ mod tests {
         let members = (0..Density::Coarse.rays()).map(member).collect();
         let (tilt, slope) = (DVec2::ZERO, DVec2::ZERO);
         let group = Group { members, is_nearest: true, is_just_behind: false, part: None, tilt, slope };
-        group.samples(&Halves(light), &view, cell)
+        group.samples(&Halves(light), &view, cell, None)
     }
 
     #[test]

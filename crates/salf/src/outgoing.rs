@@ -9,9 +9,9 @@
 use crate::jitter::jitter;
 use crate::sample::Visibility;
 use crate::view::View;
-use glam::{DVec2, Vec3};
+use glam::{DVec2, DVec3, Vec3};
 use scene::SurfacePoint;
-use trace::{Among, Leaving, Radiance};
+use trace::{Among, Leaving, Radiance, Received};
 
 /// Cells a side at most that carried light is told on.
 const MOST_CELLS: usize = 8;
@@ -114,29 +114,37 @@ pub fn cells_a_side(view: &View, inverse_depth: f64, width: f64) -> usize {
     if wanted > 1.0 { (wanted.min(MOST_CELLS as f64).ceil() as usize).next_power_of_two() } else { 1 }
 }
 
-/// The `index`-th of `count` points of a cell.
-pub fn among(seed: [u32; 2], index: usize, count: usize) -> Among {
-    let seed = u64::from(seed[0]) << 32 | u64::from(seed[1]);
-    Among { seed, index: index as u32, count: count as u32 }
+/// Who is asked what the points of a cell send, from where, and what is known of it.
+#[derive(Clone, Copy)]
+pub struct Asked<'a> {
+    pub radiance: &'a dyn Radiance,
+    pub view: &'a View<'a>,
+    /// Of the cell.
+    pub seed: [u32; 2],
+    /// What its points receive.
+    pub received: Option<Received>,
+}
+
+impl Asked<'_> {
+    /// What a point sends toward a world position, the `index`-th of `count` that are asked.
+    pub fn leaving(&self, point: SurfacePoint, eye: DVec3, index: usize, count: usize) -> Leaving {
+        let seed = u64::from(self.seed[0]) << 32 | u64::from(self.seed[1]);
+        let among = Among { seed, index: index as u32, count: count as u32, received: self.received };
+        self.radiance.leaving_among(point, eye, among)
+    }
 }
 
 /// What points send toward the open aperture, each toward a place of its own.
-pub fn toward_places(
-    radiance: &dyn Radiance,
-    view: &View,
-    points: &[SurfacePoint],
-    seed: [u32; 2],
-) -> Vec<Leaving> {
+pub fn toward_places(asked: &Asked, points: &[SurfacePoint]) -> Vec<Leaving> {
     // Roberts's sequence: fractions of the plastic number's powers.
     const STEP: DVec2 = DVec2::new(0.754_877_666_246_692_8, 0.569_840_290_998_053_3);
+    let Asked { view, seed, .. } = *asked;
     let [x, y, _] = jitter(seed[0], seed[1], 1 << 20);
     let place = |k: usize| {
         let at = (DVec2::new(x, y) + STEP * k as f64).fract();
         view.aperture_point(view.open_aperture.sample(at.x, at.y))
     };
-    let sent = |(k, &point): (usize, &SurfacePoint)| {
-        radiance.leaving_among(point, place(k), among(seed, k, points.len()))
-    };
+    let sent = |(k, &point): (usize, &SurfacePoint)| asked.leaving(point, place(k), k, points.len());
     points.iter().enumerate().map(sent).collect()
 }
 
@@ -154,13 +162,8 @@ pub struct TowardCells {
 impl TowardCells {
     /// Asks points of these weights toward `side` × `side` cells: each cell is asked by as many points, neighbours ask for
     /// cells apart.
-    pub fn ask(
-        radiance: &dyn Radiance,
-        view: &View,
-        points: &[(SurfacePoint, f32)],
-        side: usize,
-        seed: [u32; 2],
-    ) -> Self {
+    pub fn ask(of: &Asked, points: &[(SurfacePoint, f32)], side: usize) -> Self {
+        let Asked { view, seed, .. } = *of;
         let cells = side * side;
         let count = cells * points.len().div_ceil(cells);
         let bits = cells.ilog2();
@@ -174,8 +177,7 @@ impl TowardCells {
             let [row, column] = crate::domain::Cell::row_and_column(cell as usize ^ turn);
             let [x, y, _] = jitter(seed[0], seed[1], (1 << 22) + asked as u32);
             let place = DVec2::new(column as f64 + x, row as f64 + y) * (2.0 / side as f64) - 1.0;
-            let leaving =
-                radiance.leaving_among(point, view.aperture_point(place), among(seed, asked, count));
+            let leaving = of.leaving(point, view.aperture_point(place), asked, count);
             of_points[at].push((leaving, weight));
             of_cells[row * side + column].push((leaving, weight));
         }
@@ -227,7 +229,6 @@ impl TowardCells {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use glam::DVec3;
     use lens::Camera;
 
     /// A mirror that shows something bright toward the right of the aperture, over a ground of its own.
@@ -248,7 +249,8 @@ mod tests {
         let camera = Camera { width: 64, height: 64, aperture_radius: 0.5, ..Camera::default() };
         let view = View::new(&camera, 2.0);
         let points = vec![(SurfacePoint { triangle: 0, barycentric: DVec2::ZERO }, 1.0); 16];
-        let asked = TowardCells::ask(&Mirror, &view, &points, 4, [3, 5]);
+        let of = Asked { radiance: &Mirror, view: &view, seed: [3, 5], received: None };
+        let asked = TowardCells::ask(&of, &points, 4);
         let parts = asked.carried();
         // The left half as two quarters, and the right one cell by cell: three quarters of it are bright.
         assert_eq!(parts.len(), 2 + 8, "{parts:?}");

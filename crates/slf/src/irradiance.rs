@@ -15,6 +15,7 @@ use glam::{DVec3, Vec3};
 use patches::Patches;
 use place::Place;
 use scene::World;
+use trace::Received;
 
 /// Light that arrives at every patch of a scene's surface.
 #[derive(Debug)]
@@ -41,6 +42,11 @@ impl Irradiance {
     /// Irradiance/π that the environment would send, did nothing shade the surface of this normal; none where it is not drawn.
     pub(crate) fn unshaded(&self, world: &World, normal: DVec3) -> Option<DVec3> {
         self.sky.as_ref().map(|sky| sky.at(world, normal))
+    }
+
+    /// Irradiance/π that a spot receives whose shaded normal is this.
+    pub(crate) fn received(&self, world: &World, received: &Received, normal: DVec3) -> DVec3 {
+        (self.unshaded(world, normal).unwrap_or_default() + received.at(normal).as_dvec3()).max(DVec3::ZERO)
     }
 
     /// The side of a patch, world units.

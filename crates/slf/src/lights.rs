@@ -52,6 +52,9 @@ impl Lights {
         Self { emitters, environment, punctual: scene.lights.len(), beyond }
     }
 
+    /// Punctual lights that one draw finds at most.
+    pub const MOST_A_DRAW: u32 = FEW as u32;
+
     /// Whether any surface is a light.
     pub fn has_emitters(&self) -> bool {
         !self.emitters.is_empty()

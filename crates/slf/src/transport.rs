@@ -1,6 +1,7 @@
 //! Light transport: what surfaces send by themselves and what they scatter of each other's light, by paths.
 
 mod gathered;
+mod receiving;
 
 use crate::irradiance::Irradiance;
 use crate::irradiance::patches::{PatchPoint, Patches};
@@ -16,7 +17,7 @@ use scene::{Scene, SurfacePoint, World};
 use std::cell::Cell;
 use std::f64::consts::PI;
 use std::sync::Arc;
-use trace::{Among, Hit, Leaving, Radiance, Tracer};
+use trace::{Among, Hit, Leaving, Radiance, Received, Spot, Tracer};
 
 /// How light is gathered.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -227,7 +228,8 @@ impl Transport {
         // What the sky would send, did nothing shade it, is known: it is put in for what its samples would find of it, so that they
         // only tell what is missing (a control variate: the mean stays).
         let normal = lobes.normal();
-        let unshaded = irradiance.unshaded(&self.world, normal);
+        let is_told = among.received.is_some();
+        let unshaded = if is_told { None } else { irradiance.unshaded(&self.world, normal) };
         let drawn_unshaded = Cell::new(DVec3::ZERO);
         let mut drawn = Split::default();
         for index in 0..draws.all {
@@ -243,6 +245,7 @@ impl Transport {
                     sample.density.map_or(of_punctual, |density| heuristic(density * lights_a_path, own));
                 // Of spread light only lamps are looked for in two ways.
                 let of_spread = match sample.density {
+                    _ if is_told => 0.0,
                     None => of_punctual,
                     Some(density) if sample.is_near => {
                         heuristic(density * lights_a_path, lobes.spread_density(sample.from))
@@ -261,7 +264,9 @@ impl Transport {
         for index in 0..paths {
             let random = PathRandom::new(!among.seed, among.index * paths + index);
             let mut path = Path { random, inside, lights_a_path };
-            found.light += self.looked_for(point, at, &lobes, &mut path);
+            if !is_told {
+                found.light += self.looked_for(point, at, &lobes, &mut path);
+            }
             let dispersed = self.disperse(at, &mut path);
             found += match path.inside.channel {
                 None => self.sharp(point, at, &lobes, &mut path, irradiance),
@@ -290,7 +295,7 @@ impl Transport {
         let Some((direction, density)) = lobes.sample_spread(path.random.next2()) else {
             return Split::default();
         };
-        let light = self.lamp_along(point, at, direction, density, path);
+        let light = self.lamp_along(point, at.position, direction, density, path);
         if light == DVec3::ZERO {
             return Split::default();
         }
@@ -389,13 +394,13 @@ impl Transport {
     fn lamp_along(
         &self,
         from: SurfacePoint,
-        at: &MaterialPoint,
+        position: DVec3,
         direction: DVec3,
         density: f64,
         path: &Path,
     ) -> DVec3 {
         let Some(hit) = self.tracer.first_met(from, direction) else { return DVec3::ZERO };
-        let toward = hit.point.position(self.scene()) - at.position;
+        let toward = hit.point.position(self.scene()) - position;
         let of_light = self.lights.density_of_emitter(hit.point.triangle, toward);
         if of_light == 0.0 {
             return DVec3::ZERO;
@@ -521,7 +526,11 @@ fn heuristic(own: f64, other: f64) -> f64 {
 
 impl Radiance for Transport {
     fn leaving(&self, point: SurfacePoint, eye: DVec3) -> Leaving {
-        self.leaving_among(point, eye, Among { seed: PathRandom::seed(point, eye), index: 0, count: 1 })
+        self.leaving_among(
+            point,
+            eye,
+            Among { seed: PathRandom::seed(point, eye), index: 0, count: 1, received: None },
+        )
     }
 
     fn leaving_among(&self, point: SurfacePoint, eye: DVec3, among: Among) -> Leaving {
@@ -537,11 +546,19 @@ impl Radiance for Transport {
         let interface = self.media.interface(at.material, &inside, is_front);
         let bsdf = Bsdf::new(&at.surface, at.frame, interface);
         let lobes = bsdf.toward(outgoing);
-        let place = Place::of(scene, point, is_front);
-        let known = self.irradiance.as_deref().and_then(|known| Some((known, known.indirect(&place)?)));
+        let known = self.irradiance.as_deref().and_then(|known| {
+            let irradiance = match among.received {
+                Some(received) => known.received(&self.world, &received, lobes.normal()),
+                None => known.indirect(&Place::of(scene, point, is_front))?.as_dvec3(),
+            };
+            Some((known, irradiance))
+        });
         let Gathered { light, by_chance } = match known {
-            Some((known, light)) => {
-                let told = light.as_dvec3() * lobes.spread_albedo();
+            Some((_, irradiance)) if lobes.is_spread() && among.received.is_some() => {
+                return Leaving::own(emitted + (irradiance * lobes.spread_albedo()).as_vec3());
+            }
+            Some((known, irradiance)) => {
+                let told = irradiance * lobes.spread_albedo();
                 let mut beside = self.scattered_beside(point, &at, eye, inside, (known, among));
                 beside.light += Split { own: told, carried: DVec3::ZERO };
                 beside
@@ -564,6 +581,10 @@ impl Radiance for Transport {
             carried_share: carried_share as f32,
             by_chance: [by_chance.own, by_chance.carried].map(|light| light.as_vec3()),
         }
+    }
+
+    fn received(&self, spots: &[Spot], eye: DVec3) -> Vec<Option<Received>> {
+        self.receive(spots, eye)
     }
 
     fn varies_within(&self, point: SurfacePoint) -> bool {

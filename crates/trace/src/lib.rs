@@ -24,7 +24,7 @@ pub use ray::{Hit, Ray};
 pub use sight::{PlaceSet, Places, Sight, Square, Viewpoint};
 pub use tracer::Tracer;
 
-use glam::{DVec3, Vec3};
+use glam::{DVec2, DVec3, Vec3};
 use scene::SurfacePoint;
 
 /// Radiance that leaves the scene: what [`truth`] and the SALF gather.
@@ -38,6 +38,12 @@ pub trait Radiance: Sync {
     /// The same of one of several points whose mean is wanted: each may be told less well.
     fn leaving_among(&self, point: SurfacePoint, eye: DVec3, _among: Among) -> Leaving {
         self.leaving(point, eye)
+    }
+
+    /// What light spots receive that lie close together in the picture that `eye` sees: told of many at once, since a few of
+    /// them tell most. `None` of a spot that has to be asked by itself. One answer a spot, for [`Among::received`] of its points.
+    fn received(&self, spots: &[Spot], _eye: DVec3) -> Vec<Option<Received>> {
+        vec![None; spots.len()]
     }
 
     /// How fast the carried light of a point changes with where the eye is: the width of its narrowest lobe, rad, 0 of a mirror.
@@ -59,7 +65,7 @@ pub trait Radiance: Sync {
 }
 
 /// Which of several points it is whose mean is wanted. What is drawn for all of them is spread evenly over all.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Among {
     /// The same for all of them, another one elsewhere.
     pub seed: u64,
@@ -67,6 +73,27 @@ pub struct Among {
     pub index: u32,
     /// How many they are.
     pub count: u32,
+    /// What light they receive, if that is known.
+    pub received: Option<Received>,
+}
+
+/// A surface point that stands for a part of the picture.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Spot {
+    /// The point.
+    pub point: SurfacePoint,
+    /// Where it is in the picture, px.
+    pub pixel: DVec2,
+}
+
+/// Light that a spot receives from all around, as lobes see it that are spread: irradiance/π at a normal **n** is
+/// `even` + `flow`·**n**, linear RGB.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Received {
+    /// What does not depend on the normal.
+    pub even: Vec3,
+    /// Vector irradiance/π (Gershun 1936), by x, y and z of the world.
+    pub flow: [Vec3; 3],
 }
 
 /// The radiance that leaves a point toward another, linear RGB, by what the focus paint does with it.
@@ -80,6 +107,22 @@ pub struct Leaving {
     pub carried_share: f32,
     /// What of `own` and of `carried` single paths found where few do: it may be far off for one point, though right in the mean.
     pub by_chance: [Vec3; 2],
+}
+
+impl Received {
+    /// This and `factor` times another.
+    pub fn plus(&self, other: &Self, factor: f64) -> Self {
+        let factor = factor as f32;
+        let flow = std::array::from_fn(|axis| self.flow[axis] + other.flow[axis] * factor);
+        Self { even: self.even + other.even * factor, flow }
+    }
+
+    /// Irradiance/π at a normal (unit); below 0 where more is taken away than is there.
+    pub fn at(&self, normal: DVec3) -> Vec3 {
+        let [x, y, z] = self.flow;
+        let [by_x, by_y, by_z] = normal.as_vec3().to_array();
+        self.even + x * by_x + y * by_y + z * by_z
+    }
 }
 
 impl Leaving {

@@ -189,7 +189,7 @@ fn candidates(scene: &Scene, triangles: impl Iterator<Item = u32>, spacing: f64)
 }
 
 /// Which of the six axes a normal is nearest to.
-fn facing(normal: DVec3) -> u8 {
+pub(crate) fn facing(normal: DVec3) -> u8 {
     let size = normal.abs();
     let axis = if size.x >= size.y && size.x >= size.z {
         0
