@@ -9,10 +9,11 @@
 //! The samples of each block are packed as soon as they are all found ([`crate::samples`]).
 
 use crate::domain::{Cell, Density, Domain};
-use crate::layers::{Group, Layers, trace_cell};
+use crate::layers::{Group, Layers, Tile, trace_cell};
 use crate::margin::standard_margin_px;
 use crate::occluders::{Depths, Footprint, Occluders};
 use crate::options::BakeOptions;
+use crate::outgoing::{Asked, TowardCells};
 use crate::outliers::{self, Outliers};
 use crate::placement::Placement;
 use crate::salf::Salf;
@@ -25,9 +26,10 @@ use glam::{DVec2, IVec2, Vec3};
 use lens::Camera;
 use progress::{Cancelled, Progress, Stage};
 use rayon::prelude::*;
-use std::collections::{HashMap, HashSet};
+use std::collections::{BTreeMap, HashMap, HashSet};
+use std::rc::Rc;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use trace::{Radiance, Spot, Tracer, Viewpoint};
+use trace::{Radiance, Received, Tracer, Viewpoint};
 
 /// A surface of a cell, before it is known what it sees of the aperture.
 struct Candidate {
@@ -194,12 +196,47 @@ impl Baker<'_> {
         let spots: Vec<_> =
             groups.iter().map(|(cell, group)| group.spot(self.tracer.scene(), *cell)).collect();
         let asked: Vec<_> = spots.iter().copied().flatten().collect();
-        let mut received = self.radiance.received(&asked, self.view.eye).into_iter();
-        let samples = |((cell, group), spot): (&(Cell, &Group), Option<Spot>)| {
-            let received = spot.and_then(|_| received.next().flatten());
-            group.samples(self.radiance, self.view, *cell, received)
+        let mut of_asked = self.radiance.received(&asked, self.view.eye).into_iter();
+        let received: Vec<_> =
+            spots.iter().map(|spot| spot.and_then(|_| of_asked.next().flatten())).collect();
+        let shared = self.shared(groups, &received);
+        let samples = |((&(cell, group), received), shared): ((&(Cell, &Group), _), Option<Rc<_>>)| {
+            group.samples(self.radiance, self.view, cell, received, shared.as_deref())
         };
-        groups.iter().zip(spots).map(samples).collect()
+        groups.iter().zip(received).zip(shared).map(samples).collect()
+    }
+
+    /// The carried light that surfaces share with their neighbours ([`Group::tile`]), where what is own of them is told.
+    fn shared(
+        &self,
+        groups: &[(Cell, &Group)],
+        received: &[Option<Received>],
+    ) -> Vec<Option<Rc<TowardCells>>> {
+        let mut tiles: BTreeMap<Tile, Vec<usize>> = BTreeMap::new();
+        for (index, (cell, group)) in groups.iter().enumerate() {
+            let is_told = received[index].is_some_and(|received| received.gloss.is_some());
+            if is_told && let Some(tile) = group.tile(self.radiance, self.view, *cell) {
+                tiles.entry(tile).or_default().push(index);
+            }
+        }
+        let mut shared = vec![None; groups.len()];
+        for (tile, members) in tiles.into_iter().filter(|(_, members)| members.len() > 1) {
+            let points = members.iter().flat_map(|&index| groups[index].1.weighted_points(self.view));
+            let points: Vec<_> = points.filter(|(_, weight)| *weight > 0.0).collect();
+            if points.is_empty() {
+                continue;
+            }
+            let asked = Asked {
+                radiance: self.radiance,
+                view: self.view,
+                seed: tile.corner.map(|at| at as u32),
+                received: received[members[0]],
+                own_only: false,
+            };
+            let told = Rc::new(TowardCells::ask(&asked, &points, tile.side));
+            members.into_iter().for_each(|index| shared[index] = Some(told.clone()));
+        }
+        shared
     }
 
     fn candidate(&self, cell: Cell, layers: &Layers, group: &Group) -> Candidate {

@@ -9,7 +9,7 @@ use crate::placement::Placement;
 use crate::sample::Sample;
 use crate::samples::Found;
 use crate::view::View;
-use glam::{DVec2, Vec3};
+use glam::{DVec2, IVec2, Vec3};
 use scene::{Scene, SurfacePoint};
 use std::ops::Range;
 use trace::{Beam, Hit, Leaving, Radiance, Received, Spot, Tracer, Viewpoint};
@@ -61,6 +61,18 @@ pub struct Group {
     tilt: DVec2,
     /// Gradient of 1/z, per px.
     pub slope: DVec2,
+}
+
+/// A square of the picture where a surface's carried light is told at once.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Tile {
+    part: u32,
+    /// Upper left, px.
+    pub corner: [i32; 2],
+    /// px.
+    tile_side: i32,
+    /// Cells of the aperture that it is told on, a side.
+    pub side: usize,
 }
 
 /// What the rays of a cell met.
@@ -249,23 +261,29 @@ impl Group {
 
     /// Its samples, as if nothing hid the aperture: one with its mean radiance over its share of the cell; where that
     /// varies, one a quadrant. Where it sends carried light, too, that has its own ([`Outgoing`]). None if the aperture is a point
-    /// that sees nothing of it. `received` is what its spot receives, where that is known.
+    /// that sees nothing of it. `received` is what its spot receives, where that is known, `shared` the carried light that it has
+    /// in common with its neighbours.
     pub fn samples(
         &self,
         radiance: &dyn Radiance,
         view: &View,
         cell: Cell,
         received: Option<Received>,
+        shared: Option<&TowardCells>,
     ) -> Vec<Found> {
-        let is_pinhole = view.optics.aperture_radius == 0.0;
-        let share = |member: &Member| member.opacity * if is_pinhole { member.through } else { 1.0 };
-        let shares: Vec<f32> = self.members.iter().map(share).collect();
+        let shares = self.shares(view);
         if shares.iter().all(|&share| share == 0.0) {
             return Vec::new();
         }
-        let asked = Asked { radiance, view, seed: cell.corner.as_uvec2().to_array(), received };
-        let width =
-            nearest(&self.members, self.center(cell)).point.and_then(|point| radiance.carried_width(point));
+        let seed = cell.corner.as_uvec2().to_array();
+        let asked = Asked { radiance, view, seed, received, own_only: shared.is_some() };
+        if let Some(shared) = shared {
+            let sent = self.toward_middle(&asked);
+            let own = mean(&(0..sent.len()), |ray| (sent[ray], shares[ray]));
+            return self.glossy_samples(cell, &shares, &shared.beside(own));
+        }
+        let is_pinhole = view.optics.aperture_radius == 0.0;
+        let width = self.carried_width(radiance, cell);
         let side = width.map_or(1, |width| outgoing::cells_a_side(view, self.mean_inverse_depth(), width));
         let points = || self.members.iter().filter_map(|member| member.point);
         if side > 1 {
@@ -283,6 +301,38 @@ impl Group {
         // Few paths tell what a quadrant carries: it may differ by more.
         let even = if width.is_some() { 2.0 } else { 1.0 } * BakeOptions::EVEN_PER_PX * view.tolerance_px;
         self.parts(cell, even as f32, |rays| mean(rays).total()).into_iter().flat_map(part).collect()
+    }
+
+    /// How much of each member counts.
+    fn shares(&self, view: &View) -> Vec<f32> {
+        let is_pinhole = view.optics.aperture_radius == 0.0;
+        let share = |member: &Member| member.opacity * if is_pinhole { member.through } else { 1.0 };
+        self.members.iter().map(share).collect()
+    }
+
+    /// [`Radiance::carried_width`] in its middle.
+    fn carried_width(&self, radiance: &dyn Radiance, cell: Cell) -> Option<f64> {
+        nearest(&self.members, self.center(cell)).point.and_then(|point| radiance.carried_width(point))
+    }
+
+    /// Whom it may share its carried light with: those of the same answer. `None` where it sends none, or has to tell it by itself.
+    pub fn tile(&self, radiance: &dyn Radiance, view: &View, cell: Cell) -> Option<Tile> {
+        let depth = self.mean_inverse_depth();
+        let tile_side = outgoing::tile_side(view, depth);
+        if tile_side <= cell.side {
+            return None;
+        }
+        let width = self.carried_width(radiance, cell)?;
+        let side = outgoing::cells_a_side(view, depth, width).max(2);
+        let [corner, of] = [cell.corner, IVec2::splat(tile_side)];
+        let corner = (corner.div_euclid(of) * of).to_array();
+        Some(Tile { part: self.part?, corner, tile_side, side })
+    }
+
+    /// Its points with how much of each counts.
+    pub fn weighted_points(&self, view: &View) -> impl Iterator<Item = (SurfacePoint, f32)> {
+        let shares = self.shares(view);
+        self.members.iter().zip(shares).filter_map(|(member, share)| Some((member.point?, share)))
     }
 
     /// What each member sends to the aperture's middle. Where only light tells one from the next, a few of them stand for all: two
@@ -407,7 +457,7 @@ fn member_to_middle(asked: &Asked, member: &Member, index: usize, count: usize) 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use glam::{DVec3, IVec2};
+    use glam::DVec3;
     use lens::Camera;
 
     /// Light from infinity: so much on the left, so much on the right.
@@ -445,7 +495,7 @@ mod tests {
         let members = (0..Density::Coarse.rays()).map(member).collect();
         let (tilt, slope) = (DVec2::ZERO, DVec2::ZERO);
         let group = Group { members, is_nearest: true, is_just_behind: false, part: None, tilt, slope };
-        group.samples(&Halves(light), &view, cell, None)
+        group.samples(&Halves(light), &view, cell, None, None)
     }
 
     #[test]

@@ -123,13 +123,21 @@ pub struct Asked<'a> {
     pub seed: [u32; 2],
     /// What its points receive.
     pub received: Option<Received>,
+    /// Whether only what is own is wanted.
+    pub own_only: bool,
 }
 
 impl Asked<'_> {
     /// What a point sends toward a world position, the `index`-th of `count` that are asked.
     pub fn leaving(&self, point: SurfacePoint, eye: DVec3, index: usize, count: usize) -> Leaving {
         let seed = u64::from(self.seed[0]) << 32 | u64::from(self.seed[1]);
-        let among = Among { seed, index: index as u32, count: count as u32, received: self.received };
+        let among = Among {
+            seed,
+            index: index as u32,
+            count: count as u32,
+            received: self.received,
+            own_only: self.own_only,
+        };
         self.radiance.leaving_among(point, eye, among)
     }
 }
@@ -148,6 +156,17 @@ pub fn toward_places(asked: &Asked, points: &[SurfacePoint]) -> Vec<Leaving> {
     points.iter().enumerate().map(sent).collect()
 }
 
+/// How large a square of the picture may be, px, whose carried light is told at once: where it is thrown as a wide image, nobody sees
+/// from where exactly. 1 where every cell is told by itself.
+pub fn tile_side(view: &View, inverse_depth: f64) -> i32 {
+    /// Its share of the image.
+    const SHARE: f64 = 0.125;
+    const LARGEST: f64 = 8.0;
+    let circle_px = view.optics.circle_of_confusion_px(view.optics.standard_kappa(inverse_depth));
+    let side = (SHARE * circle_px).clamp(1.0, LARGEST);
+    1 << (side as u32).ilog2()
+}
+
 /// What points send toward each cell of the aperture.
 pub struct TowardCells {
     /// What the points send toward all cells in the mean.
@@ -160,12 +179,13 @@ pub struct TowardCells {
 }
 
 impl TowardCells {
-    /// Asks points of these weights toward `side` × `side` cells: each cell is asked by as many points, neighbours ask for
-    /// cells apart.
+    /// Asks points of these weights, or many of them, toward `side` × `side` cells: each cell is asked by as many points, neighbours
+    /// ask for cells apart.
     pub fn ask(of: &Asked, points: &[(SurfacePoint, f32)], side: usize) -> Self {
         let Asked { view, seed, .. } = *of;
         let cells = side * side;
-        let count = cells * points.len().div_ceil(cells);
+        const MOST: usize = 128;
+        let count = cells * points.len().min(MOST).div_ceil(cells);
         let bits = cells.ilog2();
         let mut of_points: Vec<Vec<(Leaving, f32)>> = vec![Vec::new(); points.len()];
         let mut of_cells: Vec<Vec<(Leaving, f32)>> = vec![Vec::new(); cells];
@@ -182,13 +202,20 @@ impl TowardCells {
             of_cells[row * side + column].push((leaving, weight));
         }
         let of_cells: Vec<_> = of_cells.into_iter().map(Sent::mean).collect();
-        let of_points = of_points.into_iter().map(|sent| Sent::mean(sent).leaving());
+        let of_points = of_points.into_iter().zip(points).filter(|(sent, _)| !sent.is_empty());
+        let of_points = of_points.map(|(sent, (_, weight))| (Sent::mean(sent).leaving(), *weight));
         Self {
-            all: Sent::mean(of_points.zip(points.iter().map(|(_, weight)| *weight))),
+            all: Sent::mean(of_points),
             side,
             carried: of_cells.iter().map(|sent| sent.carried).collect(),
             by_chance: of_cells.iter().map(|sent| sent.by_chance[1]).collect(),
         }
+    }
+
+    /// The same carried light beside other own light.
+    pub fn beside(&self, own: Sent) -> Self {
+        let all = Sent { carried: self.all.carried, ..own };
+        Self { all, side: self.side, carried: self.carried.clone(), by_chance: self.by_chance.clone() }
     }
 
     /// Carried light on as few parts of the aperture as tell it.
@@ -249,7 +276,7 @@ mod tests {
         let camera = Camera { width: 64, height: 64, aperture_radius: 0.5, ..Camera::default() };
         let view = View::new(&camera, 2.0);
         let points = vec![(SurfacePoint { triangle: 0, barycentric: DVec2::ZERO }, 1.0); 16];
-        let of = Asked { radiance: &Mirror, view: &view, seed: [3, 5], received: None };
+        let of = Asked { radiance: &Mirror, view: &view, seed: [3, 5], received: None, own_only: false };
         let asked = TowardCells::ask(&of, &points, 4);
         let parts = asked.carried();
         // The left half as two quarters, and the right one cell by cell: three quarters of it are bright.

@@ -273,15 +273,18 @@ impl Material {
 
     /// Whether any of it differs from point to point by a texture.
     pub fn has_textures(&self) -> bool {
+        self.base_color_texture.is_some() || self.emissive_texture.is_some() || !self.has_even_gloss()
+    }
+
+    /// Whether neither bumps nor any texture changes how it mirrors, but for the base colour.
+    pub fn has_even_gloss(&self) -> bool {
         let scalar = |scalar: &Scalar| scalar.texture.is_some();
         let tint = |tint: &Tint| tint.texture.is_some();
         let of_workflow = match &self.workflow {
             Workflow::MetallicRoughness { metallic, roughness } => scalar(metallic) || scalar(roughness),
             Workflow::SpecularGlossiness { specular, glossiness } => tint(specular) || scalar(glossiness),
         };
-        of_workflow
-            || self.base_color_texture.is_some()
-            || self.emissive_texture.is_some()
+        let changes = of_workflow
             || self.normal_map.is_some()
             || scalar(&self.specular)
             || tint(&self.specular_color)
@@ -294,7 +297,8 @@ impl Material {
             || self.iridescence.is_some_and(|film| scalar(&film.factor) || film.thickness_texture.is_some())
             || self
                 .diffuse_transmission
-                .is_some_and(|through| scalar(&through.factor) || tint(&through.color))
+                .is_some_and(|through| scalar(&through.factor) || tint(&through.color));
+        !changes
     }
 
     /// Whether it sends light of its own: unlit, or emissive.

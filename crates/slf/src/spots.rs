@@ -29,8 +29,11 @@ const FEWEST: usize = 3;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Measured {
     pub received: Received,
-    /// Irradiance/π at its normal.
-    pub irradiance: Vec3,
+    pub normal: DVec3,
+    /// What its spread lobes and its own gloss send of light that is 1 from everywhere.
+    pub albedo: [Vec3; 2],
+    /// What that makes the spot send.
+    pub sent: Vec3,
     pub lights: Seen,
 }
 
@@ -47,8 +50,8 @@ pub(crate) trait Measure {
     fn measure(&self, spot: usize) -> Option<Measured>;
     /// A spot's normal, without bumps.
     fn normal(&self, spot: usize) -> DVec3;
-    /// Irradiance/π at a spot's own normal, of what is told to it.
-    fn irradiance(&self, spot: usize, received: &Received) -> Vec3;
+    /// What a spot that was measured would send, did it receive this.
+    fn sent(&self, measured: &Measured, received: &Received) -> Vec3;
     /// Whether a spot sees some lights, the `turn`-th of those all draw, otherwise than `seen`, which some that agree about it do.
     fn differs(&self, spot: usize, turn: usize, agreed: &Seen) -> Option<bool>;
 }
@@ -108,17 +111,17 @@ impl<M: Measure> Telling<'_, M> {
         let measured: Vec<Measured> = known.iter().map(|&spot| self.measure(spot)).collect::<Option<_>>()?;
         let plane =
             Plane::of(known.iter().zip(&measured).map(|(&spot, m)| (self.spots[spot].pixel, m.received)));
-        let most = measured.iter().fold(Vec3::ZERO, |most, m| most.max(m.irradiance)).max_element();
+        let most = measured.iter().fold(Vec3::ZERO, |most, m| most.max(m.sent)).max_element();
         let is_told = |(&spot, measured): (&usize, &Measured)| {
-            let told = self.scene.irradiance(spot, &plane.at(self.spots[spot].pixel));
-            (told - measured.irradiance).abs().max_element() <= EVEN * most
+            let told = self.scene.sent(measured, &plane.at(self.spots[spot].pixel));
+            (told - measured.sent).abs().max_element() <= EVEN * most
         };
         if !iter::zip(&known, &measured).all(is_told) {
             return None;
         }
         if known.len() <= FEWEST {
-            let least = measured.iter().fold(Vec3::INFINITY, |least, m| least.min(m.irradiance));
-            let largest = measured.iter().fold(Vec3::ZERO, |most, m| most.max(m.irradiance));
+            let least = measured.iter().fold(Vec3::INFINITY, |least, m| least.min(m.sent));
+            let largest = measured.iter().fold(Vec3::ZERO, |most, m| most.max(m.sent));
             if (largest - least).max_element() > SAME * most {
                 return None;
             }
@@ -175,6 +178,9 @@ struct Plane {
     slope: [Received; 2],
 }
 
+/// What sums begin with.
+const NOTHING: Received = Received { even: Vec3::ZERO, flow: [Vec3::ZERO; 3], gloss: Some(Vec3::ZERO) };
+
 impl Plane {
     fn of(points: impl Iterator<Item = (DVec2, Received)> + Clone) -> Self {
         let count = points.clone().count() as f64;
@@ -182,7 +188,7 @@ impl Plane {
         /// The variance of a pixel.
         const OF_A_PIXEL: f64 = 1.0 / 12.0;
         let mut moments = DMat2::from_diagonal(DVec2::splat(OF_A_PIXEL));
-        let (mut mean, mut moment) = (Received::default(), [Received::default(); 2]);
+        let (mut mean, mut moment) = (NOTHING, [NOTHING; 2]);
         for (at, received) in points {
             let at = at - middle;
             moments += DMat2::from_cols(at * at.x, at * at.y);
@@ -190,8 +196,8 @@ impl Plane {
             moment = [moment[0].plus(&received, at.x), moment[1].plus(&received, at.y)];
         }
         let inverse = moments.inverse();
-        let slope = [inverse.col(0), inverse.col(1)]
-            .map(|by| Received::default().plus(&moment[0], by.x).plus(&moment[1], by.y));
+        let slope =
+            [inverse.col(0), inverse.col(1)].map(|by| NOTHING.plus(&moment[0], by.x).plus(&moment[1], by.y));
         Self { middle, mean, slope }
     }
 
@@ -220,13 +226,15 @@ mod tests {
             let irradiance = Vec3::splat((self.light)(self.spots[spot].pixel));
             let received = Received { even: irradiance, ..Received::default() };
             let seen = if irradiance.x > 0.5 { [u64::MAX; 3] } else { [0; 3] };
-            Some(Measured { received, irradiance, lights: Seen { above: [u64::MAX; 3], seen } })
+            let lights = Seen { above: [u64::MAX; 3], seen };
+            let albedo = [Vec3::ONE, Vec3::ZERO];
+            Some(Measured { received, normal: DVec3::Z, albedo, sent: irradiance, lights })
         }
         fn normal(&self, _spot: usize) -> DVec3 {
             DVec3::Z
         }
-        fn irradiance(&self, _spot: usize, received: &Received) -> Vec3 {
-            received.at(DVec3::Z)
+        fn sent(&self, measured: &Measured, received: &Received) -> Vec3 {
+            received.at(measured.normal)
         }
         fn differs(&self, spot: usize, turn: usize, agreed: &Seen) -> Option<bool> {
             let bit = 1 << (turn % 64);

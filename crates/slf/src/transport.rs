@@ -113,6 +113,8 @@ pub(crate) struct Found {
 
 /// After so many scatterings Russian roulette begins.
 const SURE_SCATTERINGS: u32 = 3;
+/// What lobes send of all light that comes, from which on as many paths look for it as may.
+const MATTERS: f64 = 0.5;
 /// A surface that is nearer than so many patches is too near for them to tell.
 const NEAR: f64 = 2.0;
 
@@ -219,16 +221,28 @@ impl Transport {
         let is_front = at.frame.geometric.dot(outgoing) >= 0.0;
         let bsdf = Bsdf::new(&at.surface, at.frame, self.media.interface(at.material, &inside, is_front));
         let lobes = bsdf.toward(outgoing);
-        // Where nothing is sharp, paths only look for lamps that are large.
-        let wanted = if lobes.is_spread() { self.options.paths / 4 } else { self.options.paths };
-        let paths = each_of(among, wanted);
-        let draws = self.lights.draws(each_of(among, self.options.light_samples));
+        let is_told = among.received.is_some();
+        let own_is_told = among.received.is_some_and(|received| received.gloss.is_some());
+        // Where nothing is sharp, paths only look for lamps that are large; where all else is told, there are as many as what they
+        // may find matters.
+        let share = match is_told {
+            true => {
+                let Split { own, carried } = lobes.albedo();
+                let own = if own_is_told { DVec3::ZERO } else { own - lobes.spread_albedo() };
+                ((own + carried).max_element() / MATTERS).min(1.0).powi(2)
+            }
+            false if lobes.is_spread() => 0.25,
+            false => 1.0,
+        };
+        let of = |wanted: u32| (f64::from(wanted) * share).ceil() as u32;
+        let paths = each_of(among, of(self.options.paths));
+        let of_lights = if is_told { of(self.options.light_samples) } else { self.options.light_samples };
+        let draws = self.lights.draws(each_of(among, of_lights));
         let lights_a_path = f64::from(draws.all) / f64::from(paths);
         let of_punctual = f64::from(draws.all) / f64::from(draws.punctual);
         // What the sky would send, did nothing shade it, is known: it is put in for what its samples would find of it, so that they
         // only tell what is missing (a control variate: the mean stays).
         let normal = lobes.normal();
-        let is_told = among.received.is_some();
         let unshaded = if is_told { None } else { irradiance.unshaded(&self.world, normal) };
         let drawn_unshaded = Cell::new(DVec3::ZERO);
         let mut drawn = Split::default();
@@ -278,7 +292,8 @@ impl Transport {
             };
         }
         let Gathered { light, by_chance } = found * (1.0 / f64::from(paths));
-        Gathered { light: light + drawn * (1.0 / f64::from(draws.all)), by_chance }
+        let found = Gathered { light: light + drawn * (1.0 / f64::from(draws.all)), by_chance };
+        if own_is_told { found.carried() } else { found }
     }
 
     /// What spread lobes send of lamps, as one direction finds them that is drawn by how the surface scatters.
@@ -529,7 +544,7 @@ impl Radiance for Transport {
         self.leaving_among(
             point,
             eye,
-            Among { seed: PathRandom::seed(point, eye), index: 0, count: 1, received: None },
+            Among { seed: PathRandom::seed(point, eye), index: 0, count: 1, received: None, own_only: false },
         )
     }
 
@@ -554,12 +569,21 @@ impl Radiance for Transport {
             Some((known, irradiance))
         });
         let Gathered { light, by_chance } = match known {
-            Some((_, irradiance)) if lobes.is_spread() && among.received.is_some() => {
-                return Leaving::own(emitted + (irradiance * lobes.spread_albedo()).as_vec3());
-            }
             Some((known, irradiance)) => {
-                let told = irradiance * lobes.spread_albedo();
-                let mut beside = self.scattered_beside(point, &at, eye, inside, (known, among));
+                let spread = lobes.spread_albedo();
+                let Split { own, carried } = lobes.albedo();
+                let gloss = among.received.and_then(|received| received.gloss);
+                let told = irradiance * spread
+                    + gloss.map_or(DVec3::ZERO, |gloss| gloss.as_dvec3() * (own - spread).max(DVec3::ZERO));
+                let asks = match (among.received, gloss) {
+                    (None, _) => true,
+                    (Some(_), None) => !lobes.is_spread(),
+                    (Some(_), Some(_)) => !among.own_only && carried != DVec3::ZERO,
+                };
+                let mut beside = match asks {
+                    true => self.scattered_beside(point, &at, eye, inside, (known, among)),
+                    false => Gathered::default(),
+                };
                 beside.light += Split { own: told, carried: DVec3::ZERO };
                 beside
             }

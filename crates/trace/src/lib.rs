@@ -75,6 +75,8 @@ pub struct Among {
     pub count: u32,
     /// What light they receive, if that is known.
     pub received: Option<Received>,
+    /// Whether only what is own is wanted.
+    pub own_only: bool,
 }
 
 /// A surface point that stands for a part of the picture.
@@ -94,6 +96,9 @@ pub struct Received {
     pub even: Vec3,
     /// Vector irradiance/π (Gershun 1936), by x, y and z of the world.
     pub flow: [Vec3; 3],
+    /// What rough gloss sends of it toward the eye that is own, over what it would send of light that is 1 from everywhere; none
+    /// where every point has to be asked.
+    pub gloss: Option<Vec3>,
 }
 
 /// The radiance that leaves a point toward another, linear RGB, by what the focus paint does with it.
@@ -114,7 +119,8 @@ impl Received {
     pub fn plus(&self, other: &Self, factor: f64) -> Self {
         let factor = factor as f32;
         let flow = std::array::from_fn(|axis| self.flow[axis] + other.flow[axis] * factor);
-        Self { even: self.even + other.even * factor, flow }
+        let gloss = self.gloss.zip(other.gloss).map(|(own, other)| own + other * factor);
+        Self { even: self.even + other.even * factor, flow, gloss }
     }
 
     /// Irradiance/π at a normal (unit); below 0 where more is taken away than is there.

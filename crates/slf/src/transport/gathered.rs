@@ -22,6 +22,12 @@ impl Gathered {
         Self { light, by_chance }
     }
 
+    /// What of it is carried.
+    pub fn carried(self) -> Self {
+        let carried = |light: Split| Split { own: DVec3::ZERO, ..light };
+        Self { light: carried(self.light), by_chance: carried(self.by_chance) }
+    }
+
     pub fn split(self, share: DVec3) -> Self {
         Self { light: split(self.light, share), by_chance: split(self.by_chance, share) }
     }

@@ -10,7 +10,7 @@ use crate::media::Inside;
 use crate::path_random::PathRandom;
 use crate::spots::{self, Measure, Measured, Seen};
 use glam::{DVec3, Vec3};
-use material::{Bsdf, Frame};
+use material::{Bsdf, Frame, Parts};
 use std::collections::BTreeMap;
 use std::f64::consts::FRAC_1_PI;
 use trace::{Received, Spot};
@@ -20,6 +20,9 @@ const LIGHTS: u32 = 64;
 
 /// Directions that lamps are looked for in.
 const LOOKS: u32 = 16;
+
+/// Paths by which rough gloss is told.
+const PATHS: u32 = 32;
 
 /// From nearer to the horizon than this, sine, light is told as even: a normal that is turned a little would find it elsewhere.
 const GRAZING: f64 = 0.1;
@@ -130,14 +133,25 @@ impl Measure for Asked<'_> {
         let interface = transport.media.interface(at.material, &inside, self.is_front[spot]);
         let bsdf = Bsdf::new(&at.surface, at.frame, interface);
         let lobes = bsdf.toward((self.eye - place.position).normalize_or_zero());
-        let albedo = lobes.spread_albedo();
-        if albedo == DVec3::ZERO {
-            return None;
+        let spread = lobes.spread_albedo();
+        let gloss = lobes.albedo().own - spread;
+        let albedo = [spread, gloss].map(DVec3::as_vec3);
+        // What comes through is found on the other side, where lights are not drawn here.
+        let lets_through = at.surface.transmission > 0.0 || at.surface.diffuse_transmission > 0.0;
+        let has_gloss = transport.scene().material_of(point.triangle).has_even_gloss() && !lets_through;
+        let looks = if has_gloss && gloss.max_element() > 0.0 { PATHS } else { 0 };
+        received.gloss = has_gloss.then_some(Vec3::ZERO);
+        let normal = place.normal;
+        if albedo == [Vec3::ZERO; 2] {
+            return Some(Measured { received, normal, albedo, sent: Vec3::ZERO, lights: Seen::default() });
         }
-        let by_albedo = albedo.map(|of_channel| if of_channel > 0.0 { of_channel.recip() } else { 0.0 });
+        let [by_spread, by_gloss] = [spread, gloss]
+            .map(|albedo| albedo.map(|of_channel| if of_channel > 0.0 { of_channel.recip() } else { 0.0 }));
         let mut lights = Seen::default();
         let draws = transport.lights.draws(LIGHTS);
-        let lights_a_look = f64::from(draws.all) / f64::from(LOOKS);
+        let [lights_a_look, lights_a_path] =
+            [LOOKS, PATHS].map(|ways| f64::from(draws.all) / f64::from(ways));
+        let mut glossy = DVec3::ZERO;
         let has_unshaded = irradiance.unshaded(&transport.world, place.normal).is_some();
         for index in 0..draws.all {
             self.visit_lights(spot, index, |sample, (kind, bit)| {
@@ -150,7 +164,8 @@ impl Measure for Asked<'_> {
                 if sees {
                     lights.seen[kind] |= bit;
                 }
-                let sent = lobes.scatter_parts(sample.from).0.spread * by_albedo;
+                let (Parts { spread, sharp }, of_sharp) = lobes.scatter_parts(sample.from);
+                let sent = spread * by_spread;
                 // Of what the sky sends unshaded, which is known, what is missing is told.
                 let known = if has_unshaded && !sample.is_near { cosine * FRAC_1_PI } else { 0.0 };
                 let sent = if sees { sent - known } else { DVec3::splat(-known) };
@@ -165,8 +180,21 @@ impl Measure for Asked<'_> {
                     Some(_) => 1.0 / f64::from(draws.all),
                 };
                 received.add(light * sent * share, sample.from, cosine);
+                if sees && looks > 0 {
+                    let share = sample.density.map_or(1.0 / f64::from(draws.punctual), |density| {
+                        heuristic(density * lights_a_path, of_sharp) / f64::from(draws.all)
+                    });
+                    glossy += light * sharp.own * share;
+                }
             });
         }
+        for index in 0..looks {
+            let random = self.random(true, LOOKS + index);
+            let mut path = Path { random, inside, lights_a_path };
+            let found = transport.sharp(point, &at, &lobes, &mut path, irradiance);
+            glossy += found.light.own / f64::from(looks);
+        }
+        received.gloss = has_gloss.then(|| (glossy * by_gloss).as_vec3());
         if transport.lights.has_emitters() {
             for index in 0..LOOKS {
                 let mut random = self.random(true, index);
@@ -174,21 +202,25 @@ impl Measure for Asked<'_> {
                 let path = Path { random, inside, lights_a_path: lights_a_look };
                 let light = transport.lamp_along(point, place.position, direction, density, &path);
                 if light != DVec3::ZERO {
-                    let sent = lobes.scatter_parts(direction).0.spread * by_albedo;
+                    let sent = lobes.scatter_parts(direction).0.spread * by_spread;
                     let cosine = place.normal.dot(direction);
                     received.add(light * sent / (density * f64::from(LOOKS)), direction, cosine);
                 }
             }
         }
-        Some(Measured { received, irradiance: self.irradiance(spot, &received), lights })
+        let mut measured = Measured { received, normal, albedo, sent: Vec3::ZERO, lights };
+        measured.sent = self.sent(&measured, &received);
+        Some(measured)
     }
 
     fn normal(&self, spot: usize) -> DVec3 {
         self.places[spot].normal
     }
 
-    fn irradiance(&self, spot: usize, received: &Received) -> Vec3 {
-        self.irradiance.received(&self.transport.world, received, self.places[spot].normal).as_vec3()
+    fn sent(&self, measured: &Measured, received: &Received) -> Vec3 {
+        let irradiance = self.irradiance.received(&self.transport.world, received, measured.normal).as_vec3();
+        let [spread, gloss] = measured.albedo;
+        irradiance * spread + received.gloss.unwrap_or_default() * gloss
     }
 
     fn differs(&self, spot: usize, turn: usize, agreed: &Seen) -> Option<bool> {
