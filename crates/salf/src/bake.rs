@@ -13,7 +13,7 @@ use crate::layers::{Group, Layers, Tile, trace_cell};
 use crate::margin::standard_margin_px;
 use crate::occluders::{Depths, Footprint, Occluders};
 use crate::options::BakeOptions;
-use crate::outgoing::{Asked, TowardCells};
+use crate::outgoing::{self, Asked, TowardCells};
 use crate::outliers::{self, Outliers};
 use crate::placement::Placement;
 use crate::salf::Salf;
@@ -232,6 +232,7 @@ impl Baker<'_> {
                 seed: tile.corner.map(|at| at as u32),
                 received: received[members[0]],
                 own_only: false,
+                blurred: outgoing::blurred_px(self.view, groups[members[0]].1.mean_inverse_depth()),
             };
             let told = Rc::new(TowardCells::ask(&asked, &points, tile.side));
             members.into_iter().for_each(|index| shared[index] = Some(told.clone()));

@@ -276,7 +276,10 @@ impl Group {
             return Vec::new();
         }
         let seed = cell.corner.as_uvec2().to_array();
-        let asked = Asked { radiance, view, seed, received, own_only: shared.is_some() };
+        // Where all that is own is told, the rest keeps its focus.
+        let is_told = received.is_some_and(|received| received.gloss.is_some());
+        let blurred = if is_told { outgoing::blurred_px(view, self.mean_inverse_depth()) } else { 1 };
+        let asked = Asked { radiance, view, seed, received, own_only: shared.is_some(), blurred };
         if let Some(shared) = shared {
             let sent = self.toward_middle(&asked);
             let own = mean(&(0..sent.len()), |ray| (sent[ray], shares[ray]));

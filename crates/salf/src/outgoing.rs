@@ -11,6 +11,7 @@ use crate::sample::Visibility;
 use crate::view::View;
 use glam::{DVec2, DVec3, Vec3};
 use scene::SurfacePoint;
+use std::f64::consts::FRAC_PI_4;
 use trace::{Among, Leaving, Radiance, Received};
 
 /// Cells a side at most that carried light is told on.
@@ -125,12 +126,15 @@ pub struct Asked<'a> {
     pub received: Option<Received>,
     /// Whether only what is own is wanted.
     pub own_only: bool,
+    /// How many cells the picture takes the mean of, wherever it is focused.
+    pub blurred: usize,
 }
 
 impl Asked<'_> {
     /// What a point sends toward a world position, the `index`-th of `count` that are asked.
     pub fn leaving(&self, point: SurfacePoint, eye: DVec3, index: usize, count: usize) -> Leaving {
         let seed = u64::from(self.seed[0]) << 32 | u64::from(self.seed[1]);
+        let count = count * self.blurred;
         let among = Among {
             seed,
             index: index as u32,
@@ -160,11 +164,17 @@ pub fn toward_places(asked: &Asked, points: &[SurfacePoint]) -> Vec<Leaving> {
 /// from where exactly. 1 where every cell is told by itself.
 pub fn tile_side(view: &View, inverse_depth: f64) -> i32 {
     /// Its share of the image.
-    const SHARE: f64 = 0.125;
+    const SHARE: f64 = 0.25;
     const LARGEST: f64 = 8.0;
     let circle_px = view.optics.circle_of_confusion_px(view.optics.standard_kappa(inverse_depth));
     let side = (SHARE * circle_px).clamp(1.0, LARGEST);
     1 << (side as u32).ilog2()
+}
+
+/// Over how many pixels light is thrown that has the standard focus.
+pub fn blurred_px(view: &View, inverse_depth: f64) -> usize {
+    let circle_px = view.optics.circle_of_confusion_px(view.optics.standard_kappa(inverse_depth));
+    (FRAC_PI_4 * circle_px * circle_px).max(1.0) as usize
 }
 
 /// What points send toward each cell of the aperture.
@@ -276,7 +286,14 @@ mod tests {
         let camera = Camera { width: 64, height: 64, aperture_radius: 0.5, ..Camera::default() };
         let view = View::new(&camera, 2.0);
         let points = vec![(SurfacePoint { triangle: 0, barycentric: DVec2::ZERO }, 1.0); 16];
-        let of = Asked { radiance: &Mirror, view: &view, seed: [3, 5], received: None, own_only: false };
+        let of = Asked {
+            radiance: &Mirror,
+            view: &view,
+            seed: [3, 5],
+            received: None,
+            own_only: false,
+            blurred: 1,
+        };
         let asked = TowardCells::ask(&of, &points, 4);
         let parts = asked.carried();
         // The left half as two quarters, and the right one cell by cell: three quarters of it are bright.
