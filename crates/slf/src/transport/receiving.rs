@@ -167,7 +167,8 @@ impl Measure for Asked<'_> {
                 let (Parts { spread, sharp }, of_sharp) = lobes.scatter_parts(sample.from);
                 let sent = spread * by_spread;
                 // Of what the sky sends unshaded, which is known, what is missing is told.
-                let known = if has_unshaded && !sample.is_near { cosine * FRAC_1_PI } else { 0.0 };
+                let is_of_sky = sample.density.is_some() && !sample.is_near;
+                let known = if has_unshaded && is_of_sky { cosine * FRAC_1_PI } else { 0.0 };
                 let sent = if sees { sent - known } else { DVec3::splat(-known) };
                 let way = if sample.is_near { place.position.distance(sample.source) } else { f64::INFINITY };
                 let light = sample.light.as_dvec3() * transport.media.attenuation(&inside, way);

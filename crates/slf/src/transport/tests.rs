@@ -8,6 +8,7 @@ use scene::{
 use std::f64::consts::{FRAC_1_PI, PI};
 
 mod mirrors;
+mod receiving;
 mod rooms;
 
 fn grey() -> Material {
