@@ -288,13 +288,15 @@ impl Group {
         let is_pinhole = view.optics.aperture_radius == 0.0;
         let width = self.carried_width(radiance, cell);
         let side = width.map_or(1, |width| outgoing::cells_a_side(view, self.mean_inverse_depth(), width));
-        let points = || self.members.iter().filter_map(|member| member.point);
         if side > 1 {
-            let points: Vec<_> = points().zip(shares.iter().copied()).collect();
+            let points: Vec<_> = self.weighted_points(view).collect();
             return self.glossy_samples(cell, &shares, &TowardCells::ask(&asked, &points, side));
         }
         let sent = match width {
-            Some(_) if !is_pinhole => outgoing::toward_places(&asked, &points().collect::<Vec<_>>()),
+            Some(_) if !is_pinhole => {
+                let points = self.members.iter().filter_map(|member| member.point);
+                outgoing::toward_places(&asked, &points.collect::<Vec<_>>())
+            }
             _ => self.toward_middle(&asked),
         };
         let mean = |rays: &Range<usize>| mean(rays, |ray| (sent[ray], shares[ray]));

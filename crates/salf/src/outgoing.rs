@@ -108,7 +108,7 @@ impl Sent {
 /// How many cells a side the carried light of a point of inverse depth `inverse_depth` is asked for on, whose narrowest lobe is
 /// `width` rad wide.
 pub fn cells_a_side(view: &View, inverse_depth: f64, width: f64) -> usize {
-    let circle_px = view.optics.circle_of_confusion_px(view.optics.standard_kappa(inverse_depth));
+    let circle_px = view.circle_px(inverse_depth);
     let of_lobe = CELLS_A_WIDTH * 2.0 * view.optics.aperture_radius * inverse_depth / width;
     let wanted = (circle_px / view.tolerance_px).min(of_lobe);
     // Without an aperture there is nothing to tell apart, 0/0.
@@ -166,14 +166,14 @@ pub fn tile_side(view: &View, inverse_depth: f64) -> i32 {
     /// Its share of the image.
     const SHARE: f64 = 0.25;
     const LARGEST: f64 = 8.0;
-    let circle_px = view.optics.circle_of_confusion_px(view.optics.standard_kappa(inverse_depth));
+    let circle_px = view.circle_px(inverse_depth);
     let side = (SHARE * circle_px).clamp(1.0, LARGEST);
     1 << (side as u32).ilog2()
 }
 
 /// Over how many pixels light is thrown that has the standard focus.
 pub fn blurred_px(view: &View, inverse_depth: f64) -> usize {
-    let circle_px = view.optics.circle_of_confusion_px(view.optics.standard_kappa(inverse_depth));
+    let circle_px = view.circle_px(inverse_depth);
     (FRAC_PI_4 * circle_px * circle_px).max(1.0) as usize
 }
 

@@ -61,6 +61,11 @@ impl<'a> View<'a> {
         Square { center: self.eye, right: radius * self.right, up: radius * self.up }
     }
 
+    /// The circle of confusion that the ordinary lens makes of a point, px.
+    pub fn circle_px(&self, inverse_depth: f64) -> f64 {
+        self.optics.circle_of_confusion_px(self.optics.standard_kappa(inverse_depth))
+    }
+
     /// The weight of a surface at depth `z`, px², for each unit of its area and of n·(U − P): 1/(z³ tan²θ) in pixels.
     pub fn density(&self, z: f64) -> f64 {
         let scale = self.optics.half_height_px / self.optics.tan_half_yfov;

@@ -29,7 +29,7 @@ pub enum Fineness {
 impl Fineness {
     /// For a point of inverse depth `inverse_depth`.
     pub fn of(view: &View, inverse_depth: f64) -> Self {
-        let circle_px = view.optics.circle_of_confusion_px(view.optics.standard_kappa(inverse_depth));
+        let circle_px = view.circle_px(inverse_depth);
         if circle_px <= view.tolerance_px {
             return Self::Coarse;
         }

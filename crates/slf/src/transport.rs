@@ -1,5 +1,6 @@
 //! Light transport: what surfaces send by themselves and what they scatter of each other's light, by paths.
 
+mod beside;
 mod gathered;
 mod receiving;
 
@@ -12,10 +13,8 @@ use crate::media::{Inside, Media};
 use crate::path_random::PathRandom;
 use gathered::{Gathered, split};
 use glam::{DVec3, Vec3};
-use material::{Bsdf, Frame, Parts, Scattered, Scattering, Split, Surface, Toward};
+use material::{Bsdf, Frame, Scattered, Scattering, Split, Surface, Toward};
 use scene::{Scene, SurfacePoint, World};
-use std::cell::Cell;
-use std::f64::consts::PI;
 use std::sync::Arc;
 use trace::{Among, Hit, Leaving, Radiance, Received, Spot, Tracer};
 
@@ -113,8 +112,6 @@ pub(crate) struct Found {
 
 /// After so many scatterings Russian roulette begins.
 const SURE_SCATTERINGS: u32 = 3;
-/// What lobes send of all light that comes, from which on as many paths look for it as may.
-const MATTERS: f64 = 0.5;
 /// A surface that is nearer than so many patches is too near for them to tell.
 const NEAR: f64 = 2.0;
 
@@ -205,135 +202,6 @@ impl Transport {
             sum += Gathered::by(&scattered, drawn, other);
         }
         sum.split(dispersed)
-    }
-
-    /// What a surface scatters toward the eye where irradiance is known, but for what that tells: of drawn lights all, of other
-    /// light what sharp lobes send.
-    fn scattered_beside(
-        &self,
-        point: SurfacePoint,
-        at: &MaterialPoint,
-        eye: DVec3,
-        inside: Inside,
-        (irradiance, among): (&Irradiance, Among),
-    ) -> Gathered {
-        let outgoing = (eye - at.position).normalize_or_zero();
-        let is_front = at.frame.geometric.dot(outgoing) >= 0.0;
-        let bsdf = Bsdf::new(&at.surface, at.frame, self.media.interface(at.material, &inside, is_front));
-        let lobes = bsdf.toward(outgoing);
-        let is_told = among.received.is_some();
-        let own_is_told = among.received.is_some_and(|received| received.gloss.is_some());
-        // Where nothing is sharp, paths only look for lamps that are large; where all else is told, there are as many as what they
-        // may find matters.
-        let share = match is_told {
-            true => {
-                let Split { own, carried } = lobes.albedo();
-                let own = if own_is_told { DVec3::ZERO } else { own - lobes.spread_albedo() };
-                ((own + carried).max_element() / MATTERS).min(1.0).powi(2)
-            }
-            false if lobes.is_spread() => 0.25,
-            false => 1.0,
-        };
-        let of = |wanted: u32| (f64::from(wanted) * share).ceil() as u32;
-        let paths = each_of(among, of(self.options.paths));
-        let of_lights = if is_told { of(self.options.light_samples) } else { self.options.light_samples };
-        let draws = self.lights.draws(each_of(among, of_lights));
-        let lights_a_path = f64::from(draws.all) / f64::from(paths);
-        let of_punctual = f64::from(draws.all) / f64::from(draws.punctual);
-        // What the sky would send, did nothing shade it, is known: it is put in for what its samples would find of it, so that they
-        // only tell what is missing (a control variate: the mean stays).
-        let normal = lobes.normal();
-        let unshaded = if is_told { None } else { irradiance.unshaded(&self.world, normal) };
-        let drawn_unshaded = Cell::new(DVec3::ZERO);
-        let mut drawn = Split::default();
-        for index in 0..draws.all {
-            let random = PathRandom::new(among.seed, among.index * draws.all + index);
-            let mut path = Path { random, inside, lights_a_path };
-            drawn += self.direct_by(point, at, &mut path, index < draws.punctual, |sample| {
-                let (Parts { spread, sharp }, own) = lobes.scatter_parts(sample.from);
-                if sample.density.is_some() && !sample.is_near {
-                    let light = sample.light.as_dvec3() * normal.dot(sample.from).max(0.0);
-                    drawn_unshaded.set(drawn_unshaded.get() + light);
-                }
-                let share =
-                    sample.density.map_or(of_punctual, |density| heuristic(density * lights_a_path, own));
-                // Of spread light only lamps are looked for in two ways.
-                let of_spread = match sample.density {
-                    _ if is_told => 0.0,
-                    None => of_punctual,
-                    Some(density) if sample.is_near => {
-                        heuristic(density * lights_a_path, lobes.spread_density(sample.from))
-                    }
-                    Some(_) => 1.0,
-                };
-                Split { own: spread * of_spread + sharp.own * share, carried: sharp.carried * share }
-            });
-        }
-        let mut found = Gathered::default();
-        if let Some(unshaded) = unshaded {
-            let missing = drawn_unshaded.get() / (PI * f64::from(draws.all));
-            let known = lobes.spread_albedo() * (unshaded - missing) * f64::from(paths);
-            found.light += Split { own: known, carried: DVec3::ZERO };
-        }
-        for index in 0..paths {
-            let random = PathRandom::new(!among.seed, among.index * paths + index);
-            let mut path = Path { random, inside, lights_a_path };
-            if !is_told {
-                found.light += self.looked_for(point, at, &lobes, &mut path);
-            }
-            let dispersed = self.disperse(at, &mut path);
-            found += match path.inside.channel {
-                None => self.sharp(point, at, &lobes, &mut path, irradiance),
-                Some(_) => {
-                    let interface = self.media.interface(at.material, &path.inside, is_front);
-                    let bsdf = Bsdf::new(&at.surface, at.frame, interface);
-                    self.sharp(point, at, &bsdf.toward(outgoing), &mut path, irradiance).split(dispersed)
-                }
-            };
-        }
-        let Gathered { light, by_chance } = found * (1.0 / f64::from(paths));
-        let found = Gathered { light: light + drawn * (1.0 / f64::from(draws.all)), by_chance };
-        if own_is_told { found.carried() } else { found }
-    }
-
-    /// What spread lobes send of lamps, as one direction finds them that is drawn by how the surface scatters.
-    fn looked_for(
-        &self,
-        point: SurfacePoint,
-        at: &MaterialPoint,
-        lobes: &Toward<'_, '_>,
-        path: &mut Path,
-    ) -> Split {
-        if !self.lights.has_emitters() {
-            return Split::default();
-        }
-        let Some((direction, density)) = lobes.sample_spread(path.random.next2()) else {
-            return Split::default();
-        };
-        let light = self.lamp_along(point, at.position, direction, density, path);
-        if light == DVec3::ZERO {
-            return Split::default();
-        }
-        let (Parts { spread, .. }, _) = lobes.scatter_parts(direction);
-        Split { own: spread * light / density, carried: DVec3::ZERO }
-    }
-
-    /// What sharp lobes send of all light that one path finds, where irradiance is known.
-    fn sharp(
-        &self,
-        point: SurfacePoint,
-        at: &MaterialPoint,
-        lobes: &Toward<'_, '_>,
-        path: &mut Path,
-        irradiance: &Irradiance,
-    ) -> Gathered {
-        let Some(scattered) = lobes.sample_sharp(path.random.next3()) else { return Gathered::default() };
-        let step = self.step(point, at, &scattered, path);
-        let arriving = self.arriving(step, path, Known::All(irradiance));
-        let sent_on = arriving.onward.map_or(DVec3::ZERO, |(place, share)| {
-            share * irradiance.total(&place).unwrap_or_default().as_dvec3()
-        });
-        Gathered::by(&scattered, arriving.drawn + sent_on, arriving.other)
     }
 
     /// Goes where a surface scatters, through it if it must.
@@ -541,11 +409,7 @@ fn heuristic(own: f64, other: f64) -> f64 {
 
 impl Radiance for Transport {
     fn leaving(&self, point: SurfacePoint, eye: DVec3) -> Leaving {
-        self.leaving_among(
-            point,
-            eye,
-            Among { seed: PathRandom::seed(point, eye), index: 0, count: 1, received: None, own_only: false },
-        )
+        self.leaving_among(point, eye, Among::alone(PathRandom::seed(point, eye)))
     }
 
     fn leaving_among(&self, point: SurfacePoint, eye: DVec3, among: Among) -> Leaving {

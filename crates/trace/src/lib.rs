@@ -79,6 +79,13 @@ pub struct Among {
     pub own_only: bool,
 }
 
+impl Among {
+    /// The only one, of which nothing is known.
+    pub fn alone(seed: u64) -> Self {
+        Self { seed, index: 0, count: 1, received: None, own_only: false }
+    }
+}
+
 /// A surface point that stands for a part of the picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spot {

@@ -38,7 +38,8 @@ fn what_is_told_is_what_a_point_finds_by_itself() {
     for lights in [vec![], vec![directional.clone()], vec![point.clone()], vec![directional, point]] {
         for material in [grey(), gloss(0.8)] {
             let scene = scene_of(&[floor(material)], &lights);
-            let options = TransportOptions { paths: 2048, light_samples: 2048, ..TransportOptions::default() };
+            let options =
+                TransportOptions { paths: 2048, light_samples: 2048, ..TransportOptions::default() };
             let tracer = Arc::new(Tracer::new(Arc::new(scene)));
             let transport = Transport::new(tracer, sky(), options);
             let solved = IrradianceOptions { patches: 200, rays: 64 };
@@ -48,7 +49,7 @@ fn what_is_told_is_what_a_point_finds_by_itself() {
             let told = transport.received(&spots, ABOVE);
             for (spot, received) in spots.iter().zip(told).step_by(9) {
                 assert!(received.is_some(), "nothing shades {spot:?}");
-                let among = |received| Among { seed: 7, index: 0, count: 1, received, own_only: false };
+                let among = |received| Among { received, ..Among::alone(7) };
                 let leaving = |received| transport.leaving_among(spot.point, ABOVE, among(received)).own;
                 let (found, expected) = (leaving(received), leaving(None));
                 let off = (found - expected).abs().max_element() / expected.max_element();
