@@ -112,6 +112,15 @@ impl Surface {
         }
     }
 
+    /// The same as seen by a wide lobe: what it reflects no sharper than perceptual `roughness`. What lets light through stays.
+    pub fn no_sharper_than(self, roughness: f64) -> Self {
+        if self.transmission > 0.0 {
+            return self;
+        }
+        let coat = self.clearcoat.map(|coat| Clearcoat { roughness: coat.roughness.max(roughness), ..coat });
+        Self { roughness: self.roughness.max(roughness), clearcoat: coat, ..self }
+    }
+
     /// The width of the narrowest lobe that carries light: how far apart two directions must be, rad, for what it mirrors or lets
     /// through to differ; 0 of a mirror, `None` where all light is own. A reflected GGX lobe is 2.6 α wide, at half its height.
     pub fn carried_width(&self) -> Option<f64> {

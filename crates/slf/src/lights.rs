@@ -30,6 +30,8 @@ pub(crate) struct LightSample {
     pub light: Vec3,
     /// Of the direction, 1/sr; none of a punctual light, which no other way of sampling finds.
     pub density: Option<f64>,
+    /// Which of the scene's lights it is, if it is punctual.
+    pub number: Option<usize>,
 }
 
 /// How often lights are drawn.
@@ -52,8 +54,15 @@ impl Lights {
         Self { emitters, environment, punctual: scene.lights.len(), beyond }
     }
 
-    /// Punctual lights that one draw finds at most.
-    pub const MOST_A_DRAW: u32 = FEW as u32;
+    /// How many punctual lights there are.
+    pub fn punctual_count(&self) -> usize {
+        self.punctual
+    }
+
+    /// Whether anything shines that has an extent: the sky, a lamp.
+    pub fn has_areas(&self) -> bool {
+        self.environment.is_some() || !self.emitters.is_empty()
+    }
 
     /// Whether any surface is a light.
     pub fn has_emitters(&self) -> bool {
@@ -63,9 +72,8 @@ impl Lights {
     /// How often lamps and sky are to be drawn, and how often punctual lights, where so often would do: what is the same every time
     /// is asked once.
     pub fn draws(&self, wanted: u32) -> Draws {
-        let has_areas = self.environment.is_some() || !self.emitters.is_empty();
         let punctual = if self.punctual <= FEW { 1 } else { wanted.min(4) };
-        Draws { all: if has_areas { wanted.max(punctual) } else { punctual }, punctual }
+        Draws { all: if self.has_areas() { wanted.max(punctual) } else { punctual }, punctual }
     }
 
     /// Draws lights for a position, each kind once, punctual ones if they are wanted; `draw` gives uniform numbers.
@@ -78,12 +86,28 @@ impl Lights {
         mut draw: impl FnMut() -> f64,
         mut visit: impl FnMut(LightSample),
     ) {
+        self.sample_areas(scene, world, position, &mut draw, &mut visit);
+        if with_punctual {
+            self.sample_punctual(scene, position, FEW, draw, visit);
+        }
+    }
+
+    /// Draws a direction of the sky and a place on a lamp.
+    pub fn sample_areas(
+        &self,
+        scene: &Scene,
+        world: &World,
+        position: DVec3,
+        mut draw: impl FnMut() -> f64,
+        mut visit: impl FnMut(LightSample),
+    ) {
         if let Some(environment) = &self.environment {
             let (direction, density) = environment.sample([draw(), draw()]);
             let from = world.turned(direction);
             let light = world.radiance(from) / density as f32;
             let source = position + from * self.beyond;
-            visit(LightSample { from, source, is_near: false, light, density: Some(density) });
+            let density = Some(density);
+            visit(LightSample { from, source, is_near: false, light, density, number: None });
         }
         if !self.emitters.is_empty() {
             let (choice, place) = (draw(), [draw(), draw()]);
@@ -94,35 +118,46 @@ impl Lights {
                     is_near: true,
                     light: sample.radiance / sample.density as f32,
                     density: Some(sample.density),
+                    number: None,
                 });
             }
         }
-        if !with_punctual {
-            return;
-        }
+    }
+
+    /// Visits the punctual lights, all if they are `few` or less; else one is drawn by what it would send.
+    pub fn sample_punctual(
+        &self,
+        scene: &Scene,
+        position: DVec3,
+        few: usize,
+        mut draw: impl FnMut() -> f64,
+        mut visit: impl FnMut(LightSample),
+    ) {
         let near = |light: &scene::Light| light.kind != scene::LightKind::Directional;
         let arrivals = || {
-            scene
-                .lights
-                .iter()
-                .filter_map(|light| Some((arrival(light, position, self.beyond)?, near(light))))
+            let lights = scene.lights.iter().enumerate();
+            lights.filter_map(|(number, light)| {
+                Some((number, arrival(light, position, self.beyond)?, near(light)))
+            })
         };
-        let mut punctual = |(arrival, is_near): (Arrival, bool), share: f32| {
+        let mut punctual = |(number, arrival, is_near): (usize, Arrival, bool), share: f32| {
             let Arrival { from, source, irradiance } = arrival;
-            visit(LightSample { from, source, is_near, light: irradiance / share, density: None });
+            let (light, number) = (irradiance / share, Some(number));
+            visit(LightSample { from, source, is_near, light, density: None, number });
         };
-        if scene.lights.len() <= FEW {
+        if scene.lights.len() <= few {
             arrivals().for_each(|light| punctual(light, 1.0));
             return;
         }
-        let sum: f32 = arrivals().map(|(arrival, _)| arrival.irradiance.element_sum()).sum();
+        let sum: f32 = arrivals().map(|(_, arrival, _)| arrival.irradiance.element_sum()).sum();
         let mut rest = draw() as f32 * sum;
-        let chosen = arrivals().find(|(arrival, _)| {
+        let chosen = arrivals().find(|(_, arrival, _)| {
             rest -= arrival.irradiance.element_sum();
             rest < 0.0
         });
-        if let Some((arrival, is_near)) = chosen.filter(|_| sum > 0.0) {
-            punctual((arrival, is_near), arrival.irradiance.element_sum() / sum);
+        if let Some(light) = chosen.filter(|_| sum > 0.0) {
+            let share = light.1.irradiance.element_sum() / sum;
+            punctual(light, share);
         }
     }
 

@@ -157,6 +157,11 @@ impl<M: Measure> Telling<'_, M> {
 }
 
 impl Seen {
+    /// Whether some lights of a kind are seen and others not.
+    pub fn is_mixed(&self, kind: usize) -> bool {
+        self.seen[kind] != 0 && self.seen[kind] != self.above[kind]
+    }
+
     /// What all agree about: lights above the horizon of all, that all see or none does.
     fn agreed(all: &[Measured]) -> Self {
         let each = |of: fn(&Seen) -> &[u64; 3], join: fn(u64, u64) -> u64, start: u64| -> [u64; 3] {

@@ -266,11 +266,16 @@ impl Transport {
                 if sent.total() == DVec3::ZERO || self.tracer.occluded(point, sample.source) {
                     return;
                 }
-                let way = if sample.is_near { at.position.distance(sample.source) } else { f64::INFINITY };
-                sum += split(sent, sample.light.as_dvec3() * self.media.attenuation(&inside, way));
+                sum += split(sent, self.light_of(&sample, at.position, &inside));
             },
         );
         sum
+    }
+
+    /// The light of a sample, past what absorbs it on the way to a position.
+    fn light_of(&self, sample: &LightSample, position: DVec3, inside: &Inside) -> DVec3 {
+        let way = if sample.is_near { position.distance(sample.source) } else { f64::INFINITY };
+        sample.light.as_dvec3() * self.media.attenuation(inside, way)
     }
 
     /// What a lamp sends straight from a direction that was drawn with a density, less what lamps that are drawn tell of it.
@@ -300,6 +305,7 @@ impl Transport {
         let mut found =
             Arriving { drawn: DVec3::ZERO, other: DVec3::ZERO, distance: f64::INFINITY, onward: None };
         let mut throughput = DVec3::ONE;
+        let mut widest = step.density;
         for scatterings in 1u32.. {
             let hit = self.tracer.first_met(step.from, step.direction);
             let length = hit.map_or(f64::INFINITY, |hit| hit.t);
@@ -323,7 +329,10 @@ impl Transport {
             if scatterings > most || scene.material_of(point.triangle).unlit {
                 return found;
             }
-            let at = MaterialPoint::of(scene, point, self.options.scattering);
+            let mut at = MaterialPoint::of(scene, point, self.options.scattering);
+            if let (Known::All(_), Some(density)) = (known, widest) {
+                at.surface = at.surface.no_sharper_than(as_seen_by(density));
+            }
             throughput *= self.disperse(&at, path);
             let is_front = at.frame.geometric.dot(outgoing) >= 0.0;
             let interface = self.media.interface(at.material, &path.inside, is_front);
@@ -362,6 +371,10 @@ impl Transport {
                 throughput /= lives;
             }
             step = self.step(point, &at, &scattered, path);
+            widest = match (widest, step.density) {
+                (Some(so_far), Some(density)) => Some(so_far.min(density)),
+                (so_far, density) => so_far.or(density),
+            };
         }
         found
     }
@@ -398,6 +411,14 @@ impl Known<'_> {
 fn each_of(among: Among, wanted: u32) -> u32 {
     const ALONE: u32 = 4;
     (wanted * ALONE).div_ceil(among.count.max(ALONE)).max(1)
+}
+
+/// How rough what is reflected may be taken for, perceptually, where a lobe reflects it that is so wide: of a density, 1/sr, in the
+/// direction it was drawn in. A lamp in a mirror in rough metal is then found by drawing lamps, and not by chance, for a little
+/// blur of what is blurred anyway (path space regularisation, Kaplanyan and Dachsbacher 2013; the widths are those of Cycles).
+fn as_seen_by(density: f64) -> f64 {
+    let alpha = 0.5 * (1.0 - density).max(0.0).sqrt();
+    alpha.sqrt()
 }
 
 /// The share of a way of sampling with density `own` in what another with density `other` finds as well (Veach and Guibas 1995,

@@ -1,6 +1,7 @@
 //! What rays find beside what is known.
 
 use super::gathered::Gathered;
+use super::receiving::drawn;
 use super::{Known, Path, Transport, each_of, heuristic};
 use crate::irradiance::Irradiance;
 use crate::material_point::MaterialPoint;
@@ -15,6 +16,9 @@ use trace::Among;
 
 /// What lobes send of all light that comes, from which on as many paths look for it as may.
 const MATTERS: f64 = 0.5;
+
+/// How many times as many lights are drawn where spread light is not told.
+const SPREAD_LIGHTS: u32 = 2;
 
 impl Transport {
     /// What a surface scatters toward the eye where irradiance is known, but for what that tells: of drawn lights all, of other
@@ -46,10 +50,18 @@ impl Transport {
         };
         let of = |wanted: u32| (f64::from(wanted) * share).ceil() as u32;
         let paths = each_of(among, of(self.options.paths));
-        let of_lights = if is_told { of(self.options.light_samples) } else { self.options.light_samples };
+        let of_lights = match is_told {
+            true => of(self.options.light_samples),
+            false => SPREAD_LIGHTS * self.options.light_samples,
+        };
         let draws = self.lights.draws(each_of(among, of_lights));
         let lights_a_path = f64::from(draws.all) / f64::from(paths);
         let of_punctual = f64::from(draws.all) / f64::from(draws.punctual);
+        // Of a part of a picture what is spread widely draws and looks as its neighbours do: what is off is off for all of them alike.
+        let is_part = among.count > 1 && !own_is_told;
+        let light_seed = if is_part && !is_told { drawn::SEED } else { among.seed };
+        let look_seed =
+            if is_part && lobes.albedo().carried == DVec3::ZERO { drawn::LOOKING } else { !among.seed };
         // What the sky would send, did nothing shade it, is known: it is put in for what its samples would find of it, so that they
         // only tell what is missing (a control variate: the mean stays).
         let normal = lobes.normal();
@@ -57,7 +69,7 @@ impl Transport {
         let drawn_unshaded = Cell::new(DVec3::ZERO);
         let mut drawn = Split::default();
         for index in 0..draws.all {
-            let random = PathRandom::new(among.seed, among.index * draws.all + index);
+            let random = PathRandom::new(light_seed, among.index * draws.all + index);
             let mut path = Path { random, inside, lights_a_path };
             drawn += self.direct_by(point, at, &mut path, index < draws.punctual, |sample| {
                 let (Parts { spread, sharp }, own) = lobes.scatter_parts(sample.from);
@@ -86,7 +98,7 @@ impl Transport {
             found.light += Split { own: known, carried: DVec3::ZERO };
         }
         for index in 0..paths {
-            let random = PathRandom::new(!among.seed, among.index * paths + index);
+            let random = PathRandom::new(look_seed, among.index * paths + index);
             let mut path = Path { random, inside, lights_a_path };
             if !is_told {
                 found.light += self.looked_for(point, at, &lobes, &mut path);

@@ -1,28 +1,32 @@
 //! What spots of a picture receive.
 
+pub(super) mod drawn;
+
 use super::{Path, Transport, heuristic};
 use crate::irradiance::Irradiance;
 use crate::irradiance::patches::facing;
 use crate::irradiance::place::Place;
-use crate::lights::{LightSample, Lights};
 use crate::material_point::MaterialPoint;
 use crate::media::Inside;
 use crate::path_random::PathRandom;
 use crate::spots::{self, Measure, Measured, Seen};
+use drawn::{Drawing, Drawn};
 use glam::{DVec3, Vec3};
-use material::{Bsdf, Frame, Parts};
+use material::{Bsdf, Frame, Parts, Toward};
+use scene::SurfacePoint;
 use std::collections::BTreeMap;
 use std::f64::consts::FRAC_1_PI;
 use trace::{Received, Spot};
 
-/// Lights that are drawn for every spot, the same ones.
-const LIGHTS: u32 = 64;
-
 /// Directions that lamps are looked for in.
 const LOOKS: u32 = 16;
 
-/// Paths by which rough gloss is told.
+/// Paths by which rough gloss is told that sends little of the light that comes, as varnish does.
 const PATHS: u32 = 32;
+
+/// The same of gloss that sends so large a share of it as metals do.
+const PATHS_OF_METAL: u32 = 128;
+const AS_METAL: f64 = 0.25;
 
 /// From nearer to the horizon than this, sine, light is told as even: a normal that is turned a little would find it elsewhere.
 const GRAZING: f64 = 0.1;
@@ -76,47 +80,9 @@ impl Transport {
 }
 
 impl Asked<'_> {
-    /// Visits the lights of draw `index`, each with its bit: which kind it is, and which of that kind.
-    fn visit_lights(&self, spot: usize, index: u32, mut visit: impl FnMut(LightSample, (usize, u64))) {
-        let transport = self.transport;
-        let position = self.places[spot].position;
-        let draws = transport.lights.draws(LIGHTS);
-        let mut random = self.random(false, index);
-        let mut punctual = index * Lights::MOST_A_DRAW;
-        transport.lights.sample(
-            transport.scene(),
-            &transport.world,
-            position,
-            index < draws.punctual,
-            || random.next(),
-            |sample| {
-                let bit = match (sample.density, sample.is_near) {
-                    (Some(_), false) => (0, 1 << index),
-                    (Some(_), true) => (1, 1 << index),
-                    (None, _) => {
-                        punctual += 1;
-                        (2, 1 << ((punctual - 1) % u64::BITS))
-                    }
-                };
-                visit(sample, bit);
-            },
-        );
-    }
-
-    /// The numbers of a draw, the same for all spots.
-    fn random(&self, looks: bool, index: u32) -> PathRandom {
-        const SEED: u64 = 0x5eed_0f5b_0751_1157;
-        PathRandom::new(if looks { !SEED } else { SEED }, index)
-    }
-
     /// The normal of a spot's triangle, on the front.
     fn geometric(&self, spot: usize) -> DVec3 {
         self.transport.scene().area_normal(self.spots[spot].point.triangle).normalize_or_zero()
-    }
-
-    /// Whether nothing stands between a spot and a light.
-    fn sees(&self, spot: usize, light: &LightSample) -> bool {
-        !self.transport.tracer.occluded(self.spots[spot].point, light.source)
     }
 }
 
@@ -124,7 +90,7 @@ impl Measure for Asked<'_> {
     fn measure(&self, spot: usize) -> Option<Measured> {
         let Self { transport, irradiance, .. } = self;
         let (point, place, inside) = (self.spots[spot].point, &self.places[spot], self.inside[spot]);
-        let mut received = Received { even: irradiance.indirect(place)?, ..Received::default() };
+        let indirect = irradiance.indirect(place)?;
         // Spread lobes do not send on light from everywhere alike: what they send is told as the irradiance that would do.
         let at = MaterialPoint {
             frame: Frame::new(self.geometric(spot), transport.scene().shading_normal(point), DVec3::ZERO),
@@ -134,83 +100,34 @@ impl Measure for Asked<'_> {
         let bsdf = Bsdf::new(&at.surface, at.frame, interface);
         let lobes = bsdf.toward((self.eye - place.position).normalize_or_zero());
         let spread = lobes.spread_albedo();
-        let gloss = lobes.albedo().own - spread;
-        let albedo = [spread, gloss].map(DVec3::as_vec3);
+        let albedo = [spread, lobes.albedo().own - spread];
         // What comes through is found on the other side, where lights are not drawn here.
         let lets_through = at.surface.transmission > 0.0 || at.surface.diffuse_transmission > 0.0;
         let has_gloss = transport.scene().material_of(point.triangle).has_even_gloss() && !lets_through;
-        let looks = if has_gloss && gloss.max_element() > 0.0 { PATHS } else { 0 };
-        received.gloss = has_gloss.then_some(Vec3::ZERO);
-        let normal = place.normal;
-        if albedo == [Vec3::ZERO; 2] {
-            return Some(Measured { received, normal, albedo, sent: Vec3::ZERO, lights: Seen::default() });
+        let mut measured = Measured {
+            received: Received {
+                even: indirect,
+                gloss: has_gloss.then_some(Vec3::ZERO),
+                ..Received::default()
+            },
+            normal: place.normal,
+            albedo: albedo.map(DVec3::as_vec3),
+            sent: Vec3::ZERO,
+            lights: Seen::default(),
+        };
+        if albedo == [DVec3::ZERO; 2] {
+            return Some(measured);
         }
-        let [by_spread, by_gloss] = [spread, gloss]
-            .map(|albedo| albedo.map(|of_channel| if of_channel > 0.0 { of_channel.recip() } else { 0.0 }));
-        let mut lights = Seen::default();
-        let draws = transport.lights.draws(LIGHTS);
-        let [lights_a_look, lights_a_path] =
-            [LOOKS, PATHS].map(|ways| f64::from(draws.all) / f64::from(ways));
-        let mut glossy = DVec3::ZERO;
-        let has_unshaded = irradiance.unshaded(&transport.world, place.normal).is_some();
-        for index in 0..draws.all {
-            self.visit_lights(spot, index, |sample, (kind, bit)| {
-                let cosine = place.normal.dot(sample.from);
-                if cosine <= 0.0 || sample.light == Vec3::ZERO {
-                    return;
-                }
-                lights.above[kind] |= bit;
-                let sees = self.sees(spot, &sample);
-                if sees {
-                    lights.seen[kind] |= bit;
-                }
-                let (Parts { spread, sharp }, of_sharp) = lobes.scatter_parts(sample.from);
-                let sent = spread * by_spread;
-                // Of what the sky sends unshaded, which is known, what is missing is told.
-                let is_of_sky = sample.density.is_some() && !sample.is_near;
-                let known = if has_unshaded && is_of_sky { cosine * FRAC_1_PI } else { 0.0 };
-                let sent = if sees { sent - known } else { DVec3::splat(-known) };
-                let way = if sample.is_near { place.position.distance(sample.source) } else { f64::INFINITY };
-                let light = sample.light.as_dvec3() * transport.media.attenuation(&inside, way);
-                let share = match sample.density {
-                    None => 1.0 / f64::from(draws.punctual),
-                    Some(density) if sample.is_near => {
-                        let own = lobes.spread_density(sample.from);
-                        heuristic(density * lights_a_look, own) / f64::from(draws.all)
-                    }
-                    Some(_) => 1.0 / f64::from(draws.all),
-                };
-                received.add(light * sent * share, sample.from, cosine);
-                if sees && looks > 0 {
-                    let share = sample.density.map_or(1.0 / f64::from(draws.punctual), |density| {
-                        heuristic(density * lights_a_path, of_sharp) / f64::from(draws.all)
-                    });
-                    glossy += light * sharp.own * share;
-                }
-            });
+        let drawing = self.draw(spot);
+        measured.lights = drawing.seen;
+        let facing = Facing { spot, point, at: &at, lobes: &lobes };
+        let [by_spread, by_gloss] = albedo.map(inverse);
+        self.add_drawn(&mut measured.received, &facing, by_spread, &drawing);
+        self.add_looked_for(&mut measured.received, &facing, by_spread, &drawing);
+        if has_gloss && albedo[1].max_element() > 0.0 {
+            measured.received.gloss = Some((self.gloss(&facing, &drawing) * by_gloss).as_vec3());
         }
-        for index in 0..looks {
-            let random = self.random(true, LOOKS + index);
-            let mut path = Path { random, inside, lights_a_path };
-            let found = transport.sharp(point, &at, &lobes, &mut path, irradiance);
-            glossy += found.light.own / f64::from(looks);
-        }
-        received.gloss = has_gloss.then(|| (glossy * by_gloss).as_vec3());
-        if transport.lights.has_emitters() {
-            for index in 0..LOOKS {
-                let mut random = self.random(true, index);
-                let Some((direction, density)) = lobes.sample_spread(random.next2()) else { continue };
-                let path = Path { random, inside, lights_a_path: lights_a_look };
-                let light = transport.lamp_along(point, place.position, direction, density, &path);
-                if light != DVec3::ZERO {
-                    let sent = lobes.scatter_parts(direction).0.spread * by_spread;
-                    let cosine = place.normal.dot(direction);
-                    received.add(light * sent / (density * f64::from(LOOKS)), direction, cosine);
-                }
-            }
-        }
-        let mut measured = Measured { received, normal, albedo, sent: Vec3::ZERO, lights };
-        measured.sent = self.sent(&measured, &received);
+        measured.sent = self.sent(&measured, &measured.received);
         Some(measured)
     }
 
@@ -225,19 +142,102 @@ impl Measure for Asked<'_> {
     }
 
     fn differs(&self, spot: usize, turn: usize, agreed: &Seen) -> Option<bool> {
-        let draws = self.transport.lights.draws(LIGHTS);
-        // An odd step takes turns with all of a power of two.
-        const STEP: usize = 37;
-        let index = (turn * STEP % draws.all as usize) as u32;
-        let mut differs = None;
-        self.visit_lights(spot, index, |sample, (kind, bit)| {
-            if agreed.above[kind] & bit != 0 && self.places[spot].normal.dot(sample.from) > 0.0 {
-                let sees = self.sees(spot, &sample);
-                *differs.get_or_insert(false) |= sees != (agreed.seen[kind] & bit != 0);
-            }
-        });
-        differs
+        self.sees_otherwise(spot, turn, agreed)
     }
+}
+
+/// A spot's surface, as it sends light toward the eye.
+struct Facing<'a, 'b> {
+    spot: usize,
+    point: SurfacePoint,
+    at: &'a MaterialPoint,
+    lobes: &'a Toward<'b, 'b>,
+}
+
+impl Asked<'_> {
+    /// Adds what spread lobes receive of lights that were drawn: of the sky, that nothing shades which is known, what is missing.
+    fn add_drawn(&self, received: &mut Received, facing: &Facing, by_spread: DVec3, drawing: &Drawing) {
+        let Self { transport, irradiance, .. } = self;
+        let (place, inside) = (&self.places[facing.spot], &self.inside[facing.spot]);
+        let unshaded = irradiance.unshaded(&transport.world, place.normal);
+        let lights_a_look = f64::from(drawing.of_areas) / f64::from(LOOKS);
+        let cosine = |from: DVec3| place.normal.dot(from);
+        // The sky's samples tell what share of it is missing: none is, or all, where none is seen, or all, to the last bit.
+        let of_sky = |drawn: &&Drawn| drawn.sample.density.is_some() && !drawn.sample.is_near;
+        let drawn_of_sky =
+            drawing.lights.iter().filter(of_sky).map(|drawn| {
+                drawn.sample.light.as_dvec3() * cosine(drawn.sample.from) * FRAC_1_PI * drawn.share
+            });
+        let as_unshaded = unshaded.map_or(DVec3::ONE, |unshaded| unshaded * inverse(drawn_of_sky.sum()));
+        for drawn in &drawing.lights {
+            let Drawn { sample, is_seen, share } = drawn;
+            let cosine = cosine(sample.from);
+            let is_known = of_sky(&drawn) && unshaded.is_some();
+            if !is_seen && !is_known {
+                continue;
+            }
+            let (Parts { spread, .. }, _) = facing.lobes.scatter_parts(sample.from);
+            let sent = if *is_seen { spread * by_spread } else { DVec3::ZERO };
+            let known = if is_known { cosine * FRAC_1_PI } else { 0.0 };
+            let scale = if is_known { as_unshaded } else { DVec3::ONE };
+            let share = match sample.density {
+                Some(density) if sample.is_near => {
+                    let own = facing.lobes.spread_density(sample.from);
+                    heuristic(density * lights_a_look, own) * share
+                }
+                _ => *share,
+            };
+            let light = transport.light_of(sample, place.position, inside);
+            received.add(light * scale * (sent - known) * share, sample.from, cosine);
+        }
+    }
+
+    /// Adds what spread lobes receive of lamps that are found by directions they are looked for in.
+    fn add_looked_for(&self, received: &mut Received, facing: &Facing, by_spread: DVec3, drawing: &Drawing) {
+        if !self.transport.lights.has_emitters() {
+            return;
+        }
+        let place = &self.places[facing.spot];
+        let lights_a_path = f64::from(drawing.of_areas) / f64::from(LOOKS);
+        for index in 0..LOOKS {
+            let mut random = PathRandom::new(drawn::LOOKING, index);
+            let Some((direction, density)) = facing.lobes.sample_spread(random.next2()) else { continue };
+            let path = Path { random, inside: self.inside[facing.spot], lights_a_path };
+            let light = self.transport.lamp_along(facing.point, place.position, direction, density, &path);
+            if light != DVec3::ZERO {
+                let sent = facing.lobes.scatter_parts(direction).0.spread * by_spread;
+                let cosine = place.normal.dot(direction);
+                received.add(light * sent / (density * f64::from(LOOKS)), direction, cosine);
+            }
+        }
+    }
+
+    /// What own gloss sends toward the eye.
+    fn gloss(&self, facing: &Facing, drawing: &Drawing) -> DVec3 {
+        let (place, inside) = (&self.places[facing.spot], self.inside[facing.spot]);
+        let sent_of_all = (facing.lobes.albedo().own - facing.lobes.spread_albedo()).max_element();
+        let paths = if sent_of_all < AS_METAL { PATHS } else { PATHS_OF_METAL };
+        let lights_a_path = f64::from(drawing.of_areas) / f64::from(paths);
+        let mut sent = DVec3::ZERO;
+        for Drawn { sample, share, .. } in drawing.lights.iter().filter(|drawn| drawn.is_seen) {
+            let (Parts { sharp, .. }, own) = facing.lobes.scatter_parts(sample.from);
+            let share = share * sample.density.map_or(1.0, |density| heuristic(density * lights_a_path, own));
+            sent += self.transport.light_of(sample, place.position, &inside) * sharp.own * share;
+        }
+        for index in 0..paths {
+            let random = PathRandom::new(drawn::LOOKING, index);
+            let mut path = Path { random, inside, lights_a_path };
+            let found =
+                self.transport.sharp(facing.point, facing.at, facing.lobes, &mut path, self.irradiance);
+            sent += found.light.own / f64::from(paths);
+        }
+        sent
+    }
+}
+
+/// One over each channel; of nothing nothing.
+fn inverse(of: DVec3) -> DVec3 {
+    of.map(|of_channel| if of_channel > 0.0 { of_channel.recip() } else { 0.0 })
 }
 
 trait Adds {

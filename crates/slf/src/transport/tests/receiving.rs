@@ -35,11 +35,14 @@ fn what_is_told_is_what_a_point_finds_by_itself() {
     };
     let directional = light(LightKind::Directional, DVec3::ZERO, DVec3::new(-0.6, -0.8, 0.0));
     let point = light(LightKind::Point, DVec3::new(0.5, 3.0, 0.2), DVec3::ZERO);
-    for lights in [vec![], vec![directional.clone()], vec![point.clone()], vec![directional, point]] {
+    let garland =
+        (0..20).map(|k| light(LightKind::Point, DVec3::new(f64::from(k) * 0.4 - 4.0, 2.0, 0.3), DVec3::ZERO));
+    let all =
+        [vec![], vec![directional.clone()], vec![point.clone()], vec![directional, point], garland.collect()];
+    for lights in all {
         for material in [grey(), gloss(0.8)] {
             let scene = scene_of(&[floor(material)], &lights);
-            let options =
-                TransportOptions { paths: 2048, light_samples: 2048, ..TransportOptions::default() };
+            let options = TransportOptions { paths: 32, light_samples: 32, ..TransportOptions::default() };
             let tracer = Arc::new(Tracer::new(Arc::new(scene)));
             let transport = Transport::new(tracer, sky(), options);
             let solved = IrradianceOptions { patches: 200, rays: 64 };
@@ -49,12 +52,62 @@ fn what_is_told_is_what_a_point_finds_by_itself() {
             let told = transport.received(&spots, ABOVE);
             for (spot, received) in spots.iter().zip(told).step_by(9) {
                 assert!(received.is_some(), "nothing shades {spot:?}");
-                let among = |received| Among { received, ..Among::alone(7) };
-                let leaving = |received| transport.leaving_among(spot.point, ABOVE, among(received)).own;
-                let (found, expected) = (leaving(received), leaving(None));
+                let leaving = |received, seed| {
+                    let among = Among { received, ..Among::alone(seed) };
+                    transport.leaving_among(spot.point, ABOVE, among).own
+                };
+                const SEEDS: u64 = 256;
+                let found = leaving(received, 0);
+                let expected = (0..SEEDS).map(|seed| leaving(None, seed)).sum::<Vec3>() / SEEDS as f32;
                 let off = (found - expected).abs().max_element() / expected.max_element();
                 assert!(off < 0.02, "{} lights: {found}, not {expected}", lights.len());
             }
         }
     }
+}
+
+/// What the sky lights of a floor in a box, or before it, that a few spots tell, over what it would light of it unshaded.
+fn lit_in_a_box(lid: bool) -> f32 {
+    let wall = grey();
+    let mut walls = rooms::outside(DVec3::splat(-1.02), DVec3::splat(1.02), &wall);
+    walls.extend(rooms::inside(DVec3::splat(-1.0), DVec3::ONE, &wall));
+    let normals = scene_of(&walls, &[]);
+    let up = |triangle: u32| normals.area_normal(triangle).normalize_or_zero().y.abs() > 0.9;
+    // Upper sides of the box come off.
+    if !lid {
+        let height =
+            |triangle: u32| SurfacePoint { triangle, barycentric: DVec2::splat(0.3) }.position(&normals).y;
+        let is_lid = |k: usize| up(2 * k as u32) && height(2 * k as u32) > 0.5;
+        walls = walls.into_iter().enumerate().filter(|(k, _)| !is_lid(*k)).map(|(_, wall)| wall).collect();
+    }
+    let scene = scene_of(&walls, &[]);
+    let is_floor = |triangle: &u32| {
+        let normal = scene.area_normal(*triangle).normalize_or_zero();
+        let at = SurfacePoint { triangle: *triangle, barycentric: DVec2::splat(0.3) }.position(&scene);
+        normal.y > 0.9 && (at.y + 1.0).abs() < 1e-3
+    };
+    let triangle = (0..2 * walls.len() as u32).find(is_floor).expect("a floor");
+    let on_floor = |spot: Spot| Spot { point: SurfacePoint { triangle, ..spot.point }, ..spot };
+    let spots: Vec<_> = spots().into_iter().map(on_floor).collect();
+    let transport =
+        Transport::new(Arc::new(Tracer::new(Arc::new(scene))), sky(), TransportOptions::default());
+    let solved = IrradianceOptions { patches: 400, rays: 64 };
+    let kept = Arc::new(Irradiance::solve(&transport, solved, &Unwatched).unwrap());
+    let unshaded = kept.unshaded(&sky(), DVec3::Y).unwrap().as_vec3();
+    let transport = transport.with_irradiance(kept.clone());
+    let told = transport.received(&spots, DVec3::new(0.0, 0.9, 0.0));
+    let told: Vec<_> = told.into_iter().flatten().collect();
+    assert!(!told.is_empty());
+    let all: Vec<_> =
+        told.iter().map(|received| kept.received(&sky(), received, DVec3::Y).as_vec3()).collect();
+    (all.iter().sum::<Vec3>() / all.len() as f32 / unshaded).max_element()
+}
+
+#[test]
+fn a_shut_box_gets_nothing_of_the_sky_to_the_last_bit() {
+    let shut = lit_in_a_box(true);
+    assert!(shut < 1e-6, "{shut}");
+    // The control.
+    let open = lit_in_a_box(false);
+    assert!(open > 0.1, "{open}");
 }

@@ -4,7 +4,7 @@ use super::*;
 use crate::IrradianceOptions;
 
 /// The six walls of a box, seen from without.
-fn outside(low: DVec3, high: DVec3, material: &Material) -> Vec<Rectangle> {
+pub(super) fn outside(low: DVec3, high: DVec3, material: &Material) -> Vec<Rectangle> {
     let size = high - low;
     let [x, y, z] = [DVec3::X * size.x, DVec3::Y * size.y, DVec3::Z * size.z];
     let faces = [(low, x, z), (high, -z, -x), (low, y, x), (high, -x, -y), (low, z, y), (high, -y, -z)];
@@ -12,7 +12,7 @@ fn outside(low: DVec3, high: DVec3, material: &Material) -> Vec<Rectangle> {
 }
 
 /// The same seen from within.
-fn inside(low: DVec3, high: DVec3, material: &Material) -> Vec<Rectangle> {
+pub(super) fn inside(low: DVec3, high: DVec3, material: &Material) -> Vec<Rectangle> {
     let turned = |Rectangle(corner, side, other, material)| Rectangle(corner, other, side, material);
     outside(low, high, material).into_iter().map(turned).collect()
 }
