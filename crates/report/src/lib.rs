@@ -13,7 +13,7 @@
 //! [`run_engine`] measures the splat engine alone, against its own converged picture.
 //!
 //! The road of the data: `subject` opens a scene with its camera and focuses, `plan` lists what to measure, `reference`
-//! makes the ground truth of each picture with its own error, `contender` draws and is timed, `store` keeps every finished
+//! makes the ground truth of each picture with its own error, `contender` draws and is timed, `live` watches the preview, `store` keeps every finished
 //! measurement at once (so that a run that was stopped goes on where it was), `findings` draws conclusions, `page` and
 //! `tables` write them down with `plot`.
 
@@ -25,6 +25,7 @@ mod fields;
 mod findings;
 mod fingerprint;
 mod generic_focus;
+mod live;
 mod machine;
 mod markup;
 mod measure;
@@ -48,6 +49,7 @@ mod write;
 
 pub use contender::Contender;
 pub use engine::{Check, EngineRecord, EngineReport, run_engine};
+pub use live::LivePicture;
 pub use machine::Machine;
 pub use options::{ReportOptions, SceneRequest};
 pub use record::{Record, Series};

@@ -4,6 +4,7 @@ use crate::band::Band;
 use crate::contender::{Contender, Shot};
 use crate::default_lens::quantile;
 use crate::fingerprint::{self, Fingerprint};
+use crate::live::{self, LivePicture};
 use crate::machine::Machine;
 use crate::measure::{Against, Named, measure};
 use crate::options::{ReportOptions, SceneRequest};
@@ -94,6 +95,7 @@ impl Runner<'_> {
         let scene_print = fingerprint::of_scene(&subject.scene);
         let focus_prints: Vec<_> =
             subject.focuses.iter().map(|named| fingerprint::of_focus(&named.focus)).collect();
+        let live = self.live(request, &subject, &scene_print)?;
         let settings = settings(&subject, self.options);
         let total: usize = settings.iter().map(|setting| setting.contenders.len()).sum();
         let mut done = 0;
@@ -162,6 +164,7 @@ impl Runner<'_> {
             prepare_seconds: subject.prepare_seconds,
             hierarchy_bytes: subject.tracer.bytes(),
             focuses,
+            live,
             modelled,
             warnings: subject.warnings.clone(),
         });
@@ -272,15 +275,34 @@ impl Runner<'_> {
         Ok((picture, about))
     }
 
+    /// What the live preview shows as time goes on. The window has no switch for single scattering: not watched then.
+    fn live(
+        &self,
+        request: &SceneRequest,
+        subject: &Subject,
+        scene_print: &str,
+    ) -> Result<Vec<LivePicture>, SessionError> {
+        if request.single_scattering {
+            return Ok(Vec::new());
+        }
+        let print = self
+            .print_of(subject, scene_print)
+            .add(&(rayon::current_num_threads() as u64).to_le_bytes())
+            .name();
+        let name = format!("{}-live-{print}", file_part(&subject.name));
+        if let Some(kept) = self.store.get(&name) {
+            return Ok(kept);
+        }
+        let bar = self.steps.begin(&format!("{}: the live preview", subject.name));
+        let live = live::watch(request, subject, &self.options.unwrap, &*bar)?;
+        self.store.put(&name, &live)?;
+        Ok(live)
+    }
+
     /// What was modelled under the standard lens, and what the saving cost.
     fn modelled(&self, subject: &Subject, scene_print: &str) -> Result<ModelledScene, SessionError> {
         let standard = &subject.focuses[0].focus;
-        let print = Fingerprint::new()
-            .add(FORM.as_bytes())
-            .add(self.options.build.as_bytes())
-            .add(scene_print.as_bytes())
-            .add(fingerprint::of_camera(&subject.camera).as_bytes())
-            .name();
+        let print = self.print_of(subject, scene_print).name();
         let name = format!("{}-modelled-{print}", file_part(&subject.name));
         if let Some(kept) = self.store.get(&name) {
             return Ok(kept);
@@ -309,6 +331,15 @@ impl Runner<'_> {
         };
         self.store.put(&name, &scene)?;
         Ok(scene)
+    }
+
+    /// Of a scene and its camera.
+    fn print_of(&self, subject: &Subject, scene_print: &str) -> Fingerprint {
+        Fingerprint::new()
+            .add(FORM.as_bytes())
+            .add(self.options.build.as_bytes())
+            .add(scene_print.as_bytes())
+            .add(fingerprint::of_camera(&subject.camera).as_bytes())
     }
 
     fn reference_name(&self, place: &Place<'_>) -> String {

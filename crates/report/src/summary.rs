@@ -1,5 +1,6 @@
 //! What is told of each scene beside its measurements.
 
+use crate::live::LivePicture;
 use crate::reference::ReferenceError;
 use lens::Camera;
 use serde::{Deserialize, Serialize};
@@ -38,6 +39,8 @@ pub struct SceneSummary {
     pub hierarchy_bytes: usize,
     /// How it is focused.
     pub focuses: Vec<FocusSummary>,
+    /// What the live preview showed of it; empty where it was not watched.
+    pub live: Vec<LivePicture>,
     /// What was modelled of it.
     pub modelled: ModelledScene,
     /// What is odd but does no harm.

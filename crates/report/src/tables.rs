@@ -1,6 +1,7 @@
 //! The tables of the report, the same in Markdown and on the page.
 
 use crate::findings::EqualError;
+use crate::live::LivePicture;
 use crate::plot::{bytes, seconds, significant, with_minus};
 use crate::record::Record;
 use crate::summary::{ModelledScene, SceneSummary};
@@ -83,6 +84,16 @@ pub fn modelled(scene: &ModelledScene) -> Table {
         };
         let size = row.bytes.map_or_else(|| "–".into(), |count| bytes(count as f64));
         table.push([row.kind.into(), text(row.texels), text(row.samples), size, each, row.what.into()]);
+    }
+    table
+}
+
+/// What the live preview showed.
+pub fn live(pictures: &[LivePicture]) -> Table {
+    let mut table = Table::new(&["after", "picture", "#size", "#seconds", "#PSNR, dB"]);
+    for LivePicture { after, what, size: [width, height], seconds, psnr } in pictures {
+        let size = format!("{width} × {height}");
+        table.push([after.clone(), what.clone(), size, significant(*seconds), format!("{psnr:.1}")]);
     }
     table
 }

@@ -79,6 +79,12 @@ fn markdown(report: &Report) -> String {
     if let Some(hard) = &report.hard {
         section("Hard cases", tables::hard_cases(hard).to_markdown());
     }
+    for scene in report.scenes.iter().filter(|scene| !scene.live.is_empty()) {
+        section(
+            &format!("The live preview: {}", scene.name),
+            format!("{}\n{}\n", tables::live(&scene.live).to_markdown(), page::LIVE_NOTE),
+        );
+    }
     for scene in &report.scenes {
         let modelled = &scene.modelled;
         section(

@@ -23,6 +23,10 @@ square error, read off its measured curve (*: beyond the measurements, by the la
 reference's own is taken out first. A factor below 1 says slower. “Refocus” is all that another focus, focus distance or f-stop takes once the light field \
 is baked.";
 
+/// What is told of the live preview.
+pub const LIVE_NOTE: &str = "What the window shows after a change, in wall-clock seconds, and how far that is from the exact picture \
+it comes to: smaller pictures enlarged as the window does. The scene's light is known before; nothing is baked of the new view.";
+
 /// The page.
 pub fn html(report: &Report) -> Result<String, SessionError> {
     let records: Vec<&Record> = report.measured.iter().map(|measured| &measured.record).collect();
@@ -123,6 +127,13 @@ fn scene_section(scene: &SceneSummary, measured: &[Measured]) -> Result<String, 
             escaped(&focus.name),
             escaped(&sentence(&focus.what)),
             pictures::figures(scene, focus, &shown)?
+        );
+    }
+    if !scene.live.is_empty() {
+        html += &format!(
+            "<h3>The live preview</h3>\n{}{}<p class=\"caption\">{LIVE_NOTE}</p>\n",
+            tables::live(&scene.live).to_html(),
+            figure(&plots::live(&scene.live))
         );
     }
     html += &format!(

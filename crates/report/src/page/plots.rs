@@ -1,6 +1,7 @@
 //! The plots of a scene.
 
 use crate::contender::Contender;
+use crate::live::LivePicture;
 use crate::plot::{Axis, Chart, Kind, Point, Rule, Series as Line, bytes, plain, seconds, significant};
 use crate::record::{Record, Series};
 
@@ -85,6 +86,28 @@ pub fn memory_against_error(records: &[&Record]) -> Chart {
         y: error_axis(),
         series: lines.collect(),
         rules: reference_rule(records),
+    }
+}
+
+/// Error against time of what the live preview showed, a line for each change; the last picture has no error.
+pub fn live(pictures: &[LivePicture]) -> Chart {
+    let mut names: Vec<&str> = pictures.iter().map(|picture| picture.after.as_str()).collect();
+    names.dedup();
+    let line = |(style, name): (usize, &str)| {
+        let own = pictures.iter().filter(|picture| picture.after == name && picture.psnr < 200.0);
+        let point = |picture: &LivePicture| Point {
+            x: picture.seconds,
+            y: 10f64.powf(-picture.psnr / 20.0),
+            label: picture.what.clone(),
+        };
+        Line { name: name.into(), style, is_dashed: false, points: own.map(point).collect() }
+    };
+    Chart {
+        title: "the live preview: error against time".into(),
+        x: time_axis(),
+        y: error_axis(),
+        series: names.into_iter().enumerate().map(line).collect(),
+        rules: Vec::new(),
     }
 }
 

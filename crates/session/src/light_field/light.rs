@@ -13,6 +13,9 @@ use trace::Tracer;
 const PATHS: u32 = 2;
 const LIGHT_SAMPLES: u32 = 16;
 
+/// Lights of a point of a picture that is soon replaced.
+const ROUGH_LIGHT_SAMPLES: u32 = 4;
+
 /// The light that leaves the scene in `tracer`, for a camera. The first time for a scene and its world its irradiance is solved for,
 /// which `progress` watches; it is kept for every camera.
 pub(crate) fn light(
@@ -21,7 +24,8 @@ pub(crate) fn light(
     quality: LightQuality,
     progress: &dyn Progress,
 ) -> Result<Transport, Cancelled> {
-    let transport = transport(tracer, camera, PATHS);
+    let light_samples = if quality == LightQuality::Rough { ROUGH_LIGHT_SAMPLES } else { LIGHT_SAMPLES };
+    let transport = kept_light::unknown(tracer, world(tracer, camera), PATHS, light_samples);
     if !needs_light(tracer) {
         return Ok(transport);
     }

@@ -8,23 +8,40 @@ const COARSE: f64 = 1.0 / 4.0;
 /// Where the coarse picture has more than twice as many pixels, one of so many comes before it: about a second's work.
 const ROUGH_PIXELS: f64 = 20_000.0;
 
+/// Sides of the picture between the coarse one and the fine one, as a share of the preview's: a ninth of the work.
+const BETWEEN: f64 = 1.0 / 3.0;
+
+/// Where the preview has fewer pixels, the fine one is soon there.
+const FEWEST_PIXELS_TO_WAIT_FOR: f64 = 200_000.0;
+
 /// Below this longest side, px, a picture is quick enough to need no coarse one.
 const SMALLEST_COARSE: u32 = 48;
 
 /// The cameras of coarse pictures, the roughest first; none where the picture is small anyway.
 pub(super) fn coarse_of(camera: &Camera) -> Vec<Camera> {
-    let scaled = |share: f64| {
-        let [width, height] =
-            [camera.width, camera.height].map(|side| ((f64::from(side) * share).round() as u32).max(1));
-        Camera { width, height, ..camera.clone() }
-    };
-    let coarse = scaled(COARSE);
+    let coarse = scaled(camera, COARSE);
     if coarse.width.max(coarse.height) < SMALLEST_COARSE {
         return Vec::new();
     }
-    let pixels = f64::from(coarse.width) * f64::from(coarse.height);
-    let rough = (pixels > 2.0 * ROUGH_PIXELS).then(|| scaled(COARSE * (ROUGH_PIXELS / pixels).sqrt()));
+    let pixels = pixels_of(&coarse);
+    let rough =
+        (pixels > 2.0 * ROUGH_PIXELS).then(|| scaled(camera, COARSE * (ROUGH_PIXELS / pixels).sqrt()));
     rough.into_iter().chain([coarse]).collect()
+}
+
+/// The camera of the picture that comes after the coarse ones, while the fine one is baked; none where that is soon there.
+pub(super) fn between_of(camera: &Camera) -> Option<Camera> {
+    (pixels_of(camera) >= FEWEST_PIXELS_TO_WAIT_FOR).then(|| scaled(camera, BETWEEN))
+}
+
+fn scaled(camera: &Camera, share: f64) -> Camera {
+    let [width, height] =
+        [camera.width, camera.height].map(|side| ((f64::from(side) * share).round() as u32).max(1));
+    Camera { width, height, ..camera.clone() }
+}
+
+fn pixels_of(camera: &Camera) -> f64 {
+    f64::from(camera.width) * f64::from(camera.height)
 }
 
 #[cfg(test)]
@@ -42,5 +59,11 @@ mod tests {
         assert_eq!(sizes(640, 360), [[160, 90]]);
         assert_eq!(sizes(1920, 1080), [[189, 106], [480, 270]]);
         assert_eq!(sizes(16384, 1), [[4096, 1]]);
+        let between = |width, height| {
+            between_of(&Camera { width, height, ..Camera::default() })
+                .map(|camera| [camera.width, camera.height])
+        };
+        assert_eq!(between(960, 540), Some([320, 180]));
+        assert_eq!(between(480, 270), None);
     }
 }

@@ -7,10 +7,21 @@ use lens::Camera;
 /// The share of making a light field that the bake is; the rest is the first sum.
 pub(crate) const BAKE_SHARE: f32 = 0.7;
 
+/// The share of it that the light field between the coarse one and the fine one is, where there is one.
+pub(crate) const BETWEEN_SHARE: f32 = 0.1;
+
 /// What the maker of light fields hands over.
 pub(crate) struct Delivery {
     /// The light field, summed; or why there is none.
     pub made: Result<LightField, SessionError>,
+    /// The epoch in which it was asked for.
+    pub epoch: u64,
+}
+
+/// A light field of fewer pixels that the maker hands over while it bakes the one of full size.
+pub(crate) struct Between {
+    /// Of what it was asked for, not summed.
+    pub field: LightField,
     /// The epoch in which it was asked for.
     pub epoch: u64,
 }

@@ -1,7 +1,7 @@
 //! What the session and the preview's threads share: one mailbox for wishes, one for news.
 
 use super::activity::PreviewActivity;
-use super::deliveries::{Delivery, Refined};
+use super::deliveries::{Between, Delivery, Refined};
 use super::news::{News, Published};
 use super::picture::{PictureTimes, Preview, Quality};
 use super::wishes::{Stops, Wishes};
@@ -146,6 +146,11 @@ impl Shared {
     /// The helper is done.
     pub fn deliver(&self, delivery: Delivery) {
         self.post(Stops::Nothing, |wishes| wishes.delivery = Some(delivery));
+    }
+
+    /// The helper has made something to begin with, and goes on.
+    pub fn deliver_between(&self, between: Between) {
+        self.post(Stops::Nothing, |wishes| wishes.between = Some(between));
     }
 
     /// Shows a picture, and what is new on screen by it; its times, if it was made just now.

@@ -1,6 +1,6 @@
 //! Making the light field of the preview: a thread of its own bakes and sums it.
 
-use super::deliveries::{BAKE_SHARE, Delivery};
+use super::deliveries::{BAKE_SHARE, BETWEEN_SHARE, Between, Delivery};
 use super::mailbox::Shared;
 use crate::document::Stage;
 use crate::error::SessionError;
@@ -29,6 +29,8 @@ pub(crate) struct Order {
     pub begin: Begin,
     pub stage: Arc<Stage>,
     pub camera: Camera,
+    /// That of a light field of fewer pixels, which is handed over first if there is anything to bake.
+    pub between: Option<Camera>,
     pub focus: Focus,
     pub tolerance: Tolerance,
     /// Comes back with the light field.
@@ -95,6 +97,13 @@ impl LightFieldMaker {
         self.since.join(changes);
     }
 
+    /// What was made first, with all that changed meanwhile noted.
+    pub fn take_up_between(&self, between: Between) -> (LightField, u64) {
+        let Between { mut field, epoch } = between;
+        field.note(&self.since);
+        (field, epoch)
+    }
+
     /// What was made, with all that changed meanwhile noted.
     pub fn take_up(&mut self, delivery: Delivery) -> Result<(LightField, u64), SessionError> {
         self.join();
@@ -114,13 +123,25 @@ impl LightFieldMaker {
 }
 
 fn make(order: Order, shared: &Shared, store: Option<&LightFieldStore>) -> Result<LightField, SessionError> {
-    let Order { begin, stage, camera, focus, tolerance, epoch: _ } = order;
+    let Order { begin, stage, camera, between, focus, tolerance, epoch } = order;
     let bake = |least_margin_px| {
-        let how = FieldOptions { least_margin_px, tolerance, gpu: shared.gpu(), light: LightQuality::Fine };
-        let start = Instant::now();
+        let how = |least_margin_px| FieldOptions {
+            least_margin_px,
+            tolerance,
+            gpu: shared.gpu(),
+            light: LightQuality::Fine,
+        };
         shared.progress.begin_step("", 0.0, BAKE_SHARE);
-        let field =
-            LightField::bake(&stage, &camera, &focus, how, &Share::new(&shared.progress, 0.0, BAKE_SHARE))?;
+        let mut done = 0.0;
+        if let Some(between) = &between {
+            let share = Share::new(&shared.progress, 0.0, BETWEEN_SHARE);
+            let field = LightField::bake(&stage, between, &focus, how(0.0), &share)?;
+            shared.deliver_between(Between { field, epoch });
+            done = BETWEEN_SHARE;
+        }
+        let start = Instant::now();
+        let share = Share::new(&shared.progress, done, BAKE_SHARE);
+        let field = LightField::bake(&stage, &camera, &focus, how(least_margin_px), &share)?;
         if let Some(store) = store {
             store.keep(&stage, &field.baked().salf, start.elapsed());
         }

@@ -1,6 +1,6 @@
 //! What is wanted of the preview, joined until its thread looks.
 
-use super::deliveries::{Delivery, Refined};
+use super::deliveries::{Between, Delivery, Refined};
 use crate::display::Tone;
 use crate::document::Stage;
 use crate::light_field::Changes;
@@ -32,6 +32,8 @@ pub(crate) struct Wishes {
     pub hold: bool,
     /// The light field that was made.
     pub delivery: Option<Delivery>,
+    /// One of fewer pixels that was made first.
+    pub between: Option<Between>,
     /// What became of the exact picture.
     pub refined: Option<Refined>,
     /// Work under way was told to stop when these were posted.

@@ -1,8 +1,8 @@
 //! What the preview thread does with its wishes.
 
 use super::activity::PreviewActivity;
-use super::coarse::coarse_of;
-use super::deliveries::{Delivery, Refined};
+use super::coarse::{between_of, coarse_of};
+use super::deliveries::{Between, Delivery, Refined};
 use super::mailbox::Shared;
 use super::maker::{Begin, LightFieldMaker, Order};
 use super::picture::{PreviewKind, Quality};
@@ -209,10 +209,22 @@ impl Worker {
         }
         self.maker.note(&wishes.changed);
         self.refinement.note(&wishes.changed);
+        if let Some(between) = wishes.between {
+            self.take_up_between(between);
+        }
         self.delivery = wishes.delivery.or(self.delivery.take());
         let taken_up = self.take_up();
         self.refinement.tidy(self.fine.as_ref());
         taken_up
+    }
+
+    /// Takes up the light field that was made first, in place of the coarse one.
+    fn take_up_between(&mut self, between: Between) {
+        let (mut field, epoch) = self.maker.take_up_between(between);
+        if epoch == self.epoch && self.fine.is_none() {
+            field.set_tolerance(self.tolerance);
+            self.coarse = Some(field);
+        }
     }
 
     /// Takes up the light field that was made; not while a stroke goes on that the old one shows.
@@ -281,13 +293,14 @@ impl Worker {
         Ok(())
     }
 
-    /// The picture without blur, if the view is new.
+    /// The picture without blur, if the view is new; of fewer pixels where one between is due.
     fn show_pinhole(&mut self, stage: &Stage, camera: &Camera, focus: &Focus) -> Result<(), SessionError> {
         if self.presenter.shown().is_some_and(|shown| same_view(&shown.camera, camera)) {
             return Ok(());
         }
         self.shared.begin(PreviewActivity::Tracing)?;
         let start = Instant::now();
+        let camera = &between_of(camera).unwrap_or_else(|| camera.clone());
         let radiance = light(&stage.tracer, camera, LightQuality::Rough, &self.shared.quick)?;
         let hits = FirstHits::trace(&stage.tracer, &radiance, focus, camera, &self.shared.quick)?;
         self.presenter.show(Made {
@@ -305,8 +318,11 @@ impl Worker {
     /// Pictures of few pixels, each of more than the one before; begins with the best that need not be baked, and ends there
     /// while a stroke waits for more.
     fn show_coarse(&mut self, stage: &Stage, camera: &Camera, focus: &Focus) -> Result<(), SessionError> {
-        let sizes = coarse_of(camera);
         let serves = |small: &Camera| self.coarse.as_ref().is_some_and(|coarse| coarse.serves(small));
+        if let Some(between) = between_of(camera).filter(serves) {
+            return self.show_small(stage, &between, focus);
+        }
+        let sizes = coarse_of(camera);
         let first = sizes.iter().rposition(serves).unwrap_or(0);
         let count = if self.is_painting { 1 } else { sizes.len() };
         sizes[first..].iter().take(count).try_for_each(|small| self.show_small(stage, small, focus))
@@ -347,7 +363,10 @@ impl Worker {
     /// Makes the fine light field and sums it, on a thread of its own.
     fn make_field(&mut self, begin: Begin, stage: &Arc<Stage>, camera: &Camera, focus: Focus) {
         let (stage, camera) = (stage.clone(), camera.clone());
-        let order = Order { begin, stage, camera, focus, tolerance: self.tolerance, epoch: self.epoch };
+        // Where a fine picture stands already, none of fewer pixels is wanted.
+        let between = if self.fine.is_none() { between_of(&camera) } else { None };
+        let (tolerance, epoch) = (self.tolerance, self.epoch);
+        let order = Order { begin, stage, camera, between, focus, tolerance, epoch };
         self.maker.start(&self.shared, order);
     }
 

@@ -18,14 +18,12 @@ use std::collections::BTreeMap;
 use std::f64::consts::FRAC_1_PI;
 use trace::{Received, Spot};
 
-/// Directions that lamps are looked for in.
-const LOOKS: u32 = 16;
-
-/// Paths by which rough gloss is told that sends little of the light that comes, as varnish does.
-const PATHS: u32 = 32;
+/// Paths by which rough gloss is told that sends little of the light that comes, as varnish does, over how many lights are drawn for
+/// a point asked alone.
+const PATHS: u32 = 2;
 
 /// The same of gloss that sends so large a share of it as metals do.
-const PATHS_OF_METAL: u32 = 128;
+const PATHS_OF_METAL: u32 = 8;
 const AS_METAL: f64 = 0.25;
 
 /// From nearer to the horizon than this, sine, light is told as even: a normal that is turned a little would find it elsewhere.
@@ -80,6 +78,11 @@ impl Transport {
 }
 
 impl Asked<'_> {
+    /// How many lights are drawn for a point asked alone.
+    fn light_samples(&self) -> u32 {
+        self.transport.options.light_samples
+    }
+
     /// The normal of a spot's triangle, on the front.
     fn geometric(&self, spot: usize) -> DVec3 {
         self.transport.scene().area_normal(self.spots[spot].point.triangle).normalize_or_zero()
@@ -160,7 +163,7 @@ impl Asked<'_> {
         let Self { transport, irradiance, .. } = self;
         let (place, inside) = (&self.places[facing.spot], &self.inside[facing.spot]);
         let unshaded = irradiance.unshaded(&transport.world, place.normal);
-        let lights_a_look = f64::from(drawing.of_areas) / f64::from(LOOKS);
+        let lights_a_look = f64::from(drawing.of_areas) / f64::from(self.light_samples());
         let cosine = |from: DVec3| place.normal.dot(from);
         // The sky's samples tell what share of it is missing: none is, or all, where none is seen, or all, to the last bit.
         let of_sky = |drawn: &&Drawn| drawn.sample.density.is_some() && !drawn.sample.is_near;
@@ -198,8 +201,9 @@ impl Asked<'_> {
             return;
         }
         let place = &self.places[facing.spot];
-        let lights_a_path = f64::from(drawing.of_areas) / f64::from(LOOKS);
-        for index in 0..LOOKS {
+        let looks = self.light_samples();
+        let lights_a_path = f64::from(drawing.of_areas) / f64::from(looks);
+        for index in 0..looks {
             let mut random = PathRandom::new(drawn::LOOKING, index);
             let Some((direction, density)) = facing.lobes.sample_spread(random.next2()) else { continue };
             let path = Path { random, inside: self.inside[facing.spot], lights_a_path };
@@ -207,7 +211,7 @@ impl Asked<'_> {
             if light != DVec3::ZERO {
                 let sent = facing.lobes.scatter_parts(direction).0.spread * by_spread;
                 let cosine = place.normal.dot(direction);
-                received.add(light * sent / (density * f64::from(LOOKS)), direction, cosine);
+                received.add(light * sent / (density * f64::from(looks)), direction, cosine);
             }
         }
     }
@@ -216,7 +220,7 @@ impl Asked<'_> {
     fn gloss(&self, facing: &Facing, drawing: &Drawing) -> DVec3 {
         let (place, inside) = (&self.places[facing.spot], self.inside[facing.spot]);
         let sent_of_all = (facing.lobes.albedo().own - facing.lobes.spread_albedo()).max_element();
-        let paths = if sent_of_all < AS_METAL { PATHS } else { PATHS_OF_METAL };
+        let paths = if sent_of_all < AS_METAL { PATHS } else { PATHS_OF_METAL } * self.light_samples();
         let lights_a_path = f64::from(drawing.of_areas) / f64::from(paths);
         let mut sent = DVec3::ZERO;
         for Drawn { sample, share, .. } in drawing.lights.iter().filter(|drawn| drawn.is_seen) {

@@ -5,11 +5,11 @@ use crate::lights::LightSample;
 use crate::path_random::PathRandom;
 use crate::spots::Seen;
 
-/// How often sky and lamps are drawn where a spot sees all of them, or none.
-const LIGHTS: u32 = 64;
+/// How often sky and lamps are drawn where a spot sees all of them, or none, over how often for a point asked alone.
+const LIGHTS: u32 = 4;
 
 /// How often where it sees some.
-const LIGHTS_IN_PENUMBRA: u32 = 128;
+const LIGHTS_IN_PENUMBRA: u32 = 8;
 
 /// So many punctual lights are all asked; of more so many are drawn.
 const PUNCTUAL: usize = 64;
@@ -62,11 +62,12 @@ impl Asked<'_> {
         drawing.lights.iter_mut().for_each(|drawn| drawn.share = 1.0 / f64::from(punctual));
         let of_punctual = drawing.lights.len();
         if self.transport.lights.has_areas() {
-            drawing.of_areas = LIGHTS;
-            (0..LIGHTS).for_each(|turn| drawing.add_areas(self, spot, turn));
+            let [few, many] = [LIGHTS, LIGHTS_IN_PENUMBRA].map(|times| times * self.light_samples());
+            drawing.of_areas = few;
+            (0..few).for_each(|turn| drawing.add_areas(self, spot, turn));
             if drawing.seen.is_mixed(SKY) || drawing.seen.is_mixed(LAMPS) {
-                drawing.of_areas = LIGHTS_IN_PENUMBRA;
-                (LIGHTS..LIGHTS_IN_PENUMBRA).for_each(|turn| drawing.add_areas(self, spot, turn));
+                drawing.of_areas = many;
+                (few..many).for_each(|turn| drawing.add_areas(self, spot, turn));
             }
             let share = 1.0 / f64::from(drawing.of_areas);
             drawing.lights[of_punctual..].iter_mut().for_each(|drawn| drawn.share = share);
@@ -79,7 +80,7 @@ impl Asked<'_> {
         // An odd step takes turns with all of a power of two.
         const STEP: usize = 37;
         let [of_areas, of_punctual] =
-            [LIGHTS, self.punctual_draws()].map(|draws| ((turn * STEP) % draws as usize) as u32);
+            [self.compared(), self.punctual_draws()].map(|draws| ((turn * STEP) % draws as usize) as u32);
         let mut differs = None;
         let mut compare = |sample: LightSample, turn: u32| {
             let (kind, bit) = bit(&sample, turn);
@@ -99,6 +100,11 @@ impl Asked<'_> {
             }
         });
         differs
+    }
+
+    /// By how many draws of sky and lamps neighbours are compared.
+    fn compared(&self) -> u32 {
+        (LIGHTS * self.light_samples()).min(u64::BITS)
     }
 
     /// How often punctual lights are drawn.
@@ -137,8 +143,7 @@ impl Drawing {
         }
         let (kind, bit) = bit(&sample, turn);
         let is_seen = asked.sees(spot, &sample);
-        // What a second round drew is not among what neighbours are compared by.
-        if turn < LIGHTS {
+        if turn < asked.compared() {
             self.seen.above[kind] |= bit;
             self.seen.seen[kind] |= if is_seen { bit } else { 0 };
         }

@@ -1,0 +1,188 @@
+//! What the live preview shows as time goes on: of a new view, of a camera that moved, of a lens that turned.
+
+use crate::options::SceneRequest;
+use crate::reference::conserved;
+use crate::subject::Subject;
+use glam::DMat4;
+use lens::Camera;
+use progress::Progress;
+use project::{LinearPicture, compare};
+use serde::{Deserialize, Serialize};
+use session::{
+    CameraEdit, Command, Event, Preview, PreviewKind, Quality, Session, SessionError, SessionOptions,
+};
+use std::time::{Duration, Instant};
+
+/// A picture that the preview showed.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct LivePicture {
+    /// What it was shown after.
+    pub after: String,
+    /// What it was: `pinhole`, `coarse`, `viewing` or `exact`.
+    pub what: String,
+    /// Its own size, px; the window enlarges it.
+    pub size: [u32; 2],
+    /// Seconds after the change.
+    pub seconds: f64,
+    /// PSNR, dB, enlarged as the window does, against the last picture of the same view; 200 of that itself.
+    pub psnr: f64,
+}
+
+/// How far the camera turns, rad, and by which factor the focus distance grows.
+const TURN: f64 = 0.03;
+const REFOCUS: f64 = 1.1;
+
+/// How often it is looked whether there is something new.
+const LOOK: Duration = Duration::from_millis(4);
+
+/// Opens a scene as the window does and watches the preview after each of some changes. The scene's light is known by then.
+pub fn watch(
+    request: &SceneRequest,
+    subject: &Subject,
+    unwrap: &atlas::UnwrapOptions,
+    progress: &dyn Progress,
+) -> Result<Vec<LivePicture>, SessionError> {
+    let camera = &subject.camera;
+    let day = Duration::from_secs(86_400);
+    let mut session = Session::new(SessionOptions {
+        unwrap: unwrap.clone(),
+        preview_size: camera.width.max(camera.height),
+        keep_after: day,
+        exact_after: Some(Duration::from_millis(300)),
+        ..SessionOptions::default()
+    })?;
+    session.apply(Command::Open(request.file.clone()))?;
+    until(&mut session, progress, |session| session.document().is_some())?;
+    if let Some(back_faces) = request.back_faces {
+        session.apply(Command::SetBackFaces(back_faces))?;
+    }
+    if let Some(world) = &request.world {
+        session.apply(Command::SetWorld(Some(world.clone())))?;
+    }
+    until(&mut session, progress, Session::is_idle)?;
+
+    // First another view, so that nothing is there of the one that is watched.
+    let turned = |by: f64| camera.camera_to_world * DMat4::from_rotation_y(by);
+    session.apply(Command::Camera(CameraEdit::Whole(Camera {
+        camera_to_world: turned(-TURN),
+        ..camera.clone()
+    })))?;
+    until(&mut session, progress, is_exact)?;
+    let changes = [
+        ("camera moved", CameraEdit::Whole(camera.clone())),
+        ("camera moved again", CameraEdit::Pose(turned(TURN))),
+        ("lens turned", CameraEdit::FocusDistance(camera.focus_distance * REFOCUS)),
+    ];
+    let mut watched = Vec::new();
+    for (after, change) in changes {
+        watched.extend(watch_one(&mut session, after, change, progress)?);
+    }
+    Ok(watched)
+}
+
+/// What is shown after one change, to the exact picture.
+fn watch_one(
+    session: &mut Session,
+    after: &str,
+    change: CameraEdit,
+    progress: &dyn Progress,
+) -> Result<Vec<LivePicture>, SessionError> {
+    let before = session.preview().map_or(0, |preview| preview.id);
+    let start = Instant::now();
+    session.apply(Command::Camera(change))?;
+    let mut shown: Vec<(Preview, f64)> = Vec::new();
+    until(session, progress, |session| {
+        let last = shown.last().map_or(before, |(preview, _)| preview.id);
+        let newer = session.preview().filter(|preview| preview.id > last);
+        shown.extend(newer.map(|preview| (preview.clone(), start.elapsed().as_secs_f64())));
+        !shown.is_empty() && is_exact(session)
+    })?;
+    let picture = |preview: &Preview| preview.picture.bring().map(|picture| conserved(&picture));
+    let Some(last) = shown.last().and_then(|(preview, _)| picture(preview)) else { return Ok(Vec::new()) };
+    let mut pictures = Vec::new();
+    for (preview, seconds) in &shown {
+        let Some(own) = picture(preview) else { continue };
+        let what = match (preview.kind, preview.quality) {
+            (PreviewKind::Pinhole, _) => "pinhole",
+            (_, Quality::Coarse) => "coarse",
+            (_, Quality::Viewing) => "viewing",
+            (_, Quality::Exact) => "exact",
+        };
+        let size = [own.width, own.height];
+        let psnr = compare(&enlarged(&own, [last.width, last.height]), &last)?.psnr;
+        let (after, what) = (after.to_string(), what.to_string());
+        pictures.push(LivePicture { after, what, size, seconds: *seconds, psnr });
+    }
+    Ok(pictures)
+}
+
+/// Whether all that was asked for is shown without tolerance.
+fn is_exact(session: &Session) -> bool {
+    session.is_settled() && session.preview().is_some_and(|preview| preview.quality == Quality::Exact)
+}
+
+/// Polls until `done`.
+fn until(
+    session: &mut Session,
+    progress: &dyn Progress,
+    mut done: impl FnMut(&Session) -> bool,
+) -> Result<(), SessionError> {
+    loop {
+        progress.check()?;
+        for event in session.poll() {
+            if let Event::Failed(why) = event {
+                return Err(SessionError::TryAgain(why));
+            }
+        }
+        if done(session) {
+            return Ok(());
+        }
+        std::thread::sleep(LOOK);
+    }
+}
+
+/// A picture at another size, bilinear between the centres of its pixels.
+fn enlarged(picture: &LinearPicture, [width, height]: [u32; 2]) -> LinearPicture {
+    if [picture.width, picture.height] == [width, height] {
+        return picture.clone();
+    }
+    // The two pixels about a place, and the share of the second.
+    let along = |k: u32, of: u32, own: u32| {
+        let last = f64::from(own - 1);
+        let at = ((f64::from(k) + 0.5) * f64::from(own) / f64::from(of) - 0.5).clamp(0.0, last);
+        (at as usize, (at as usize + 1).min(last as usize), at.fract() as f32)
+    };
+    let row = |y: usize| &picture.rgb[y * picture.width as usize..][..picture.width as usize];
+    let mix = |a: [f32; 3], b: [f32; 3], share: f32| -> [f32; 3] {
+        std::array::from_fn(|k| a[k] + (b[k] - a[k]) * share)
+    };
+    let mut rgb = Vec::with_capacity(width as usize * height as usize);
+    for y in 0..height {
+        let (above, below, down) = along(y, height, picture.height);
+        for x in 0..width {
+            let (left, right, across) = along(x, width, picture.width);
+            let of = |y: usize| mix(row(y)[left], row(y)[right], across);
+            rgb.push(mix(of(above), of(below), down));
+        }
+    }
+    LinearPicture { width, height, rgb, layers: Default::default(), exposure: picture.exposure }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn enlarging_keeps_a_ramp_and_the_edges() {
+        let rgb = (0..8).map(|k| [(k % 4) as f32, (k / 4) as f32, 1.0]).collect();
+        let small = LinearPicture { width: 4, height: 2, rgb, layers: Default::default(), exposure: None };
+        let large = enlarged(&small, [16, 8]);
+        assert_eq!((large.width, large.height, large.rgb.len()), (16, 8, 128));
+        for (k, [x, y, one]) in large.rgb.iter().enumerate() {
+            let expected = |k: usize, last: f32| ((k as f32 + 0.5) / 4.0 - 0.5).clamp(0.0, last);
+            assert!((x - expected(k % 16, 3.0)).abs() < 1e-6 && (y - expected(k / 16, 1.0)).abs() < 1e-6);
+            assert_eq!(*one, 1.0);
+        }
+        assert_eq!(enlarged(&small, [4, 2]).rgb, small.rgb);
+    }
+}
