@@ -36,6 +36,10 @@ pub struct Scene {
     pub nodes: Vec<Node>,
     /// Materials; the last may be glTF's default material.
     pub materials: Vec<Material>,
+    /// What the file's variants are called (KHR_materials_variants), no two alike: other choices among the materials.
+    pub variants: Vec<String>,
+    /// The variant that it is in, one of them; none: the file's own choice.
+    pub variant: Option<String>,
     /// Decoded images that the materials refer to.
     pub images: Vec<Image>,
     /// Lights in world space.
