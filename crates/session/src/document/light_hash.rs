@@ -63,6 +63,15 @@ mod tests {
         let uv = Scene { uv: [vec![glam::Vec2::ONE], Vec::new()], ..Scene::default() };
         let other = Scene { uv: [Vec::new(), vec![glam::Vec2::ONE]], ..Scene::default() };
         assert_ne!(light_hash(&uv), light_hash(&other));
+        // Materials that are seen in another variant.
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("varied.glb");
+        std::fs::write(&file, crate::tiny_glb::varied(&crate::tiny_glb::QUADS)).unwrap();
+        let of = |variant: Option<&str>| {
+            light_hash(&super::super::stage::load_variant(&file, variant, &progress::Unwatched).unwrap())
+        };
+        assert!(of(None) != of(Some("Blue")) && of(Some("Blue")) != of(Some("Green")));
+        assert_eq!(of(None), of(Some("As painted")), "what looks alike has the same light");
         let further = |u: f32| Scene { further_uv: vec![vec![glam::Vec2::splat(u)]], ..Scene::default() };
         assert_ne!(light_hash(&further(0.0)), light_hash(&further(1.0)));
     }

@@ -90,6 +90,37 @@ pub fn glb(quads: &[Quad]) -> Vec<u8> {
     container(&doc, &bin)
 }
 
+/// The bytes of a GLB with these quads, the first of which are wall and card, in variants: in "Blue" the card is blue and the wall light, in "Green" the card is green; in "As painted"
+/// all is as it was.
+#[allow(dead_code, reason = "not every test that has the scene has its variants")]
+pub fn varied(quads: &[Quad]) -> Vec<u8> {
+    let bytes = glb(quads);
+    let length = |at: usize| u32::from_le_bytes(bytes[at..at + 4].try_into().expect("four bytes")) as usize;
+    let json_end = 20 + length(12);
+    let mut doc: Value = serde_json::from_slice(&bytes[20..json_end]).expect("JSON");
+    let first = doc["materials"].as_array().expect("a list").len();
+    for (name, color) in
+        [("blue", [0.1, 0.1, 0.8, 1.0]), ("light", [0.9, 0.9, 0.9, 1.0]), ("green", [0.1, 0.8, 0.1, 1.0])]
+    {
+        let material = json!({
+            "name": format!("{name} paint"),
+            "pbrMetallicRoughness": { "baseColorFactor": color },
+            "extensions": { "KHR_materials_unlit": {} },
+        });
+        doc["materials"].as_array_mut().expect("a list").push(material);
+    }
+    let mappings = |mappings: Value| json!({ "KHR_materials_variants": { "mappings": mappings } });
+    let [wall, card] = [0, 1].map(|mesh| format!("/meshes/{mesh}/primitives/0"));
+    doc.pointer_mut(&wall).expect("the wall")["extensions"] =
+        mappings(json!([{ "material": first + 1, "variants": [0] }]));
+    doc.pointer_mut(&card).expect("the card")["extensions"] =
+        mappings(json!([{ "material": first, "variants": [0] }, { "material": first + 2, "variants": [1] }]));
+    doc["extensions"] = json!({ "KHR_materials_variants": { "variants": [
+        { "name": "Blue" }, { "name": "Green" }, { "name": "As painted" }] } });
+    doc["extensionsUsed"] = json!(["KHR_materials_unlit", "KHR_materials_variants"]);
+    container(&doc, &bytes[json_end + 8..])
+}
+
 /// A GLB of a document and its buffer.
 pub fn container(doc: &Value, bin: &[u8]) -> Vec<u8> {
     let mut text = serde_json::to_vec(doc).expect("JSON");
