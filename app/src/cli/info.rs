@@ -7,7 +7,7 @@ use super::shot::{opened, unwrap_options};
 use lens::Camera;
 use progress::Unwatched;
 use project::{ProjectFile, camera_to_json};
-use scene::{Inspection, MeshHealth, Scene};
+use scene::{Inspection, LoadOptions, MeshHealth, Scene};
 use serde_json::{Value, json};
 use session::{Input, InputKind, Modelled, RenderOptions};
 use std::sync::Arc;
@@ -18,7 +18,11 @@ pub fn run(arguments: &InfoArguments, console: &Console) -> Result<(), Failure> 
     let file = arguments.file.as_path();
     let kind = InputKind::of(file)?;
     let inspection = match kind {
-        InputKind::Scene => Some(scene::inspect(file).map_err(session::SessionError::from)?),
+        InputKind::Scene => {
+            let variant = arguments.scene_look.variant.clone().filter(|name| !name.is_empty());
+            let options = LoadOptions { variant, ..LoadOptions::default() };
+            Some(scene::inspect(file, &options).map_err(session::SessionError::from)?)
+        }
         _ => None,
     };
     if let Some(inspection) = inspection.as_ref().filter(|inspection| inspection.triangles == 0) {
@@ -139,6 +143,13 @@ fn scene_lines(scene: &Scene, health: &MeshHealth) {
     let names: Vec<_> = scene.cameras.iter().map(|camera| format!("\"{}\"", camera.name)).collect();
     say(format!("  cameras      {}{}", names.join(", "), made_up(scene.camera_is_invented)));
     say(format!("  lights       {}", scene.lights.len()));
+    if !scene.variants.is_empty() {
+        let names: Vec<_> = scene.variants.iter().map(|name| format!("{name:?}")).collect();
+        let chosen = scene.variant.as_ref();
+        let chosen =
+            chosen.map_or_else(|| "none: the scene's own materials".into(), |name| format!("{name:?}"));
+        say(format!("  variants     {} (chosen: {chosen})", names.join(", ")));
+    }
     say(format!("  mesh         {}", mesh_sentence(health)));
 }
 
@@ -224,6 +235,8 @@ fn scene_json(scene: &Scene) -> Value {
         "materials": scene.materials.iter().map(|material| &material.name).collect::<Vec<_>>(),
         "cameras": scene.cameras.iter().map(|camera| &camera.name).collect::<Vec<_>>(),
         "camera_is_invented": scene.camera_is_invented,
+        "variants": scene.variants,
+        "variant": scene.variant,
         "lights": scene.lights.len(),
     })
 }

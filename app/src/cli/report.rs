@@ -110,6 +110,7 @@ fn requests(arguments: &ReportArguments) -> Result<Vec<SceneRequest>, Failure> {
         camera: shot.camera.clone(),
         focus: shot.focus.clone(),
         back_faces: shot.scene_look.back_faces,
+        variant: shot.scene_look.variant(),
         world: world.clone(),
         single_scattering: shot.scene_look.single_scattering,
     };
