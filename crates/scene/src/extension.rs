@@ -4,7 +4,8 @@ use crate::document::Document;
 use crate::error::Fault;
 
 /// Read and honoured.
-pub(crate) const SUPPORTED: [&str; 24] = [
+pub(crate) const SUPPORTED: [&str; 25] = [
+    "EXT_lights_image_based",
     "EXT_mesh_gpu_instancing",
     "EXT_meshopt_compression",
     "EXT_texture_webp",

@@ -10,7 +10,7 @@ use crate::source::{PartSource, Source};
 use crate::triangulation::MODE_NAMES;
 use crate::variants::Variants;
 use crate::{Inspection, LoadOptions, Material, Node, Scene, SceneError};
-use crate::{compressed, extension, flaws, instancing, punctual_light, skin, view};
+use crate::{compressed, extension, flaws, image_based_light, instancing, punctual_light, skin, view};
 use glam::{DMat4, Vec3};
 use progress::{Progress, Unwatched};
 use std::collections::HashMap;
@@ -113,6 +113,7 @@ fn read(path: &Path, options: &LoadOptions, progress: &dyn Progress) -> Result<(
     let mut materials = MaterialReader::new(&document);
     used.fill(&mut scene, &document, &mut materials)?;
     scene.images = materials.into_images();
+    scene.own_world = image_based_light::own_world(&document)?;
     scene.normals.iter_mut().for_each(|normal| *normal = normal.normalize_or_zero());
     complete(&document, &mut scene);
     flaws::check(&document);
@@ -330,7 +331,7 @@ fn complete(document: &Document<'_>, scene: &mut Scene) {
     view::focus_cameras(scene);
     let needs_light = scene.parts.iter().any(|part| !scene.materials[part.material as usize].unlit);
     let is_dark = !scene.lights.is_empty() && scene.lights.iter().all(|light| light.intensity == Vec3::ZERO);
-    if needs_light && is_dark && !scene.has_lamps() {
+    if needs_light && is_dark && !scene.has_lamps() && scene.own_world.is_none() {
         document.warn(
             "none of its lights shines, because of an intensity of 0; surfaces that need light are black",
         );

@@ -88,7 +88,11 @@ pub(crate) static ROOT: Spec = Spec {
         ("skins", List(&SKIN)),
         ("textures", List(&TEXTURE)),
     ],
-    extensions: &[("KHR_lights_punctual", &LIGHTS), ("KHR_materials_variants", &VARIANTS)],
+    extensions: &[
+        ("EXT_lights_image_based", &NONE),
+        ("KHR_lights_punctual", &LIGHTS),
+        ("KHR_materials_variants", &VARIANTS),
+    ],
     needs: &[("extensionsRequired", "extensionsUsed"), ("scene", "scenes")],
     ..NONE
 };
@@ -443,8 +447,12 @@ static SAMPLER: Spec = Spec {
     ..NONE
 };
 
-static SCENE: Spec =
-    Spec { optional: &[("name", Text), ("nodes", Indices("nodes"))], filled: &["nodes"], ..NONE };
+static SCENE: Spec = Spec {
+    optional: &[("name", Text), ("nodes", Indices("nodes"))],
+    extensions: &[("EXT_lights_image_based", &NONE)],
+    filled: &["nodes"],
+    ..NONE
+};
 
 static SKIN: Spec = Spec {
     required: &[("joints", Indices("nodes"))],
