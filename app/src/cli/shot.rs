@@ -35,7 +35,8 @@ pub fn opened(file: &Path, look: &SceneLook, steps: &dyn Steps) -> Result<Input,
         input.set_back_faces(back_faces);
     }
     if let Some(world) = world {
-        input.set_world(Some(world.load()?));
+        let world = world.load(&input.scene)?;
+        input.set_world(Some(world));
     }
     input.set_single_scattering(look.single_scattering);
     Ok(input)

@@ -1,6 +1,7 @@
 //! What is asked of a report.
 
-use scene::{BackFaces, World};
+use project::WorldFile;
+use scene::BackFaces;
 use session::{CameraChoice, VariantChoice};
 use std::path::PathBuf;
 
@@ -18,7 +19,7 @@ pub struct SceneRequest {
     /// The scene's variant.
     pub variant: VariantChoice,
     /// What lies beyond all surfaces; without one as the project says.
-    pub world: Option<World>,
+    pub world: Option<WorldFile>,
     /// Whether light that meets microfacets more than once is left out.
     pub single_scattering: bool,
 }

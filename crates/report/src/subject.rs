@@ -63,7 +63,8 @@ impl Subject {
             input.set_back_faces(back_faces);
         }
         if let Some(world) = &request.world {
-            input.set_world(Some(world.clone()));
+            let world = world.load(&input.scene)?;
+            input.set_world(Some(world));
         }
         input.set_single_scattering(request.single_scattering);
         let mut camera = input.camera(request.camera.as_ref())?;

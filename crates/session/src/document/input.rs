@@ -147,7 +147,7 @@ impl Input {
         let mut input =
             Self { path: path.into(), scene, camera, project: Some(project), salf: None, warnings };
         input.set_back_faces(back_faces);
-        match world.map(|world| world.load()).transpose() {
+        match world.map(|world| world.load(&input.scene)).transpose() {
             Ok(world) => input.set_world(world),
             Err(error) => {
                 input

@@ -220,12 +220,13 @@ impl Document {
 
     /// The document as it is saved now.
     pub fn to_project(&self) -> ProjectFile {
+        let scene = &self.stage.scene;
         let mut project = self.template.clone();
         project.cameras[project.active_camera].camera = self.camera.clone();
         project.exposure = self.exposure;
-        project.back_faces = self.stage.scene.back_faces;
-        project.variant = self.stage.scene.variant.clone();
-        project.world = self.stage.scene.world.as_ref().map(WorldFile::of);
+        project.back_faces = scene.back_faces;
+        project.variant = scene.variant.clone();
+        project.world = scene.world.as_ref().map(|world| WorldFile::of(world, scene));
         project.brush = self.brush.clone();
         project.view = self.view.clone();
         project.atlas = Some(self.stage.atlas.to_bytes());

@@ -111,6 +111,7 @@ impl Stage {
         let scene = Scene {
             back_faces: before.back_faces,
             world: before.world.clone(),
+            own_world: before.own_world.clone(),
             single_scattering: before.single_scattering,
             ..Arc::unwrap_or_clone(read)
         };

@@ -77,7 +77,7 @@ impl Restaging {
                     bounces: before.and_then(|world| world.bounces),
                     ..of_file
                 };
-                stage.with_world(Some(world.load()?), progress)
+                stage.with_world(Some(world.load(&stage.scene)?), progress)
             }
             Self::Variant { name, .. } => stage.with_variant(name.as_deref(), progress),
         }
