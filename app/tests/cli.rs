@@ -135,6 +135,35 @@ fn a_scene_is_told_about_rendered_and_kept_in_a_variant() {
 }
 
 #[test]
+fn a_scene_is_lit_by_what_it_brings_unless_a_world_is_given() {
+    let place = Workplace::new();
+    std::fs::write(place.path("lit.glb"), tiny_glb::lit(&tiny_glb::QUADS[1..])).unwrap();
+    assert_eq!(
+        place.json("info lit.glb --json")["scene"]["image_based_light"],
+        "image-based light six colours"
+    );
+    assert!(place.done("info lit.glb").contains("lit by       image-based light six colours"));
+    std::fs::write(place.path("red.json"), r#"{"environment": [1, 0, 0]}"#).unwrap();
+    std::fs::write(
+        place.path("own.json"),
+        r#"{"environment": "scene", "strength": 2, "rotation": 3.14159265}"#,
+    )
+    .unwrap();
+    let corner = |world: &str| {
+        place.done(&format!("render lit.glb --camera camera.json {world} -o out.exr"));
+        read_picture(&place.path("out.exr")).unwrap().rgb[0]
+    };
+    // The camera looks toward −Z, from where it is blue; turned by half a circle, it sees the green of +Z.
+    for (world, expected) in
+        [("", [0.0, 0.0, 2.0]), ("--world red.json", [1.0, 0.0, 0.0]), ("--world own.json", [0.0, 4.0, 0.0])]
+    {
+        let seen = corner(world);
+        assert!(seen.iter().zip(expected).all(|(a, b)| (a - b).abs() < 0.05), "{world}: {seen:?}");
+    }
+    place.fails("render quads.glb --world own.json -o x.exr", 3, &["quads.glb", "EXT_lights_image_based"]);
+}
+
+#[test]
 fn splat_and_truth_agree_and_the_blur_by_depth_does_not() {
     let place = Workplace::new();
     let report = place.json(&format!("render quads.glb {SHOT} -o splat.exr --json"));
