@@ -1,6 +1,6 @@
 //! Commands, and what each sets going.
 
-use super::restaging::{Cause, Restaging};
+use super::restaged::{Cause, Restaging};
 use super::state::{PREVIEW_JOB, Session};
 use crate::commands::{Command, Event};
 use crate::document::CameraEdit;

@@ -1,6 +1,6 @@
 //! Undo and redo: steps taken back and done again, and shown.
 
-use super::restaging::{Cause, Restaging};
+use super::restaged::{Cause, Restaging};
 use super::state::Session;
 use crate::commands::Event;
 use crate::document::{Document, Undoable, Undone};

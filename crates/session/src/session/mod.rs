@@ -13,6 +13,7 @@ mod outcome;
 mod painting;
 mod polling;
 mod recovery;
+mod restaged;
 mod restaging;
 mod showing;
 mod state;

@@ -1,6 +1,6 @@
 //! What background work hands to the session.
 
-use super::restaging::Restaged;
+use super::restaged::Restaged;
 use crate::document::Document;
 use crate::output::Reference;
 use std::path::PathBuf;
