@@ -93,6 +93,77 @@ impl Workplace {
 const SHOT: &str = "--camera camera.json --focus recipe.json";
 
 #[test]
+fn a_scene_is_told_about_rendered_and_kept_in_a_variant() {
+    let place = Workplace::new();
+    std::fs::write(place.path("varied.glb"), tiny_glb::varied(&tiny_glb::QUADS)).unwrap();
+    let told = place.json("info varied.glb --json");
+    let (known, chosen) = (&told["scene"]["variants"], &told["scene"]["variant"]);
+    assert_eq!((known, chosen), (&serde_json::json!(["Blue", "Green", "As painted"]), &Value::Null));
+    let lines = place.done("info varied.glb --variant Green");
+    assert!(lines.contains("\"Blue\", \"Green\", \"As painted\" (chosen: \"Green\")"), "{lines}");
+    assert!(!place.done("info quads.glb").contains("variants"));
+
+    // The card fills the picture's middle, left.
+    let card = |input: &str| {
+        place.done(&format!("render {input} --camera camera.json -o out.exr"));
+        let picture = read_picture(&place.path("out.exr")).unwrap();
+        let color = picture.rgb[(picture.height / 2 * picture.width + picture.width * 3 / 8) as usize];
+        let names = color.into_iter().zip(["red", "green", "blue"]);
+        names.max_by(|a, b| a.0.total_cmp(&b.0)).map_or("", |(_, name)| name)
+    };
+    assert_eq!((card("varied.glb"), card("varied.glb --variant Blue")), ("red", "blue"));
+    // A recipe by materials is of those that are seen.
+    std::fs::write(place.path("blue.json"), r#"{"materials": {"blue paint": {"t": 1.2, "anchor": 1}}}"#)
+        .unwrap();
+    place.done("new varied.glb --variant Blue --focus blue.json --camera camera.json -o blue.fbrush");
+    let project = ProjectFile::load(&place.path("blue.fbrush")).unwrap();
+    assert_eq!(project.variant.as_deref(), Some("Blue"));
+    assert!(project.focus_map.is_some_and(|map| map.to_rows().contains(&[1.2, 1.0])));
+    assert_eq!(place.json("info blue.fbrush --json")["scene"]["variant"], "Blue");
+    assert_eq!((card("blue.fbrush"), card("blue.fbrush --variant Green")), ("blue", "green"));
+    place.done("bake varied.glb --variant Blue --camera camera.json -o blue.salf");
+    assert_eq!(card("blue.salf"), "blue");
+    place.fails(
+        "render varied.glb --variant Pink -o x.exr",
+        3,
+        &["varied.glb", "\"Pink\"", "\"As painted\""],
+    );
+    place.fails("bake blue.fbrush --variant Pink -o x.salf", 3, &["varied.glb", "\"Pink\"", "\"Green\""]);
+    place.fails("new quads.glb --variant Blue -o x.fbrush", 3, &["quads.glb", "\"Blue\"", "no variants"]);
+    place.fails("info varied.glb --variant Pink", 3, &["varied.glb", "\"Pink\""]);
+    place.fails("report varied.glb --variant Pink --quick -o x", 3, &["varied.glb", "\"Pink\""]);
+}
+
+#[test]
+fn a_scene_is_lit_by_what_it_brings_unless_a_world_is_given() {
+    let place = Workplace::new();
+    std::fs::write(place.path("lit.glb"), tiny_glb::lit(&tiny_glb::QUADS[1..])).unwrap();
+    assert_eq!(
+        place.json("info lit.glb --json")["scene"]["image_based_light"],
+        "image-based light six colours"
+    );
+    assert!(place.done("info lit.glb").contains("lit by       image-based light six colours"));
+    std::fs::write(place.path("red.json"), r#"{"environment": [1, 0, 0]}"#).unwrap();
+    std::fs::write(
+        place.path("own.json"),
+        r#"{"environment": "scene", "strength": 2, "rotation": 3.14159265}"#,
+    )
+    .unwrap();
+    let corner = |world: &str| {
+        place.done(&format!("render lit.glb --camera camera.json {world} -o out.exr"));
+        read_picture(&place.path("out.exr")).unwrap().rgb[0]
+    };
+    // The camera looks toward −Z, from where it is blue; turned by half a circle, it sees the green of +Z.
+    for (world, expected) in
+        [("", [0.0, 0.0, 2.0]), ("--world red.json", [1.0, 0.0, 0.0]), ("--world own.json", [0.0, 4.0, 0.0])]
+    {
+        let seen = corner(world);
+        assert!(seen.iter().zip(expected).all(|(a, b)| (a - b).abs() < 0.05), "{world}: {seen:?}");
+    }
+    place.fails("render quads.glb --world own.json -o x.exr", 3, &["quads.glb", "EXT_lights_image_based"]);
+}
+
+#[test]
 fn splat_and_truth_agree_and_the_blur_by_depth_does_not() {
     let place = Workplace::new();
     let report = place.json(&format!("render quads.glb {SHOT} -o splat.exr --json"));

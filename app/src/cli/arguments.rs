@@ -3,7 +3,7 @@
 use clap::builder::{OsStringValueParser, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, ValueEnum};
 use scene::BackFaces;
-use session::{Aov, CameraChoice, Renderer};
+use session::{Aov, CameraChoice, Renderer, VariantChoice};
 use std::ffi::{OsStr, OsString};
 use std::path::PathBuf;
 
@@ -74,9 +74,24 @@ pub struct SceneLook {
     /// the scene's own; a scene without light has a studio)
     #[arg(long, value_name = "WORLD.json|SKY.hdr|exr")]
     pub world: Option<PathBuf>,
+    /// The variant of the scene's materials (KHR_materials_variants), by name; info lists them. "" is the scene's own materials
+    /// (default: the project's, or the scene's own; a light field is of the one it was baked in)
+    #[arg(long, value_name = "NAME", value_parser = name_parser())]
+    pub variant: Option<String>,
     /// Leave out light that meets microfacets more than once, to compare with renderers that do
     #[arg(long)]
     pub single_scattering: bool,
+}
+
+impl SceneLook {
+    /// The variant that was asked for.
+    pub fn variant(&self) -> VariantChoice {
+        match self.variant.as_deref() {
+            None => VariantChoice::AsSaved,
+            Some("") => VariantChoice::Own,
+            Some(name) => VariantChoice::Named(name.into()),
+        }
+    }
 }
 
 /// `info`.

@@ -7,7 +7,7 @@ use super::shot::{opened, unwrap_options};
 use lens::Camera;
 use progress::Unwatched;
 use project::{ProjectFile, camera_to_json};
-use scene::{Inspection, MeshHealth, Scene};
+use scene::{Environment, Inspection, LoadOptions, MeshHealth, Scene};
 use serde_json::{Value, json};
 use session::{Input, InputKind, Modelled, RenderOptions};
 use std::sync::Arc;
@@ -18,7 +18,11 @@ pub fn run(arguments: &InfoArguments, console: &Console) -> Result<(), Failure> 
     let file = arguments.file.as_path();
     let kind = InputKind::of(file)?;
     let inspection = match kind {
-        InputKind::Scene => Some(scene::inspect(file).map_err(session::SessionError::from)?),
+        InputKind::Scene => {
+            let variant = arguments.scene_look.variant.clone().filter(|name| !name.is_empty());
+            let options = LoadOptions { variant, ..LoadOptions::default() };
+            Some(scene::inspect(file, &options).map_err(session::SessionError::from)?)
+        }
         _ => None,
     };
     if let Some(inspection) = inspection.as_ref().filter(|inspection| inspection.triangles == 0) {
@@ -139,7 +143,26 @@ fn scene_lines(scene: &Scene, health: &MeshHealth) {
     let names: Vec<_> = scene.cameras.iter().map(|camera| format!("\"{}\"", camera.name)).collect();
     say(format!("  cameras      {}{}", names.join(", "), made_up(scene.camera_is_invented)));
     say(format!("  lights       {}", scene.lights.len()));
+    if let Some(name) = own_light(scene) {
+        let is_shown = if scene.world.is_some() { "; another world was chosen" } else { "" };
+        say(format!("  lit by       {name}{is_shown}"));
+    }
+    if !scene.variants.is_empty() {
+        let names: Vec<_> = scene.variants.iter().map(|name| format!("{name:?}")).collect();
+        let chosen = scene.variant.as_ref();
+        let chosen =
+            chosen.map_or_else(|| "none: the scene's own materials".into(), |name| format!("{name:?}"));
+        say(format!("  variants     {} (chosen: {chosen})", names.join(", ")));
+    }
     say(format!("  mesh         {}", mesh_sentence(health)));
+}
+
+/// What the scene's own environment is called, if it brings one.
+fn own_light(scene: &Scene) -> Option<&str> {
+    match &scene.own_world.as_ref()?.environment {
+        Environment::Map(map) => Some(&map.name),
+        Environment::Uniform(_) => None,
+    }
 }
 
 fn mesh_sentence(health: &MeshHealth) -> String {
@@ -224,6 +247,9 @@ fn scene_json(scene: &Scene) -> Value {
         "materials": scene.materials.iter().map(|material| &material.name).collect::<Vec<_>>(),
         "cameras": scene.cameras.iter().map(|camera| &camera.name).collect::<Vec<_>>(),
         "camera_is_invented": scene.camera_is_invented,
+        "image_based_light": own_light(scene),
+        "variants": scene.variants,
+        "variant": scene.variant,
         "lights": scene.lights.len(),
     })
 }

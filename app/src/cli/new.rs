@@ -5,7 +5,7 @@ use super::console::Console;
 use super::failure::Failure;
 use super::shot::{check_folder, unwrap_options, world};
 use project::ProjectFile;
-use session::Document;
+use session::{Beginning, Document};
 use std::path::Path;
 
 /// Makes a project of a scene.
@@ -13,8 +13,12 @@ pub fn run(arguments: &NewArguments, console: &Console) -> Result<(), Failure> {
     let output = &arguments.output;
     check_project_name(output)?;
     check_folder(output)?;
-    let (camera, focus) = (arguments.camera.as_ref(), arguments.focus.as_deref());
-    let document = Document::begin(&arguments.scene, camera, focus, &unwrap_options(None), console)?;
+    let beginning = Beginning {
+        camera: arguments.camera.as_ref(),
+        focus: arguments.focus.as_deref(),
+        variant: arguments.scene_look.variant(),
+    };
+    let document = Document::begin(&arguments.scene, &beginning, &unwrap_options(None), console)?;
     console.warn(&document.warnings);
     let mut project = document.to_project();
     project.back_faces = arguments.scene_look.back_faces.unwrap_or(project.back_faces);

@@ -17,7 +17,7 @@ pub fn run(arguments: &ReplayArguments, console: &Console) -> Result<(), Failure
     let steps = project::read_strokes(&arguments.strokes)?;
     let unwrap = unwrap_options(None);
     let mut document = match InputKind::of(&arguments.file)? {
-        InputKind::Scene => Document::begin(&arguments.file, None, None, &unwrap, console)?,
+        InputKind::Scene => Document::begin(&arguments.file, &Default::default(), &unwrap, console)?,
         _ => Document::open_saved(&arguments.file, &unwrap, console)?,
     };
     console.warn(&document.warnings);

@@ -104,12 +104,13 @@ fn backends(arguments: &ReportArguments) -> Result<Vec<Option<Gpu>>, Failure> {
 /// The scenes that were named; without any the demo, unless the hard cases were asked for.
 fn requests(arguments: &ReportArguments) -> Result<Vec<SceneRequest>, Failure> {
     let shot = &arguments.shot;
-    let world = world(&shot.scene_look)?.map(|world| world.load()).transpose()?;
+    let world = world(&shot.scene_look)?;
     let request = |file: &PathBuf| SceneRequest {
         file: file.clone(),
         camera: shot.camera.clone(),
         focus: shot.focus.clone(),
         back_faces: shot.scene_look.back_faces,
+        variant: shot.scene_look.variant(),
         world: world.clone(),
         single_scattering: shot.scene_look.single_scattering,
     };

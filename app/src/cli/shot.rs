@@ -30,12 +30,13 @@ pub fn unwrap_options(arguments: Option<&AtlasArguments>) -> UnwrapOptions {
 /// Opens what is to be shown, seen and lit as asked for.
 pub fn opened(file: &Path, look: &SceneLook, steps: &dyn Steps) -> Result<Input, Failure> {
     let world = world(look)?;
-    let mut input = Input::open(file, steps)?;
+    let mut input = Input::open_in(file, &look.variant(), steps)?;
     if let Some(back_faces) = look.back_faces {
         input.set_back_faces(back_faces);
     }
     if let Some(world) = world {
-        input.set_world(Some(world.load()?));
+        let world = world.load(&input.scene)?;
+        input.set_world(Some(world));
     }
     input.set_single_scattering(look.single_scattering);
     Ok(input)

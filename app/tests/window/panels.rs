@@ -100,7 +100,8 @@ fn the_atlas_is_painted_on_in_2d() {
     let mut steps = project::read_strokes(&strokes).unwrap();
     let begun = || {
         let scene = folder.path().join("wall.glb");
-        session::Document::begin(&scene, None, None, &Default::default(), &progress::Unwatched).unwrap()
+        session::Document::begin(&scene, &Default::default(), &Default::default(), &progress::Unwatched)
+            .unwrap()
     };
     let mut again = begun();
     assert_eq!(session::replay(&mut again, &steps).unwrap(), 1);

@@ -30,7 +30,7 @@ pub struct CanvasTexel {
 ///
 /// A brush finds its texels here by distance in the world, so chart seams, mirrored texture coordinates and
 /// instances do not matter to it.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Canvas {
     size: [u32; 2],
     /// World position of the tree's origin: its points are relative to it, in f32.
@@ -62,7 +62,7 @@ impl Canvas {
                 chart: atlas.chart_of[triangle as usize],
             }
         };
-        let part_owners = scene.parts.iter().map(|part| [part.node, part.material]).collect();
+        let part_owners = owners(scene);
         Self::from_texels(
             [atlas.width, atlas.height],
             texels.iter().map(seen).collect(),
@@ -89,6 +89,11 @@ impl Canvas {
         let (gutter_starts, gutters) = gutters_by_texel(size, &texels, gutters);
         let largest_texel = texels.iter().map(|texel| texel.area.sqrt() as f32).fold(0.0, f32::max);
         Self { size, origin, tree, texels, gutter_starts, gutters, largest_texel, part_owners }
+    }
+
+    /// The same surface in other materials: `scene` has the triangles and parts that the canvas was made of.
+    pub fn with_owners_of(&self, scene: &Scene) -> Self {
+        Self { part_owners: owners(scene), ..self.clone() }
     }
 
     /// Columns and rows of the map that it belongs to.
@@ -236,6 +241,11 @@ impl Canvas {
         }
         Changed::new(changed)
     }
+}
+
+/// Node and material of each part.
+fn owners(scene: &Scene) -> Vec<[u32; 2]> {
+    scene.parts.iter().map(|part| [part.node, part.material]).collect()
 }
 
 /// The gutters sorted by the texel that they copy, and where each texel's start. Gutters of texels that

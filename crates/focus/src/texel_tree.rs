@@ -5,7 +5,7 @@ use glam::Vec3;
 /// A balanced tree of boxes (a k-d tree) over points that were reordered so that each box is a range.
 ///
 /// The node of a range splits it in the middle, so ranges and children follow from the point count alone.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct TexelTree {
     points: Vec<Vec3>,
     /// In pre-order: a node's left child follows it.

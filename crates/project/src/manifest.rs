@@ -19,9 +19,12 @@ pub(crate) const MANIFEST: &str = "manifest.json";
 const FORMAT: &str = "focus-brush project";
 
 /// The newest version. It changes when an older program would misread the file.
-pub(crate) const VERSION: u64 = 4;
+pub(crate) const VERSION: u64 = 5;
 
-/// The version of a project without focal planes: older programs would take their layers for the ordinary lens.
+/// The version of a project in the scene's own materials, no variant of them: older programs would show these in its place.
+const WITHOUT_VARIANT: u64 = 4;
+
+/// The version of one without focal planes: older programs would take their layers for the ordinary lens.
 const WITHOUT_PLANES: u64 = 3;
 
 /// The version of a project whose brush is mirrored along the world's axes, if at all: older programs lose nothing of it.
@@ -48,6 +51,9 @@ pub(crate) struct Manifest {
     /// Whether faces are seen from behind, where that is told.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub back_faces: Option<String>,
+    /// The scene's variant, by name, where one was chosen.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub variant: Option<String>,
     /// What lies beyond all surfaces, where that was chosen: as in a world file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub world: Option<Value>,
@@ -94,10 +100,11 @@ pub(crate) struct MapEntry {
 
 impl Manifest {
     /// What a manifest calls the format, and the oldest version that can say it all.
-    pub fn format(brush: &Brush, layers: Option<&LayerRows>) -> (String, u64) {
+    pub fn format(brush: &Brush, layers: Option<&LayerRows>, variant: Option<&str>) -> (String, u64) {
         let has_planes = layers.is_some_and(|rows| rows.layers.iter().any(|row| row.plane.is_some()));
         let version = match (has_planes, brush.has_own_axes(), layers) {
-            (true, ..) => VERSION,
+            _ if variant.is_some() => VERSION,
+            (true, ..) => WITHOUT_VARIANT,
             (false, true, _) => WITHOUT_PLANES,
             (false, false, Some(_)) => ALONG_WORLD_AXES,
             (false, false, None) => WITHOUT_LAYERS,

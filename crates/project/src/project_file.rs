@@ -67,6 +67,8 @@ pub struct ProjectFile {
     pub exposure: Exposure,
     /// Whether faces that are not double sided are seen from behind.
     pub back_faces: BackFaces,
+    /// The scene's variant that was chosen, by name; else it has its own materials.
+    pub variant: Option<String>,
     /// The world that was chosen; else the scene has one of its own.
     pub world: Option<WorldFile>,
     /// The brush.
@@ -110,6 +112,7 @@ impl ProjectFile {
             active_camera: 0,
             exposure: Exposure::default(),
             back_faces: BackFaces::default(),
+            variant: None,
             world: None,
             brush: Brush::default(),
             view: Value::Null,
@@ -224,7 +227,7 @@ impl ProjectFile {
             let [width, height] = selection.size();
             MapEntry { entry: SELECTION.to_string(), width, height }
         });
-        let (format, version) = Manifest::format(&self.brush, layers.as_ref());
+        let (format, version) = Manifest::format(&self.brush, layers.as_ref(), self.variant.as_deref());
         let manifest = Manifest {
             format,
             version,
@@ -237,6 +240,7 @@ impl ProjectFile {
             active_camera: self.active_camera,
             exposure: exposure_name(self.exposure).to_string(),
             back_faces: (self.back_faces != BackFaces::default()).then(|| self.back_faces.name().to_string()),
+            variant: self.variant.clone(),
             world: self.world.as_ref().map(|world| world.to_json(file)),
             background_focus: [background.t, background.anchor],
             brush: self.brush.clone(),
@@ -322,6 +326,7 @@ impl ProjectFile {
             active_camera: manifest.active_camera,
             exposure,
             back_faces,
+            variant: manifest.variant,
             world,
             brush: manifest.brush,
             view: manifest.view,

@@ -1,7 +1,7 @@
 //! World files, and the world of a project: what lies beyond all surfaces.
 //!
 //! ```json
-//! {"environment": "FILE.hdr" | "FILE.exr" | "studio" | [r, g, b], "rotation": rad, "strength": 1.0,
+//! {"environment": "FILE.hdr" | "FILE.exr" | "studio" | "scene" | [r, g, b], "rotation": rad, "strength": 1.0,
 //!  "backdrop": "environment" | [r, g, b], "bounces": null}
 //! ```
 //!
@@ -12,7 +12,7 @@ use crate::ProjectError;
 use crate::json::{Field, Fields, Json};
 use crate::picture_file::read_picture;
 use glam::Vec3;
-use scene::{Backdrop, Environment, EnvironmentMap, World};
+use scene::{Backdrop, Environment, EnvironmentMap, Scene, World};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -41,6 +41,8 @@ pub enum EnvironmentChoice {
     File(PathBuf),
     /// Our own.
     Studio,
+    /// What the scene brings ([`Scene::own_world`]).
+    Scene,
     /// The same radiance from everywhere.
     Uniform(Vec3),
 }
@@ -67,9 +69,11 @@ impl WorldFile {
         Self::from_fields(&Field::root(file, &json).object()?)
     }
 
-    /// What says a world that was read before.
-    pub fn of(world: &World) -> Self {
+    /// What says a world of `scene` that was read before.
+    pub fn of(world: &World, scene: &Scene) -> Self {
+        let own = scene.own_world.as_ref().map(|own| &own.environment);
         let environment = match &world.environment {
+            environment if Some(environment) == own => EnvironmentChoice::Scene,
             Environment::Uniform(color) => EnvironmentChoice::Uniform(*color),
             environment if *environment == World::studio().environment => EnvironmentChoice::Studio,
             Environment::Map(map) => EnvironmentChoice::File(PathBuf::from(&map.name)),
@@ -100,6 +104,7 @@ impl WorldFile {
         if let Some(field) = fields.get("environment") {
             world.environment = match field.value {
                 Json::Text(text) if text == "studio" => EnvironmentChoice::Studio,
+                Json::Text(text) if text == "scene" => EnvironmentChoice::Scene,
                 Json::Text(text) => EnvironmentChoice::File(fields.folder().join(text)),
                 _ => EnvironmentChoice::Uniform(radiance(&field)?),
             };
@@ -132,6 +137,7 @@ impl WorldFile {
     pub fn to_json(&self, from: &Path) -> Value {
         let environment = match &self.environment {
             EnvironmentChoice::Studio => json!("studio"),
+            EnvironmentChoice::Scene => json!("scene"),
             EnvironmentChoice::Uniform(color) => json!(color.to_array()),
             EnvironmentChoice::File(file) => json!(crate::scene_path::ScenePath::new(file, from).path),
         };
@@ -149,16 +155,24 @@ impl WorldFile {
         json
     }
 
-    /// The world, its environment read.
+    /// The world of `scene`, its environment read.
     ///
     /// # Errors
-    /// If the environment's file cannot be used.
-    pub fn load(&self) -> Result<World, ProjectError> {
+    /// If the environment's file cannot be used, or the scene does not bring what is asked of it.
+    pub fn load(&self, scene: &Scene) -> Result<World, ProjectError> {
         let (environment, suits) = match &self.environment {
             EnvironmentChoice::Studio => {
                 let studio = World::studio();
                 (studio.environment, studio.backdrop)
             }
+            EnvironmentChoice::Scene => match &scene.own_world {
+                Some(own) => (own.environment.clone(), own.backdrop),
+                None => {
+                    let problem =
+                        "brings no environment (EXT_lights_image_based), which its world is to have";
+                    return Err(ProjectError::content(&scene.path, problem, "choose another environment"));
+                }
+            },
             EnvironmentChoice::Uniform(color) => (Environment::Uniform(*color), Backdrop::Environment),
             EnvironmentChoice::File(file) => {
                 (Environment::Map(Arc::new(read_environment(file)?)), Backdrop::Environment)
@@ -226,13 +240,16 @@ mod tests {
     #[test]
     fn missing_fields_have_defaults() {
         assert_eq!(read("{}").unwrap(), WorldFile::default());
-        let world = read("{}").unwrap().load().unwrap();
+        let world = read("{}").unwrap().load(&Scene::default()).unwrap();
         assert_eq!(world, World::studio());
-        let sky =
-            read(r#"{"environment": [1, 2, 3], "strength": 0.5, "bounces": 2}"#).unwrap().load().unwrap();
+        let sky = read(r#"{"environment": [1, 2, 3], "strength": 0.5, "bounces": 2}"#)
+            .unwrap()
+            .load(&Scene::default())
+            .unwrap();
         assert_eq!((sky.radiance(glam::DVec3::X), sky.bounces), (Vec3::new(0.5, 1.0, 1.5), Some(2)));
         assert_eq!(sky.seen(glam::DVec3::X), sky.radiance(glam::DVec3::X));
-        let before_red = read(r#"{"backdrop": [1, 0, 0], "bounces": null}"#).unwrap().load().unwrap();
+        let before_red =
+            read(r#"{"backdrop": [1, 0, 0], "bounces": null}"#).unwrap().load(&Scene::default()).unwrap();
         assert_eq!((before_red.seen(glam::DVec3::X), before_red.bounces), (Vec3::X, None));
     }
 
@@ -250,9 +267,14 @@ mod tests {
             let error = read(text).unwrap_err().to_string();
             assert!(error.contains(field), "{text}: {error}");
         }
-        let error = read(r#"{"environment": "nowhere.hdr"}"#).unwrap().load().unwrap_err().to_string();
+        let error = read(r#"{"environment": "nowhere.hdr"}"#)
+            .unwrap()
+            .load(&Scene::default())
+            .unwrap_err()
+            .to_string();
         assert!(error.contains("nowhere.hdr"), "{error}");
-        let error = read(r#"{"environment": "sky.png"}"#).unwrap().load().unwrap_err().to_string();
+        let error =
+            read(r#"{"environment": "sky.png"}"#).unwrap().load(&Scene::default()).unwrap_err().to_string();
         assert!(error.contains("equirectangular"), "{error}");
     }
 
@@ -276,6 +298,21 @@ mod tests {
     }
 
     #[test]
+    fn what_the_scene_brings_is_told_as_such() {
+        let map = EnvironmentMap { name: "light".into(), width: 2, height: 1, texels: vec![[2.0; 3]; 2] };
+        let own = World { environment: Environment::Map(Arc::new(map)), ..World::uniform(Vec3::ZERO) };
+        let scene = Scene { own_world: Some(own.clone()), path: "lit.glb".into(), ..Scene::default() };
+        let asked = read(r#"{"environment": "scene", "strength": 3}"#).unwrap();
+        let world = asked.load(&scene).unwrap();
+        assert_eq!(world, World { strength: 3.0, ..own });
+        assert_eq!(WorldFile::of(&world, &scene).to_json(Path::new("x.fbrush"))["environment"], "scene");
+        assert_eq!(WorldFile::of(&World::studio(), &scene).environment, EnvironmentChoice::Studio);
+        let without = Scene { path: "dark.glb".into(), ..Scene::default() };
+        let error = asked.load(&without).unwrap_err().to_string();
+        assert!(error.contains("dark.glb") && error.contains("EXT_lights_image_based"), "{error}");
+    }
+
+    #[test]
     fn environments_are_read_row_by_row() {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("sky.exr");
@@ -294,7 +331,7 @@ mod tests {
         };
         crate::exr_file::write_exr(&file, &exr, crate::exr_file::ExrSamples::Float).unwrap();
         let World { environment: Environment::Map(map), .. } =
-            WorldFile::of_environment(&file).load().unwrap()
+            WorldFile::of_environment(&file).load(&Scene::default()).unwrap()
         else {
             panic!("no map")
         };

@@ -125,7 +125,14 @@ fn layers_come_back_the_same_and_a_plain_document_stays_as_older_programs_know_i
     planar.save(&file).unwrap();
     assert_eq!(manifest(&file)["version"], 4);
     assert!(ProjectFile::load(&file).unwrap() == planar);
+
+    // Older programs would show the scene's own materials in the place of a variant.
+    let varied = ProjectFile { variant: Some("Midnight \"blue\"".into()), ..planar.clone() };
+    varied.save(&file).unwrap();
+    assert_eq!(manifest(&file)["version"], 5);
+    assert!(ProjectFile::load(&file).unwrap() == varied && varied != planar);
     layered.save(&file).unwrap();
+    assert_eq!((&manifest(&file)["version"], manifest(&file).get("variant")), (&2.into(), None));
 
     // What cannot be is refused, on saving and on opening.
     let small = focus::LayerStack::of(FocusMap::new(4, 4, FocusOffset::STANDARD));
@@ -264,7 +271,7 @@ fn wrong_content_is_told_with_its_entry() {
     };
     assert!(load(&|_, bytes| bytes).is_ok());
     let cases: [(Change<'_>, &str); 8] = [
-        (&in_manifest("\"version\": 1", "\"version\": 5"), "update the program"),
+        (&in_manifest("\"version\": 1", "\"version\": 6"), "update the program"),
         (&in_manifest("focus-brush project", "shopping list"), "shopping list"),
         (&in_manifest("\"active_camera\": 1", "\"active_camera\": 2"), "camera 2 of 2"),
         (&in_manifest("\"width\": 130", "\"width\": 131"), "focus.f32"),

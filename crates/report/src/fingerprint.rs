@@ -2,7 +2,7 @@
 
 use focus::{Focus, FocusSource};
 use lens::{ApertureShape, Camera};
-use scene::{Environment, ImageLevel, Scene, World};
+use scene::{Environment, ImageLevel, Scene};
 use sha2::{Digest, Sha256};
 use std::sync::Arc;
 
@@ -50,11 +50,14 @@ pub fn of_scene(scene: &Scene) -> String {
         .add_debug(&scene.materials)
         .add_debug(&scene.lights)
         .add_debug(&scene.back_faces)
+        .add_debug(&scene.own_world)
         .add_debug(&scene.world)
         .add_debug(&scene.single_scattering)
         .add(bytemuck::cast_slice(&scene.tangents));
-    if let Some(World { environment: Environment::Map(map), .. }) = &scene.world {
-        fingerprint = fingerprint.add(bytemuck::cast_slice(&map.texels));
+    for world in scene.own_world.iter().chain(&scene.world) {
+        if let Environment::Map(map) = &world.environment {
+            fingerprint = fingerprint.add(bytemuck::cast_slice(&map.texels));
+        }
     }
     for uv in &scene.further_uv {
         fingerprint = fingerprint.add(bytemuck::cast_slice(uv));

@@ -1,7 +1,8 @@
 //! What is asked of a report.
 
-use scene::{BackFaces, World};
-use session::CameraChoice;
+use project::WorldFile;
+use scene::BackFaces;
+use session::{CameraChoice, VariantChoice};
 use std::path::PathBuf;
 
 /// A scene to measure on.
@@ -15,8 +16,10 @@ pub struct SceneRequest {
     pub focus: Option<PathBuf>,
     /// Whether faces that are not double sided are seen from behind; without one as the project says.
     pub back_faces: Option<BackFaces>,
+    /// The scene's variant.
+    pub variant: VariantChoice,
     /// What lies beyond all surfaces; without one as the project says.
-    pub world: Option<World>,
+    pub world: Option<WorldFile>,
     /// Whether light that meets microfacets more than once is left out.
     pub single_scattering: bool,
 }

@@ -58,12 +58,13 @@ impl Subject {
             let what = "is baked for one size and tolerance, a report bakes many (give its scene or project)";
             return Err(SessionError::bad(&request.file, what));
         }
-        let mut input = Input::open(&request.file, steps)?;
+        let mut input = Input::open_in(&request.file, &request.variant, steps)?;
         if let Some(back_faces) = request.back_faces {
             input.set_back_faces(back_faces);
         }
         if let Some(world) = &request.world {
-            input.set_world(Some(world.clone()));
+            let world = world.load(&input.scene)?;
+            input.set_world(Some(world));
         }
         input.set_single_scattering(request.single_scattering);
         let mut camera = input.camera(request.camera.as_ref())?;

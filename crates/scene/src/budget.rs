@@ -26,7 +26,7 @@ impl Budget {
             triangles: Cell::new(options.max_triangles),
             work: Cell::new(MAX_WORK),
             checks: Cell::new(MAX_CHECKS),
-            options: *options,
+            options: options.clone(),
         }
     }
 

@@ -68,6 +68,14 @@ pub enum Fault {
         /// What to do.
         cure: String,
     },
+    /// It does not have the variant that was chosen.
+    #[error("no variant is called {name:?} ({known})")]
+    NoVariant {
+        /// What was asked for.
+        name: String,
+        /// The names that there are, in words.
+        known: String,
+    },
     /// A limit of [`crate::LoadOptions`] was passed.
     #[error("{what} (simplify the scene or raise the limit)")]
     TooBig {

@@ -4,7 +4,8 @@ use crate::document::Document;
 use crate::error::Fault;
 
 /// Read and honoured.
-pub(crate) const SUPPORTED: [&str; 23] = [
+pub(crate) const SUPPORTED: [&str; 25] = [
+    "EXT_lights_image_based",
     "EXT_mesh_gpu_instancing",
     "EXT_meshopt_compression",
     "EXT_texture_webp",
@@ -21,6 +22,7 @@ pub(crate) const SUPPORTED: [&str; 23] = [
     "KHR_materials_specular",
     "KHR_materials_transmission",
     "KHR_materials_unlit",
+    "KHR_materials_variants",
     "KHR_materials_volume",
     "KHR_mesh_quantization",
     "KHR_meshopt_compression",
@@ -31,9 +33,8 @@ pub(crate) const SUPPORTED: [&str; 23] = [
 ];
 
 /// Without influence on the default picture.
-const HARMLESS: [&str; 6] = [
+const HARMLESS: [&str; 5] = [
     "KHR_animation_pointer",
-    "KHR_materials_variants",
     "KHR_node_hoverability",
     "KHR_node_selectability",
     "KHR_xmp",

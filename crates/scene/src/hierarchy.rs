@@ -49,13 +49,19 @@ enum Walk {
     Lenient,
 }
 
+/// The index of the scene that is shown: `scene`, else the first; none where the file has none.
+pub(crate) fn shown_scene(document: &Document<'_>) -> Option<usize> {
+    let typed = document.typed();
+    typed.default_scene().or_else(|| typed.scenes().next()).map(|scene| scene.index())
+}
+
 /// The roots of the shown scene: of `scene`, else of the first scene, else of all.
 fn scene_roots(document: &Document<'_>) -> Result<Vec<usize>, Fault> {
     if let Err(fault) = document.sound("/scene") {
         document.warn(format!("{fault}; another is shown"));
     }
     let typed = document.typed();
-    if let Some(scene) = typed.default_scene().or_else(|| typed.scenes().next()) {
+    if let Some(scene) = shown_scene(document).and_then(|index| typed.scenes().nth(index)) {
         document.sound_below(&format!("/scenes/{}", scene.index()))?;
         return Ok(scene.nodes().map(|node| node.index()).collect());
     }

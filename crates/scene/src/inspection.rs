@@ -17,6 +17,8 @@ pub struct Inspection {
     pub primitives: [usize; 7],
     /// Materials of the file.
     pub materials: usize,
+    /// Names of its variants (KHR_materials_variants).
+    pub variants: Vec<String>,
     /// Images of the file.
     pub images: usize,
     /// Cameras of the file.

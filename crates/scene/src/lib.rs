@@ -16,7 +16,7 @@
 //!
 //! The road of a file: `container` (GLB chunks), `json_text` → `mending` (typed by the `gltf` crate) → `document` → `hierarchy` (which nodes, where) →
 //! `primitive` (checked `accessor`s to triangles, morphed) → `assembly` (instances and skins into the world) →
-//! `material_textures`, `texture_reader`, `material_properties`, `material_file` (materials, images) → `view`, `punctual_light` (what is missing is made up). `flaws` tells authors what else is out of order.
+//! `variants`, `material_textures`, `texture_reader`, `material_properties`, `material_file` (materials, images) → `view`, `punctual_light`, `image_based_light` (what is missing is made up). `flaws` tells authors what else is out of order.
 
 mod accessor;
 mod assembly;
@@ -32,6 +32,7 @@ mod extension;
 mod file_reference;
 mod flaws;
 mod hierarchy;
+mod image_based_light;
 mod image_file;
 mod inspection;
 mod instancing;
@@ -61,6 +62,7 @@ mod texture_lookup;
 mod texture_reader;
 mod triangulation;
 mod turned_faces;
+mod variants;
 mod view;
 mod world;
 

@@ -8,8 +8,9 @@ use crate::material_file::{MaterialReader, default_material};
 use crate::primitive::Primitive;
 use crate::source::{PartSource, Source};
 use crate::triangulation::MODE_NAMES;
+use crate::variants::Variants;
 use crate::{Inspection, LoadOptions, Material, Node, Scene, SceneError};
-use crate::{compressed, extension, flaws, instancing, punctual_light, skin, view};
+use crate::{compressed, extension, flaws, image_based_light, instancing, punctual_light, skin, view};
 use glam::{DMat4, Vec3};
 use progress::{Progress, Unwatched};
 use std::collections::HashMap;
@@ -49,8 +50,8 @@ pub fn load(path: &Path, options: &LoadOptions, progress: &dyn Progress) -> Resu
 ///
 /// # Errors
 /// As [`load`], but for [`SceneError::NoTriangles`].
-pub fn inspect(path: &Path) -> Result<Inspection, SceneError> {
-    Ok(open(path, &LoadOptions::default(), &Unwatched)?.1)
+pub fn inspect(path: &Path, options: &LoadOptions) -> Result<Inspection, SceneError> {
+    Ok(open(path, options, &Unwatched)?.1)
 }
 
 /// Reads a .glb or .gltf file to be written again, and gives it to `work`, which has it for as long as it takes.
@@ -67,7 +68,8 @@ pub fn with_source<T>(
         let bytes = read_file(path, options)?;
         let document = parse(path, &bytes, options)?;
         let mut parts = Some(Vec::new());
-        let (scene, ..) = geometry(path, &document, &mut parts, progress)?;
+        let variants = Variants::read(&document, options.variant.as_deref())?;
+        let (scene, ..) = geometry(path, &document, &variants, &mut parts, progress)?;
         Ok(work(&Source { document: &document, scene, parts: parts.unwrap_or_default() }))
     })
 }
@@ -104,10 +106,14 @@ fn read(path: &Path, options: &LoadOptions, progress: &dyn Progress) -> Result<(
     let document = parse(path, &bytes, options)?;
     progress.check()?;
 
-    let (mut scene, hierarchy, used) = geometry(path, &document, &mut None, progress)?;
+    let variants = Variants::read(&document, options.variant.as_deref())?;
+    let (mut scene, hierarchy, used) = geometry(path, &document, &variants, &mut None, progress)?;
+    scene.variant = variants.chosen().map(String::from);
+    scene.variants = variants.names;
     let mut materials = MaterialReader::new(&document);
     used.fill(&mut scene, &document, &mut materials)?;
     scene.images = materials.into_images();
+    scene.own_world = image_based_light::own_world(&document)?;
     scene.normals.iter_mut().for_each(|normal| *normal = normal.normalize_or_zero());
     complete(&document, &mut scene);
     flaws::check(&document);
@@ -123,11 +129,12 @@ fn parse<'a>(path: &Path, bytes: &'a [u8], options: &LoadOptions) -> Result<Docu
     Ok(document)
 }
 
-/// What the nodes show, and which materials that uses. Where the parts stand in the file is noted in `sources`, if that
+/// What the nodes show in a variant, and which materials that uses. Where the parts stand in the file is noted in `sources`, if that
 /// is wanted.
 fn geometry(
     path: &Path,
     document: &Document<'_>,
+    variants: &Variants,
     sources: &mut Option<Vec<PartSource>>,
     progress: &dyn Progress,
 ) -> Result<(Scene, Hierarchy, UsedMaterials), Stop> {
@@ -143,7 +150,7 @@ fn geometry(
             continue;
         }
         scene.lights.extend(punctual_light::node_light(document, &node, world)?);
-        let mesh = MeshNode { document, hierarchy: &hierarchy, node, world };
+        let mesh = MeshNode { document, variants, hierarchy: &hierarchy, node, world };
         mesh.read(&mut scene, &mut used, sources, progress)?;
     }
     Ok((scene, hierarchy, used))
@@ -210,6 +217,7 @@ impl UsedMaterials {
 /// A node on its way into the scene.
 struct MeshNode<'a> {
     document: &'a Document<'a>,
+    variants: &'a Variants,
     hierarchy: &'a Hierarchy,
     node: gltf::Node<'a>,
     world: DMat4,
@@ -295,7 +303,7 @@ impl MeshNode<'_> {
         for file in mesh.primitives() {
             progress.check()?;
             let place = format!("{place}/primitives/{}", file.index());
-            match Primitive::read(document, &file, &place, weights) {
+            match Primitive::read(document, &file, &place, self.variants, weights) {
                 Ok(Some(primitive)) => {
                     let material = used.index(document, primitive.material, &primitive.place);
                     primitives.push((file.index(), primitive, material));
@@ -323,7 +331,7 @@ fn complete(document: &Document<'_>, scene: &mut Scene) {
     view::focus_cameras(scene);
     let needs_light = scene.parts.iter().any(|part| !scene.materials[part.material as usize].unlit);
     let is_dark = !scene.lights.is_empty() && scene.lights.iter().all(|light| light.intensity == Vec3::ZERO);
-    if needs_light && is_dark && !scene.has_lamps() {
+    if needs_light && is_dark && !scene.has_lamps() && scene.own_world.is_none() {
         document.warn(
             "none of its lights shines, because of an intensity of 0; surfaces that need light are black",
         );
@@ -348,6 +356,7 @@ fn inspection(document: &Document<'_>, hierarchy: &Hierarchy, scene: &Scene) -> 
         meshes: document.len("meshes"),
         primitives,
         materials: document.len("materials"),
+        variants: scene.variants.clone(),
         images: document.len("images"),
         cameras: document.len("cameras"),
         lights: document.len("lights"),

@@ -1,7 +1,7 @@
-//! How much of the machine a scene file may use.
+//! How a scene file is read: in which of its variants, and how much of the machine it may use.
 
-/// Limits that keep a hostile or mistaken file from taking the machine.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// Which materials a scene has, and limits that keep a hostile or mistaken file from taking the machine.
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LoadOptions {
     /// Bytes that loading may hold at once: files, decoded images, vertices and triangles together.
     pub max_memory: u64,
@@ -9,11 +9,13 @@ pub struct LoadOptions {
     pub max_triangles: u64,
     /// Texels of one image.
     pub max_texels: u64,
+    /// The name of a variant (KHR_materials_variants), one of [`crate::Scene::variants`]; none: the file's own materials.
+    pub variant: Option<String>,
 }
 
 impl Default for LoadOptions {
-    /// 640 MiB (so that the whole program stays below 1 GiB), 5 million triangles, images up to 8192².
+    /// 640 MiB (so that the whole program stays below 1 GiB), 5 million triangles, images up to 8192²; the file's own materials.
     fn default() -> Self {
-        Self { max_memory: 640 << 20, max_triangles: 5_000_000, max_texels: 8192 * 8192 }
+        Self { max_memory: 640 << 20, max_triangles: 5_000_000, max_texels: 8192 * 8192, variant: None }
     }
 }

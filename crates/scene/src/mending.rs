@@ -88,6 +88,7 @@ pub(crate) fn typed(root: &Value, budget: &Budget) -> Result<(gltf::Document, Fa
 pub(crate) fn len(root: &Value, collection: &str) -> usize {
     let list = match collection {
         "lights" => root.pointer("/extensions/KHR_lights_punctual/lights"),
+        "variants" => root.pointer("/extensions/KHR_materials_variants/variants"),
         _ => root.get(collection),
     };
     list.and_then(Value::as_array).map_or(0, Vec::len)

@@ -36,6 +36,10 @@ pub struct Scene {
     pub nodes: Vec<Node>,
     /// Materials; the last may be glTF's default material.
     pub materials: Vec<Material>,
+    /// What the file's variants are called (KHR_materials_variants), no two alike: other choices among the materials.
+    pub variants: Vec<String>,
+    /// The variant that it is in, one of them; none: the file's own choice.
+    pub variant: Option<String>,
     /// Decoded images that the materials refer to.
     pub images: Vec<Image>,
     /// Lights in world space.
@@ -46,6 +50,8 @@ pub struct Scene {
     pub camera_is_invented: bool,
     /// Whether faces that are not double sided are seen from behind.
     pub back_faces: BackFaces,
+    /// What lies beyond all surfaces as the file has it (EXT_lights_image_based): the world where none was chosen.
+    pub own_world: Option<World>,
     /// The world that was chosen for it; else it has one of its own ([`World::of_scene`]).
     pub world: Option<World>,
     /// Whether light that meets microfacets more than once is left out, as in renderers that do.

@@ -4,10 +4,10 @@ use crate::{Material, Scene, World};
 use glam::Vec3;
 
 impl World {
-    /// The world of a scene: the one that was chosen for it; else `background` everywhere, if that was chosen; else the studio, if
-    /// nothing in the scene shines; else darkness.
+    /// The world of a scene: the one that was chosen for it; else that of its file; else `background` everywhere, if that was
+    /// chosen; else the studio, if nothing in the scene shines; else darkness.
     pub fn of_scene(scene: &Scene, background: Option<Vec3>) -> Self {
-        if let Some(world) = &scene.world {
+        if let Some(world) = scene.world.as_ref().or(scene.own_world.as_ref()) {
             return world.clone();
         }
         match background {

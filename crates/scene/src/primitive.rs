@@ -6,6 +6,7 @@ use crate::error::Fault;
 use crate::material_textures::{TextureInfo, further_uv_sets, tangent_texture};
 use crate::tangents;
 use crate::triangulation::{triangle, triangle_count};
+use crate::variants::Variants;
 use glam::{DVec3, Vec2, Vec4};
 use gltf::mesh::{Mode, Semantic};
 
@@ -13,7 +14,7 @@ use gltf::mesh::{Mode, Semantic};
 pub(crate) struct Primitive {
     /// JSON pointer.
     pub place: String,
-    /// Index of the material in the file.
+    /// Index of the material in the file, that of the chosen variant.
     pub material: Option<usize>,
     pub triangles: Vec<[u32; 3]>,
     /// Which element of the accessors each vertex is.
@@ -38,11 +39,12 @@ pub(crate) struct Primitive {
 const VERTEX_BYTES: u64 = 4 + 24 + 24 + 2 * 8 + 16;
 
 impl Primitive {
-    /// Reads a primitive under the weights of its morph targets; `None` if it has no triangles.
+    /// Reads a primitive in a variant under the weights of its morph targets; `None` if it has no triangles.
     pub fn read(
         document: &Document<'_>,
         file: &gltf::Primitive<'_>,
         place: &str,
+        variants: &Variants,
         weights: &[f64],
     ) -> Result<Option<Self>, Fault> {
         /// Reading the properties takes as long as reading so many values.
@@ -54,7 +56,8 @@ impl Primitive {
         if triangle_count(mode, 0).is_none() {
             return Ok(None);
         }
-        document.sound_below(&format!("{place}/extensions"))?;
+        document.sound(&format!("{place}/extensions"))?;
+        document.sound_below(&format!("{place}/extensions/KHR_draco_mesh_compression"))?;
         let attributes = Attributes { document, file, place: format!("{place}/attributes") };
         document.sound(&attributes.place)?;
         let position_place = format!("{}/POSITION", attributes.place);
@@ -65,20 +68,26 @@ impl Primitive {
         };
         let position = Accessor::open(document, position.index(), &position_place)?;
         let position = position.expect_components(&[3], "POSITION")?;
-        document.sound(&format!("{place}/material"))?;
+        let material = match variants.material(document, place)? {
+            Some(material) => Some(material),
+            None => {
+                document.sound(&format!("{place}/material"))?;
+                file.material().index()
+            }
+        };
         let corners = corners(document, file, place, position.count)?;
         let (triangles, vertices) = compact(&corners);
         drop(corners);
         if triangles.is_empty() {
             return Ok(None);
         }
-        let further_sets = further_uv_sets(document, file.material().index());
+        let further_sets = further_uv_sets(document, material);
         let vertex_bytes = VERTEX_BYTES + 8 * further_sets.len() as u64;
         let memory = triangles.len() as u64 * 12 + vertices.len() as u64 * vertex_bytes;
         document.budget.memory(memory, place)?;
         let mut primitive = Self {
             place: place.into(),
-            material: file.material().index(),
+            material,
             triangles,
             elements: Vec::new(),
             positions: vertices.iter().map(|&v| DVec3::from_array(position.doubles(v as usize))).collect(),
@@ -95,7 +104,7 @@ impl Primitive {
         primitive.read_uv(&attributes, &further_sets, &vertices, position.count)?;
         primitive.read_influences(&attributes, &vertices, position.count)?;
         primitive.morph(document, file, &further_sets, &vertices, position.count, weights)?;
-        if let Some(texture) = tangent_texture(document, file.material().index()) {
+        if let Some(texture) = tangent_texture(document, material) {
             primitive.read_tangents(&attributes, &texture, &further_sets, &vertices, position.count)?;
         }
         primitive.elements = vertices;

@@ -88,7 +88,11 @@ pub(crate) static ROOT: Spec = Spec {
         ("skins", List(&SKIN)),
         ("textures", List(&TEXTURE)),
     ],
-    extensions: &[("KHR_lights_punctual", &LIGHTS)],
+    extensions: &[
+        ("EXT_lights_image_based", &NONE),
+        ("KHR_lights_punctual", &LIGHTS),
+        ("KHR_materials_variants", &VARIANTS),
+    ],
     needs: &[("extensionsRequired", "extensionsUsed"), ("scene", "scenes")],
     ..NONE
 };
@@ -390,7 +394,19 @@ static PRIMITIVE: Spec = Spec {
         ("mode", Code(&[0, 1, 2, 3, 4, 5, 6])),
         ("targets", Targets),
     ],
-    extensions: &[("KHR_draco_mesh_compression", &NONE)],
+    extensions: &[("KHR_draco_mesh_compression", &NONE), ("KHR_materials_variants", &MAPPINGS)],
+    ..NONE
+};
+
+static VARIANTS: Spec = Spec { required: &[("variants", List(&VARIANT))], ..NONE };
+
+static VARIANT: Spec = Spec { required: &[("name", Text)], ..NONE };
+
+static MAPPINGS: Spec = Spec { required: &[("mappings", List(&MAPPING))], ..NONE };
+
+static MAPPING: Spec = Spec {
+    required: &[("material", Index("materials")), ("variants", Indices("variants"))],
+    optional: &[("name", Text)],
     ..NONE
 };
 
@@ -431,8 +447,12 @@ static SAMPLER: Spec = Spec {
     ..NONE
 };
 
-static SCENE: Spec =
-    Spec { optional: &[("name", Text), ("nodes", Indices("nodes"))], filled: &["nodes"], ..NONE };
+static SCENE: Spec = Spec {
+    optional: &[("name", Text), ("nodes", Indices("nodes"))],
+    extensions: &[("EXT_lights_image_based", &NONE)],
+    filled: &["nodes"],
+    ..NONE
+};
 
 static SKIN: Spec = Spec {
     required: &[("joints", Indices("nodes"))],

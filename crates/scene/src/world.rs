@@ -1,8 +1,10 @@
 //! What lies beyond all surfaces: it lights them, and it is seen where none is.
 
+mod cube_map;
 mod environment_map;
 mod studio;
 
+pub(crate) use cube_map::CubeMap;
 pub use environment_map::EnvironmentMap;
 
 use glam::{DVec3, Vec3};

@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 
 fn timed(file: &Path) -> Result<Inspection, SceneError> {
     let start = Instant::now();
-    let result = inspect(file);
+    let result = inspect(file, &Default::default());
     assert!(start.elapsed() < Duration::from_secs(2), "{}: {:?}", file.display(), start.elapsed());
     if let Err(error) = &result {
         let text = error.to_string();

@@ -42,7 +42,7 @@ fn compressed_meshes_are_what_they_were() {
         let [far, turned] = apart(&found, &plain);
         assert!(far < 3e-4 && turned < 0.03, "{name}: {far} apart, {turned} turned");
         assert!(found.warnings.iter().all(|warning| !warning.contains("ignored")), "{:?}", found.warnings);
-        let inspection = scene::inspect(&path(name)).unwrap();
+        let inspection = scene::inspect(&path(name), &LoadOptions::default()).unwrap();
         let is_told = inspection.extensions_required.iter().any(|name| name.contains("compression"));
         assert!(is_told, "{:?}", inspection.extensions_required);
     }

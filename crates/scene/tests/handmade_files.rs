@@ -318,7 +318,7 @@ fn points_are_not_enough_but_can_be_inspected() {
         matches!(error, SceneError::NoTriangles { .. }) && error.to_string().contains("points.glb"),
         "{error}"
     );
-    let inspection = inspect(&file).unwrap();
+    let inspection = inspect(&file, &LoadOptions::default()).unwrap();
     assert_eq!((inspection.primitives[0], inspection.triangles), (1, 0));
 }
 

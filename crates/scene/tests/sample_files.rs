@@ -20,7 +20,7 @@ fn every_model_opens() {
     for file in files {
         let start = Instant::now();
         let name = file.strip_prefix(&folder).unwrap().display().to_string();
-        let inspection = inspect(&file).unwrap_or_else(|error| panic!("{error}"));
+        let inspection = inspect(&file, &LoadOptions::default()).unwrap_or_else(|error| panic!("{error}"));
         let only_points_or_lines =
             ["00", "01", "02", "03", "07"].iter().any(|n| name.contains(&format!("Mode_{n}")));
         match open(&file) {

@@ -31,8 +31,8 @@ pub use baselines::{FirstHits, LayeredOptions, ScatterOptions, ViewsOptions};
 pub use commands::{COMMANDS, Command, CommandId, CommandInfo, Event, KeyMap, Menu, Shortcut};
 pub use display::{Display, LivePicture, Screen, ScreenPixel, Tone, ToneCurve, to_screen};
 pub use document::{
-    CameraChoice, CameraEdit, Document, HistoryStep, Input, InputKind, Stage, SurfaceHit, camera_of,
-    chief_ray, load_scene, pick, view_ray,
+    Beginning, CameraChoice, CameraEdit, Document, HistoryStep, Input, InputKind, Stage, SurfaceHit,
+    VariantChoice, camera_of, chief_ray, load_scene, pick, view_ray,
 };
 pub use editing::{FillRegion, StrokePoint, StrokeTarget, rectangle, replay};
 pub use error::SessionError;

@@ -104,7 +104,10 @@ fn a_template_begins_a_document_without_a_file() {
     let recipe = folder.path().join("recipe.json");
     std::fs::write(&recipe, r#"{"nodes": {"card": {"t": 1.1, "anchor": 1}}}"#).unwrap();
     let unwrap = Default::default();
-    let begun = session::Document::begin(&scene, None, Some(&recipe), &unwrap, &progress::Unwatched).unwrap();
+    let begun = {
+        let beginning = session::Beginning { focus: Some(&recipe), ..Default::default() };
+        session::Document::begin(&scene, &beginning, &unwrap, &progress::Unwatched).unwrap()
+    };
     begun.to_project().save(&template).unwrap();
     let bytes = std::fs::read(&template).unwrap();
 

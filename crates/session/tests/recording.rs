@@ -79,14 +79,16 @@ fn recorded_strokes_paint_the_same_map_again_whatever_the_timing() {
     assert_eq!(first.points.len(), 51);
     let strokes: Vec<_> = steps.iter().filter(|s| matches!(s, RecordedStep::Stroke(_))).cloned().collect();
     let nobody = progress::Unwatched;
-    let mut again = session::Document::begin(&scene, None, None, &Default::default(), &nobody).unwrap();
+    let mut again =
+        session::Document::begin(&scene, &Default::default(), &Default::default(), &nobody).unwrap();
     let missing = session::replay(&mut again, &strokes).unwrap_err().to_string();
     assert!(
         missing.contains("step 5") && missing.contains("Layer 1") && missing.contains("Paint"),
         "{missing}"
     );
 
-    let mut again = session::Document::begin(&scene, None, None, &Default::default(), &nobody).unwrap();
+    let mut again =
+        session::Document::begin(&scene, &Default::default(), &Default::default(), &nobody).unwrap();
     assert_eq!(session::replay(&mut again, &steps).unwrap(), 6);
     assert!(again.map == document.map && again.layers == document.layers);
 
@@ -142,7 +144,8 @@ fn a_stroke_is_mirrored_about_the_object_it_begins_on_and_so_is_its_recording() 
     assert!(text.contains("mirror_center") && !text.contains("mirror_by_object"), "{text}");
     let steps = project::read_strokes(&strokes).unwrap();
     let nobody = progress::Unwatched;
-    let mut again = session::Document::begin(&scene, None, None, &Default::default(), &nobody).unwrap();
+    let mut again =
+        session::Document::begin(&scene, &Default::default(), &Default::default(), &nobody).unwrap();
     assert_eq!(session::replay(&mut again, &steps).unwrap(), 1);
     assert!(again.map == session.document().unwrap().map);
 

@@ -81,7 +81,7 @@ fn write_wall(file: &Path, layouts: &[[[f32; 2]; 2]]) {
 }
 
 fn begun(file: &Path) -> Document {
-    Document::begin(file, None, None, &Default::default(), &progress::Unwatched).unwrap()
+    Document::begin(file, &Default::default(), &Default::default(), &progress::Unwatched).unwrap()
 }
 
 /// The shot camera, small and with a wide lens focused on the wall.

@@ -13,6 +13,7 @@ mod preset_row;
 mod scene_panel;
 mod shape_panel;
 mod tool_panel;
+mod variant_panel;
 mod world_panel;
 
 pub use layers_panel::is_layer_command_possible;
@@ -73,6 +74,11 @@ impl Inspector {
             section(ui, "Picture", true, |ui| {
                 lens_panel::picture_panel(ui, session, document, settings, actions);
             });
+            if !document.scene().variants.is_empty() {
+                section(ui, "Material variants", true, |ui| {
+                    variant_panel::variant_panel(ui, document, actions);
+                });
+            }
             section(ui, "World", true, |ui| world_panel::world_panel(ui, document, actions));
             section(ui, "Scene", false, |ui| self.scene.ui(ui, document, actions));
             section(ui, "What was modelled", false, |ui| {

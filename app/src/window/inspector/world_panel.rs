@@ -4,8 +4,9 @@ use crate::window::Action;
 use crate::window::controls::{proportional, row, rows};
 use egui::{Button, ComboBox, DragValue, Ui};
 use glam::{DVec3, Vec3};
-use scene::{Backdrop, Environment, World};
+use scene::{Backdrop, Environment, Scene, World};
 use session::{Command, Document};
+use std::sync::Arc;
 
 /// What shines from infinity, as the panel offers it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -21,11 +22,11 @@ pub fn world_panel(ui: &mut Ui, document: &Document, actions: &mut Vec<Action>) 
     let scene = document.scene();
     let background = document.camera.background.map(|color| DVec3::from_array(color).as_vec3());
     let shown = World::of_scene(scene, background);
-    let kind = kind_of(scene.world.as_ref());
+    let kind = kind_of(scene);
     rows(ui, "world", |ui| {
         let tip = "What shines on the scene from everywhere. Drop an equirectangular .hdr or .exr on the window to use it.";
         row(ui, "Environment", tip, |ui| environment_choice(ui, kind, &shown, actions));
-        if let Some(source) = source(&shown) {
+        if let Some(source) = source(&shown, scene) {
             row(ui, "Source", "Where the environment is from.", |ui| {
                 ui.add(egui::Label::new(source).truncate())
             });
@@ -63,25 +64,43 @@ pub fn world_panel(ui: &mut Ui, document: &Document, actions: &mut Vec<Action>) 
     });
 }
 
-fn kind_of(world: Option<&World>) -> Kind {
-    match world.map(|world| &world.environment) {
+fn kind_of(scene: &Scene) -> Kind {
+    match scene.world.as_ref().map(|world| &world.environment) {
         None => Kind::Own,
+        Some(environment) if is_own(environment, scene) => Kind::Own,
         Some(Environment::Uniform(_)) => Kind::Color,
         Some(environment) if *environment == World::studio().environment => Kind::Studio,
         Some(_) => Kind::File,
     }
 }
 
-/// The name of an environment's file.
-fn source(world: &World) -> Option<String> {
+/// Whether an environment is the one that the scene's file brings.
+fn is_own(environment: &Environment, scene: &Scene) -> bool {
+    let own = scene.own_world.as_ref().map(|own| &own.environment);
+    match (environment, own) {
+        // The usual case, told without a look at the texels.
+        (Environment::Map(map), Some(Environment::Map(own))) if Arc::ptr_eq(map, own) => true,
+        (environment, own) => Some(environment) == own,
+    }
+}
+
+/// The name of an environment's file, or what the scene calls its own.
+fn source(world: &World, scene: &Scene) -> Option<String> {
     let Environment::Map(map) = &world.environment else { return None };
+    if is_own(&world.environment, scene) {
+        return Some(format!("{} of the scene", map.name));
+    }
     let name = std::path::Path::new(&map.name).file_name();
     Some(name.map_or_else(|| map.name.clone(), |name| name.to_string_lossy().into_owned()))
 }
 
 fn environment_choice(ui: &mut Ui, kind: Kind, shown: &World, actions: &mut Vec<Action>) -> egui::Response {
     let choices = [
-        (Kind::Own, "The scene's own", "What the scene brings; a scene without light has the studio."),
+        (
+            Kind::Own,
+            "The scene's own",
+            "What the scene brings (EXT_lights_image_based); a scene without light has the studio.",
+        ),
         (Kind::Studio, "Studio", "A soft neutral studio."),
         (Kind::Color, "Color", "The same radiance from everywhere."),
         (Kind::File, "Picture…", "An equirectangular picture, .hdr or .exr."),

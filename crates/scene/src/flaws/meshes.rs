@@ -6,7 +6,8 @@ use crate::attribute_name::AttributeName;
 use crate::document::Document;
 use crate::extension;
 use crate::json_object::Object;
-use std::collections::HashMap;
+use crate::variants;
+use std::collections::{HashMap, HashSet};
 
 pub(super) fn check(document: &Document<'_>) {
     let quantized = extension::used(document).any(|name| name == "KHR_mesh_quantization");
@@ -89,6 +90,21 @@ impl<'a> MeshCheck<'a> {
             self.target(&target, &attributes, count);
         }
         self.material(primitive, &attributes);
+        self.mappings(primitive);
+    }
+
+    /// A variant may have one material.
+    fn mappings(&self, primitive: &Object<'a>) {
+        let Ok(Some(variants)) = primitive.extension(variants::EXTENSION) else { return };
+        let mut mapped = HashSet::new();
+        for mapping in variants.objects("mappings").unwrap_or_default() {
+            for variant in mapping.indices("variants").unwrap_or_default() {
+                if !mapped.insert(variant) {
+                    let what = format!("variant {variant} has a material already, which it keeps");
+                    self.warn(&format!("{}/variants", mapping.place), what);
+                }
+            }
+        }
     }
 
     /// The accessor that an attribute refers to.

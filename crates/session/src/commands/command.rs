@@ -37,7 +37,7 @@ pub enum Command {
     /// Replaces the focus map by one that was exported for this atlas.
     ImportFocusMap(PathBuf),
 
-    /// Takes back the last stroke, fill, selection or lens change.
+    /// Takes back the last stroke, fill, selection, or change of lens or variant.
     Undo,
     /// Does again what was taken back.
     Redo,
@@ -60,6 +60,8 @@ pub enum Command {
     SetWorld(Option<World>),
     /// The same of an environment's file, .hdr or .exr, which is read in the background.
     LoadEnvironment(PathBuf),
+    /// The scene's variant, by name; none: its own materials. The scene is read again in the background; a step of undo.
+    SetVariant(Option<String>),
     /// How the screen shows any picture. No part of the document.
     SetDisplay(Display),
     /// Shows the live picture through one aperture point, in [−1, 1]² (see [`lens::Aperture::sub_aperture`]), or through

@@ -10,7 +10,7 @@ use std::path::PathBuf;
 pub enum Event {
     /// A document was opened; everything drawn of the old one is stale.
     Opened,
-    /// Other faces are seen than before; what is drawn of the scene's surface is stale.
+    /// Other faces or materials are seen than before, or in another light; what is drawn of the scene's surface is stale.
     SurfaceChanged,
     /// The camera changed (also by undo).
     CameraChanged,

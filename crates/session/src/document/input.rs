@@ -1,7 +1,8 @@
 //! What can be opened: a scene, a project or a light field, as the renderers need it.
 
 use super::scene_camera::camera_of;
-use super::stage::{Stage, atlas_error, load_scene};
+use super::stage::{Stage, atlas_error, load_variant};
+use super::variant_choice::VariantChoice;
 use crate::error::SessionError;
 use crate::jobs::Steps;
 use atlas::{Atlas, UnwrapOptions};
@@ -9,7 +10,7 @@ use focus::{Focus, FocusMap, FocusRecipe, RecipeEntry};
 use lens::{Camera, Exposure, FocusOffset};
 use project::{FocusFile, ProjectError, ProjectFile, SceneState, read_camera, read_focus};
 use salf::{Salf, SalfFile};
-use scene::{BackFaces, Scene, World};
+use scene::{BackFaces, Fault, Scene, SceneError, World};
 use std::fs::File;
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
@@ -90,15 +91,20 @@ impl InputKind {
 impl Input {
     /// Opens `path`.
     pub fn open(path: &Path, steps: &dyn Steps) -> Result<Self, SessionError> {
+        Self::open_in(path, &VariantChoice::AsSaved, steps)
+    }
+
+    /// Opens `path` in a variant of its scene.
+    pub fn open_in(path: &Path, variant: &VariantChoice, steps: &dyn Steps) -> Result<Self, SessionError> {
         match InputKind::of(path)? {
-            InputKind::Scene => Self::open_scene(path, steps),
-            InputKind::Project => Self::open_project(path, ProjectFile::load(path)?, steps),
-            InputKind::LightField => Self::open_light_field(path, steps),
+            InputKind::Scene => Self::open_scene(path, variant, steps),
+            InputKind::Project => Self::open_project(path, ProjectFile::load(path)?, variant, steps),
+            InputKind::LightField => Self::open_light_field(path, variant, steps),
         }
     }
 
-    fn open_scene(path: &Path, steps: &dyn Steps) -> Result<Self, SessionError> {
-        let scene = load_scene(path, &*steps.begin("reading"))?;
+    fn open_scene(path: &Path, variant: &VariantChoice, steps: &dyn Steps) -> Result<Self, SessionError> {
+        let scene = load_variant(path, variant.name(None), &*steps.begin("reading"))?;
         let camera = camera_of(&scene.cameras[0], &Camera::default());
         let warnings = named(path, &scene.warnings);
         Ok(Self { path: path.into(), scene, camera, project: None, salf: None, warnings })
@@ -108,6 +114,7 @@ impl Input {
     pub(crate) fn open_project(
         path: &Path,
         project: ProjectFile,
+        variant: &VariantChoice,
         steps: &dyn Steps,
     ) -> Result<Self, SessionError> {
         let mut warnings = Vec::new();
@@ -123,14 +130,24 @@ impl Input {
                 return Err(SessionError::bad(path, what));
             }
         }
-        let scene = load_scene(&project.scene, &*steps.begin("reading"))?;
+        let load = |variant| load_variant(&project.scene, variant, &*steps.begin("reading"));
+        let scene = match load(variant.name(project.variant.as_deref())) {
+            Err(SceneError::Bad { file, fault: fault @ Fault::NoVariant { .. } })
+                if *variant == VariantChoice::AsSaved =>
+            {
+                let instead = "it has its own materials instead, choose a variant before saving";
+                warnings.push(format!("{}: {fault}; {instead}", file.display()));
+                load(None)?
+            }
+            loaded => loaded?,
+        };
         warnings.extend(named(&project.scene, &scene.warnings));
         let camera = project.cameras[project.active_camera].camera.clone();
         let (back_faces, world) = (project.back_faces, project.world.clone());
         let mut input =
             Self { path: path.into(), scene, camera, project: Some(project), salf: None, warnings };
         input.set_back_faces(back_faces);
-        match world.map(|world| world.load()).transpose() {
+        match world.map(|world| world.load(&input.scene)).transpose() {
             Ok(world) => input.set_world(world),
             Err(error) => {
                 input
@@ -162,7 +179,11 @@ impl Input {
         }
     }
 
-    fn open_light_field(path: &Path, steps: &dyn Steps) -> Result<Self, SessionError> {
+    fn open_light_field(
+        path: &Path,
+        variant: &VariantChoice,
+        steps: &dyn Steps,
+    ) -> Result<Self, SessionError> {
         let file = File::open(path).map_err(|error| SessionError::io(path, &error))?;
         let SalfFile { source, triangles, salf } =
             SalfFile::read(BufReader::new(file)).map_err(|error| SessionError::bad(path, error))?;
@@ -171,7 +192,7 @@ impl Input {
             let what = format!("the scene it was baked from, {}, is missing (put it back)", beside.display());
             return Err(SessionError::bad(path, what));
         }
-        let baked_from = Self::open(&beside, steps)?;
+        let baked_from = Self::open_in(&beside, variant, steps)?;
         if baked_from.scene.triangles.len() != triangles as usize {
             let what =
                 format!("the scene it was baked from, {}, has changed since (bake again)", beside.display());
@@ -298,6 +319,6 @@ impl Input {
 }
 
 /// Warnings that say whose they are.
-fn named(path: &Path, warnings: &[String]) -> Vec<String> {
+pub(crate) fn named(path: &Path, warnings: &[String]) -> Vec<String> {
     warnings.iter().map(|warning| format!("{}: {warning}", path.display())).collect()
 }

@@ -1,6 +1,6 @@
 //! A checksum of a scene's light: two scenes of the same one are lit, block and reflect light alike.
 
-use scene::{Environment, ImageLevel, Scene, World};
+use scene::{Environment, ImageLevel, Scene};
 use sha2::{Digest, Sha256};
 
 /// A checksum of everything in a scene that gives, blocks or reflects light.
@@ -25,18 +25,20 @@ pub(crate) fn light_hash(scene: &Scene) -> [u8; 32] {
             ImageLevel::Bits16(texels) => arrays(bytemuck::cast_slice(texels)),
         }
     }
-    if let Some(World { environment: Environment::Map(map), .. }) = &scene.world {
+    for world in scene.own_world.iter().chain(&scene.world) {
+        let Environment::Map(map) = &world.environment else { continue };
         arrays(format!("{} {}", map.width, map.height).as_bytes());
         arrays(bytemuck::cast_slice(&map.texels));
     }
     // Written out, numbers are as exact as they are.
     arrays(
         format!(
-            "{:?} {:?} {:?} {:?} {:?} {:?}",
+            "{:?} {:?} {:?} {:?} {:?} {:?} {:?}",
             scene.parts,
             scene.materials,
             scene.lights,
             scene.back_faces,
+            scene.own_world,
             scene.world,
             scene.single_scattering
         )
@@ -63,6 +65,27 @@ mod tests {
         let uv = Scene { uv: [vec![glam::Vec2::ONE], Vec::new()], ..Scene::default() };
         let other = Scene { uv: [Vec::new(), vec![glam::Vec2::ONE]], ..Scene::default() };
         assert_ne!(light_hash(&uv), light_hash(&other));
+        let brings = |light: f32| {
+            let map = scene::EnvironmentMap {
+                name: "light".into(),
+                width: 2,
+                height: 1,
+                texels: vec![[light; 3]; 2],
+            };
+            let environment = Environment::Map(std::sync::Arc::new(map));
+            let own = scene::World { environment, ..scene::World::studio() };
+            light_hash(&Scene { own_world: Some(own), ..Scene::default() })
+        };
+        assert!(brings(1.0) != dark && brings(1.0) != brings(2.0));
+        // Materials that are seen in another variant.
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("varied.glb");
+        std::fs::write(&file, crate::tiny_glb::varied(&crate::tiny_glb::QUADS)).unwrap();
+        let of = |variant: Option<&str>| {
+            light_hash(&super::super::stage::load_variant(&file, variant, &progress::Unwatched).unwrap())
+        };
+        assert!(of(None) != of(Some("Blue")) && of(Some("Blue")) != of(Some("Green")));
+        assert_eq!(of(None), of(Some("As painted")), "what looks alike has the same light");
         let further = |u: f32| Scene { further_uv: vec![vec![glam::Vec2::splat(u)]], ..Scene::default() };
         assert_ne!(light_hash(&further(0.0)), light_hash(&further(1.0)));
     }

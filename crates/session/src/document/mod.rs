@@ -12,15 +12,17 @@ mod picking;
 mod scene_camera;
 mod stage;
 mod undo;
+mod variant_choice;
 
 pub use camera_edit::CameraEdit;
 pub use input::{CameraChoice, Input, InputKind};
 pub(crate) use light_hash::light_hash;
-pub use open_document::Document;
+pub use open_document::{Beginning, Document};
 pub use picking::{SurfaceHit, chief_ray, pick, view_ray};
 pub use scene_camera::camera_of;
 pub use stage::{Stage, load_scene};
 pub use undo::HistoryStep;
+pub use variant_choice::VariantChoice;
 
 pub(crate) use adjusted_view::AdjustedView;
 pub(crate) use stage::atlas_error;

@@ -1,11 +1,12 @@
 //! What is open: the scene, its focus and its camera.
 
 use super::adjusted_view::AdjustedView;
-use super::input::{CameraChoice, Input, InputKind};
+use super::input::{CameraChoice, Input, InputKind, named};
 use super::picking::SurfaceHit;
 use super::scene_camera::camera_of;
 use super::stage::Stage;
 use super::undo::{HistoryStep, Undo};
+use super::variant_choice::VariantChoice;
 use crate::error::{SessionError, file_name};
 use crate::jobs::Steps;
 use atlas::UnwrapOptions;
@@ -18,7 +19,18 @@ use scene::Scene;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// An open document. Focus map and camera are saved and can be undone. The selection can be undone and is saved with them,
+/// What a new document begins with.
+#[derive(Clone, Debug, Default)]
+pub struct Beginning<'a> {
+    /// The camera; without one the scene's first.
+    pub camera: Option<&'a CameraChoice>,
+    /// A recipe or a focus map; without one the ordinary lens.
+    pub focus: Option<&'a Path>,
+    /// The scene's variant.
+    pub variant: VariantChoice,
+}
+
+/// An open document. Focus map, camera and the scene's variant are saved and can be undone. The selection can be undone and is saved with them,
 /// but is no change of theirs; brush, exposure and view are saved, too, and are not part of the history.
 pub struct Document {
     /// Scene, atlas and what works on them.
@@ -76,7 +88,7 @@ impl Document {
         let recovered = project::find_recovery(&recovery, is_project.then_some(path));
         let is_recovered = recovered.is_some();
         let input = match recovered {
-            Some(project) => Input::open_project(path, project, steps)?,
+            Some(project) => Input::open_project(path, project, &VariantChoice::AsSaved, steps)?,
             None => Input::open(path, steps)?,
         };
         let mut document = Self::of(input, unwrap, steps)?;
@@ -97,7 +109,7 @@ impl Document {
         let template = ProjectFile::load(path)?;
         let recovered = project::find_recovery(&recovery_path(&template.scene, false), None);
         let is_recovered = recovered.is_some();
-        let input = Input::open_project(path, recovered.unwrap_or(template), steps)?;
+        let input = Input::open_project(path, recovered.unwrap_or(template), &VariantChoice::AsSaved, steps)?;
         let mut document = Self::of(input, unwrap, steps)?;
         if is_recovered {
             document.note_recovery(path);
@@ -107,26 +119,25 @@ impl Document {
 
     /// Opens a project as it was saved, whatever was left unsaved.
     pub fn open_saved(path: &Path, unwrap: &UnwrapOptions, steps: &dyn Steps) -> Result<Self, SessionError> {
-        let input = Input::open_project(path, ProjectFile::load(path)?, steps)?;
+        let input = Input::open_project(path, ProjectFile::load(path)?, &VariantChoice::AsSaved, steps)?;
         Ok(Self { path: Some(path.into()), ..Self::of(input, unwrap, steps)? })
     }
 
-    /// Begins a document: a scene with a camera and a focus (a recipe or a focus map), where they are given.
+    /// Begins a document of a scene.
     pub fn begin(
         scene: &Path,
-        camera: Option<&CameraChoice>,
-        focus: Option<&Path>,
+        beginning: &Beginning<'_>,
         unwrap: &UnwrapOptions,
         steps: &dyn Steps,
     ) -> Result<Self, SessionError> {
         if InputKind::of(scene)? != InputKind::Scene {
             return Err(SessionError::bad(scene, "is no scene (give a .glb or .gltf)"));
         }
-        let input = Input::open(scene, steps)?;
-        let camera = input.camera(camera)?;
+        let input = Input::open_in(scene, &beginning.variant, steps)?;
+        let camera = input.camera(beginning.camera)?;
         let mut document = Self::of(input, unwrap, steps)?;
         document.camera = camera;
-        if let Some(focus) = focus {
+        if let Some(focus) = beginning.focus {
             document.map = document.imported_focus(focus)?;
             document.layers = LayerStack::of(document.map.clone());
         }
@@ -149,6 +160,14 @@ impl Document {
         };
         let focus = recipe.evaluate(&stage.scene).map_err(|error| SessionError::bad(path, error))?;
         Ok(focus.bake(&stage.texels))
+    }
+
+    /// Takes up what is odd about another variant of the scene; returns what is told for the first time.
+    pub(crate) fn note_warnings_of(&mut self, scene: &Scene) -> Vec<String> {
+        let mut warned = named(&scene.path, &scene.warnings);
+        warned.retain(|warning| !self.warnings.contains(warning));
+        self.warnings.extend_from_slice(&warned);
+        warned
     }
 
     fn note_recovery(&mut self, path: &Path) {
@@ -201,11 +220,13 @@ impl Document {
 
     /// The document as it is saved now.
     pub fn to_project(&self) -> ProjectFile {
+        let scene = &self.stage.scene;
         let mut project = self.template.clone();
         project.cameras[project.active_camera].camera = self.camera.clone();
         project.exposure = self.exposure;
-        project.back_faces = self.stage.scene.back_faces;
-        project.world = self.stage.scene.world.as_ref().map(WorldFile::of);
+        project.back_faces = scene.back_faces;
+        project.variant = scene.variant.clone();
+        project.world = scene.world.as_ref().map(|world| WorldFile::of(world, scene));
         project.brush = self.brush.clone();
         project.view = self.view.clone();
         project.atlas = Some(self.stage.atlas.to_bytes());

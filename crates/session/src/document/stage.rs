@@ -49,7 +49,25 @@ pub(crate) fn atlas_error(path: &Path, error: AtlasError) -> SessionError {
 
 /// Reads a scene within the usual limits.
 pub fn load_scene(path: &Path, progress: &dyn Progress) -> Result<Arc<Scene>, SessionError> {
-    Ok(Arc::new(scene::load(path, &LoadOptions::default(), progress)?))
+    Ok(load_variant(path, None, progress)?)
+}
+
+/// The same in one of its variants; none: in its own materials.
+pub(crate) fn load_variant(
+    path: &Path,
+    variant: Option<&str>,
+    progress: &dyn Progress,
+) -> Result<Arc<Scene>, SceneError> {
+    let options = LoadOptions { variant: variant.map(String::from), ..LoadOptions::default() };
+    Ok(Arc::new(scene::load(path, &options, progress)?))
+}
+
+/// Whether what is painted on one scene fits the other: the same triangles in the same order, of the same nodes.
+fn is_same_surface(a: &Scene, b: &Scene) -> bool {
+    let of_part = |part: &scene::Part| (part.node, part.triangles.clone());
+    a.positions == b.positions
+        && a.triangles == b.triangles
+        && a.parts.iter().map(of_part).eq(b.parts.iter().map(of_part))
 }
 
 impl Stage {
@@ -81,6 +99,24 @@ impl Stage {
     /// The same in another world; none: the scene's own.
     pub fn with_world(&self, world: Option<World>, progress: &dyn Progress) -> Result<Self, SessionError> {
         self.with_scene(Scene { world, ..(*self.scene).clone() }, progress)
+    }
+
+    /// The same in another variant of its file, which is read again; none: in its own materials. Atlas and paint still fit.
+    pub fn with_variant(&self, variant: Option<&str>, progress: &dyn Progress) -> Result<Self, SessionError> {
+        let before = &self.scene;
+        let read = load_variant(&before.path, variant, progress)?;
+        if !is_same_surface(before, &read) {
+            return Err(SessionError::bad(&before.path, "has changed since it was opened (open it again)"));
+        }
+        let scene = Scene {
+            back_faces: before.back_faces,
+            world: before.world.clone(),
+            own_world: before.own_world.clone(),
+            single_scattering: before.single_scattering,
+            ..Arc::unwrap_or_clone(read)
+        };
+        let canvas = Arc::new(self.canvas.with_owners_of(&scene));
+        Ok(Self { canvas, ..self.with_scene(scene, progress)? })
     }
 
     /// The same surface, seen or lit in another way.

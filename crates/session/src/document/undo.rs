@@ -1,4 +1,4 @@
-//! Undo and redo of paint, selection and lens in the order in which they happened.
+//! Undo and redo of paint, selection, lens and the scene's variant in the order in which they happened.
 
 use focus::{Edit, LayerStack, Selection, Thumbnail};
 use lens::Camera;
@@ -16,6 +16,8 @@ enum Change {
     Camera { before: Box<Camera>, after: Box<Camera> },
     /// What may be painted.
     Selection { before: Option<Selection>, after: Option<Selection> },
+    /// The scene's variant, by name. Who takes such a step back reads the scene again.
+    Variant { before: Option<String>, after: Option<String> },
 }
 
 impl Change {
@@ -26,6 +28,7 @@ impl Change {
             Self::Layers { before, after } => before.bytes_beside(after) + after.bytes_beside(before),
             Self::Camera { .. } => 2 * size_of::<Camera>(),
             Self::Selection { before, after } => selected(before) + selected(after),
+            Self::Variant { before, after } => [before, after].into_iter().flatten().map(String::len).sum(),
         }
     }
 }
@@ -62,6 +65,8 @@ pub(crate) enum Undone {
     Camera,
     /// What may be painted.
     Selection,
+    /// The variant that the scene is to have now, by name.
+    Variant(Option<String>),
 }
 
 /// A step of the history, as a list shows it.
@@ -121,6 +126,12 @@ impl Undo {
         record: Option<RecordedStep>,
     ) {
         self.push(Step::new(name.into(), Change::Selection { before, after }, record));
+        self.run = false;
+    }
+
+    /// Takes up a change of the scene's variant.
+    pub fn push_variant(&mut self, before: Option<String>, after: Option<String>) {
+        self.push(Step::new("Variant".into(), Change::Variant { before, after }, None));
         self.run = false;
     }
 
@@ -222,6 +233,7 @@ impl Undo {
                 *state.selection = before.clone();
                 Undone::Selection
             }
+            Change::Variant { before, .. } => Undone::Variant(before.clone()),
         };
         self.undone.push(step);
         Some(undone)
@@ -249,6 +261,7 @@ impl Undo {
                 *state.selection = after.clone();
                 Undone::Selection
             }
+            Change::Variant { after, .. } => Undone::Variant(after.clone()),
         };
         self.done.push_back(step);
         Some(done)

@@ -83,7 +83,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("quads.glb");
         crate::tiny_glb::write(&file);
-        let open = || Document::begin(&file, None, None, &Default::default(), &Unwatched).unwrap();
+        let open = || Document::begin(&file, &Default::default(), &Default::default(), &Unwatched).unwrap();
         let (document, other) = (open(), open());
         let camera = Camera { width: 24, height: 16, ..document.camera.clone() };
         let watch = FieldWatch::default();

@@ -306,7 +306,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let scene = folder.path().join("quads.glb");
         tiny_glb::write(&scene);
-        Document::begin(&scene, None, None, &Default::default(), &Unwatched).unwrap()
+        Document::begin(&scene, &Default::default(), &Default::default(), &Unwatched).unwrap()
     }
 
     /// The texels of the wall whose middle lies where `wanted` says, and the focus with `value` on them.

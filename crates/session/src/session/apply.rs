@@ -1,5 +1,6 @@
 //! Commands, and what each sets going.
 
+use super::restaged::{Cause, Restaging};
 use super::state::{PREVIEW_JOB, Session};
 use crate::commands::{Command, Event};
 use crate::document::CameraEdit;
@@ -30,9 +31,10 @@ impl Session {
                 self.show_tone();
                 Ok(())
             }
-            Command::SetBackFaces(back_faces) => self.set_back_faces(back_faces),
-            Command::SetWorld(world) => self.set_world(world),
-            Command::LoadEnvironment(file) => self.load_environment(file),
+            Command::SetBackFaces(back_faces) => self.restage(Restaging::BackFaces(back_faces)),
+            Command::SetWorld(world) => self.restage(Restaging::World(world)),
+            Command::LoadEnvironment(file) => self.restage(Restaging::Environment(file)),
+            Command::SetVariant(name) => self.restage(Restaging::Variant { name, cause: Cause::Command }),
             Command::SetDisplay(display) => {
                 self.display = display;
                 self.show_tone();

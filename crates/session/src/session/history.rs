@@ -1,5 +1,6 @@
 //! Undo and redo: steps taken back and done again, and shown.
 
+use super::restaged::{Cause, Restaging};
 use super::state::Session;
 use crate::commands::Event;
 use crate::document::{Document, Undoable, Undone};
@@ -64,6 +65,7 @@ impl Session {
                 self.events.push(Event::SelectionChanged);
                 Ok(())
             }
+            Some(Undone::Variant(name)) => self.restage(Restaging::Variant { name, cause: Cause::History }),
             Some(Undone::Layers) => {
                 let document = self.opened()?;
                 // Steps hold no values that follow from the camera.

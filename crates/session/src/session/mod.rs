@@ -13,6 +13,8 @@ mod outcome;
 mod painting;
 mod polling;
 mod recovery;
+mod restaged;
+mod restaging;
 mod showing;
 mod state;
 mod verifying;

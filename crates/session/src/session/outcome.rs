@@ -1,6 +1,7 @@
 //! What background work hands to the session.
 
-use crate::document::{Document, Stage};
+use super::restaged::Restaged;
+use crate::document::Document;
 use crate::output::Reference;
 use std::path::PathBuf;
 use trace::truth::Estimate;
@@ -8,8 +9,8 @@ use trace::truth::Estimate;
 /// What a finished job hands to the session.
 pub(super) enum Outcome {
     Opened(Box<Document>),
-    /// The stage of the document of this generation, with other faces seen.
-    Staged(Box<Stage>, u64),
+    /// The stage of the document, seen or lit in another way.
+    Restaged(Box<Restaged>),
     /// A project file that holds this revision of this document.
     Saved {
         path: PathBuf,

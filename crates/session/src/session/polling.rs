@@ -7,14 +7,18 @@ use crate::commands::Event;
 use crate::display::stops_for;
 use crate::document::Undo;
 use crate::error::SessionError;
+use progress::Progress;
 
 impl Session {
     /// What happened since the last call. To be called once a frame.
     pub fn poll(&mut self) -> Vec<Event> {
         while let Ok((id, outcome)) = self.outcomes.try_recv() {
+            let is_given_up = self.jobs.iter().any(|job| Some(job.id) == id && job.progress.cancelled());
             self.jobs.retain(|job| Some(job.id) != id);
             self.reference_jobs.retain(|(job, _)| Some(*job) != id);
             match outcome {
+                // It was done before it could be stopped; a newer one has its place.
+                Ok(Outcome::Restaged(_)) if is_given_up => {}
                 Ok(outcome) => self.take(outcome),
                 Err(SessionError::Cancelled) => {}
                 Err(error) => self.events.push(Event::Failed(error.to_string())),
@@ -81,8 +85,8 @@ impl Session {
                 self.document = Some(*document);
                 self.show_tone();
             }
-            Outcome::Staged(stage, generation) => {
-                if let Err(error) = self.take_stage(*stage, generation) {
+            Outcome::Restaged(restaged) => {
+                if let Err(error) = self.take_restaged(*restaged) {
                     self.events.push(Event::Failed(error.to_string()));
                 }
             }

@@ -1,24 +1,14 @@
 //! What changes in the document, brought to the views: camera, paint, exposure.
 
-use super::outcome::Outcome;
 use super::state::Session;
 use crate::commands::Event;
-use crate::document::{AdjustedView, CameraEdit, Stage};
+use crate::document::{AdjustedView, CameraEdit};
 use crate::error::SessionError;
-use crate::jobs::JobProgress;
 use crate::light_field::{Changes, serves};
 use focus::{Changed, union};
 use glam::DVec2;
 use lens::{Aperture, Camera};
-use project::WorldFile;
-use scene::{BackFaces, World};
 use std::collections::BTreeMap;
-use std::path::PathBuf;
-use std::sync::Arc;
-
-/// What the job is called that prepares the stage for other faces.
-const FACING: &str = "looking at other faces";
-const WORLD: &str = "changing the world";
 
 impl Session {
     pub(super) fn edit_camera(&mut self, edit: CameraEdit) -> Result<(), SessionError> {
@@ -118,68 +108,5 @@ impl Session {
         let scale = (self.options.preview_size as f64 / longest as f64).min(1.0);
         let scaled = |side: u32| ((side as f64 * scale).round() as u32).max(1);
         Camera { width: scaled(camera.width), height: scaled(camera.height), ..camera.clone() }
-    }
-
-    /// Has faces seen from behind, or not.
-    pub(super) fn set_back_faces(&mut self, back_faces: BackFaces) -> Result<(), SessionError> {
-        let is_new = self.opened()?.stage.scene.back_faces != back_faces;
-        self.restage(FACING, is_new, move |stage, progress| stage.with_back_faces(back_faces, progress))
-    }
-
-    /// Gives the scene another world.
-    pub(super) fn set_world(&mut self, world: Option<World>) -> Result<(), SessionError> {
-        let is_new = self.opened()?.stage.scene.world != world;
-        self.restage(WORLD, is_new, move |stage, progress| stage.with_world(world, progress))
-    }
-
-    /// The same with an environment's file, seen as it is; turn, strength and bounces stay.
-    pub(super) fn load_environment(&mut self, file: PathBuf) -> Result<(), SessionError> {
-        self.restage(WORLD, true, move |stage, progress| {
-            let before = stage.scene.world.as_ref();
-            let of_file = WorldFile::of_environment(&file);
-            let world = WorldFile {
-                rotation: before.map_or(of_file.rotation, |world| world.rotation),
-                strength: before.map_or(of_file.strength, |world| world.strength),
-                bounces: before.and_then(|world| world.bounces),
-                ..of_file
-            };
-            stage.with_world(Some(world.load()?), progress)
-        })
-    }
-
-    /// Prepares the stage anew in the background, in place of what goes on under the same label; not if nothing is new.
-    fn restage(
-        &mut self,
-        label: &str,
-        is_new: bool,
-        work: impl FnOnce(&Stage, &JobProgress) -> Result<Stage, SessionError> + Send + 'static,
-    ) -> Result<(), SessionError> {
-        self.jobs.iter().filter(|job| job.label == label).for_each(|job| job.progress.cancel());
-        let generation = self.generation;
-        let stage = self.opened()?.stage.clone();
-        if is_new {
-            self.start(label.into(), move |progress| {
-                Ok(Outcome::Staged(Box::new(work(&stage, progress)?), generation))
-            })?;
-        }
-        Ok(())
-    }
-
-    /// Takes up a stage with other faces seen.
-    pub(super) fn take_stage(&mut self, stage: Stage, generation: u64) -> Result<(), SessionError> {
-        if generation != self.generation {
-            return Ok(());
-        }
-        self.commit_stroke()?;
-        let document = self.opened()?;
-        document.stage = Arc::new(stage);
-        document.revision += 1;
-        let (stage, map, shot) = (document.stage.clone(), document.map.clone(), document.camera.clone());
-        let camera = self.shown_camera(&shot);
-        (self.field, self.preview_camera) = (None, Some(camera.clone()));
-        self.preview_thread.set_stage((stage, generation), (map, self.map_serial), camera);
-        self.end_verification();
-        self.events.push(Event::SurfaceChanged);
-        Ok(())
     }
 }

@@ -90,6 +90,71 @@ pub fn glb(quads: &[Quad]) -> Vec<u8> {
     container(&doc, &bin)
 }
 
+/// The bytes of a GLB with these quads, the first of which are wall and card, in variants: in "Blue" the card is blue and the wall light, in "Green" the card is green; in "As painted"
+/// all is as it was.
+#[allow(dead_code, reason = "not every test that has the scene has its variants")]
+pub fn varied(quads: &[Quad]) -> Vec<u8> {
+    let (mut doc, bin) = parts(&glb(quads));
+    let first = doc["materials"].as_array().expect("a list").len();
+    for (name, color) in
+        [("blue", [0.1, 0.1, 0.8, 1.0]), ("light", [0.9, 0.9, 0.9, 1.0]), ("green", [0.1, 0.8, 0.1, 1.0])]
+    {
+        let material = json!({
+            "name": format!("{name} paint"),
+            "pbrMetallicRoughness": { "baseColorFactor": color },
+            "extensions": { "KHR_materials_unlit": {} },
+        });
+        doc["materials"].as_array_mut().expect("a list").push(material);
+    }
+    let mappings = |mappings: Value| json!({ "KHR_materials_variants": { "mappings": mappings } });
+    let [wall, card] = [0, 1].map(|mesh| format!("/meshes/{mesh}/primitives/0"));
+    doc.pointer_mut(&wall).expect("the wall")["extensions"] =
+        mappings(json!([{ "material": first + 1, "variants": [0] }]));
+    doc.pointer_mut(&card).expect("the card")["extensions"] =
+        mappings(json!([{ "material": first, "variants": [0] }, { "material": first + 2, "variants": [1] }]));
+    doc["extensions"] = json!({ "KHR_materials_variants": { "variants": [
+        { "name": "Blue" }, { "name": "Green" }, { "name": "As painted" }] } });
+    doc["extensionsUsed"] = json!(["KHR_materials_unlit", "KHR_materials_variants"]);
+    container(&doc, &bin)
+}
+
+/// PNGs of one texel: red, cyan, white, yellow, green, blue.
+#[allow(dead_code, reason = "not every test that has the scene has it lit")]
+const COLORS: [&str; 6] = [
+    "iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAIAAACQd1PeAAAADElEQVR42mP4z8AAAAMBAQD3A0FDAAAAAElFTkSuQmCC",
+    "iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAIAAACQd1PeAAAADElEQVR42mNg+P8fAAMBAf+I73F5AAAAAElFTkSuQmCC",
+    "iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAIAAACQd1PeAAAADElEQVR42mP4//8/AAX+Av4zEpUUAAAAAElFTkSuQmCC",
+    "iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAIAAACQd1PeAAAADElEQVR42mP4/58BAAT/Af9jgNErAAAAAElFTkSuQmCC",
+    "iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAIAAACQd1PeAAAADElEQVR42mNg+M8AAAICAQBF9FLUAAAAAElFTkSuQmCC",
+    "iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAIAAACQd1PeAAAADElEQVR42mNgYPgPAAEDAQA2dBFAAAAAAElFTkSuQmCC",
+];
+
+/// The bytes of a GLB with these quads in an image-based light, "six colours": red from +X, cyan from −X, white from above, yellow from
+/// below, green from +Z, which is behind the camera, and blue from −Z, twice as bright.
+#[allow(dead_code, reason = "not every test that has the scene has it lit")]
+pub fn lit(quads: &[Quad]) -> Vec<u8> {
+    const EXTENSION: &str = "EXT_lights_image_based";
+    let (mut doc, bin) = parts(&glb(quads));
+    doc["extensionsUsed"] = json!(["KHR_materials_unlit", EXTENSION]);
+    let images = COLORS.map(|png| json!({ "uri": format!("data:image/png;base64,{png}") }));
+    doc["images"] = json!(images);
+    doc["scenes"][0]["extensions"] = json!({ EXTENSION: { "light": 0 } });
+    let light = json!({
+        "name": "six colours", "intensity": 2.0, "specularImageSize": 1, "specularImages": [[0, 1, 2, 3, 4, 5]],
+        "irradianceCoefficients": vec![[0.0; 3]; 9],
+    });
+    doc["extensions"] = json!({ EXTENSION: { "lights": [light] } });
+    container(&doc, &bin)
+}
+
+/// The document and the buffer of a GLB.
+#[allow(dead_code, reason = "not every test changes the scene")]
+fn parts(bytes: &[u8]) -> (Value, Vec<u8>) {
+    let length = u32::from_le_bytes(bytes[12..16].try_into().expect("four bytes")) as usize;
+    let end = 20 + length;
+    (serde_json::from_slice(&bytes[20..end]).expect("JSON"), bytes[end + 8..].to_vec())
+}
+
 /// A GLB of a document and its buffer.
 pub fn container(doc: &Value, bin: &[u8]) -> Vec<u8> {
     let mut text = serde_json::to_vec(doc).expect("JSON");

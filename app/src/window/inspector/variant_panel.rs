@@ -1,0 +1,44 @@
+//! The variant of the scene's materials, where its file has several (KHR_materials_variants).
+
+use crate::window::Action;
+use crate::window::controls::{row, rows};
+use egui::{ComboBox, Ui};
+use session::{Command, Document};
+
+/// The scene's own materials, as the list calls them.
+const OWN: &str = "The scene's own";
+
+/// Draws the choice of a variant.
+pub fn variant_panel(ui: &mut Ui, document: &Document, actions: &mut Vec<Action>) {
+    let scene = document.scene();
+    let mut chosen = None;
+    rows(ui, "variant", |ui| {
+        let tip = "Which of the materials that the file offers its surfaces have. What is painted stays; the light is found anew.";
+        row(ui, "Variant", tip, |ui| {
+            ComboBox::from_id_salt("variant")
+                .selected_text(scene.variant.as_deref().unwrap_or(OWN))
+                .truncate()
+                .show_ui(ui, |ui| {
+                    let own = ui.selectable_label(scene.variant.is_none(), OWN);
+                    if own.on_hover_text("The materials that the file has where nothing is chosen.").clicked()
+                    {
+                        chosen = Some(None);
+                    }
+                    for name in &scene.variants {
+                        let is_chosen = scene.variant.as_ref() == Some(name);
+                        let label = ui.selectable_label(is_chosen, name);
+                        if label
+                            .on_hover_text(format!("Show the scene in its variant \u{201c}{name}\u{201d}."))
+                            .clicked()
+                        {
+                            chosen = Some(Some(name.clone()));
+                        }
+                    }
+                })
+                .response
+        });
+    });
+    if let Some(variant) = chosen {
+        actions.push(Command::SetVariant(variant).into());
+    }
+}

@@ -1,0 +1,150 @@
+//! EXT_lights_image_based: the light from all around that a scene brings, as a world.
+//!
+//! The extension holds a cube of images, blurred more and more for rougher and rougher surfaces, and coefficients of the irradiance,
+//! for renderers that cannot gather light. Here light is gathered: the first, sharpest cube is the environment, the rest is not read.
+//!
+//! The faces come in the order +X, −X, +Y, −Y, +Z, −Z. Each image is that of the usual cube map, mirrored left to right, as the
+//! extension says: so it shows what one sees who stands in the middle and looks along the axis (the table at [`CubeMap`]). Its colours are
+//! sRGB-encoded; where it has an opacity, that is the D of RGBD, by which the decoded colours are divided.
+//! <https://github.com/KhronosGroup/glTF/tree/main/extensions/2.0/Vendor/EXT_lights_image_based>
+
+use crate::document::{Document, named};
+use crate::error::Fault;
+use crate::hierarchy::shown_scene;
+use crate::json_object::Object;
+use crate::world::CubeMap;
+use crate::{Environment, Image, ImageLevel, World};
+use glam::DQuat;
+use serde_json::Value;
+use std::sync::Arc;
+
+const EXTENSION: &str = "EXT_lights_image_based";
+
+/// Bytes of a texel of radiance.
+const TEXEL_BYTES: u64 = 12;
+
+/// The world that the shown scene brings, if it does.
+pub(crate) fn own_world(document: &Document<'_>) -> Result<Option<World>, Fault> {
+    let Some(scene) = shown_scene(document) else { return Ok(None) };
+    let Some(user) = document.item("scenes", scene, "/scene")?.extension(EXTENSION)? else { return Ok(None) };
+    let Some(index) = user.index("light")? else { return Err(user.malformed("light", "is missing")) };
+    let lights = match document.root().extension(EXTENSION)? {
+        Some(extension) => extension.objects("lights")?,
+        None => Vec::new(),
+    };
+    let Some(light) = lights.get(index) else {
+        return Err(user.malformed("light", format!("refers to lights[{index}], which does not exist")));
+    };
+    let name = named(light.text("name")?).unwrap_or_else(|| format!("{index}"));
+    let rotation = rotation(light)?;
+    let cube = cube_map(document, light, intensity(light)?)?;
+    tell_flaws(document, light, cube.side);
+    let [texels, lookups] = CubeMap::cost(cube.side);
+    document.budget.memory(TEXEL_BYTES * texels, &light.place)?;
+    document.budget.work(lookups, &light.place)?;
+    let map = cube.to_equirectangular(format!("image-based light {name}"), rotation);
+    document.budget.release(TEXEL_BYTES * 6 * u64::from(cube.side).pow(2));
+    Ok(Some(World { environment: Environment::Map(Arc::new(map)), ..World::uniform(glam::Vec3::ZERO) }))
+}
+
+/// How the cube is turned.
+fn rotation(light: &Object<'_>) -> Result<DQuat, Fault> {
+    let Some(numbers) = light.numbers::<4>("rotation")? else { return Ok(DQuat::IDENTITY) };
+    let rotation = DQuat::from_array(numbers);
+    match rotation.length() {
+        length if length > 0.0 && length.is_finite() => Ok(rotation / length),
+        _ => Err(light.malformed("rotation", format!("{numbers:?} is no rotation"))),
+    }
+}
+
+/// What its radiance is multiplied by.
+fn intensity(light: &Object<'_>) -> Result<f32, Fault> {
+    let intensity = light.number("intensity")?.unwrap_or(1.0);
+    // Light that is a colour over an opacity is at most this many times the intensity.
+    const BRIGHTEST: f32 = u16::MAX as f32;
+    let is_usable = intensity >= 0.0 && (intensity as f32 * BRIGHTEST).is_finite();
+    is_usable.then_some(intensity as f32).ok_or_else(|| {
+        light.malformed("intensity", format!("{intensity} is negative or more than can be computed with"))
+    })
+}
+
+/// The sharpest cube.
+fn cube_map(document: &Document<'_>, light: &Object<'_>, intensity: f32) -> Result<CubeMap, Fault> {
+    let key = "specularImages/0";
+    let faces = light.list("specularImages")?.first();
+    let Some(faces) = faces else { return Err(light.malformed("specularImages", "is missing or empty")) };
+    let indices = indices(faces).ok_or_else(|| light.malformed(key, "is not an array of 6 images"))?;
+    if indices.len() != 6 {
+        return Err(light.malformed(key, format!("has {} faces, a cube has 6", indices.len())));
+    }
+    let mut cube = CubeMap { side: 0, faces: Default::default() };
+    for (face, &index) in indices.iter().enumerate() {
+        let image = document.image(index, &format!("{}/{key}/{face}", light.place))?;
+        let wrong = |what: String| Fault::Malformed { place: format!("/images/{index}"), what };
+        let (width, height) = (image.width, image.height);
+        if width != height {
+            return Err(wrong(format!("has {width} × {height} texels, the faces of a cube are square")));
+        }
+        if face > 0 && width != cube.side {
+            let side = cube.side;
+            return Err(wrong(format!("has {width} × {height} texels, another face {side} × {side}")));
+        }
+        cube.side = width;
+        let texels = u64::from(width).pow(2);
+        document.budget.memory(TEXEL_BYTES * texels, &light.place)?;
+        cube.faces[face] = radiance(&image, intensity).map_err(wrong)?;
+        let bytes = match &image.texels {
+            ImageLevel::Bits8(_) => 4,
+            ImageLevel::Bits16(_) => 8,
+        };
+        document.budget.release(bytes * texels);
+    }
+    Ok(cube)
+}
+
+/// Indices of images.
+fn indices(list: &Value) -> Option<Vec<usize>> {
+    let index = |value: &Value| usize::try_from(crate::json_object::integer(value)?).ok();
+    list.as_array()?.iter().map(index).collect()
+}
+
+/// The light that an image's texels stand for, times `intensity`; or what is wrong with one.
+fn radiance(image: &Image, intensity: f32) -> Result<Vec<[f32; 3]>, String> {
+    let places = (0..image.height).flat_map(|y| (0..image.width).map(move |x| (x, y)));
+    let light = |(x, y)| {
+        let texel = image.texel(x, y, true);
+        if texel.w == 0.0 {
+            return Err(format!(
+                "has an opacity of 0 in column {x} of row {y}, by which its light would be divided (RGBD)"
+            ));
+        }
+        Ok((texel.truncate() / texel.w * intensity).to_array())
+    };
+    places.map(light).collect()
+}
+
+/// Warns of what is out of order in the rest, which is not needed here.
+fn tell_flaws(document: &Document<'_>, light: &Object<'_>, side: u32) {
+    let warn = |key: &str, what: String| document.warn(format!("{}/{key}: {what}", light.place));
+    if !side.is_power_of_two() {
+        warn("specularImages/0", format!("its faces have {side} texels a side, which is no power of two"));
+    }
+    match light.integer("specularImageSize") {
+        Ok(Some(said)) if said == u64::from(side) => {}
+        Ok(Some(said)) => warn("specularImageSize", format!("is {said}, but the first faces have {side}")),
+        _ => warn("specularImageSize", "is missing, or no whole number".into()),
+    }
+    let rows = light.list("irradianceCoefficients").unwrap_or_default();
+    let is_color = |row: &Value| {
+        row.as_array().is_some_and(|numbers| numbers.len() == 3 && numbers.iter().all(Value::is_number))
+    };
+    if rows.len() != 9 || !rows.iter().all(is_color) {
+        warn("irradianceCoefficients", "is not an array of 9 arrays of 3 numbers".into());
+    }
+    for (mip, faces) in light.list("specularImages").unwrap_or_default().iter().enumerate().skip(1) {
+        let exist = |list: Vec<usize>| list.len() == 6 && list.iter().all(|&i| i < document.len("images"));
+        if !indices(faces).is_some_and(exist) {
+            warn(&format!("specularImages/{mip}"), "is not an array of 6 images that exist".into());
+        }
+    }
+}

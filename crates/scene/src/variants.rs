@@ -1,0 +1,101 @@
+//! KHR_materials_variants: the variants of a file, and which material a primitive has in the one that was chosen.
+//!
+//! A file names its variants, and every primitive maps some of them to materials. Where the chosen one is not mapped, or none is
+//! chosen, the primitive has its own material. What nobody chose is not read: the flaws of other variants are told as warnings
+//! (`flaws`), and their textures take no memory.
+
+use crate::document::Document;
+use crate::error::Fault;
+use crate::json_object::{Object, integer};
+
+pub(crate) const EXTENSION: &str = "KHR_materials_variants";
+
+/// The variants of a file, and which of them is chosen.
+pub(crate) struct Variants {
+    /// What they are called, in the order of the file; no two alike.
+    pub names: Vec<String>,
+    /// Index into `names`.
+    chosen: Option<usize>,
+}
+
+impl Variants {
+    /// The variants of a file; chosen is the one of this name, or none.
+    pub fn read(document: &Document<'_>, choice: Option<&str>) -> Result<Self, Fault> {
+        let names = names(document);
+        let chosen = match choice {
+            None => None,
+            Some(choice) => Some(
+                names
+                    .iter()
+                    .position(|name| name == choice)
+                    .ok_or_else(|| Fault::NoVariant { name: choice.into(), known: there_are(&names) })?,
+            ),
+        };
+        Ok(Self { names, chosen })
+    }
+
+    /// What the chosen one is called.
+    pub fn chosen(&self) -> Option<&str> {
+        self.names.get(self.chosen?).map(String::as_str)
+    }
+
+    /// The material, by its index in the file, that the chosen variant gives the primitive at `place`; none where its own stays.
+    pub fn material(&self, document: &Document<'_>, place: &str) -> Result<Option<usize>, Fault> {
+        let Some(chosen) = self.chosen else { return Ok(None) };
+        let place = format!("{place}/extensions/{EXTENSION}/mappings");
+        let Some(mappings) = document.value().pointer(&place).and_then(|list| list.as_array()) else {
+            return Ok(None);
+        };
+        document.budget.work(mappings.len() as u64, &place)?;
+        for (i, mapping) in mappings.iter().enumerate() {
+            let variants = mapping.get("variants").and_then(|list| list.as_array());
+            let is_meant = variants
+                .is_some_and(|list| list.iter().any(|variant| integer(variant) == Some(chosen as u64)));
+            if !is_meant {
+                continue;
+            }
+            let mapping = Object::new(mapping, format!("{place}/{i}"))?;
+            let Some(material) = mapping.index("material")? else {
+                return Err(mapping.malformed("material", "is missing"));
+            };
+            document.entry("materials", material, &format!("{}/material", mapping.place))?;
+            return Ok(Some(material));
+        }
+        Ok(None)
+    }
+}
+
+/// The names: as the file says, else `variant N`. One that another has already is followed by its number.
+fn names(document: &Document<'_>) -> Vec<String> {
+    let root = document.value().pointer(&format!("/extensions/{EXTENSION}/variants"));
+    let list = root.and_then(|list| list.as_array()).map_or(&[][..], Vec::as_slice);
+    let mut names = Vec::with_capacity(list.len());
+    let mut taken = std::collections::HashSet::new();
+    for (i, variant) in list.iter().enumerate() {
+        let said = variant.get("name").and_then(|name| name.as_str()).filter(|name| !name.is_empty());
+        let mut name = said.map_or_else(|| format!("variant {i}"), String::from);
+        if taken.contains(&name) {
+            document.warn(format!(
+                "/extensions/{EXTENSION}/variants/{i}/name: {name:?} is another's name, too; this one is called \"{name} ({i})\""
+            ));
+        }
+        while !taken.insert(name.clone()) {
+            name = format!("{name} ({i})");
+        }
+        names.push(name);
+    }
+    names
+}
+
+/// What can be chosen, for a message.
+fn there_are(names: &[String]) -> String {
+    /// More names than these are counted.
+    const MOST: usize = 30;
+    if names.is_empty() {
+        return format!("the file has no variants: no {EXTENSION}");
+    }
+    let told: Vec<String> = names.iter().take(MOST).map(|name| format!("{name:?}")).collect();
+    let more = names.len().saturating_sub(MOST);
+    let more = if more > 0 { format!(" and {more} more") } else { String::new() };
+    format!("there are {}{more}", told.join(", "))
+}

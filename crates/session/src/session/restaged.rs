@@ -1,0 +1,81 @@
+//! What of a stage is to be different, and the stage that came of it.
+
+use crate::document::Stage;
+use crate::error::SessionError;
+use crate::jobs::JobProgress;
+use project::WorldFile;
+use scene::{BackFaces, Scene, World};
+use std::path::PathBuf;
+use std::sync::Arc;
+
+/// What is to be different.
+#[derive(Clone, Debug)]
+pub(super) enum Restaging {
+    /// Whether faces that are not double sided are seen from behind.
+    BackFaces(BackFaces),
+    /// What lies beyond all surfaces; none: what suits the scene.
+    World(Option<World>),
+    /// The same of an environment's file, seen as it is; turn, strength and bounces stay.
+    Environment(PathBuf),
+    /// The scene's variant; none: its own materials.
+    Variant { name: Option<String>, cause: Cause },
+}
+
+/// Why it is to be different.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Cause {
+    /// It was asked for: a step of undo.
+    Command,
+    /// A step was taken back, or done again.
+    History,
+}
+
+/// A stage that was prepared.
+pub(super) struct Restaged {
+    pub restaging: Restaging,
+    /// The stage that it was made from, in the document of this generation.
+    pub base: Arc<Stage>,
+    pub generation: u64,
+    pub stage: Stage,
+}
+
+impl Restaging {
+    /// What the job is called; those of one name are in each other's place.
+    pub fn label(&self) -> &'static str {
+        match self {
+            Self::BackFaces(_) => "looking at other faces",
+            Self::World(_) | Self::Environment(_) => "changing the world",
+            Self::Variant { .. } => "changing the variant",
+        }
+    }
+
+    /// Whether the scene is not that way already.
+    pub fn is_new_to(&self, scene: &Scene) -> bool {
+        match self {
+            Self::BackFaces(back_faces) => scene.back_faces != *back_faces,
+            Self::World(world) => scene.world != *world,
+            Self::Environment(_) => true,
+            Self::Variant { name, .. } => scene.variant != *name,
+        }
+    }
+
+    /// The stage made so.
+    pub fn of(&self, stage: &Stage, progress: &JobProgress) -> Result<Stage, SessionError> {
+        match self {
+            Self::BackFaces(back_faces) => stage.with_back_faces(*back_faces, progress),
+            Self::World(world) => stage.with_world(world.clone(), progress),
+            Self::Environment(file) => {
+                let before = stage.scene.world.as_ref();
+                let of_file = WorldFile::of_environment(file);
+                let world = WorldFile {
+                    rotation: before.map_or(of_file.rotation, |world| world.rotation),
+                    strength: before.map_or(of_file.strength, |world| world.strength),
+                    bounces: before.and_then(|world| world.bounces),
+                    ..of_file
+                };
+                stage.with_world(Some(world.load(&stage.scene)?), progress)
+            }
+            Self::Variant { name, .. } => stage.with_variant(name.as_deref(), progress),
+        }
+    }
+}

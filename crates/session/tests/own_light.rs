@@ -1,0 +1,51 @@
+//! The light that a scene brings: seen, scaled, saved and opened again.
+
+#[allow(dead_code, reason = "shared by several tests")]
+mod at_work;
+#[allow(dead_code, reason = "shared by several tests")]
+mod tiny_glb;
+
+use at_work::{opened, picture, settle};
+use scene::{Environment, World};
+use session::{Command, Session};
+
+/// The radiance of the picture's upper left corner, where no quad is.
+fn corner(session: &Session) -> [f32; 3] {
+    picture(session).radiance[0]
+}
+
+fn is_blue(color: [f32; 3], radiance: f32) -> bool {
+    color[0].abs() < 1e-3 && color[1].abs() < 1e-3 && (color[2] - radiance).abs() < 0.02 * radiance
+}
+
+#[test]
+fn it_is_seen_scaled_and_kept_as_the_scene_s_own() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("lit.glb");
+    // Without the wall, the world is seen beside the card.
+    std::fs::write(&file, tiny_glb::lit(&tiny_glb::QUADS[1..])).unwrap();
+    let mut session = opened(&file);
+    assert!(is_blue(corner(&session), 2.0), "{:?}", corner(&session));
+    let own = session.document().unwrap().scene().own_world.clone().unwrap();
+    let Environment::Map(map) = &own.environment else { panic!("no picture") };
+    assert_eq!(map.name, "image-based light six colours");
+
+    session.apply(Command::SetWorld(Some(World { strength: 0.5, ..own.clone() }))).unwrap();
+    settle(&mut session);
+    assert!(is_blue(corner(&session), 1.0), "{:?}", corner(&session));
+    let project = folder.path().join("lit.fbrush");
+    session.apply(Command::SaveAs(project.clone())).unwrap();
+    settle(&mut session);
+    drop(session);
+    let again = opened(&project);
+    assert!(is_blue(corner(&again), 1.0), "{:?}", corner(&again));
+    assert_eq!(again.document().unwrap().warnings, [""; 0]);
+    drop(again);
+
+    // A scene that no longer brings it opens, and says so.
+    std::fs::write(&file, tiny_glb::glb(&tiny_glb::QUADS[1..])).unwrap();
+    let without = opened(&project);
+    let warnings = &without.document().unwrap().warnings;
+    assert!(warnings.iter().any(|warning| warning.contains("EXT_lights_image_based")), "{warnings:?}");
+    assert!(corner(&without) != [0.0, 0.0, 1.0]);
+}
