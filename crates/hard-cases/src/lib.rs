@@ -26,6 +26,7 @@
 
 mod aperture_plane;
 mod case;
+mod chance;
 mod defocus;
 mod energy;
 mod furnace;
@@ -72,6 +73,7 @@ pub fn suite() -> Vec<Case> {
         glass::CASES,
         mirrors::CASES,
         panes::CASES,
+        chance::CASES,
     ]
     .concat()
 }

@@ -10,6 +10,7 @@ use project::{LinearPicture, compare};
 use serde::{Deserialize, Serialize};
 use session::{
     CameraEdit, Command, Event, Preview, PreviewKind, Quality, Session, SessionError, SessionOptions,
+    VariantChoice,
 };
 use std::time::{Duration, Instant};
 
@@ -53,11 +54,17 @@ pub fn watch(
     })?;
     session.apply(Command::Open(request.file.clone()))?;
     until(&mut session, progress, |session| session.document().is_some())?;
+    match &request.variant {
+        VariantChoice::AsSaved => {}
+        VariantChoice::Own => session.apply(Command::SetVariant(None))?,
+        VariantChoice::Named(name) => session.apply(Command::SetVariant(Some(name.clone())))?,
+    }
+    until(&mut session, progress, Session::is_idle)?;
     if let Some(back_faces) = request.back_faces {
         session.apply(Command::SetBackFaces(back_faces))?;
     }
     if let Some(world) = &request.world {
-        session.apply(Command::SetWorld(Some(world.clone())))?;
+        session.apply(Command::SetWorld(Some(world.load(&subject.scene)?)))?;
     }
     until(&mut session, progress, Session::is_idle)?;
 

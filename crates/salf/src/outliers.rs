@@ -2,8 +2,8 @@
 //!
 //! A path that comes to a lamp by way of two glossy surfaces tells much light of a few directions. Its sample would be thrown as a
 //! disc of bokeh that is not there. In a block of the picture, among the samples of one surface and kind of light, what such a
-//! sample has beyond a limit is therefore given to all of them alike: no light is taken away, so that the mean stays right. Only
-//! light that was found by chance counts ([`trace::Leaving::by_chance`]): lamps, their direct light and sharp mirrors are exact.
+//! sample has beyond its neighbours is therefore given to all of them alike: no light is taken away, so that the mean stays right.
+//! Only light that was found by chance counts ([`trace::Leaving::by_chance`]): lamps, their direct light and sharp mirrors are exact.
 
 use crate::sample::{Sample, Visibility};
 use crate::samples::Found;
@@ -84,8 +84,9 @@ fn spread_among(found: &mut [Found], group: &[usize]) -> Outliers {
         let near: Vec<f32> = group.iter().filter(is_near).map(|&other| brightness(&found[other])).collect();
         let around = near.iter().sum::<f32>() / near.len().max(1) as f32;
         let own = brightness(&found[index]);
-        if own > ISOLATED * around.max(median) {
-            let kept = limit.max(around) / own;
+        let usual = around.max(median);
+        if own > ISOLATED * usual {
+            let kept = usual / own;
             taken.push((index, found[index].by_chance * (1.0 - kept)));
         }
     }

@@ -1,15 +1,15 @@
 //! What spots of a picture receive.
 
+mod asked;
 pub(super) mod drawn;
 
 use super::{Path, Transport, heuristic};
-use crate::irradiance::Irradiance;
 use crate::irradiance::patches::facing;
 use crate::irradiance::place::Place;
 use crate::material_point::MaterialPoint;
-use crate::media::Inside;
 use crate::path_random::PathRandom;
 use crate::spots::{self, Measure, Measured, Seen};
+use asked::Asked;
 use drawn::{Drawing, Drawn};
 use glam::{DVec3, Vec3};
 use material::{Bsdf, Frame, Parts, Toward};
@@ -28,17 +28,6 @@ const AS_METAL: f64 = 0.25;
 
 /// From nearer to the horizon than this, sine, light is told as even: a normal that is turned a little would find it elsewhere.
 const GRAZING: f64 = 0.1;
-
-/// Some spots of a picture, as rays ask about them.
-struct Asked<'a> {
-    transport: &'a Transport,
-    irradiance: &'a Irradiance,
-    spots: &'a [Spot],
-    eye: DVec3,
-    places: Vec<Place>,
-    is_front: Vec<bool>,
-    inside: Vec<Inside>,
-}
 
 impl Transport {
     /// What spots receive that are of one surface with others.
@@ -74,18 +63,6 @@ impl Transport {
             spots::tell(spots, surface, &asked, |spot, told| received[spot] = Some(told));
         }
         received
-    }
-}
-
-impl Asked<'_> {
-    /// How many lights are drawn for a point asked alone.
-    fn light_samples(&self) -> u32 {
-        self.transport.options.light_samples
-    }
-
-    /// The normal of a spot's triangle, on the front.
-    fn geometric(&self, spot: usize) -> DVec3 {
-        self.transport.scene().area_normal(self.spots[spot].point.triangle).normalize_or_zero()
     }
 }
 

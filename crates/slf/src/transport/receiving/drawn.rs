@@ -1,6 +1,6 @@
 //! Lights that are drawn for spots, the same ones for all.
 
-use super::Asked;
+use super::asked::Asked;
 use crate::lights::LightSample;
 use crate::path_random::PathRandom;
 use crate::spots::Seen;

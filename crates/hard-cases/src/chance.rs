@@ -1,0 +1,81 @@
+//! Light that single paths found: no disc of bokeh where there is no light.
+
+use crate::case::{Case, Effort, Finding};
+use crate::scenery::{Mesh, scene_of};
+use crate::shot::picture_of;
+use focus::Focus;
+use glam::{DVec3, Vec3};
+use lens::{Camera, FocusOffset, Picture};
+use progress::{Cancelled, Progress};
+use salf::{BakeOptions, bake};
+use scene::SurfacePoint;
+use trace::{Leaving, Radiance, Tracer};
+
+pub const CASES: &[Case] = &[Case {
+    name: "paths that find a lamp by chance",
+    reason: "What one sample has beyond those around it is given to all of them, so that no disc is left and no light lost.",
+    control: "light that nobody says was found by chance",
+    check: discs,
+}];
+
+/// A wall that sends 1 and a little grain, and to which one point in `RARITY` sends `SPIKE` more, as a path does that comes to a lamp
+/// by way of two mirrors.
+struct Sparkling {
+    tells: bool,
+}
+
+const RARITY: f64 = 4e-4;
+const SPIKE: f32 = 200.0;
+
+/// A uniform number of a point, the same for the same point.
+fn hash(point: SurfacePoint) -> f64 {
+    let bits = |value: f64| value.to_bits().wrapping_mul(0x9e37_79b9_7f4a_7c15).rotate_left(31);
+    let seed = bits(point.barycentric.x) ^ bits(point.barycentric.y + 2.0) ^ u64::from(point.triangle) << 7;
+    crate::random::Random(seed).unit()
+}
+
+impl Radiance for Sparkling {
+    fn leaving(&self, point: SurfacePoint, _eye: DVec3) -> Leaving {
+        let u = hash(point);
+        let spike = if u < RARITY { SPIKE } else { 0.0 };
+        let by_chance = Vec3::splat(0.2 + 0.1 * u as f32 + spike);
+        let told = if self.tells { by_chance } else { Vec3::ZERO };
+        Leaving { own: Vec3::splat(0.8) + by_chance, by_chance: [told, Vec3::ZERO], ..Leaving::default() }
+    }
+
+    fn from_infinity(&self, _direction: DVec3) -> Vec3 {
+        Vec3::ZERO
+    }
+}
+
+fn discs(effort: Effort, progress: &dyn Progress) -> Result<Finding, Cancelled> {
+    let (width, height) = effort.pick((192, 128), (96, 64));
+    let camera =
+        Camera { width, height, yfov: 0.6, aperture_radius: 0.04, focus_distance: 1.5, ..Camera::default() };
+    let scene = scene_of([(&Mesh::wall(4.0, 9.0), [1.0; 3])]);
+    let tracer = Tracer::new(scene.clone());
+    let focus = Focus::constant(scene, FocusOffset::STANDARD);
+    let picture = |tells: bool| {
+        let options = BakeOptions::for_focus(&tracer, &camera, &focus);
+        let salf = bake(&tracer, &Sparkling { tells }, &camera, &options, progress)?;
+        picture_of(salf, &focus, progress)
+    };
+    let [spread, left] = [picture(true)?, picture(false)?];
+    let loss = |of: &Picture| (mean(of) / mean(&left) - 1.0).abs();
+    // The control's own mean is right; what is wrong of it are its discs.
+    let [right, wrong] = [&spread, &left].map(|picture| [brightest(picture), loss(picture)]);
+    let limits = [("brightest, σ", 5.0), ("mean", 5e-3)];
+    Ok(Finding::of("no pixel beyond 5 σ of its picture's; mean kept to 0.5 %", limits, right, wrong))
+}
+
+fn mean(picture: &Picture) -> f64 {
+    picture.radiance.iter().map(|pixel| f64::from(pixel[1])).sum::<f64>() / picture.radiance.len() as f64
+}
+
+/// How many of the picture's standard deviations its brightest pixel lies above the mean.
+fn brightest(picture: &Picture) -> f64 {
+    let mean = mean(picture);
+    let off = || picture.radiance.iter().map(|pixel| f64::from(pixel[1]) - mean);
+    let deviation = (off().map(|off| off * off).sum::<f64>() / picture.radiance.len() as f64).sqrt();
+    off().fold(0.0, f64::max) / deviation
+}
