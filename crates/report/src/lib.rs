@@ -49,7 +49,7 @@ mod write;
 
 pub use contender::Contender;
 pub use engine::{Check, EngineRecord, EngineReport, run_engine};
-pub use live::LivePicture;
+pub use live::ShownPicture;
 pub use machine::Machine;
 pub use options::{ReportOptions, SceneRequest};
 pub use record::{Record, Series};

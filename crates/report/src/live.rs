@@ -16,7 +16,7 @@ use std::time::{Duration, Instant};
 
 /// A picture that the preview showed.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct LivePicture {
+pub struct ShownPicture {
     /// What it was shown after.
     pub after: String,
     /// What it was: `pinhole`, `coarse`, `viewing` or `exact`.
@@ -42,7 +42,7 @@ pub fn watch(
     subject: &Subject,
     unwrap: &atlas::UnwrapOptions,
     progress: &dyn Progress,
-) -> Result<Vec<LivePicture>, SessionError> {
+) -> Result<Vec<ShownPicture>, SessionError> {
     let camera = &subject.camera;
     let day = Duration::from_secs(86_400);
     let mut session = Session::new(SessionOptions {
@@ -93,7 +93,7 @@ fn watch_one(
     after: &str,
     change: CameraEdit,
     progress: &dyn Progress,
-) -> Result<Vec<LivePicture>, SessionError> {
+) -> Result<Vec<ShownPicture>, SessionError> {
     let before = session.preview().map_or(0, |preview| preview.id);
     let start = Instant::now();
     session.apply(Command::Camera(change))?;
@@ -118,7 +118,7 @@ fn watch_one(
         let size = [own.width, own.height];
         let psnr = compare(&enlarged(&own, [last.width, last.height]), &last)?.psnr;
         let (after, what) = (after.to_string(), what.to_string());
-        pictures.push(LivePicture { after, what, size, seconds: *seconds, psnr });
+        pictures.push(ShownPicture { after, what, size, seconds: *seconds, psnr });
     }
     Ok(pictures)
 }

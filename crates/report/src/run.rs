@@ -4,7 +4,7 @@ use crate::band::Band;
 use crate::contender::{Contender, Shot};
 use crate::default_lens::quantile;
 use crate::fingerprint::{self, Fingerprint};
-use crate::live::{self, LivePicture};
+use crate::live::{self, ShownPicture};
 use crate::machine::Machine;
 use crate::measure::{Against, Named, measure};
 use crate::options::{ReportOptions, SceneRequest};
@@ -281,7 +281,7 @@ impl Runner<'_> {
         request: &SceneRequest,
         subject: &Subject,
         scene_print: &str,
-    ) -> Result<Vec<LivePicture>, SessionError> {
+    ) -> Result<Vec<ShownPicture>, SessionError> {
         if request.single_scattering {
             return Ok(Vec::new());
         }

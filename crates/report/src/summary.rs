@@ -1,6 +1,6 @@
 //! What is told of each scene beside its measurements.
 
-use crate::live::LivePicture;
+use crate::live::ShownPicture;
 use crate::reference::ReferenceError;
 use lens::Camera;
 use serde::{Deserialize, Serialize};
@@ -40,7 +40,7 @@ pub struct SceneSummary {
     /// How it is focused.
     pub focuses: Vec<FocusSummary>,
     /// What the live preview showed of it; empty where it was not watched.
-    pub live: Vec<LivePicture>,
+    pub live: Vec<ShownPicture>,
     /// What was modelled of it.
     pub modelled: ModelledScene,
     /// What is odd but does no harm.

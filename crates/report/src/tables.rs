@@ -1,7 +1,7 @@
 //! The tables of the report, the same in Markdown and on the page.
 
 use crate::findings::EqualError;
-use crate::live::LivePicture;
+use crate::live::ShownPicture;
 use crate::plot::{bytes, seconds, significant, with_minus};
 use crate::record::Record;
 use crate::summary::{ModelledScene, SceneSummary};
@@ -89,9 +89,9 @@ pub fn modelled(scene: &ModelledScene) -> Table {
 }
 
 /// What the live preview showed.
-pub fn live(pictures: &[LivePicture]) -> Table {
+pub fn live(pictures: &[ShownPicture]) -> Table {
     let mut table = Table::new(&["after", "picture", "#size", "#seconds", "#PSNR, dB"]);
-    for LivePicture { after, what, size: [width, height], seconds, psnr } in pictures {
+    for ShownPicture { after, what, size: [width, height], seconds, psnr } in pictures {
         let size = format!("{width} × {height}");
         table.push([after.clone(), what.clone(), size, significant(*seconds), format!("{psnr:.1}")]);
     }

@@ -466,7 +466,7 @@ impl Radiance for Transport {
                     (Some(_), Some(_)) => !among.own_only && carried != DVec3::ZERO,
                 };
                 let mut beside = match asks {
-                    true => self.scattered_beside(point, &at, eye, inside, (known, among)),
+                    true => self.scattered_beside(point, &at, (&lobes, outgoing), inside, (known, among)),
                     false => Gathered::default(),
                 };
                 beside.light += Split { own: told, carried: DVec3::ZERO };

@@ -1,7 +1,7 @@
 //! The plots of a scene.
 
 use crate::contender::Contender;
-use crate::live::LivePicture;
+use crate::live::ShownPicture;
 use crate::plot::{Axis, Chart, Kind, Point, Rule, Series as Line, bytes, plain, seconds, significant};
 use crate::record::{Record, Series};
 
@@ -90,12 +90,12 @@ pub fn memory_against_error(records: &[&Record]) -> Chart {
 }
 
 /// Error against time of what the live preview showed, a line for each change; the last picture has no error.
-pub fn live(pictures: &[LivePicture]) -> Chart {
+pub fn live(pictures: &[ShownPicture]) -> Chart {
     let mut names: Vec<&str> = pictures.iter().map(|picture| picture.after.as_str()).collect();
     names.dedup();
     let line = |(style, name): (usize, &str)| {
         let own = pictures.iter().filter(|picture| picture.after == name && picture.psnr < 200.0);
-        let point = |picture: &LivePicture| Point {
+        let point = |picture: &ShownPicture| Point {
             x: picture.seconds,
             y: 10f64.powf(-picture.psnr / 20.0),
             label: picture.what.clone(),

@@ -30,8 +30,8 @@ pub struct Beginning<'a> {
     pub variant: VariantChoice,
 }
 
-/// An open document. Focus map, camera and the scene's variant are saved and can be undone. The selection can be undone and is saved with them,
-/// but is no change of theirs; brush, exposure and view are saved, too, and are not part of the history.
+/// An open document. Focus map, camera and the scene's variant are saved and can be undone. The selection can be undone and is
+/// saved with them, but is no change of theirs; brush, exposure and view are saved, too, and are not part of the history.
 pub struct Document {
     /// Scene, atlas and what works on them.
     pub stage: Arc<Stage>,

@@ -25,7 +25,7 @@ pub(crate) fn light(
     progress: &dyn Progress,
 ) -> Result<Transport, Cancelled> {
     let light_samples = if quality == LightQuality::Rough { ROUGH_LIGHT_SAMPLES } else { LIGHT_SAMPLES };
-    let transport = kept_light::unknown(tracer, world(tracer, camera), PATHS, light_samples);
+    let transport = transport(tracer, camera, PATHS, light_samples);
     if !needs_light(tracer) {
         return Ok(transport);
     }
@@ -35,7 +35,7 @@ pub(crate) fn light(
 
 /// The same as far as it is known at once: without irradiance, where that is not solved for yet, it is exact and noisy.
 pub(crate) fn light_at_once(tracer: &Arc<Tracer>, camera: &Camera) -> Transport {
-    let transport = transport(tracer, camera, PATHS);
+    let transport = transport(tracer, camera, PATHS, LIGHT_SAMPLES);
     match kept_light::known(tracer, &world(tracer, camera)) {
         Some(irradiance) => transport.with_irradiance(irradiance),
         None => transport,
@@ -44,7 +44,7 @@ pub(crate) fn light_at_once(tracer: &Arc<Tracer>, camera: &Camera) -> Transport 
 
 /// Light for the ground truth: whole paths, nothing known. It shades many points a pixel: a path each is enough.
 pub(crate) fn light_for_many_points(tracer: &Arc<Tracer>, camera: &Camera) -> Transport {
-    transport(tracer, camera, 1)
+    transport(tracer, camera, 1, LIGHT_SAMPLES)
 }
 
 /// Whether any surface scatters light at all.
@@ -58,6 +58,6 @@ fn world(tracer: &Tracer, camera: &Camera) -> World {
     World::of_scene(tracer.scene(), background)
 }
 
-fn transport(tracer: &Arc<Tracer>, camera: &Camera, paths: u32) -> Transport {
-    kept_light::unknown(tracer, world(tracer, camera), paths, LIGHT_SAMPLES)
+fn transport(tracer: &Arc<Tracer>, camera: &Camera, paths: u32, light_samples: u32) -> Transport {
+    kept_light::unknown(tracer, world(tracer, camera), paths, light_samples)
 }

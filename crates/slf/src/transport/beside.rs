@@ -27,23 +27,19 @@ impl Transport {
         &self,
         point: SurfacePoint,
         at: &MaterialPoint,
-        eye: DVec3,
+        (lobes, outgoing): (&Toward<'_, '_>, DVec3),
         inside: Inside,
         (irradiance, among): (&Irradiance, Among),
     ) -> Gathered {
-        let outgoing = (eye - at.position).normalize_or_zero();
-        let is_front = at.frame.geometric.dot(outgoing) >= 0.0;
-        let bsdf = Bsdf::new(&at.surface, at.frame, self.media.interface(at.material, &inside, is_front));
-        let lobes = bsdf.toward(outgoing);
+        let (Split { own, carried }, spread_albedo) = (lobes.albedo(), lobes.spread_albedo());
         let is_told = among.received.is_some();
         let own_is_told = among.received.is_some_and(|received| received.gloss.is_some());
         // Where nothing is sharp, paths only look for lamps that are large; where all else is told, there are as many as what they
         // may find matters.
         let share = match is_told {
             true => {
-                let Split { own, carried } = lobes.albedo();
-                let own = if own_is_told { DVec3::ZERO } else { own - lobes.spread_albedo() };
-                ((own + carried).max_element() / MATTERS).min(1.0).powi(2)
+                let asked = if own_is_told { DVec3::ZERO } else { own - spread_albedo };
+                ((asked + carried).max_element() / MATTERS).min(1.0).powi(2)
             }
             false if lobes.is_spread() => 0.25,
             false => 1.0,
@@ -57,11 +53,11 @@ impl Transport {
         let draws = self.lights.draws(each_of(among, of_lights));
         let lights_a_path = f64::from(draws.all) / f64::from(paths);
         let of_punctual = f64::from(draws.all) / f64::from(draws.punctual);
-        // Of a part of a picture what is spread widely draws and looks as its neighbours do: what is off is off for all of them alike.
+        // Of a part of a picture what is spread widely draws and looks as its neighbours do: what is off is off for all of them
+        // alike.
         let is_part = among.count > 1 && !own_is_told;
         let light_seed = if is_part && !is_told { drawn::SEED } else { among.seed };
-        let look_seed =
-            if is_part && lobes.albedo().carried == DVec3::ZERO { drawn::LOOKING } else { !among.seed };
+        let look_seed = if is_part && carried == DVec3::ZERO { drawn::LOOKING } else { !among.seed };
         // What the sky would send, did nothing shade it, is known: it is put in for what its samples would find of it, so that they
         // only tell what is missing (a control variate: the mean stays).
         let normal = lobes.normal();
@@ -94,19 +90,21 @@ impl Transport {
         let mut found = Gathered::default();
         if let Some(unshaded) = unshaded {
             let missing = drawn_unshaded.get() / (PI * f64::from(draws.all));
-            let known = lobes.spread_albedo() * (unshaded - missing) * f64::from(paths);
+            let known = spread_albedo * (unshaded - missing) * f64::from(paths);
             found.light += Split { own: known, carried: DVec3::ZERO };
         }
         for index in 0..paths {
             let random = PathRandom::new(look_seed, among.index * paths + index);
             let mut path = Path { random, inside, lights_a_path };
             if !is_told {
-                found.light += self.looked_for(point, at, &lobes, &mut path);
+                let sent = self.looked_for(point, at.position, lobes, &mut path).map(|(_, sent)| sent);
+                found.light += Split { own: sent.unwrap_or_default(), carried: DVec3::ZERO };
             }
             let dispersed = self.disperse(at, &mut path);
             found += match path.inside.channel {
-                None => self.sharp(point, at, &lobes, &mut path, irradiance),
+                None => self.sharp(point, at, lobes, &mut path, irradiance),
                 Some(_) => {
+                    let is_front = at.frame.geometric.dot(outgoing) >= 0.0;
                     let interface = self.media.interface(at.material, &path.inside, is_front);
                     let bsdf = Bsdf::new(&at.surface, at.frame, interface);
                     self.sharp(point, at, &bsdf.toward(outgoing), &mut path, irradiance).split(dispersed)
@@ -118,26 +116,21 @@ impl Transport {
         if own_is_told { found.carried() } else { found }
     }
 
-    /// What spread lobes send of lamps, as one direction finds them that is drawn by how the surface scatters.
-    fn looked_for(
+    /// What spread lobes send of a lamp that one direction finds, drawn by how the surface scatters: that direction, and the radiance.
+    pub(super) fn looked_for(
         &self,
         point: SurfacePoint,
-        at: &MaterialPoint,
+        position: DVec3,
         lobes: &Toward<'_, '_>,
         path: &mut Path,
-    ) -> Split {
+    ) -> Option<(DVec3, DVec3)> {
         if !self.lights.has_emitters() {
-            return Split::default();
+            return None;
         }
-        let Some((direction, density)) = lobes.sample_spread(path.random.next2()) else {
-            return Split::default();
-        };
-        let light = self.lamp_along(point, at.position, direction, density, path);
-        if light == DVec3::ZERO {
-            return Split::default();
-        }
-        let (Parts { spread, .. }, _) = lobes.scatter_parts(direction);
-        Split { own: spread * light / density, carried: DVec3::ZERO }
+        let (direction, density) = lobes.sample_spread(path.random.next2())?;
+        let light = self.lamp_along(point, position, direction, density, path);
+        let sent = || lobes.scatter_parts(direction).0.spread * light / density;
+        (light != DVec3::ZERO).then(|| (direction, sent()))
     }
 
     /// What sharp lobes send of all light that one path finds, where irradiance is known.

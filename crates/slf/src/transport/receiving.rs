@@ -144,13 +144,15 @@ impl Asked<'_> {
         let cosine = |from: DVec3| place.normal.dot(from);
         // The sky's samples tell what share of it is missing: none is, or all, where none is seen, or all, to the last bit.
         let of_sky = |drawn: &&Drawn| drawn.sample.density.is_some() && !drawn.sample.is_near;
-        let drawn_of_sky =
-            drawing.lights.iter().filter(of_sky).map(|drawn| {
-                drawn.sample.light.as_dvec3() * cosine(drawn.sample.from) * FRAC_1_PI * drawn.share
-            });
+        let drawn_of_sky = drawing.lights.iter().filter(of_sky).map(|drawn| {
+            drawn.sample.light.as_dvec3()
+                * cosine(drawn.sample.from)
+                * FRAC_1_PI
+                * drawing.share(&drawn.sample)
+        });
         let as_unshaded = unshaded.map_or(DVec3::ONE, |unshaded| unshaded * inverse(drawn_of_sky.sum()));
         for drawn in &drawing.lights {
-            let Drawn { sample, is_seen, share } = drawn;
+            let Drawn { sample, is_seen } = drawn;
             let cosine = cosine(sample.from);
             let is_known = of_sky(&drawn) && unshaded.is_some();
             if !is_seen && !is_known {
@@ -163,10 +165,10 @@ impl Asked<'_> {
             let share = match sample.density {
                 Some(density) if sample.is_near => {
                     let own = facing.lobes.spread_density(sample.from);
-                    heuristic(density * lights_a_look, own) * share
+                    heuristic(density * lights_a_look, own)
                 }
-                _ => *share,
-            };
+                _ => 1.0,
+            } * drawing.share(sample);
             let light = transport.light_of(sample, place.position, inside);
             received.add(light * scale * (sent - known) * share, sample.from, cosine);
         }
@@ -174,21 +176,16 @@ impl Asked<'_> {
 
     /// Adds what spread lobes receive of lamps that are found by directions they are looked for in.
     fn add_looked_for(&self, received: &mut Received, facing: &Facing, by_spread: DVec3, drawing: &Drawing) {
-        if !self.transport.lights.has_emitters() {
-            return;
-        }
         let place = &self.places[facing.spot];
         let looks = self.light_samples();
         let lights_a_path = f64::from(drawing.of_areas) / f64::from(looks);
         for index in 0..looks {
-            let mut random = PathRandom::new(drawn::LOOKING, index);
-            let Some((direction, density)) = facing.lobes.sample_spread(random.next2()) else { continue };
-            let path = Path { random, inside: self.inside[facing.spot], lights_a_path };
-            let light = self.transport.lamp_along(facing.point, place.position, direction, density, &path);
-            if light != DVec3::ZERO {
-                let sent = facing.lobes.scatter_parts(direction).0.spread * by_spread;
+            let random = PathRandom::new(drawn::LOOKING, index);
+            let mut path = Path { random, inside: self.inside[facing.spot], lights_a_path };
+            let found = self.transport.looked_for(facing.point, place.position, facing.lobes, &mut path);
+            if let Some((direction, sent)) = found {
                 let cosine = place.normal.dot(direction);
-                received.add(light * sent / (density * f64::from(looks)), direction, cosine);
+                received.add(sent * by_spread / f64::from(looks), direction, cosine);
             }
         }
     }
@@ -200,9 +197,10 @@ impl Asked<'_> {
         let paths = if sent_of_all < AS_METAL { PATHS } else { PATHS_OF_METAL } * self.light_samples();
         let lights_a_path = f64::from(drawing.of_areas) / f64::from(paths);
         let mut sent = DVec3::ZERO;
-        for Drawn { sample, share, .. } in drawing.lights.iter().filter(|drawn| drawn.is_seen) {
+        for Drawn { sample, .. } in drawing.lights.iter().filter(|drawn| drawn.is_seen) {
             let (Parts { sharp, .. }, own) = facing.lobes.scatter_parts(sample.from);
-            let share = share * sample.density.map_or(1.0, |density| heuristic(density * lights_a_path, own));
+            let share = drawing.share(sample)
+                * sample.density.map_or(1.0, |density| heuristic(density * lights_a_path, own));
             sent += self.transport.light_of(sample, place.position, &inside) * sharp.own * share;
         }
         for index in 0..paths {

@@ -4,6 +4,7 @@ use super::asked::Asked;
 use crate::lights::LightSample;
 use crate::path_random::PathRandom;
 use crate::spots::Seen;
+use glam::Vec3;
 
 /// How often sky and lamps are drawn where a spot sees all of them, or none, over how often for a point asked alone.
 const LIGHTS: u32 = 4;
@@ -24,8 +25,6 @@ pub(in crate::transport) const LOOKING: u64 = 0xa115_7075_100c_a11c;
 pub(super) struct Drawn {
     pub sample: LightSample,
     pub is_seen: bool,
-    /// One over how many were drawn of its kind.
-    pub share: f64,
 }
 
 /// All that were.
@@ -33,6 +32,8 @@ pub(super) struct Drawing {
     pub lights: Vec<Drawn>,
     /// How often sky and lamps were.
     pub of_areas: u32,
+    /// And how often punctual lights.
+    of_punctual: u32,
     pub seen: Seen,
 }
 
@@ -54,13 +55,11 @@ fn bit(sample: &LightSample, turn: u32) -> (usize, u64) {
 impl Asked<'_> {
     /// Draws lights for a spot, more of them where it sees some of the sky or of the lamps and others not.
     pub fn draw(&self, spot: usize) -> Drawing {
-        let mut drawing = Drawing { lights: Vec::new(), of_areas: 0, seen: Seen::default() };
-        let punctual = self.punctual_draws();
-        for turn in 0..punctual {
+        let of_punctual = self.punctual_draws();
+        let mut drawing = Drawing { lights: Vec::new(), of_areas: 0, of_punctual, seen: Seen::default() };
+        for turn in 0..of_punctual {
             self.visit_punctual(spot, turn, |sample| drawing.add(self, spot, sample, turn));
         }
-        drawing.lights.iter_mut().for_each(|drawn| drawn.share = 1.0 / f64::from(punctual));
-        let of_punctual = drawing.lights.len();
         if self.transport.lights.has_areas() {
             let [few, many] = [LIGHTS, LIGHTS_IN_PENUMBRA].map(|times| times * self.light_samples());
             drawing.of_areas = few;
@@ -69,8 +68,6 @@ impl Asked<'_> {
                 drawing.of_areas = many;
                 (few..many).for_each(|turn| drawing.add_areas(self, spot, turn));
             }
-            let share = 1.0 / f64::from(drawing.of_areas);
-            drawing.lights[of_punctual..].iter_mut().for_each(|drawn| drawn.share = share);
         }
         drawing
     }
@@ -133,12 +130,18 @@ impl Asked<'_> {
 }
 
 impl Drawing {
+    /// One over how often lights of the kind of this one were drawn.
+    pub fn share(&self, sample: &LightSample) -> f64 {
+        let draws = if sample.number.is_some() { self.of_punctual } else { self.of_areas };
+        1.0 / f64::from(draws)
+    }
+
     fn add_areas(&mut self, asked: &Asked, spot: usize, turn: u32) {
         asked.visit_areas(spot, turn, |sample| self.add(asked, spot, sample, turn));
     }
 
     fn add(&mut self, asked: &Asked, spot: usize, sample: LightSample, turn: u32) {
-        if asked.places[spot].normal.dot(sample.from) <= 0.0 || sample.light == glam::Vec3::ZERO {
+        if asked.places[spot].normal.dot(sample.from) <= 0.0 || sample.light == Vec3::ZERO {
             return;
         }
         let (kind, bit) = bit(&sample, turn);
@@ -147,6 +150,6 @@ impl Drawing {
             self.seen.above[kind] |= bit;
             self.seen.seen[kind] |= if is_seen { bit } else { 0 };
         }
-        self.lights.push(Drawn { sample, is_seen, share: 1.0 });
+        self.lights.push(Drawn { sample, is_seen });
     }
 }
