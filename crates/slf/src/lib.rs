@@ -8,6 +8,7 @@
 mod emitters;
 mod environment_light;
 mod irradiance;
+mod light_tree;
 mod lights;
 mod material_point;
 mod media;

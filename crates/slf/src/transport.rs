@@ -44,8 +44,8 @@ impl Default for TransportOptions {
 /// | emissive | the emitted radiance, on the front; on both sides if double sided |
 /// | any but unlit | + what its lobes scatter of light that arrives ([`Bsdf`]) |
 ///
-/// At every surface a path meets, light is looked for in two ways: a light is drawn (an emissive triangle by its power, a
-/// direction of the environment by its brightness, punctual lights all, or one by what it would send), and a direction is drawn by
+/// At every surface a path meets, light is looked for in two ways: a light is drawn (an emissive triangle by what of its power
+/// may arrive, a direction of the environment by its brightness, punctual lights all, or one by what it would send), and a direction is drawn by
 /// how the surface scatters. What both may find is weighted by the power heuristic (Veach and Guibas 1995). Unlit surfaces send the
 /// colour they show, and are found by the second way alone. Paths end by Russian roulette, or after the world's bounces: nothing
 /// else is left out or cut off, so the mean over points and paths is exact, and depends on the point and the eye alone.
@@ -296,8 +296,8 @@ impl Transport {
         path: &Path,
     ) -> DVec3 {
         let Some(hit) = self.tracer.first_met(from, direction) else { return DVec3::ZERO };
-        let toward = hit.point.position(self.scene()) - position;
-        let of_light = self.lights.density_of_emitter(hit.point.triangle, toward);
+        let place = hit.point.position(self.scene());
+        let of_light = self.lights.density_of_emitter(hit.point.triangle, place, position);
         if of_light == 0.0 {
             return DVec3::ZERO;
         }
@@ -330,8 +330,8 @@ impl Transport {
             let outgoing = -step.direction;
             let shines = emitted(scene, point, outgoing).as_dvec3();
             if shines != DVec3::ZERO {
-                let toward = point.position(scene) - step.position;
-                let of_light = self.lights.density_of_emitter(point.triangle, toward);
+                let place = point.position(scene);
+                let of_light = self.lights.density_of_emitter(point.triangle, place, step.position);
                 found.add(throughput * shines, step.density, of_light, scatterings, path);
             }
             if scatterings > most || scene.material_of(point.triangle).unlit {
