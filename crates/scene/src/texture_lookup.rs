@@ -16,7 +16,7 @@ static LINEAR_FROM_16: LazyLock<Vec<f32>> =
     LazyLock::new(|| (0..=65535).map(|v| decode(v as f64 / 65535.0)).collect());
 
 /// IEC 61966-2-1, encoded to linear.
-fn decode(v: f64) -> f32 {
+pub(crate) fn decode(v: f64) -> f32 {
     (if v <= 0.04045 { v / 12.92 } else { ((v + 0.055) / 1.055).powf(2.4) }) as f32
 }
 
