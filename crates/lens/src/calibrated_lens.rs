@@ -66,7 +66,9 @@ impl CalibratedLens {
             Projection::FieldOfView { omega } => {
                 require((0.0..PI).contains(&omega), "omega", "an angle in [0, π) rad")?;
             }
-            Projection::Division { k } => require(k.is_finite(), "distortion", "finite")?,
+            Projection::Division { k: term } | Projection::MeasuredRadial { r: term } => {
+                require(term.is_finite(), "distortion", "finite")?;
+            }
             Projection::EnhancedUnified { alpha, beta } => {
                 require((0.0..=1.0).contains(&alpha), "alpha", "0 to 1")?;
                 require(positive(beta), "beta", "above 0 and finite")?;

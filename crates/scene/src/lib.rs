@@ -83,5 +83,6 @@ pub use model::{Image, ImageLevel, Light, LightKind, Node, Part, Scene, SceneCam
 pub use source::{PartSource, Source, StoredElements};
 pub use surface_mesh::SurfaceMesh;
 pub use surface_point::{SurfaceField, SurfacePoint};
+pub use texture_lookup::linear_from_srgb;
 pub use views::{Mask, Photograph, PictureError, View};
 pub use world::{Backdrop, Environment, EnvironmentMap, World};

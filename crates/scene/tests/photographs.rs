@@ -83,7 +83,10 @@ fn a_profile_that_is_not_understood_is_said() {
     encoder.set_icc_profile(b"no profile".to_vec()).unwrap();
     encoder.write_image(&[0; 3], 1, 1, ExtendedColorType::Rgb8).unwrap();
     let error = read(&file, [1, 1]).unwrap_err().to_string();
-    assert!(error.contains("a.png: its ICC profile") && error.ends_with("(convert the pictures to sRGB)"), "{error}");
+    assert!(
+        error.contains("a.png: its ICC profile") && error.ends_with("(convert the pictures to sRGB)"),
+        "{error}"
+    );
 }
 
 #[test]
@@ -93,12 +96,15 @@ fn pictures_are_turned_as_the_view_says_not_as_the_file_says() {
     // White on the left, black on the right, 32 × 16; the file says that it wants to be turned by 90° clockwise.
     let half = RgbImage::from_fn(32, 16, |x, _| image::Rgb([if x < 16 { 255 } else { 0 }; 3]));
     let mut encoder = JpegEncoder::new_with_quality(std::fs::File::create(&file).unwrap(), 100);
-    encoder.set_exif_metadata(b"II*\0\x08\0\0\0\x01\0\x12\x01\x03\0\x01\0\0\0\x06\0\0\0\0\0\0\0".to_vec()).unwrap();
+    encoder
+        .set_exif_metadata(b"II*\0\x08\0\0\0\x01\0\x12\x01\x03\0\x01\0\0\0\x06\0\0\0\0\0\0\0".to_vec())
+        .unwrap();
     encoder.encode_image(&half).unwrap();
 
     let as_stored = read(&file, [32, 16]).unwrap();
     assert!(as_stored.pixels[0][0] > 0.9 && as_stored.pixels[31][0] < 0.1);
-    let turned = View { orientation: 6, ..view(&file, [16, 32]) }.photograph(&LoadOptions::default()).unwrap();
+    let turned =
+        View { orientation: 6, ..view(&file, [16, 32]) }.photograph(&LoadOptions::default()).unwrap();
     assert_eq!([turned.width, turned.height], [16, 32]);
     // What was on the left is on top.
     assert!(turned.pixels[15][0] > 0.9 && turned.pixels[16 * 31][0] < 0.1);
@@ -110,7 +116,8 @@ fn what_is_wrong_with_a_picture_is_one_sentence() {
     let file = folder.path().join("a.png");
     let said = |result: Result<Photograph, PictureError>, what: &str| {
         let text = result.unwrap_err().to_string();
-        let form = text.starts_with(&file.display().to_string()) && text.ends_with(')') && !text.contains('\n');
+        let form =
+            text.starts_with(&file.display().to_string()) && text.ends_with(')') && !text.contains('\n');
         assert!(form && text.contains(what), "{text}");
     };
     said(read(&file, [1, 1]), "cannot be read");

@@ -28,6 +28,11 @@ pub enum Projection {
         /// β, > 0.
         beta: f64,
     },
+    /// The q whose q(1 + r|q|²) is (X, −Y)/Z: distortion as VisualSFM has it, from measured to ideal. Z > 0 alone.
+    MeasuredRadial {
+        /// r.
+        r: f64,
+    },
     /// (longitude, −latitude), both 0 straight ahead: a panorama.
     Equirectangular,
 }
@@ -63,6 +68,10 @@ impl Projection {
                 let bound = if alpha <= 0.5 { alpha / (1.0 - alpha) } else { (1.0 - alpha) / alpha };
                 (z > -bound * d).then(|| across / (alpha * d + (1.0 - alpha) * z))?
             }
+            Self::MeasuredRadial { r } => {
+                let ideal = (z > 0.0).then(|| rho / z)?;
+                if ideal > 0.0 { across / rho * measured_radius(r, ideal)? } else { DVec2::ZERO }
+            }
             Self::Equirectangular => {
                 (rho > 0.0 || z != 0.0).then(|| DVec2::new(x.atan2(z), -y.atan2(x.hypot(z))))?
             }
@@ -97,6 +106,10 @@ impl Projection {
                 let denominator = alpha * (root >= 0.0).then(|| root.sqrt())? + 1.0 - alpha;
                 (denominator > 0.0).then(|| ahead(point, (1.0 - alpha * alpha * beta * r2) / denominator))?
             }
+            Self::MeasuredRadial { r } => {
+                // Where it stops rising, two points have one direction.
+                (1.0 + 3.0 * r * r2 > 0.0).then(|| ahead(point * (1.0 + r * r2), 1.0))?
+            }
             Self::Equirectangular => {
                 let (longitude, latitude) = (point.x, -point.y);
                 let (sin, cos) = longitude.sin_cos();
@@ -113,11 +126,37 @@ fn field_of_view_scale(omega: f64) -> f64 {
     if omega > 0.0 { 2.0 * (0.5 * omega).tan() / omega } else { 1.0 }
 }
 
+/// The smallest q ≥ 0 of q(1 + rq²) = `ideal`: Newton's method within the bounds of a bisection.
+fn measured_radius(r: f64, ideal: f64) -> Option<f64> {
+    let fold = if r < 0.0 { (-1.0 / (3.0 * r)).sqrt() } else { f64::INFINITY };
+    let [mut low, mut high] = [0.0, if r < 0.0 { fold } else { ideal }];
+    if high * (1.0 + r * high * high) < ideal {
+        return None;
+    }
+    let mut q = ideal.min(0.9 * high);
+    // As many as halve any interval down to two neighbouring numbers.
+    for _ in 0..100 {
+        let excess = q * (1.0 + r * q * q) - ideal;
+        if excess < 0.0 {
+            low = q
+        } else {
+            high = q
+        }
+        let newton = q - excess / (1.0 + 3.0 * r * q * q);
+        let next = if newton > low && newton < high { newton } else { 0.5 * (low + high) };
+        if (next - q).abs() <= f64::EPSILON * q {
+            return Some(next);
+        }
+        q = next;
+    }
+    Some(q)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    const ALL: [Projection; 9] = [
+    const ALL: [Projection; 11] = [
         Projection::Perspective,
         Projection::Equidistant,
         Projection::FieldOfView { omega: 0.9 },
@@ -126,6 +165,8 @@ mod tests {
         Projection::Division { k: 0.2 },
         Projection::EnhancedUnified { alpha: 0.6, beta: 1.1 },
         Projection::EnhancedUnified { alpha: 0.3, beta: 0.8 },
+        Projection::MeasuredRadial { r: 0.3 },
+        Projection::MeasuredRadial { r: -0.1 },
         Projection::Equirectangular,
     ];
 
@@ -152,11 +193,16 @@ mod tests {
                 let direction = DVec3::new(across * turn.cos(), across * turn.sin(), z);
                 let Some(point) = projection.plane_from_direction(direction) else { continue };
                 let back = projection.direction_from_plane(point).unwrap();
-                assert!(back.abs_diff_eq(direction, 1e-9), "{projection:?}: {direction} to {back}");
+                assert!(back.abs_diff_eq(direction, 1e-8), "{projection:?}: {direction} to {back}");
                 met += 1;
             }
             // Half of the sphere for what is like a pinhole, less only where two directions would share a point.
-            let least = if matches!(projection, Projection::Division { k } if k > 0.0) { 50 } else { 200 };
+            let folds = match projection {
+                Projection::Division { k } => k > 0.0,
+                Projection::MeasuredRadial { r } => r < 0.0,
+                _ => false,
+            };
+            let least = if folds { 50 } else { 200 };
             assert!(met >= least, "{projection:?}: {met}");
         }
     }

@@ -3,7 +3,7 @@
 //! Without an ICC profile numbers are sRGB; floats are linear. A profile of curves and a matrix (Display P3, Adobe RGB and what
 //! cameras write) is followed. Profiles made of tables belong to printers and scanners and are refused.
 
-use crate::texture_lookup::decode;
+use crate::texture_lookup::linear_from_srgb;
 use image::{ColorType, DynamicImage};
 use moxcms::{ColorProfile, DataColorSpace, ToneReprCurve};
 
@@ -23,7 +23,7 @@ impl PictureColors {
     pub fn of(profile: Option<&[u8]>, picture: &DynamicImage) -> Result<Self, UnknownProfile> {
         let entries = if is_deep(picture.color()) { 1 << 16 } else { 1 << 8 };
         let Some(bytes) = profile else {
-            let curve = table(entries, |value| decode(f64::from(value)));
+            let curve = table(entries, |value| linear_from_srgb(f64::from(value)));
             return Ok(Self { curves: [curve.clone(), curve.clone(), curve], to_srgb: None });
         };
         let profile = ColorProfile::new_from_slice(bytes)
