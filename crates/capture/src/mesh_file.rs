@@ -33,7 +33,7 @@ pub(crate) fn find(folder: &Folder, remarks: &mut Vec<Remark>) -> Result<PathBuf
     let files = folder.files(&folder.shown, DEEPEST, MOST);
     let is_mesh = |file: &&PathBuf| matches!(extension(file).as_str(), "ply" | "obj" | "glb" | "gltf");
     let (meshes, points): (Vec<&PathBuf>, Vec<&PathBuf>) =
-        files.iter().filter(is_mesh).partition(|file| extension(file) != "ply" || ply::has_faces(file));
+        files.iter().filter(is_mesh).partition(|file| extension(file) != "ply" || ply::may_have_faces(file));
     let rank = |file: &&&PathBuf| {
         let name = file.file_name().unwrap_or_default().to_string_lossy().to_lowercase();
         let size = std::fs::metadata(file).map_or(0, |data| data.len());
@@ -94,4 +94,9 @@ pub(crate) fn read(
     };
     progress.check()?;
     Ok(Scene::of_mesh(mesh, options)?)
+}
+
+/// The triangles of a face of any number of corners, convex and flat as it is hoped: a fan about the first.
+pub(crate) fn fan(corners: &[u32]) -> impl Iterator<Item = [u32; 3]> {
+    corners.windows(2).skip(1).map(|pair| [corners[0], pair[0], pair[1]])
 }

@@ -145,7 +145,7 @@ impl Reader<'_> {
             self.malformed(sensor, format!("sensor {label}: {what}"))
         };
         // The adjusted calibration comes last.
-        let calibration = sensor.children().filter(|node| node.has_tag_name("calibration")).last();
+        let calibration = sensor.children().rev().find(|node| node.has_tag_name("calibration"));
         let calibration = calibration.ok_or_else(|| wrong("it has no calibration"))?;
         let resolution = child(calibration, "resolution").or_else(|| child(sensor, "resolution"));
         let side = |name: &str| resolution?.attribute(name)?.parse::<u32>().ok();

@@ -2,6 +2,7 @@
 //! photographs know better.
 
 use crate::CaptureError;
+use crate::mesh_file::fan;
 use crate::text::{Lines, number, quoted};
 use glam::{DVec3, Vec3, Vec4};
 use scene::{LoadOptions, SurfaceMesh, linear_from_srgb};
@@ -86,7 +87,7 @@ impl Reader {
 
     /// A face of corners `v`, `v/vt`, `v/vt/vn` or `v//vn`, as a fan.
     fn face<'a>(&mut self, fields: impl Iterator<Item = &'a str>) -> Result<(), CaptureError> {
-        let (mut first, mut last) = (None, None);
+        let mut corners = Vec::new();
         for corner in fields {
             let mut parts = corner.split('/');
             let vertex = parts.next().and_then(|index| absolute(index, self.mesh.positions.len()));
@@ -103,15 +104,9 @@ impl Reader {
                 self.mesh.normals.resize(self.mesh.positions.len(), Vec3::ZERO);
                 self.mesh.normals[vertex as usize] += *normal;
             }
-            match (first, last) {
-                (Some(first), Some(last)) => self.mesh.triangles.push([first, last, vertex]),
-                (Some(_), None) | (None, _) => {}
-            }
-            (first, last) = match first {
-                None => (Some(vertex), None),
-                first => (first, Some(vertex)),
-            };
+            corners.push(vertex);
         }
+        self.mesh.triangles.extend(fan(&corners));
         Ok(())
     }
 

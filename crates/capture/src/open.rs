@@ -86,13 +86,13 @@ fn whole(path: &Path) -> Result<(Folder, PathBuf), CaptureError> {
         return Ok((Folder::open(path)?, path.into()));
     }
     let within = path.canonicalize().map_err(|source| CaptureError::unreadable(path, source))?;
-    // A folder of photographs may well be called 2024, too.
-    let has_cameras = |path: &Path| Folder::open(path).is_ok_and(|folder| !Cameras::find(&folder).is_empty());
-    let above = within.ancestors().skip(1).find(|above| !is_model(above));
-    let has_model = ["cameras.bin", "cameras.txt"].iter().any(|name| within.join(name).is_file());
-    match above {
-        Some(above) if has_model && has_cameras(above) => Ok((Folder::open(above)?, within)),
-        _ => Ok((Folder::open(path)?, path.into())),
+    // The nearest folder above that is no model's; a folder of photographs may be called 2024, too, and has no model of its own.
+    let above = within.ancestors().skip(1).find(|above| !is_model(above)).map(Folder::open).transpose()?;
+    let has_it =
+        |folder: &Folder| Cameras::find(folder).iter().any(|cameras| cameras.file().starts_with(&within));
+    match above.filter(has_it) {
+        Some(above) => Ok((above, within)),
+        None => Ok((Folder::open(path)?, path.into())),
     }
 }
 

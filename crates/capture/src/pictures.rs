@@ -53,8 +53,8 @@ pub(crate) fn views(
     for (index, shot) in shots.iter().enumerate() {
         progress.check()?;
         progress.report(index as f32 / shots.len() as f32);
-        let Some(picture) = place.picture(index) else { continue };
-        match view(shot, picture, masks[index].clone()) {
+        let Some(name) = place.name(index) else { continue };
+        match view(shot, name, place.base.join(name), masks[index].clone()) {
             Ok(view) => {
                 if view.orientation != 1 {
                     turned.push(shot.name.clone());
@@ -126,8 +126,9 @@ impl Place {
         self.files.iter().flatten().count()
     }
 
-    fn picture(&self, index: usize) -> Option<PathBuf> {
-        self.files[index].map(|file| self.base.join(&self.paths[file]))
+    /// The path of a shot's picture.
+    fn name(&self, index: usize) -> Option<&str> {
+        self.files[index].map(|file| self.paths[file].as_str())
     }
 
     /// Pictures that nobody asked for.
@@ -231,13 +232,13 @@ fn listed(folder: &Folder, base: &Path, without: &[&str]) -> Vec<String> {
     folder.files(base, DEEPEST, MOST).iter().filter_map(relative).collect()
 }
 
-/// The view of a shot whose picture is this file.
-fn view(shot: &Shot, picture: PathBuf, mask: Option<PathBuf>) -> Result<View, String> {
+/// The view of a shot whose picture is this file, called `name`.
+fn view(shot: &Shot, name: &str, picture: PathBuf, mask: Option<PathBuf>) -> Result<View, String> {
     let (size, exif) = header(&picture)?;
     let lens = shot.lens.for_size(size).map_err(|error| error.to_string())?;
     let (lens, orientation) = fitted(lens, size, exif.orientation)?;
     Ok(View {
-        name: shot.name.replace('\\', "/"),
+        name: name.into(),
         picture,
         orientation,
         exif_orientation: exif.orientation,

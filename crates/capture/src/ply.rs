@@ -8,15 +8,17 @@ mod body;
 mod header;
 
 use crate::CaptureError;
+use crate::mesh_file::fan;
 use body::Body;
 use glam::{DVec3, Vec3, Vec4};
 use header::{Element, Header, Kind};
 use scene::{LoadOptions, SurfaceMesh, linear_from_srgb};
 use std::path::Path;
 
-/// Whether a file is a PLY with faces; not so if it cannot be read.
-pub(crate) fn has_faces(file: &Path) -> bool {
-    Header::open(file).is_ok_and(|(header, _)| header.element("face").is_some_and(|face| face.count > 0))
+/// Whether a PLY file has faces, or is too broken to tell.
+pub(crate) fn may_have_faces(file: &Path) -> bool {
+    let header = Header::open(file);
+    header.map_or(true, |(header, _)| header.element("face").is_some_and(|face| face.count > 0))
 }
 
 /// The mesh of a file.
@@ -92,15 +94,16 @@ fn faces(
         return Err(body.malformed("its faces have no list of vertex_indices"));
     };
     let mut row = vec![0.0; element.properties.len()];
-    let mut corners = Vec::new();
+    let (mut corners, mut indices) = (Vec::new(), Vec::new());
     for _ in 0..element.count {
         body.row(element, &mut row, Some((column, &mut corners)))?;
         // What is no index of a vertex is none of those that are there.
-        let index = |corner: f64| {
+        let index = |&corner: &f64| {
             if corner >= 0.0 && corner < f64::from(u32::MAX) { corner as u32 } else { u32::MAX }
         };
-        let fan = corners.windows(2).skip(1).map(|pair| [corners[0], pair[0], pair[1]].map(index));
-        mesh.triangles.extend(fan);
+        indices.clear();
+        indices.extend(corners.iter().map(index));
+        mesh.triangles.extend(fan(&indices));
         if mesh.triangles.len() as u64 > options.max_triangles {
             let what = format!("has more than {} triangles", options.max_triangles);
             return Err(CaptureError::TooBig { file: mesh.path.clone(), what });

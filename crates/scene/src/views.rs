@@ -20,7 +20,7 @@ use std::path::PathBuf;
 /// directions. Readers convert once: computer vision's axes (COLMAP: x right, y down, z forward) are glTF's turned by 180° about x.
 #[derive(Clone, Debug, PartialEq)]
 pub struct View {
-    /// What the capture calls it: a relative path with `/`, as a rule.
+    /// What it is called: its path below the folder of the pictures, with `/`; no two views of a capture are alike.
     pub name: String,
     /// The picture's file.
     pub picture: PathBuf,

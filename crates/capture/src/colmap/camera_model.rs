@@ -120,9 +120,12 @@ mod tests {
     const POINTS: [DVec3; 3] =
         [DVec3::new(0.1, 0.2, 1.5), DVec3::new(-0.6, 0.35, 1.0), DVec3::new(0.5, -0.4, 0.9)];
 
-    /// A model, its parameters for pictures of 640 × 480 px, and where the points fall: by `pycolmap` 4.2.1's `Camera.img_from_cam`.
+    /// A model, its parameters for pictures of 640 × 480 px, and where the points fall.
+    type Case = (&'static str, &'static [f64], [[f64; 2]; 3]);
+
+    /// By `pycolmap` 4.2.1's `Camera.img_from_cam`.
     #[rustfmt::skip]
-    const BY_COLMAP: [(&str, &[f64], [[f64; 2]; 3]); 18] = [
+    const BY_COLMAP: [Case; 18] = [
         ("SIMPLE_PINHOLE", &[500.0, 320.0, 240.0], [[353.3333333333333, 306.6666666666667], [20.0, 415.0], [597.7777777777778, 17.77777777777777]]),
         ("PINHOLE", &[500.0, 510.0, 318.0, 243.0], [[351.3333333333333, 311.0], [18.0, 421.5], [595.7777777777778, 16.333333333333343]]),
         ("SIMPLE_RADIAL", &[500.0, 320.0, 240.0, -0.12], [[353.24444444444447, 306.4888888888889], [37.370000000000005, 404.8675], [580.9053497942386, 31.275720164609027]]),

@@ -1,10 +1,8 @@
 //! The cameras of every program: the same ones, written as each has them, are the same views.
 
-mod made;
-
+use crate::made::{Camera, FOCAL, SIZE, cameras, names, open, pictures_and_mesh, refused};
 use capture::{CaptureOptions, Kind, recognise};
 use glam::{DMat3, DMat4, DVec2, DVec3};
-use made::{Camera, FOCAL, SIZE, cameras, names, open, pictures_and_mesh, refused};
 use progress::Unwatched;
 use std::fs::{create_dir_all, write};
 use std::path::Path;
@@ -37,7 +35,7 @@ fn same_cameras(kind: Kind, write: impl Fn(&Path, &[Camera])) -> capture::Captur
 
 #[test]
 fn colmap_text_and_binary() {
-    same_cameras(Kind::Colmap, |folder, cameras| made::colmap_text(&folder.join("sparse/0"), cameras));
+    same_cameras(Kind::Colmap, |folder, cameras| crate::made::colmap_text(&folder.join("sparse/0"), cameras));
     same_cameras(Kind::Colmap, |folder, cameras| colmap_binary(&folder.join("sparse"), cameras));
 }
 
@@ -65,7 +63,7 @@ fn colmap_binary(folder: &Path, cameras: &[Camera]) {
 
 #[test]
 fn binary_wins_over_text() {
-    let folder = made::colmap(&NAMES);
+    let folder = crate::made::colmap(&NAMES);
     let model = folder.path().join("sparse/0");
     colmap_binary(&model, &cameras(&NAMES));
     write(model.join("cameras.txt"), "nonsense").unwrap();
@@ -74,10 +72,10 @@ fn binary_wins_over_text() {
 
 #[test]
 fn of_models_that_do_not_hang_together_the_one_with_the_most_pictures() {
-    let folder = made::colmap(&NAMES[..1]);
+    let folder = crate::made::colmap(&NAMES[..1]);
     let all = cameras(&NAMES);
     pictures_and_mesh(folder.path(), &all);
-    made::colmap_text(&folder.path().join("sparse/12"), &all);
+    crate::made::colmap_text(&folder.path().join("sparse/12"), &all);
     let capture = open(folder.path()).unwrap();
     assert_eq!((capture.views.len(), capture.cameras), (3, folder.path().join("sparse/12/images.txt")));
     assert!(
@@ -129,7 +127,7 @@ fn nerfstudio_by_an_angle_without_extensions() {
 fn nerfstudio_with_a_lens_and_a_mask_for_each() {
     let folder = tempfile::tempdir().unwrap();
     pictures_and_mesh(folder.path(), &cameras(&["a.jpg"]));
-    made::picture(&folder.path().join("m/own.png"), SIZE);
+    crate::made::picture(&folder.path().join("m/own.png"), SIZE);
     let pose = "[[1,0,0,0],[0,1,0,0],[0,0,1,5],[0,0,0,1]]";
     let frame = format!(
         r#"{{"file_path": "images/a.jpg", "mask_path": "m/own.png", "transform_matrix": {pose}, "fl_x": 40, "k1": 0.1, "p2": 0.01}}"#
@@ -229,10 +227,9 @@ fn metashape_xml() {
     metashape(folder.path(), &cameras, "<f>50</f>");
     assert_eq!(recognise(folder.path()), Some(Kind::Metashape));
     let capture = open(folder.path()).unwrap();
-    assert_eq!(names(&capture), ["a", "b", "c"]);
+    assert_eq!(names(&capture), NAMES);
     for (view, camera) in capture.views.iter().zip(&cameras) {
         assert!((view.position() - camera.center).length() < 1e-9);
-        assert!(view.picture.ends_with(&camera.name), "{}", view.picture.display());
         let middle = view.project(DVec3::ZERO).unwrap();
         assert!((middle - DVec2::new(30.0, 20.0)).length() < 1e-9, "{middle}");
     }
@@ -274,7 +271,7 @@ fn metashape_lenses_are_those_of_its_manual() {
 
 #[test]
 fn a_kind_may_be_chosen() {
-    let folder = made::colmap(&NAMES);
+    let folder = crate::made::colmap(&NAMES);
     transforms(folder.path(), &cameras(&NAMES[..2]), "\"fl_x\": 50", |name| format!("images/{name}"));
     let capture = open(folder.path()).unwrap();
     assert_eq!((capture.kind, capture.views.len()), (Kind::Colmap, 3));

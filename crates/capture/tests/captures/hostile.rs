@@ -1,8 +1,6 @@
 //! Captures that were made to do harm: nothing outside the folder is read, nothing is believed that a file counts, nothing takes long.
 
-mod made;
-
-use made::{PLY, SIZE, cameras, change, colmap, names, open, picture, refused};
+use crate::made::{PLY, SIZE, cameras, change, colmap, names, open, picture, refused};
 use std::fs::{create_dir_all, remove_dir_all, remove_file, write};
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -17,7 +15,7 @@ fn names_that_lead_outside_are_names_of_nothing() {
     let all = cameras(&all);
     picture(&folder.path().join("images/a.jpg"), SIZE);
     write(folder.path().join("mesh.ply"), PLY).unwrap();
-    made::colmap_text(&folder.path().join("sparse/0"), &all);
+    crate::made::colmap_text(&folder.path().join("sparse/0"), &all);
     let capture = open(folder.path()).unwrap();
     assert_eq!(names(&capture), ["a.jpg"]);
     assert_eq!(capture.remarks[0].names.len(), 3, "{:?}", capture.remarks);
@@ -33,7 +31,10 @@ fn links_that_lead_outside_are_not_followed() {
     remove_dir_all(folder.path().join("images")).unwrap();
     symlink(outside.path().join("images"), folder.path().join("images")).unwrap();
     let text = refused(folder.path());
-    assert!(text.contains("images: is a link that leads outside") && text.contains("name their folder"), "{text}");
+    assert!(
+        text.contains("images: is a link that leads outside") && text.contains("name their folder"),
+        "{text}"
+    );
     // A picture.
     let folder = colmap(&["a.jpg", "b.jpg"]);
     remove_file(folder.path().join("images/a.jpg")).unwrap();
@@ -59,7 +60,7 @@ fn links_that_lead_outside_are_not_followed() {
 /// What is said of a capture whose file is this, within the time.
 fn said(file: &str, bytes: &[u8]) -> String {
     let folder = tempfile::tempdir().unwrap();
-    made::pictures_and_mesh(folder.path(), &cameras(&["a.jpg"]));
+    crate::made::pictures_and_mesh(folder.path(), &cameras(&["a.jpg"]));
     create_dir_all(folder.path().join("sparse")).unwrap();
     let write_to = |file: &str, bytes: &[u8]| write(folder.path().join(file), bytes).unwrap();
     write_to("sparse/cameras.bin", &[0; 8]);
@@ -76,12 +77,16 @@ fn counts_are_checked_against_the_size_of_the_file() {
     let counted = |count: u64, rest: &[u8]| [&count.to_le_bytes(), rest].concat();
     for count in [u64::MAX, 1 << 60, 2] {
         let text = said("sparse/cameras.bin", &counted(count, &[0; 50]));
-        assert!(text.contains(&format!("cameras.bin: byte 0: says {count} cameras, but 50 bytes are left")), "{text}");
+        assert!(
+            text.contains(&format!("cameras.bin: byte 0: says {count} cameras, but 50 bytes are left")),
+            "{text}"
+        );
         let text = said("sparse/images.bin", &counted(count, &[0; 100]));
         assert!(text.contains(&format!("says {count} pictures, but 100 bytes are left")), "{text}");
     }
     // The points of a picture.
-    let head = [&3u32.to_le_bytes()[..], &1f64.to_le_bytes(), &[0; 48], &7u32.to_le_bytes(), b"a.jpg\0"].concat();
+    let head =
+        [&3u32.to_le_bytes()[..], &1f64.to_le_bytes(), &[0; 48], &7u32.to_le_bytes(), b"a.jpg\0"].concat();
     let text = said("sparse/images.bin", &counted(1, &[&head[..], &(u64::MAX / 24).to_le_bytes()].concat()));
     assert!(text.contains("points in a picture, but 0 bytes are left"), "{text}");
     // A name without an end.
@@ -115,11 +120,15 @@ fn rows_of_nothing_and_endless_lists_take_no_time() {
     let file = folder.path().join("mesh.ply");
     let timed = |file: &Path| {
         let start = Instant::now();
-        let opened = open(file.parent().unwrap()).map(|capture| capture.scene.triangles.len()).map_err(|e| e.to_string());
+        let opened = open(file.parent().unwrap())
+            .map(|capture| capture.scene.triangles.len())
+            .map_err(|e| e.to_string());
         assert!(start.elapsed() < Duration::from_secs(5), "{:?}", start.elapsed());
         opened
     };
-    change(&file, |text| text.replace("element vertex 4", "element nothing 18446744073709551615\nelement vertex 4"));
+    change(&file, |text| {
+        text.replace("element vertex 4", "element nothing 18446744073709551615\nelement vertex 4")
+    });
     assert_eq!(timed(&file), Ok(4));
     write(&file, PLY.replace("element vertex 4", "element vertex 18446744073709551615")).unwrap();
     assert!(timed(&file).unwrap_err().contains("do not fit"));

@@ -1,9 +1,7 @@
 //! The real capture of the shared reference data: 66 photographs of a skull, its cameras as text and as binary, its mesh.
 
-mod made;
-
+use crate::made::open;
 use capture::{Kind, recognise};
-use made::open;
 use scene::{LoadOptions, View};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -25,7 +23,12 @@ fn it_opens_without_a_word_of_help() {
     let start = Instant::now();
     let capture = open(&folder).unwrap();
     assert!(start.elapsed() < Duration::from_secs(5), "{:?}", start.elapsed());
-    println!("{:?}, {} views, {} triangles", start.elapsed(), capture.views.len(), capture.scene.triangles.len());
+    println!(
+        "{:?}, {} views, {} triangles",
+        start.elapsed(),
+        capture.views.len(),
+        capture.scene.triangles.len()
+    );
     assert_eq!((capture.views.len(), capture.scene.triangles.len()), (66, 29_984));
     assert!(capture.cameras.ends_with("sparse_bin/images.bin") && capture.mesh.ends_with("mesh.ply"));
     assert!(capture.remarks.iter().all(|remark| !remark.is_incomplete), "{:?}", capture.remarks);
@@ -60,7 +63,8 @@ fn text_and_binary_are_the_same_cameras() {
 fn its_mesh_lies_inside_its_pictures() {
     let Some(folder) = skull() else { return };
     let capture = open(&folder).unwrap();
-    let is_seen = |view: &View, point| view.project(point).is_some_and(|pixel| view.lens.is_in_picture(pixel));
+    let is_seen =
+        |view: &View, point| view.project(point).is_some_and(|pixel| view.lens.is_in_picture(pixel));
     let vertices: Vec<_> = capture.scene.positions.iter().step_by(50).copied().collect();
     for view in &capture.views {
         let seen = vertices.iter().filter(|vertex| is_seen(view, **vertex)).count();
@@ -83,7 +87,9 @@ fn the_skull_is_where_its_mesh_is() {
         let [width, height] = [picture.width, picture.height];
         let mut covered = vec![false; (width * height) as usize];
         for position in &capture.scene.positions {
-            let Some(pixel) = view.project(*position).filter(|pixel| view.lens.is_in_picture(*pixel)) else { continue };
+            let Some(pixel) = view.project(*position).filter(|pixel| view.lens.is_in_picture(*pixel)) else {
+                continue;
+            };
             // A few pixels about each vertex.
             for (x, y) in (-6..=6).flat_map(|y| (-6..=6).map(move |x| (x, y))) {
                 let (x, y) = (pixel.x as i64 + x, pixel.y as i64 + y);
@@ -94,8 +100,10 @@ fn the_skull_is_where_its_mesh_is() {
         }
         let mean = |inside: bool, flip: bool| {
             let index = |pixel: usize| if flip { covered.len() - 1 - pixel } else { pixel };
-            let values = picture.pixels.iter().enumerate().filter(|(pixel, _)| covered[index(*pixel)] == inside);
-            let (sum, count) = values.fold((0.0, 0), |(sum, count), (_, rgb)| (sum + f64::from(rgb[1]), count + 1));
+            let values =
+                picture.pixels.iter().enumerate().filter(|(pixel, _)| covered[index(*pixel)] == inside);
+            let (sum, count) =
+                values.fold((0.0, 0), |(sum, count), (_, rgb)| (sum + f64::from(rgb[1]), count + 1));
             sum / f64::from(count)
         };
         let contrast = |flip| mean(true, flip) / mean(false, flip);

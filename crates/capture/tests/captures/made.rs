@@ -1,7 +1,5 @@
 //! Captures made in the test: small pictures around a tetrahedron.
 
-#![allow(dead_code, reason = "no test uses all of it")]
-
 use capture::{Capture, CaptureError, CaptureOptions};
 use glam::{DMat3, DQuat, DVec3};
 use image::{Rgb, RgbImage};

@@ -1,10 +1,8 @@
 //! Meshes of PLY, OBJ and glTF: the same tetrahedron however it is written, and which of several files is the surface.
 
-mod made;
-
+use crate::made::{PLY, cameras, colmap, open, pictures_and_mesh, refused};
 use capture::CaptureOptions;
 use glam::DVec3;
-use made::{PLY, cameras, colmap, open, pictures_and_mesh, refused};
 use progress::Unwatched;
 use scene::{LoadOptions, Scene};
 use std::fs::{remove_file, write};
@@ -247,7 +245,7 @@ fn without_a_mesh_the_sentence_says_how_to_make_one() {
 fn a_mesh_and_pictures_may_be_named_wherever_they_are() {
     let (folder, elsewhere) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
     let cameras = cameras(&["a.jpg"]);
-    made::colmap_text(folder.path(), &cameras);
+    crate::made::colmap_text(folder.path(), &cameras);
     pictures_and_mesh(elsewhere.path(), &cameras);
     let named = |pictures: &Path, mesh: &Path| {
         let options = CaptureOptions {

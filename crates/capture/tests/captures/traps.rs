@@ -1,8 +1,6 @@
 //! What people trip over with captures of photographs, each by files that have it: they open right, or say the one right sentence.
 
-mod made;
-
-use made::{SIZE, cameras, change, colmap, names, open, picture, refused};
+use crate::made::{SIZE, cameras, change, colmap, names, open, picture, refused};
 use scene::LoadOptions;
 use std::path::Path;
 
@@ -93,12 +91,13 @@ fn trap_2_pictures_beside_the_cameras_or_above_them() {
         let folder = tempfile::tempdir().unwrap();
         let cameras = cameras(&NAMES);
         cameras.iter().for_each(|camera| picture(&folder.path().join(place).join(&camera.name), SIZE));
-        std::fs::write(folder.path().join("mesh.ply"), made::PLY).unwrap();
-        made::colmap_text(&folder.path().join(model), &cameras);
+        std::fs::write(folder.path().join("mesh.ply"), crate::made::PLY).unwrap();
+        crate::made::colmap_text(&folder.path().join(model), &cameras);
         assert_poses(folder.path());
         if model != "dense/sparse" {
-            // The folder of the model itself is enough.
+            // The folder of the model itself is enough, and so is that of all models.
             assert_poses(&folder.path().join(model));
+            assert_poses(&folder.path().join("sparse"));
         }
     }
 }
