@@ -1,8 +1,8 @@
 //! Damaged files of every kind: never a panic, never long, never much memory, and never a picture from outside the folder.
 //!
 //! Ten seeds a kind, each opened in some hundred forms: half of them with changed bytes, half with a changed structure (counts, indices,
-//! units, fields and lines that are missing or twice). `CAPTURE_MUTANTS=10000` makes as many in all, in two minutes; by default it is
-//! a tenth.
+//! units, fields and lines that are missing or twice). `CAPTURE_MUTANTS=10000` makes as many in all, in ten seconds of a processor's
+//! time and a minute or more of a disk's; by default it is a tenth.
 
 use crate::made::{Camera, FOCAL, PLY, SIZE, cameras, open, pictures_and_mesh};
 use crate::mutation::{Random, damage};
@@ -82,6 +82,11 @@ fn peak_memory() -> Option<u64> {
     Some(line.trim().trim_end_matches(" kB").parse::<u64>().ok()? << 10)
 }
 
+/// One of these.
+fn pick<'a, T: ?Sized>(random: &mut Random, of: &[&'a T]) -> &'a T {
+    of[random.below(of.len())]
+}
+
 /// Changes what a file says and leaves its form: a number, a field, a line; of binary files a count.
 fn restructure(bytes: &mut Vec<u8>, random: &mut Random) {
     const NUMBERS: [&str; 14] = [
@@ -108,13 +113,10 @@ fn restructure(bytes: &mut Vec<u8>, random: &mut Random) {
     if !is_text || (text_end < bytes.len() && random.below(2) == 0) {
         let start = if is_text { text_end } else { 0 };
         let at = start + random.below((bytes.len() - start).max(1));
-        let value = random.pick::<[u8]>(&[
-            &[0; 8],
-            &[0xFF; 8],
-            &[0, 0, 0, 0x80],
-            &[1, 0, 0, 0],
-            &[0, 0, 0, 0, 0, 0, 0xF0, 0x7F],
-        ]);
+        let value = pick::<[u8]>(
+            random,
+            &[&[0; 8], &[0xFF; 8], &[0, 0, 0, 0x80], &[1, 0, 0, 0], &[0, 0, 0, 0, 0, 0, 0xF0, 0x7F]],
+        );
         match random.below(3) {
             0 => bytes.truncate(at),
             _ => bytes.iter_mut().skip(at).zip(value).for_each(|(byte, new)| *byte = *new),
@@ -143,13 +145,13 @@ fn restructure(bytes: &mut Vec<u8>, random: &mut Random) {
                 .filter(|(_, field)| !field.is_empty())
                 .collect();
             if fields.is_empty() {
-                line.push_str(random.pick(&WORDS));
+                line.push_str(pick(random, &WORDS));
             } else {
                 let (start, field) = fields[random.below(fields.len())];
                 let range = start..start + field.len();
                 let new = match change {
-                    4 | 5 => random.pick(&NUMBERS).to_owned(),
-                    6 => random.pick(&WORDS).to_owned(),
+                    4 | 5 => pick(random, &NUMBERS).to_owned(),
+                    6 => pick(random, &WORDS).to_owned(),
                     _ => format!("{field} {field}"),
                 };
                 line.replace_range(range, &new);
