@@ -9,6 +9,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("material", &[]),
     ("progress", &[]),
     ("scene", &["lens", "progress"]),
+    ("capture", &["scene", "lens", "progress"]),
     ("atlas", &["scene", "progress"]),
     ("trace", &["scene", "lens", "progress"]),
     ("slf", &["material", "trace", "scene", "progress"]),

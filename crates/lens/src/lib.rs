@@ -7,12 +7,14 @@
 //! * [`Optics`]: the same, reduced to the numbers of the formula, for inner loops.
 //! * [`FocusOffset`]: what is painted: t and its anchor a.
 //! * [`Aperture`]: its shape, how to sample it and how to cut it into rows.
+//! * [`CalibratedLens`]: what of a real camera calibration found: direction ↔ pixel of its photographs, distortion included.
 //! * [`Picture`]: what comes out: radiance and coverage a pixel, and the two exposures.
 //!
 //! Camera space: aperture centre at the origin, x right, y up, z forward (depth, > 0 in front). f64
 //! throughout, lengths in scene units (metres in glTF).
 
 mod aperture;
+mod calibrated_lens;
 mod camera;
 mod coarse_mask;
 mod error;
@@ -22,6 +24,7 @@ mod picture;
 mod sub_aperture;
 
 pub use aperture::{Aperture, ApertureMask, ApertureRow, ApertureRows, ApertureSampler, ApertureShape, Run};
+pub use calibrated_lens::{CalibratedLens, Distortion, Intrinsics, Projection};
 pub use camera::Camera;
 pub use error::CameraError;
 pub use focus_offset::FocusOffset;

@@ -17,7 +17,7 @@ pub(crate) enum Placement<'a> {
 }
 
 /// Coordinates beyond this have squares that leave the range of f32, in which rays are traced; they count as infinite.
-const MAX_COORDINATE: f64 = 1e15;
+pub(crate) const MAX_COORDINATE: f64 = 1e15;
 
 /// Bytes that a vertex takes in the scene, twice because growing arrays keep room.
 const VERTEX_BYTES: u64 = 2 * (24 + 12 + 8 + 8 + 16);

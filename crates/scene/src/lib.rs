@@ -2,12 +2,13 @@
 //!
 //! * [`load`] reads a file; [`inspect`] says what is in one, even if it has no triangle;
 //!   [`with_source`] gives it as it is, to be written again.
-//! * [`Scene`]: what everything else works on.
+//! * [`Scene`]: what everything else works on; [`Scene::of_mesh`] makes one of a [`SurfaceMesh`] that comes from elsewhere.
 //! * [`SurfacePoint`]: an address on the surface: triangle and barycentrics. What the surface looks like there:
 //!   [`Scene::base_color`], [`Scene::emitted`], [`Scene::opacity`], [`Scene::shading_normal`], [`Scene::bumped_normal`].
 //! * [`Material`]: what a surface is made of. [`World`]: what lies beyond all surfaces.
 //! * [`SurfaceField`]: anything that has a value at every surface point (focus, radiance).
 //! * [`MeshHealth`]: what is odd about the triangles.
+//! * [`View`]: a photograph of a place with the camera that took it; its pixels are read when they are needed.
 //!
 //! Files come from anywhere, so the reader trusts none: every index and byte range is checked before it is used,
 //! memory, triangles and time are accounted for before they are taken, and only files inside the scene's
@@ -56,6 +57,7 @@ mod schema;
 mod skin;
 mod source;
 mod surface_color;
+mod surface_mesh;
 mod surface_point;
 mod tangents;
 mod texture_lookup;
@@ -64,6 +66,7 @@ mod triangulation;
 mod turned_faces;
 mod variants;
 mod view;
+mod views;
 mod world;
 
 pub use back_faces::BackFaces;
@@ -78,5 +81,8 @@ pub use material::{
 pub use mesh_health::MeshHealth;
 pub use model::{Image, ImageLevel, Light, LightKind, Node, Part, Scene, SceneCamera, Triangle};
 pub use source::{PartSource, Source, StoredElements};
+pub use surface_mesh::SurfaceMesh;
 pub use surface_point::{SurfaceField, SurfacePoint};
+pub use texture_lookup::linear_from_srgb;
+pub use views::{Mask, Photograph, PictureError, View};
 pub use world::{Backdrop, Environment, EnvironmentMap, World};

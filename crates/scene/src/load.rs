@@ -11,7 +11,7 @@ use crate::triangulation::MODE_NAMES;
 use crate::variants::Variants;
 use crate::{Inspection, LoadOptions, Material, Node, Scene, SceneError};
 use crate::{compressed, extension, flaws, image_based_light, instancing, punctual_light, skin, view};
-use glam::{DMat4, Vec3};
+use glam::{DMat4, DQuat, Vec3};
 use progress::{Progress, Unwatched};
 use std::collections::HashMap;
 use std::panic::AssertUnwindSafe;
@@ -325,7 +325,7 @@ fn complete(document: &Document<'_>, scene: &mut Scene) {
         return;
     }
     if scene.cameras.is_empty() {
-        scene.cameras.push(view::framing(scene));
+        scene.cameras.push(view::framing(scene, DQuat::IDENTITY));
         scene.camera_is_invented = true;
     }
     view::focus_cameras(scene);

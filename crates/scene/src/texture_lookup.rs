@@ -10,13 +10,13 @@ use std::sync::LazyLock;
 
 /// sRGB decoding of 8-bit values.
 static LINEAR_FROM_8: LazyLock<[f32; 256]> =
-    LazyLock::new(|| std::array::from_fn(|v| decode(v as f64 / 255.0)));
+    LazyLock::new(|| std::array::from_fn(|v| linear_from_srgb(v as f64 / 255.0)));
 /// sRGB decoding of 16-bit values.
 static LINEAR_FROM_16: LazyLock<Vec<f32>> =
-    LazyLock::new(|| (0..=65535).map(|v| decode(v as f64 / 65535.0)).collect());
+    LazyLock::new(|| (0..=65535).map(|v| linear_from_srgb(v as f64 / 65535.0)).collect());
 
-/// IEC 61966-2-1, encoded to linear.
-fn decode(v: f64) -> f32 {
+/// The linear value of one that is encoded as in sRGB (IEC 61966-2-1), both in [0, 1].
+pub fn linear_from_srgb(v: f64) -> f32 {
     (if v <= 0.04045 { v / 12.92 } else { ((v + 0.055) / 1.055).powf(2.4) }) as f32
 }
 

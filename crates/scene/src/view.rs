@@ -3,7 +3,7 @@
 use crate::document::{Document, named};
 use crate::error::Fault;
 use crate::{Scene, SceneCamera};
-use glam::{DMat3, DMat4, DVec3};
+use glam::{DMat3, DMat4, DQuat, DVec3};
 use gltf::camera::Projection;
 use gltf::json::camera::Type;
 use gltf::json::validation::Checked;
@@ -62,14 +62,14 @@ fn rigid(world: DMat4) -> Option<DMat4> {
 }
 
 /// A camera that sees the whole scene in a picture at least as wide as high, from the front, right and above, and as close as that
-/// allows.
-pub(crate) fn framing(scene: &Scene) -> SceneCamera {
+/// allows. `upright` turns the world so that up is +y and the front +z.
+pub(crate) fn framing(scene: &Scene, upright: DQuat) -> SceneCamera {
     const YFOV: f64 = 0.7;
     /// Room around the scene.
     const MARGIN: f64 = 1.1;
     let back = DVec3::new(0.6, 0.45, 1.0).normalize();
     let right = DVec3::Y.cross(back).normalize();
-    let up = back.cross(right);
+    let [right, up, back] = [right, back.cross(right), back].map(|axis| upright.inverse() * axis);
     let slope = (0.5 * YFOV).tan() / MARGIN;
     // From (p, d) along an axis across and along `back` a point (x, z) is in view if |x − p| ≤ slope·(d − z): so p + slope·d is at
     // least every x + slope·z, and p − slope·d at most every x − slope·z.

@@ -1,9 +1,11 @@
 //! Small files built here: one feature or one attack each.
 
 mod handmade;
+mod mutation;
 
 use glam::{DVec3, Vec3, Vec4};
 use handmade::{Glb, MIDDLE, load_bytes};
+use mutation::{Random, damage};
 use progress::{Progress, Unwatched};
 use scene::{AlphaMode, LightKind, LoadOptions, MeshHealth, SceneError, inspect, load};
 use serde_json::{Value, json};
@@ -440,25 +442,13 @@ fn damaged_bytes_never_panic() {
     glb.json["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_0"] = json!(uv);
     glb.json["nodes"][0]["rotation"] = json!([0, 0, 0, 1]);
     let whole = glb.bytes();
-    // A linear congruential generator (Knuth), for the same damage every time.
-    let mut state = 7u64;
-    let mut random = move |n: usize| {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (state >> 33) as usize % n
-    };
+    let mut random = Random(7);
     let folder = TempDir::new().unwrap();
     let file = folder.path().join("damaged.glb");
     let mut opened = 0;
     for _ in 0..600 {
         let mut bytes = whole.clone();
-        for _ in 0..1 + random(4) {
-            let at = random(bytes.len());
-            match random(3) {
-                0 => bytes[at] = b"0123456789-.e[]{},:\"\0\xff"[random(22)],
-                1 => bytes[at] ^= 1 << random(8),
-                _ => drop(bytes.drain(at..(at + 1 + random(8)).min(bytes.len()))),
-            }
-        }
+        damage(&mut bytes, &mut random);
         std::fs::write(&file, &bytes).unwrap();
         match load(&file, &LoadOptions::default(), &Unwatched) {
             Ok(_) => opened += 1,

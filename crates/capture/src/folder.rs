@@ -1,0 +1,124 @@
+//! The capture's folder, and what may be opened in it: regular files and folders that lie there, links followed.
+
+use crate::CaptureError;
+use std::path::{Path, PathBuf};
+
+/// A folder that nothing is read outside of.
+#[derive(Clone, Debug)]
+pub(crate) struct Folder {
+    /// Canonical.
+    root: PathBuf,
+    /// As it was given, for messages.
+    pub shown: PathBuf,
+}
+
+/// What lies at a place.
+#[derive(Debug, PartialEq, Eq)]
+pub(crate) enum Found {
+    File,
+    Folder,
+    /// A link that leads outside.
+    Outside,
+}
+
+impl Folder {
+    pub fn open(path: &Path) -> Result<Self, CaptureError> {
+        let root = path.canonicalize().map_err(|source| CaptureError::unreadable(path, source))?;
+        if !root.is_dir() {
+            let source = std::io::ErrorKind::NotADirectory.into();
+            return Err(CaptureError::unreadable(path, source));
+        }
+        Ok(Self { root, shown: path.into() })
+    }
+
+    /// What lies at a path below the folder as it was given.
+    pub fn find(&self, path: &Path) -> Option<Found> {
+        let real = path.canonicalize().ok()?;
+        match real.metadata().ok()? {
+            _ if !real.starts_with(&self.root) => Some(Found::Outside),
+            data if data.is_file() => Some(Found::File),
+            data if data.is_dir() => Some(Found::Folder),
+            _ => None,
+        }
+    }
+
+    /// Whether a regular file lies there, inside.
+    pub fn has_file(&self, path: &Path) -> bool {
+        self.find(path) == Some(Found::File)
+    }
+
+    /// The entries of a folder inside, sorted by name, with what each is; what leads outside included.
+    pub fn entries(&self, path: &Path) -> Vec<(PathBuf, Found)> {
+        /// More are no folder of a capture.
+        const MOST: usize = 200_000;
+        let Ok(entries) = std::fs::read_dir(path) else { return Vec::new() };
+        let of_entry = |entry: std::fs::DirEntry| {
+            let (path, kind) = (entry.path(), entry.file_type().ok()?);
+            let found = match () {
+                () if kind.is_file() => Found::File,
+                () if kind.is_dir() => Found::Folder,
+                () => self.find(&path)?,
+            };
+            Some((path, found))
+        };
+        let mut entries: Vec<_> = entries.take(MOST).flatten().filter_map(of_entry).collect();
+        entries.sort_by(|(a, _), (b, _)| a.cmp(b));
+        entries
+    }
+
+    /// All regular files below a path, not deeper than `depth` folders, at most `most`, folder by folder.
+    pub fn files(&self, path: &Path, depth: usize, most: usize) -> Vec<PathBuf> {
+        let mut files = Vec::new();
+        let mut folders = vec![(path.to_path_buf(), 0)];
+        let mut next = 0;
+        while let Some((folder, level)) = folders.get(next).cloned() {
+            next += 1;
+            for (path, found) in self.entries(&folder) {
+                match found {
+                    Found::File if files.len() < most => files.push(path),
+                    // Links to folders could lead round and round.
+                    Found::Folder if level < depth && folders.len() < most && !path.is_symlink() => {
+                        folders.push((path, level + 1));
+                    }
+                    _ => {}
+                }
+            }
+            if files.len() >= most {
+                break;
+            }
+        }
+        files
+    }
+}
+
+/// The extension of a file, lower case; empty if it has none.
+pub(crate) fn extension(path: &Path) -> String {
+    path.extension().map(|extension| extension.to_string_lossy().to_lowercase()).unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn links_that_lead_outside_are_told_apart() {
+        let outside = tempfile::tempdir().unwrap();
+        std::fs::write(outside.path().join("a"), "a").unwrap();
+        let inside = tempfile::tempdir().unwrap();
+        let folder = Folder::open(inside.path()).unwrap();
+        std::fs::create_dir(inside.path().join("sub")).unwrap();
+        std::fs::write(inside.path().join("sub/b"), "b").unwrap();
+        assert_eq!(folder.find(&inside.path().join("sub")), Some(Found::Folder));
+        assert_eq!(folder.find(&inside.path().join("sub/b")), Some(Found::File));
+        assert_eq!(folder.find(&inside.path().join("sub/c")), None);
+        assert_eq!(folder.find(&inside.path().join("../")), Some(Found::Outside));
+        #[cfg(unix)]
+        {
+            std::os::unix::fs::symlink(outside.path(), inside.path().join("link")).unwrap();
+            assert_eq!(folder.find(&inside.path().join("link/a")), Some(Found::Outside));
+            std::os::unix::fs::symlink(inside.path(), inside.path().join("sub/round")).unwrap();
+            assert_eq!(folder.files(inside.path(), 9, 100), [inside.path().join("sub/b")]);
+        }
+        assert!(Folder::open(&inside.path().join("sub/b")).is_err());
+    }
+}

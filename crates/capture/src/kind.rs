@@ -1,0 +1,39 @@
+//! Whose cameras a capture has.
+
+use crate::folder::Folder;
+use crate::layout::Cameras;
+use std::path::Path;
+
+/// Whose cameras a capture has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Kind {
+    /// COLMAP: `cameras` and `images` as .bin or .txt.
+    Colmap,
+    /// nerfstudio or instant-ngp: `transforms.json`.
+    Nerfstudio,
+    /// Bundler: `bundle.out` and a list of pictures.
+    Bundler,
+    /// VisualSFM: an .nvm file.
+    Nvm,
+    /// Agisoft Metashape: exported cameras as .xml.
+    Metashape,
+}
+
+impl Kind {
+    /// The program's name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Colmap => "COLMAP",
+            Self::Nerfstudio => "nerfstudio",
+            Self::Bundler => "Bundler",
+            Self::Nvm => "VisualSFM",
+            Self::Metashape => "Metashape",
+        }
+    }
+}
+
+/// Whose capture a folder is, if it is one: by the names of some files in it, and the first line of a few.
+pub fn recognise(path: &Path) -> Option<Kind> {
+    let folder = Folder::open(path).ok()?;
+    Cameras::find(&folder).first().map(Cameras::kind)
+}

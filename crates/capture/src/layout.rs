@@ -1,0 +1,136 @@
+//! Where in a capture's folder the cameras lie.
+
+use crate::folder::{Folder, Found, extension};
+use crate::shot::Shots;
+use crate::{CaptureError, Kind, bundler, colmap, metashape, nerfstudio, nvm};
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+/// Files that tell of cameras.
+#[derive(Clone, Debug)]
+pub(crate) enum Cameras {
+    Colmap(colmap::Model),
+    Nerfstudio(PathBuf),
+    Bundler { bundle: PathBuf, list: PathBuf },
+    Nvm(PathBuf),
+    Metashape(PathBuf),
+}
+
+/// Where else COLMAP's models lie, likelier ones first.
+const MODELS: [&str; 9] = [
+    "sparse",
+    "sparse_bin",
+    "sparse_txt",
+    "colmap/sparse",
+    "colmap",
+    "dense/sparse",
+    "dense/0/sparse",
+    "undistorted/sparse",
+    "model",
+];
+
+impl Cameras {
+    /// All that there are, likelier ones first.
+    pub fn find(folder: &Folder) -> Vec<Self> {
+        let root = folder.shown.as_path();
+        let mut found: Vec<Self> = models(folder).into_iter().map(Self::Colmap).collect();
+        let names = ["transforms.json", "transforms_train.json"];
+        let is_file = |path: &PathBuf| folder.has_file(path);
+        found.extend(names.map(|name| root.join(name)).into_iter().find(is_file).map(Self::Nerfstudio));
+        for place in ["", "bundle"] {
+            let place = root.join(place);
+            let bundle = ["bundle.out", "bundle.rd.out", "bundler.out"]
+                .map(|name| place.join(name))
+                .into_iter()
+                .find(is_file);
+            let lists = ["list.txt", "bundle.rd.out.list.txt", "bundle.out.list.txt", "bundle_list.txt"];
+            let list = lists.iter().flat_map(|name| [place.join(name), root.join(name)]).find(is_file);
+            found.extend(bundle.zip(list).map(|(bundle, list)| Self::Bundler { bundle, list }));
+        }
+        /// A folder has few files of these kinds; what is beyond is something else.
+        const MOST: usize = 20;
+        let files = |wanted: &'static str| {
+            let entries = folder.entries(root).into_iter();
+            entries.filter(move |(path, found)| *found == Found::File && extension(path) == wanted).take(MOST)
+        };
+        found.extend(
+            files("nvm")
+                .filter(|(path, _)| head(path).starts_with("NVM_V3"))
+                .map(|(path, _)| Self::Nvm(path)),
+        );
+        let is_metashape = |path: &Path| {
+            let head = head(path);
+            head.contains("<document") && head.contains("<chunk")
+        };
+        found.extend(
+            files("xml").filter(|(path, _)| is_metashape(path)).map(|(path, _)| Self::Metashape(path)),
+        );
+        found
+    }
+
+    /// Whose they are.
+    pub fn kind(&self) -> Kind {
+        match self {
+            Self::Colmap(_) => Kind::Colmap,
+            Self::Nerfstudio(_) => Kind::Nerfstudio,
+            Self::Bundler { .. } => Kind::Bundler,
+            Self::Nvm(_) => Kind::Nvm,
+            Self::Metashape(_) => Kind::Metashape,
+        }
+    }
+
+    /// The file that names the pictures.
+    pub fn file(&self) -> &Path {
+        match self {
+            Self::Colmap(model) => &model.images,
+            Self::Nerfstudio(file) | Self::Nvm(file) | Self::Metashape(file) => file,
+            Self::Bundler { bundle, .. } => bundle,
+        }
+    }
+
+    /// Reads them.
+    pub fn read(&self) -> Result<Shots, CaptureError> {
+        match self {
+            Self::Colmap(model) => model.read(),
+            Self::Nerfstudio(file) => nerfstudio::read(file),
+            Self::Bundler { bundle, list } => bundler::read(bundle, list),
+            Self::Nvm(file) => nvm::read(file),
+            Self::Metashape(file) => metashape::read(file),
+        }
+    }
+}
+
+/// COLMAP's models: in the folder itself, then those in folders of numbers, which do not hang together, the one with the most pictures
+/// first; then others.
+fn models(folder: &Folder) -> Vec<colmap::Model> {
+    let root = folder.shown.as_path();
+    let mut apart: Vec<colmap::Model> = Vec::new();
+    for below in ["sparse", "colmap/sparse"] {
+        let below = root.join(below);
+        if folder.find(&below) != Some(Found::Folder) {
+            continue;
+        }
+        for (path, found) in folder.entries(&below) {
+            let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+            if found == Found::Folder && name.parse::<u32>().is_ok() {
+                apart.extend(colmap::Model::find(folder, &path));
+            }
+        }
+    }
+    let size = |model: &colmap::Model| std::fs::metadata(&model.images).map_or(0, |data| data.len());
+    apart.sort_by_key(|model| std::cmp::Reverse(size(model)));
+    let mut models: Vec<colmap::Model> = colmap::Model::find(folder, root).into_iter().chain(apart).collect();
+    for place in MODELS {
+        let model = colmap::Model::find(folder, &root.join(place));
+        models.extend(model.filter(|model| models.iter().all(|known| known.images != model.images)));
+    }
+    models
+}
+
+/// The beginning of a text file.
+fn head(path: &Path) -> String {
+    const LENGTH: u64 = 2048;
+    let mut bytes = Vec::new();
+    let read = std::fs::File::open(path).and_then(|file| file.take(LENGTH).read_to_end(&mut bytes));
+    read.map_or_else(|_| String::new(), |_| String::from_utf8_lossy(&bytes).into_owned())
+}

@@ -1,0 +1,40 @@
+//! Captures: what other programs found out about a place, as views and a surface.
+//!
+//! A capture is a folder of photographs, of the cameras that a reconstruction program found for them, and a mesh of what they show.
+//! [`open`] finds out whose it is ([`Kind`]), reads it, and says in [`Remark`]s what was incomplete; [`recognise`] only looks.
+//!
+//! Files come from anywhere, so the readers trust none. What a file counts is checked against its size before room is made; nothing
+//! recurses by what a file says; names in files are looked up among the files that lie in the capture's folder and never opened as
+//! paths, so that nothing outside is read unless the caller names it.
+//!
+//! The road of a capture: `layout` (whose cameras lie where) → `colmap`, `nerfstudio`, `bundler`, `nvm`, `metashape` (each to
+//! [`shot::Shot`]s: name, lens, pose) → `picture_names` (which file is whose) → `pictures` (size, EXIF, masks: views) → `mesh_file`,
+//! `ply`, `obj` (the surface) → `open`. What COLMAP's world calls up is guessed from the cameras (`upright`) and told, not applied.
+
+mod binary;
+mod bundler;
+mod colmap;
+mod error;
+mod exif;
+mod folder;
+mod kind;
+mod layout;
+mod mesh_file;
+mod metashape;
+mod nerfstudio;
+mod nvm;
+mod obj;
+mod open;
+mod picture_names;
+mod pictures;
+mod ply;
+mod pose;
+mod remark;
+mod shot;
+mod text;
+mod upright;
+
+pub use error::CaptureError;
+pub use kind::{Kind, recognise};
+pub use open::{Capture, CaptureOptions, open};
+pub use remark::Remark;

@@ -1,0 +1,102 @@
+//! Which file of a capture is its surface, and reading it.
+
+use crate::folder::{Folder, Found, extension};
+use crate::{CaptureError, Remark, obj, ply};
+use progress::Progress;
+use scene::{LoadOptions, Scene};
+use std::path::{Path, PathBuf};
+
+/// What meshes are called, likelier ones first: by us, COLMAP, OpenMVS, Meshroom, nerfstudio, others.
+const NAMES: [&str; 14] = [
+    "mesh.ply",
+    "meshed-poisson.ply",
+    "meshed-delaunay.ply",
+    "scene_dense_mesh_refine.ply",
+    "scene_dense_mesh.ply",
+    "scene_mesh.ply",
+    "poisson_mesh.ply",
+    "tsdf_mesh.ply",
+    "mesh.obj",
+    "texturedmesh.obj",
+    "model.obj",
+    "mesh.glb",
+    "model.glb",
+    "scene.glb",
+];
+
+/// How deep meshes lie in subfolders, and how many files are looked at.
+const DEEPEST: usize = 4;
+const MOST: usize = 100_000;
+
+/// The mesh that a capture is most likely about, and a remark if there are others.
+pub(crate) fn find(folder: &Folder, remarks: &mut Vec<Remark>) -> Result<PathBuf, CaptureError> {
+    let files = folder.files(&folder.shown, DEEPEST, MOST);
+    let is_mesh = |file: &&PathBuf| matches!(extension(file).as_str(), "ply" | "obj" | "glb" | "gltf");
+    let (meshes, points): (Vec<&PathBuf>, Vec<&PathBuf>) =
+        files.iter().filter(is_mesh).partition(|file| extension(file) != "ply" || ply::may_have_faces(file));
+    let rank = |file: &&&PathBuf| {
+        let name = file.file_name().unwrap_or_default().to_string_lossy().to_lowercase();
+        let size = std::fs::metadata(file).map_or(0, |data| data.len());
+        (
+            NAMES.iter().position(|known| **known == name).unwrap_or(NAMES.len()),
+            file.iter().count(),
+            u64::MAX - size,
+        )
+    };
+    let Some(best) = meshes.iter().min_by_key(rank) else {
+        let also = match (points.first(), outside(folder)) {
+            (Some(points), _) => format!("; {} has points and no faces", points.display()),
+            (None, Some(link)) => format!("; {} leads outside the folder", link.display()),
+            (None, None) => String::new(),
+        };
+        return Err(CaptureError::NoMesh { folder: folder.shown.clone(), also });
+    };
+    let others: Vec<String> =
+        meshes.iter().filter(|file| *file != best).map(|file| file.display().to_string()).collect();
+    remarks.extend(Remark::about(others, false, |names| {
+        format!(
+            "{}: is taken for the surface; there are also {names} (name another one if that is meant)",
+            best.display()
+        )
+    }));
+    Ok(best.to_path_buf())
+}
+
+/// A mesh that is a link to somewhere else.
+fn outside(folder: &Folder) -> Option<PathBuf> {
+    let mut entries = folder.entries(&folder.shown).into_iter();
+    entries
+        .find(|(path, found)| {
+            *found == Found::Outside && matches!(extension(path).as_str(), "ply" | "obj" | "glb")
+        })
+        .map(|(path, _)| path)
+}
+
+/// Reads a mesh.
+pub(crate) fn read(
+    file: &Path,
+    options: &LoadOptions,
+    progress: &dyn Progress,
+    remarks: &mut Vec<Remark>,
+) -> Result<Scene, CaptureError> {
+    let mesh = match extension(file).as_str() {
+        "glb" | "gltf" => return Ok(scene::load(file, options, progress)?),
+        "obj" => {
+            let (mesh, notes) = obj::read(file, options)?;
+            remarks.extend(notes.into_iter().map(|note| Remark::note(format!("{}: {note}", file.display()))));
+            mesh
+        }
+        "ply" => ply::read(file, options)?,
+        other => {
+            let what = format!("meshes of kind {other:?} cannot be read; PLY, OBJ and glTF can");
+            return Err(CaptureError::malformed(file, "the name", what));
+        }
+    };
+    progress.check()?;
+    Ok(Scene::of_mesh(mesh, options)?)
+}
+
+/// The triangles of a face of any number of corners, convex and flat as it is hoped: a fan about the first.
+pub(crate) fn fan(corners: &[u32]) -> impl Iterator<Item = [u32; 3]> {
+    corners.windows(2).skip(1).map(|pair| [corners[0], pair[0], pair[1]])
+}

@@ -1,0 +1,147 @@
+//! Opening a capture: the story from top to bottom.
+
+use crate::folder::Folder;
+use crate::layout::Cameras;
+use crate::upright::upright;
+use crate::{CaptureError, Kind, Remark, mesh_file, pictures};
+use glam::DQuat;
+use progress::{Progress, Stage};
+use scene::{LoadOptions, Scene, View};
+use std::path::{Path, PathBuf};
+
+/// How a capture is read.
+#[derive(Clone, Debug, Default)]
+pub struct CaptureOptions {
+    /// Whose cameras to read where there are several; none: the first in the order of [`Kind`] whose pictures are there.
+    pub kind: Option<Kind>,
+    /// The folder of the pictures, wherever that is; none: looked for in the capture's folder.
+    pub pictures: Option<PathBuf>,
+    /// The mesh, wherever that is; none: looked for in the capture's folder.
+    pub mesh: Option<PathBuf>,
+    /// What the mesh may use of the machine.
+    pub load: LoadOptions,
+}
+
+/// A place: photographs with their cameras, and its surface, in one world.
+///
+/// That world is the capture's own, unturned and unscaled: what is measured in it, or exported from it, fits other files of the capture.
+#[derive(Clone, Debug)]
+pub struct Capture {
+    /// Whose cameras they are.
+    pub kind: Kind,
+    /// The file that the cameras were read from.
+    pub cameras: PathBuf,
+    /// The file that the surface was read from.
+    pub mesh: PathBuf,
+    /// The photographs, by name; at least one.
+    pub views: Vec<View>,
+    /// The surface; what was odd about it is in [`Scene::warnings`].
+    pub scene: Scene,
+    /// The rotation that would turn the world so that +y is up, by how the cameras were held: most programs' worlds have no up, or another
+    /// one. It is for who looks at the scene; neither surface nor cameras are turned by it.
+    pub upright: DQuat,
+    /// What was incomplete, or is good to know.
+    pub remarks: Vec<Remark>,
+}
+
+/// Opens the capture in a folder: its cameras, the headers of its pictures, its mesh.
+///
+/// # Errors
+/// It is no capture, a file of it is malformed or beyond the limits, none of its pictures is there, or there is no mesh.
+/// [`CaptureError::Cancelled`] if `progress` says so.
+pub fn open(path: &Path, options: &CaptureOptions, progress: &dyn Progress) -> Result<Capture, CaptureError> {
+    let (folder, within) = whole(path)?;
+    let mut candidates = Cameras::find(&folder);
+    candidates.retain(|cameras| options.kind.is_none_or(|kind| kind == cameras.kind()));
+    // Who names a model's folder means that model.
+    candidates.sort_by_key(|cameras| !cameras.file().starts_with(&within));
+    let mut remarks = Vec::new();
+    let (cameras, views) =
+        views(&folder, &candidates, options, &Stage::new(progress, 0.0, 0.5), &mut remarks)?;
+    let used = cameras.file();
+    let others = candidates.iter().map(Cameras::file).filter(|file| *file != used);
+    remarks.extend(Remark::about(others.map(|file| file.display().to_string()).collect(), false, |names| {
+        let used = used.display();
+        format!("{used}: is taken for the cameras; there are also {names} (name a kind if those are meant)")
+    }));
+    let mesh = match &options.mesh {
+        Some(mesh) => mesh.clone(),
+        None => mesh_file::find(&folder, &mut remarks)?,
+    };
+    let mut scene = mesh_file::read(&mesh, &options.load, &Stage::new(progress, 0.5, 1.0), &mut remarks)?;
+    let upright = upright(&views);
+    scene.set_upright(upright);
+    remarks.extend(unseen(&scene, &views, &mesh));
+    progress.report(1.0);
+    Ok(Capture { kind: cameras.kind(), cameras: cameras.file().into(), mesh, views, scene, upright, remarks })
+}
+
+/// The folder of the whole capture, where `path` may be that of a model within it (`sparse/0`), and the folder that was meant.
+fn whole(path: &Path) -> Result<(Folder, PathBuf), CaptureError> {
+    let is_model = |path: &Path| {
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        name.starts_with("sparse") || name.parse::<u32>().is_ok()
+    };
+    if !is_model(path) {
+        return Ok((Folder::open(path)?, path.into()));
+    }
+    let within = path.canonicalize().map_err(|source| CaptureError::unreadable(path, source))?;
+    // The nearest folder above that is no model's; a folder of photographs may be called 2024, too, and has no model of its own.
+    let above = within.ancestors().skip(1).find(|above| !is_model(above)).map(Folder::open).transpose()?;
+    let has_it =
+        |folder: &Folder| Cameras::find(folder).iter().any(|cameras| cameras.file().starts_with(&within));
+    match above.filter(has_it) {
+        Some(above) => Ok((above, within)),
+        None => Ok((Folder::open(path)?, path.into())),
+    }
+}
+
+/// The views of the first cameras whose pictures are there.
+fn views<'a>(
+    folder: &Folder,
+    candidates: &'a [Cameras],
+    options: &CaptureOptions,
+    progress: &dyn Progress,
+    remarks: &mut Vec<Remark>,
+) -> Result<(&'a Cameras, Vec<View>), CaptureError> {
+    let mut failed = None;
+    for cameras in candidates {
+        let shots = cameras.read()?;
+        let mut own_remarks = Vec::new();
+        match pictures::views(
+            folder,
+            cameras.file(),
+            shots,
+            options.pictures.as_deref(),
+            progress,
+            &mut own_remarks,
+        ) {
+            Ok(views) => {
+                remarks.extend(own_remarks);
+                return Ok((cameras, views));
+            }
+            Err(error @ CaptureError::NoPictures { .. }) => drop(failed.get_or_insert(error)),
+            Err(error) => return Err(error),
+        }
+    }
+    Err(failed.unwrap_or_else(|| CaptureError::NoCameras { folder: folder.shown.clone() }))
+}
+
+/// A remark if no picture shows anything of the mesh: it is in another world than the cameras.
+fn unseen(scene: &Scene, views: &[View], mesh: &Path) -> Option<Remark> {
+    /// As many vertices tell.
+    const SAMPLES: usize = 500;
+    let step = scene.positions.len().div_ceil(SAMPLES).max(1);
+    let mut samples = scene.positions.iter().step_by(step);
+    let is_seen =
+        |view: &View, point| view.project(point).is_some_and(|pixel| view.lens.is_in_picture(pixel));
+    let is_unseen = samples.all(|point| !views.iter().any(|view| is_seen(view, *point)));
+    is_unseen.then(|| Remark {
+        text: format!(
+            "{}: no picture shows anything of it (its axes or scale are not those of the cameras; export both from one program)",
+            mesh.display()
+        ),
+        names: vec![mesh.display().to_string()],
+        is_incomplete: true,
+    })
+}

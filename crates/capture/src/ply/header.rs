@@ -1,0 +1,181 @@
+//! What a PLY file says it holds.
+
+use super::body::Body;
+use crate::CaptureError;
+use crate::text::quoted;
+use std::fs::File;
+use std::io::{BufRead, BufReader, Read};
+use std::path::Path;
+
+/// The elements in the order of the file.
+#[derive(Debug)]
+pub(super) struct Header {
+    pub elements: Vec<Element>,
+}
+
+/// A table of the file.
+#[derive(Debug)]
+pub(super) struct Element {
+    pub name: String,
+    /// Rows.
+    pub count: u64,
+    /// Columns.
+    pub properties: Vec<Property>,
+}
+
+#[derive(Debug)]
+pub(super) struct Property {
+    pub name: String,
+    pub kind: Kind,
+}
+
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Kind {
+    Scalar(Scalar),
+    List { count: Scalar, item: Scalar },
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Scalar {
+    I8,
+    U8,
+    I16,
+    U16,
+    I32,
+    U32,
+    F32,
+    F64,
+}
+
+/// How the body is written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Format {
+    Ascii,
+    LittleEndian,
+    BigEndian,
+}
+
+impl Scalar {
+    fn named(name: &str) -> Option<Self> {
+        Some(match name {
+            "char" | "int8" => Self::I8,
+            "uchar" | "uint8" => Self::U8,
+            "short" | "int16" => Self::I16,
+            "ushort" | "uint16" => Self::U16,
+            "int" | "int32" => Self::I32,
+            "uint" | "uint32" => Self::U32,
+            "float" | "float32" => Self::F32,
+            "double" | "float64" => Self::F64,
+            _ => return None,
+        })
+    }
+
+    /// Bytes in a binary file.
+    pub fn size(self) -> usize {
+        match self {
+            Self::I8 | Self::U8 => 1,
+            Self::I16 | Self::U16 => 2,
+            Self::I32 | Self::U32 | Self::F32 => 4,
+            Self::F64 => 8,
+        }
+    }
+}
+
+impl Kind {
+    /// What stands for full intensity of a colour of this type.
+    pub fn white(self) -> f64 {
+        match self {
+            Self::Scalar(Scalar::F32 | Scalar::F64) | Self::List { .. } => 1.0,
+            Self::Scalar(integer) => (1u64 << (8 * integer.size())) as f64 - 1.0,
+        }
+    }
+}
+
+impl Element {
+    /// Bytes that a row takes at least.
+    pub fn least_bytes(&self, format: Format) -> u64 {
+        let of = |property: &Property| match (format, property.kind) {
+            // A digit and what parts it from the next.
+            (Format::Ascii, _) => 2,
+            (_, Kind::Scalar(scalar)) => scalar.size() as u64,
+            (_, Kind::List { count, .. }) => count.size() as u64,
+        };
+        self.properties.iter().map(of).sum()
+    }
+}
+
+impl Header {
+    /// The header of a file, and what follows it.
+    pub fn open(file: &Path) -> Result<(Self, Body), CaptureError> {
+        let unreadable = |source| CaptureError::unreadable(file, source);
+        let mut input = BufReader::new(File::open(file).map_err(unreadable)?);
+        let size = input.get_ref().metadata().map_err(unreadable)?.len();
+        let mut header = Self { elements: Vec::new() };
+        let mut format = None;
+        let mut read = 0;
+        /// More is no header.
+        const MOST_LINES: usize = 1000;
+        for number in 1..=MOST_LINES {
+            const LONGEST: u64 = 4096;
+            let mut line = Vec::new();
+            read += (&mut input).take(LONGEST).read_until(b'\n', &mut line).map_err(unreadable)? as u64;
+            let line = String::from_utf8_lossy(&line);
+            let fields: Vec<&str> = line.split_whitespace().collect();
+            let wrong = |what: &str| CaptureError::malformed(file, format!("line {number}"), what);
+            match fields[..] {
+                ["ply"] if number == 1 => {}
+                _ if number == 1 => return Err(wrong("is no PLY: it does not begin with ply")),
+                ["format", name, _] => {
+                    format = Some(match name {
+                        "ascii" => Format::Ascii,
+                        "binary_little_endian" => Format::LittleEndian,
+                        "binary_big_endian" => Format::BigEndian,
+                        _ => return Err(wrong(&format!("the format {} is not known", quoted(name)))),
+                    });
+                }
+                ["element", name, count] => {
+                    let count =
+                        count.parse().map_err(|_| wrong(&format!("{} is no count", quoted(count))))?;
+                    header.elements.push(Element { name: name.into(), count, properties: Vec::new() });
+                }
+                ["property", .., name] => {
+                    let kind = match fields[1..fields.len() - 1] {
+                        ["list", count, item] => Scalar::named(count)
+                            .zip(Scalar::named(item))
+                            .map(|(count, item)| Kind::List { count, item }),
+                        [scalar] => Scalar::named(scalar).map(Kind::Scalar),
+                        _ => None,
+                    };
+                    let kind = kind.ok_or_else(|| wrong("is no property of a known type"))?;
+                    let element =
+                        header.elements.last_mut().ok_or_else(|| wrong("is a property of no element"))?;
+                    element.properties.push(Property { name: name.into(), kind });
+                }
+                ["end_header"] => {
+                    let format = format.ok_or_else(|| wrong("no format was given"))?;
+                    return Ok((header, Body::new(file, input, format, number, [read, size])));
+                }
+                ["comment" | "obj_info", ..] | [] => {}
+                _ => return Err(wrong(&format!("{} is no line of a header", quoted(line.trim())))),
+            }
+        }
+        Err(CaptureError::malformed(file, format!("line {MOST_LINES}"), "the header does not end"))
+    }
+
+    /// The element of a name.
+    pub fn element(&self, name: &str) -> Option<&Element> {
+        self.elements.iter().find(|element| element.name == name)
+    }
+
+    /// The elements up to the last of these, and whether each is the first of one of them.
+    pub fn until(&self, wanted: &[&str]) -> Vec<(&Element, bool)> {
+        let first = |name: &&str| self.elements.iter().position(|element| element.name == **name);
+        let wanted: Vec<usize> = wanted.iter().filter_map(first).collect();
+        let end = wanted.iter().max().map_or(0, |last| last + 1);
+        self.elements[..end]
+            .iter()
+            .enumerate()
+            .map(|(index, element)| (element, wanted.contains(&index)))
+            .collect()
+    }
+}

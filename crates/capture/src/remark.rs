@@ -1,0 +1,43 @@
+//! What was odd about a capture that opened nevertheless.
+
+/// A remark on a capture. Displays as one line, `FILE: what (what to do)`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Remark {
+    /// The sentence.
+    pub text: String,
+    /// The pictures or files that it is about, all of them.
+    pub names: Vec<String>,
+    /// Whether something is missing that the capture speaks of; else it is good to know.
+    pub is_incomplete: bool,
+}
+
+/// So many names are told in the sentence.
+const TOLD: usize = 5;
+
+impl Remark {
+    /// Something that is good to know.
+    pub(crate) fn note(text: impl Into<String>) -> Self {
+        Self { text: text.into(), names: Vec::new(), is_incomplete: false }
+    }
+
+    /// A sentence about some names, none if there is none: `{}` stands for how many and which.
+    pub(crate) fn about(
+        names: Vec<String>,
+        is_incomplete: bool,
+        text: impl Fn(&str) -> String,
+    ) -> Option<Self> {
+        let shown = |name: &String| -> String {
+            name.chars().map(|c| if c.is_control() { '?' } else { c }).collect()
+        };
+        let told = names.iter().take(TOLD).map(shown).collect::<Vec<_>>().join(", ");
+        let rest = names.len().saturating_sub(TOLD);
+        let told = if rest > 0 { format!("{told} and {rest} more") } else { told };
+        (!names.is_empty()).then(|| Self { text: text(&told), names, is_incomplete })
+    }
+}
+
+impl std::fmt::Display for Remark {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(&self.text)
+    }
+}

@@ -1,0 +1,37 @@
+//! What of a photograph counts.
+
+use super::View;
+use super::photograph::{PictureError, decoded};
+use crate::LoadOptions;
+
+/// A mask over the pixels of a photograph.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Mask {
+    /// Columns.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+    /// Whether each pixel counts, row 0 on top.
+    pub counts: Vec<bool>,
+}
+
+impl View {
+    /// Reads the mask, if there is one: what is brighter than half counts. It may be smaller or larger than the picture; each pixel has what
+    /// lies at its middle.
+    ///
+    /// # Errors
+    /// The file cannot be read or decoded, or is beyond the limits of `options`.
+    pub fn mask(&self, options: &LoadOptions) -> Result<Option<Mask>, PictureError> {
+        let Some(file) = &self.mask else { return Ok(None) };
+        let stored = decoded(file, self.orientation, options)?.0.into_luma8();
+        let [width, height] = self.lens.size_px();
+        // The middle of pixel i of n lies in pixel ⌊(i + ½)·m/n⌋ of m.
+        let place =
+            |i: u32, n: u32, m: u32| ((2 * u64::from(i) + 1) * u64::from(m) / (2 * u64::from(n))) as u32;
+        let rows = 0..height;
+        let counts = rows.flat_map(|y| (0..width).map(move |x| (x, y))).map(|(x, y)| {
+            stored.get_pixel(place(x, width, stored.width()), place(y, height, stored.height())).0[0] > 127
+        });
+        Ok(Some(Mask { width, height, counts: counts.collect() }))
+    }
+}

@@ -1,0 +1,125 @@
+//! The pixels of a view, read when they are needed: linear light, turned as its lens means them.
+
+use super::View;
+use super::picture_colors::{PictureColors, UnknownProfile};
+use crate::LoadOptions;
+use image::metadata::Orientation;
+use image::{DynamicImage, ImageDecoder, ImageReader, Limits};
+use std::io::BufReader;
+use std::path::{Path, PathBuf};
+
+/// The pixels of a photograph.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Photograph {
+    /// Columns.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+    /// Linear RGB with the primaries of sRGB, row 0 on top; 1 is the picture's white. Colours that sRGB does not have have
+    /// components below 0 or above 1.
+    pub pixels: Vec<[f32; 3]>,
+}
+
+/// Why the pixels of a picture cannot be had. Displays as `FILE: what is wrong (what to do)`.
+#[derive(Debug, thiserror::Error)]
+pub enum PictureError {
+    /// The file cannot be read.
+    #[error("{}: cannot be read: {source} (check the path and its permissions)", file.display())]
+    Unreadable {
+        /// The picture.
+        file: PathBuf,
+        /// Why.
+        source: std::io::Error,
+    },
+    /// It is no picture, or a broken one.
+    #[error("{}: cannot be decoded: {why} (give it as PNG, JPEG, WebP or HDR)", file.display())]
+    Undecodable {
+        /// The picture.
+        file: PathBuf,
+        /// Why.
+        why: String,
+    },
+    /// It is not of the size that its lens is for.
+    #[error(
+        "{}: is {} × {} px, its camera is for {} × {} px (give the pictures that the cameras were found with)",
+        file.display(), found[0], found[1], wanted[0], wanted[1]
+    )]
+    OtherSize {
+        /// The picture.
+        file: PathBuf,
+        /// Its size, turned.
+        found: [u32; 2],
+        /// The lens's.
+        wanted: [u32; 2],
+    },
+    /// It is larger than the limits allow.
+    #[error("{}: {width} × {height} px are beyond the limit of {limit} px (make the pictures smaller)", file.display())]
+    TooBig {
+        /// The picture.
+        file: PathBuf,
+        /// Its columns.
+        width: u32,
+        /// Its rows.
+        height: u32,
+        /// The most pixels allowed.
+        limit: u64,
+    },
+    /// Its colours cannot be told.
+    #[error("{}: its ICC profile {why} (convert the pictures to sRGB)", file.display())]
+    Profile {
+        /// The picture.
+        file: PathBuf,
+        /// What is wrong with it.
+        why: String,
+    },
+}
+
+impl View {
+    /// Reads the picture: PNG, JPEG, WebP or Radiance HDR, 8 or 16 bits, grey or colour, with its ICC profile or in sRGB; half
+    /// transparent pixels count as opaque. Takes 12 bytes a pixel and, while it runs, what the decoded file takes.
+    ///
+    /// # Errors
+    /// The file cannot be read or decoded, is beyond the limits of `options`, or is not of the lens's size.
+    pub fn photograph(&self, options: &LoadOptions) -> Result<Photograph, PictureError> {
+        let (picture, profile) = decoded(&self.picture, self.orientation, options)?;
+        let (width, height) = (picture.width(), picture.height());
+        if [width, height] != self.lens.size_px() {
+            let (found, wanted) = ([width, height], self.lens.size_px());
+            return Err(PictureError::OtherSize { file: self.picture.clone(), found, wanted });
+        }
+        let colors = PictureColors::of(profile.as_deref(), &picture)
+            .map_err(|UnknownProfile(why)| PictureError::Profile { file: self.picture.clone(), why })?;
+        Ok(Photograph { width, height, pixels: colors.linear(picture) })
+    }
+}
+
+/// A picture file, turned by an EXIF orientation, and its ICC profile.
+pub(super) fn decoded(
+    file: &Path,
+    orientation: u8,
+    options: &LoadOptions,
+) -> Result<(DynamicImage, Option<Vec<u8>>), PictureError> {
+    let unreadable = |source| PictureError::Unreadable { file: file.into(), source };
+    let broken = |error: image::ImageError| PictureError::Undecodable {
+        file: file.into(),
+        why: error.to_string().replace('\n', " "),
+    };
+    let input = BufReader::new(std::fs::File::open(file).map_err(unreadable)?);
+    let mut reader = ImageReader::new(input).with_guessed_format().map_err(unreadable)?;
+    let mut limits = Limits::default();
+    limits.max_alloc = Some(options.max_memory);
+    reader.limits(limits);
+    let mut decoder = reader.into_decoder().map_err(broken)?;
+    let (width, height) = decoder.dimensions();
+    let pixels = u64::from(width) * u64::from(height);
+    // Decoded and converted at the same time.
+    let limit = options.max_texels.min(options.max_memory / (12 + 8));
+    if pixels > limit {
+        return Err(PictureError::TooBig { file: file.into(), width, height, limit });
+    }
+    // A profile that cannot be had is none: the pixels are there all the same.
+    let profile = decoder.icc_profile().ok().flatten();
+    let mut picture = DynamicImage::from_decoder(decoder).map_err(broken)?;
+    picture.apply_orientation(Orientation::from_exif(orientation).unwrap_or(Orientation::NoTransforms));
+    Ok((picture, profile))
+}

@@ -1,0 +1,86 @@
+//! From the numbers of a picture file to linear light.
+//!
+//! Without an ICC profile numbers are sRGB; floats are linear. A profile of curves and a matrix (Display P3, Adobe RGB and what
+//! cameras write) is followed. Profiles made of tables belong to printers and scanners and are refused.
+
+use crate::texture_lookup::linear_from_srgb;
+use image::{ColorType, DynamicImage};
+use moxcms::{ColorProfile, DataColorSpace, ToneReprCurve};
+
+/// How the colours of a picture are stored.
+pub(super) struct PictureColors {
+    /// From a stored number to linear light, by channel: 256 or 65536 entries.
+    curves: [Vec<f32>; 3],
+    /// From the profile's primaries to those of sRGB, rows; none where they are the same.
+    to_srgb: Option<[[f32; 3]; 3]>,
+}
+
+/// What is wrong with a profile, after "its ICC profile".
+pub(super) struct UnknownProfile(pub String);
+
+impl PictureColors {
+    /// The colours of a decoded picture with this ICC profile.
+    pub fn of(profile: Option<&[u8]>, picture: &DynamicImage) -> Result<Self, UnknownProfile> {
+        let entries = if is_deep(picture.color()) { 1 << 16 } else { 1 << 8 };
+        let Some(bytes) = profile else {
+            let curve = table(entries, |value| linear_from_srgb(f64::from(value)));
+            return Ok(Self { curves: [curve.clone(), curve.clone(), curve], to_srgb: None });
+        };
+        let profile = ColorProfile::new_from_slice(bytes)
+            .map_err(|error| UnknownProfile(format!("is broken: {error}")))?;
+        let has_tables = profile.lut_a_to_b_perceptual.is_some() || profile.lut_a_to_b_colorimetric.is_some();
+        let curve = |curve: &Option<ToneReprCurve>| {
+            let curve = curve.as_ref().ok_or_else(|| UnknownProfile("lacks a curve".into()))?;
+            let curve = curve.make_linear_evaluator();
+            let curve = curve.map_err(|error| UnknownProfile(format!("has an impossible curve: {error}")))?;
+            Ok(table(entries, |value| curve.evaluate_value(value)))
+        };
+        match profile.color_space {
+            DataColorSpace::Gray => {
+                let curve = curve(&profile.gray_trc)?;
+                Ok(Self { curves: [curve.clone(), curve.clone(), curve], to_srgb: None })
+            }
+            DataColorSpace::Rgb if profile.is_matrix_shaper() => {
+                let curves =
+                    [curve(&profile.red_trc)?, curve(&profile.green_trc)?, curve(&profile.blue_trc)?];
+                let matrix = profile.transform_matrix(&ColorProfile::new_srgb()).v;
+                Ok(Self { curves, to_srgb: Some(matrix.map(|row| row.map(|entry| entry as f32))) })
+            }
+            _ if has_tables => Err(UnknownProfile("is made of tables".into())),
+            _ => Err(UnknownProfile("is of neither RGB nor grey".into())),
+        }
+    }
+
+    /// The pixels of that picture, linear, with the primaries of sRGB.
+    pub fn linear(&self, picture: DynamicImage) -> Vec<[f32; 3]> {
+        let [red, green, blue] = &self.curves;
+        let finite = |value: f32| if value.is_finite() { value } else { 0.0 };
+        let through = |[r, g, b]: [usize; 3]| self.to_srgb([red[r], green[g], blue[b]].map(finite));
+        match picture.color() {
+            ColorType::Rgb32F | ColorType::Rgba32F => {
+                picture.into_rgb32f().pixels().map(|pixel| pixel.0.map(finite)).collect()
+            }
+            deep if is_deep(deep) => {
+                picture.into_rgb16().pixels().map(|pixel| through(pixel.0.map(usize::from))).collect()
+            }
+            _ => picture.into_rgb8().pixels().map(|pixel| through(pixel.0.map(usize::from))).collect(),
+        }
+    }
+
+    fn to_srgb(&self, color: [f32; 3]) -> [f32; 3] {
+        match &self.to_srgb {
+            Some(matrix) => matrix.map(|row| row[0] * color[0] + row[1] * color[1] + row[2] * color[2]),
+            None => color,
+        }
+    }
+}
+
+/// Whether the channels have 16 bits.
+fn is_deep(color: ColorType) -> bool {
+    color.bytes_per_pixel() / color.channel_count() == 2
+}
+
+/// A curve at as many places.
+fn table(entries: usize, curve: impl Fn(f32) -> f32) -> Vec<f32> {
+    (0..entries).map(|entry| curve(entry as f32 / (entries - 1) as f32)).collect()
+}
