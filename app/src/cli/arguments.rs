@@ -43,6 +43,8 @@ pub enum Subcommand {
     Info(InfoArguments),
     /// Make a project of a scene, with a camera and a focus to begin with
     New(NewArguments),
+    /// Make a project of a capture: photographs with their cameras, and a mesh
+    Import(ImportArguments),
     /// Paint what was recorded (`Export strokes…` in the window writes it) on a project or a scene
     Replay(ReplayArguments),
     /// Write a scene with the atlas as its second UV set (TEXCOORD_1)
@@ -97,7 +99,7 @@ impl SceneLook {
 /// `info`.
 #[derive(Debug, Args)]
 pub struct InfoArguments {
-    /// A scene (.glb, .gltf), project (.fbrush) or light field (.salf)
+    /// A scene (.glb, .gltf), project (.fbrush), light field (.salf) or the folder of a capture
     pub file: PathBuf,
     /// Bake a small picture's light field and count what of the scene is modelled
     #[arg(long)]
@@ -125,6 +127,22 @@ pub struct NewArguments {
     pub focus: Option<PathBuf>,
     #[command(flatten)]
     pub scene_look: SceneLook,
+}
+
+/// `import`.
+#[derive(Debug, Args)]
+pub struct ImportArguments {
+    /// The folder of the capture: COLMAP's, nerfstudio's, Bundler's, VisualSFM's or Metashape's cameras, pictures and a mesh
+    pub capture: PathBuf,
+    /// Where to write the project
+    #[arg(short, long, value_name = "PROJECT.fbrush")]
+    pub output: PathBuf,
+    /// The mesh (.ply, .obj, .glb) (default: the one in the folder)
+    #[arg(long, value_name = "FILE")]
+    pub mesh: Option<PathBuf>,
+    /// Photographs that are only compared with, by name: no light is made of them
+    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
+    pub leave_out: Vec<String>,
 }
 
 /// `replay`.
@@ -190,9 +208,13 @@ pub struct BakeArguments {
 /// From where, and how focused.
 #[derive(Debug, Args)]
 pub struct ShotArguments {
-    /// A camera file, or the name of a camera in the scene (default: the project's, or the scene's first)
+    /// A camera file, or the name of a camera in the scene; photo:NAME is that of a photograph, as a pinhole (default: the
+    /// project's, or the scene's first)
     #[arg(long, value_name = "CAM.json|NAME", value_parser = camera_parser())]
     pub camera: Option<CameraChoice>,
+    /// The aperture's radius in scene units instead of the camera's; 0 is a pinhole
+    #[arg(long, value_name = "R", value_parser = not_negative)]
+    pub aperture_radius: Option<f64>,
     /// A lens instead of the camera's: the name of a preset (focus-brush presets lists them) or its file
     #[arg(long, value_name = "NAME|FILE.json")]
     pub lens: Option<OsString>,
@@ -213,7 +235,7 @@ pub struct ShotArguments {
 /// `render`.
 #[derive(Debug, Args)]
 pub struct RenderArguments {
-    /// A scene (.glb, .gltf), project (.fbrush) or light field (.salf)
+    /// A scene (.glb, .gltf), project (.fbrush), light field (.salf) or the folder of a capture
     pub file: PathBuf,
     /// Where to write the picture; EXR is linear, PNG is sRGB
     #[arg(short, long, value_name = "OUT.exr|png")]
@@ -260,7 +282,8 @@ pub struct RenderArguments {
     pub rays: u32,
     /// Pictures that come along: coverage (the sum for a scene of radiance 1), coc (signed diameter of the circle of
     /// confusion in px, negative when nearer than the focus), depth (axial; inf for the background), t (and anchor),
-    /// stderr (the ground truth's standard error: of radiance, luminance and coverage, and of their ratios)
+    /// seen (of a capture: 1 photographed, 0 filled in), stderr (the ground truth's standard error: of radiance, luminance and
+    /// coverage, and of their ratios)
     #[arg(long, value_name = "NAMES", value_delimiter = ',', value_parser = aov)]
     pub aov: Vec<Aov>,
     /// normalise keeps a white scene white; conserve is the model's energy as it is (default: the project's, or
@@ -334,7 +357,7 @@ pub struct ExportArguments {
     /// The project (.fbrush)
     pub project: PathBuf,
     /// Write the focus map: EXR, or 16-bit PNG with a .json beside it
-    #[arg(long, value_name = "MAP.exr|png", required_unless_present_any = ["glb", "layers"])]
+    #[arg(long, value_name = "MAP.exr|png", required_unless_present_any = ["glb", "layers", "photo"])]
     pub focus_map: Option<PathBuf>,
     /// Write the scene with the atlas as its second UV set
     #[arg(long, value_name = "OUT.glb")]
@@ -342,6 +365,10 @@ pub struct ExportArguments {
     /// Write the picture with coverage, coc, depth, t and anchor as layers
     #[arg(long, value_name = "OUT.exr")]
     pub layers: Option<PathBuf>,
+    /// Write a photograph of a capture as its camera photo:NAME shows the scene: undistorted, linear, its exposure as solved, with the
+    /// layer seen
+    #[arg(long, value_name = "NAME=OUT.exr", value_parser = photograph_output)]
+    pub photo: Vec<(String, PathBuf)>,
 }
 
 /// `presets`.
@@ -421,6 +448,16 @@ fn camera_parser() -> impl TypedValueParser<Value = CameraChoice> {
 fn camera_choice(text: &OsStr) -> CameraChoice {
     let is_file = text.as_encoded_bytes().to_ascii_lowercase().ends_with(b".json");
     if is_file { CameraChoice::File(text.into()) } else { CameraChoice::Named(text.to_string_lossy().into()) }
+}
+
+/// A photograph's name may hold anything but the file's.
+fn photograph_output(text: &str) -> Result<(String, PathBuf), String> {
+    match text.rsplit_once('=') {
+        Some((name, file)) if !name.is_empty() && file.to_lowercase().ends_with(".exr") => {
+            Ok((name.into(), file.into()))
+        }
+        _ => Err("NAME=OUT.exr".into()),
+    }
 }
 
 fn size(text: &str) -> Result<[u32; 2], String> {

@@ -36,6 +36,9 @@ pub fn run(arguments: &ExportArguments, console: &Console) -> Result<(), Failure
     if let Some(path) = &arguments.layers {
         done(path, layers(&input, path, console));
     }
+    for (name, path) in &arguments.photo {
+        done(path, photograph(&input, name, path, console));
+    }
     match (written, failures.len()) {
         (_, 0) => Ok(()),
         (0, 1) => Err(failures.remove(0)),
@@ -66,6 +69,13 @@ fn glb(input: &Input, path: &Path, console: &Console) -> Result<(), Failure> {
     check_folder(path)?;
     let atlas = input.atlas(&unwrap_options(None), console)?;
     Ok(write_unwrapped(path, &input.scene, &atlas, console)?)
+}
+
+fn photograph(input: &Input, name: &str, path: &Path, console: &Console) -> Result<(), Failure> {
+    check_folder(path)?;
+    let (picture, layers) = input.photograph_picture(name, console)?;
+    write_picture(path, &picture, &layers, PictureOptions { exposure: input.exposure(), half: false })?;
+    Ok(())
 }
 
 fn layers(input: &Input, path: &Path, console: &Console) -> Result<(), Failure> {

@@ -7,7 +7,7 @@ use super::shot::{opened, unwrap_options};
 use lens::Camera;
 use progress::Unwatched;
 use project::{ProjectFile, camera_to_json};
-use scene::{Environment, Inspection, LoadOptions, MeshHealth, Scene};
+use scene::{Environment, Inspection, LoadOptions, MeshHealth, Scene, View};
 use serde_json::{Value, json};
 use session::{Input, InputKind, Modelled, RenderOptions};
 use std::sync::Arc;
@@ -40,11 +40,13 @@ pub fn run(arguments: &InfoArguments, console: &Console) -> Result<(), Failure> 
                 InputKind::Scene => "scene",
                 InputKind::Project => "project",
                 InputKind::LightField => "light field",
+                InputKind::Capture => "capture",
             },
             "contents": inspection,
             "scene": scene_json(&input.scene),
             "mesh": health,
             "project": input.project.as_ref().map(project_json),
+            "capture": capture_json(&input),
             "camera": camera_to_json(&input.camera),
             "salf": input.salf.as_ref().map(|salf| json!({
                 "samples": salf.samples.len(),
@@ -55,7 +57,7 @@ pub fn run(arguments: &InfoArguments, console: &Console) -> Result<(), Failure> 
             "would_bake": { "width": input.camera.width, "height": input.camera.height },
             "warnings": input.warnings,
         }));
-        return Ok(());
+        return partly(&input);
     }
     say(format!("{}", file.display()));
     if let Some(inspection) = &inspection {
@@ -64,12 +66,51 @@ pub fn run(arguments: &InfoArguments, console: &Console) -> Result<(), Failure> 
     if let Some(project) = &input.project {
         project_lines(project);
     }
+    capture_lines(&input);
     scene_lines(&input.scene, &health);
     if let Some(modelled) = &modelled {
         modelled_lines(modelled);
     }
     bake_lines(&input.camera, &input.scene);
-    Ok(())
+    partly(&input)
+}
+
+/// Something that a capture speaks of and that is missing is no failure, and nothing to pass over.
+fn partly(input: &Input) -> Result<(), Failure> {
+    match input.is_incomplete {
+        true => {
+            Err(Failure::partly(format!("{}: something of it is missing, see above", input.path.display())))
+        }
+        false => Ok(()),
+    }
+}
+
+fn capture_json(input: &Input) -> Option<Value> {
+    let Scene { views, left_out, .. } = &*input.scene;
+    let photograph = |view: &View| {
+        json!({
+            "name": view.name,
+            "width": view.lens.size_px()[0],
+            "height": view.lens.size_px()[1],
+            "position": view.position().to_array(),
+            "exposure_hint_stops": view.exposure_hint,
+        })
+    };
+    let all = |views: &[View]| views.iter().map(photograph).collect::<Vec<_>>();
+    (!views.is_empty()).then(|| json!({ "photographs": all(views), "left_out": all(left_out) }))
+}
+
+fn capture_lines(input: &Input) {
+    let Scene { views, left_out, .. } = &*input.scene;
+    let Some(first) = views.first() else { return };
+    let [width, height] = first.lens.size_px();
+    let others =
+        if views.iter().all(|view| view.lens.size_px() == [width, height]) { "" } else { " and others" };
+    say(format!(
+        "  photographs  {} of {width} × {height} px{others}, {} left out",
+        views.len(),
+        left_out.len()
+    ));
 }
 
 /// A file that shows nothing is still a file.

@@ -1,6 +1,6 @@
 //! The command line: a thin layer over the `session` crate.
 //!
-//! * `arguments`: what can be typed. One file a subcommand does it: `info`, `new`, `replay`, `unwrap`, `bake`, `render`,
+//! * `arguments`: what can be typed. One file a subcommand does it: `info`, `new`, `import`, `replay`, `unwrap`, `bake`, `render`,
 //!   `compare`, `report`, `export`, `presets`, `doctor`.
 //! * `console`: progress on stderr, results on stdout. `failure`: errors and exit codes.
 
@@ -11,6 +11,7 @@ mod console;
 mod doctor;
 mod export;
 mod failure;
+mod import;
 mod info;
 mod new;
 mod presets;
@@ -66,6 +67,7 @@ fn dispatch(command: Subcommand) -> Result<(), Failure> {
     match command {
         Subcommand::Info(arguments) => info::run(&arguments, &console),
         Subcommand::New(arguments) => new::run(&arguments, &console),
+        Subcommand::Import(arguments) => import::run(&arguments, &console),
         Subcommand::Replay(arguments) => replay::run(&arguments, &console),
         Subcommand::Unwrap(arguments) => unwrap::run(&arguments, &console),
         Subcommand::Bake(arguments) => {

@@ -54,6 +54,9 @@ pub fn world(look: &SceneLook) -> Result<Option<WorldFile>, Failure> {
 pub fn shot(input: &Input, arguments: &ShotArguments, console: &Console) -> Result<(Camera, Focus), Failure> {
     let camera = input.camera(arguments.camera.as_ref())?;
     let mut camera = with_presets(camera, arguments.lens.as_deref(), arguments.bokeh.as_deref())?;
+    if let Some(radius) = arguments.aperture_radius {
+        camera.aperture_radius = radius;
+    }
     if let Some([width, height]) = arguments.size {
         (camera.width, camera.height) = (width, height);
     }

@@ -13,6 +13,7 @@
 
 mod aperture_mask_file;
 mod camera;
+mod capture_choices;
 mod compare;
 mod container;
 mod disk;
@@ -33,6 +34,7 @@ mod presets;
 mod project_file;
 mod recipe;
 mod recovery;
+mod scene_checksum;
 mod scene_path;
 mod strokes_file;
 mod texel_bytes;
@@ -42,6 +44,7 @@ mod z_test;
 
 pub use aperture_mask_file::read_aperture_mask;
 pub use camera::{camera_from_json, camera_to_json, read_camera, write_camera};
+pub use capture_choices::CaptureChoices;
 pub use compare::{Comparison, ErrorMaps, compare, error_maps, psnr};
 pub use error::ProjectError;
 pub use error_map_file::{error_colours, write_error_map};

@@ -1,6 +1,7 @@
 //! The format of a project: what its manifest says, and the versions of it.
 
 use crate::ProjectError;
+use crate::capture_choices::CaptureRow;
 use crate::container::{Container, DAMAGED_CURE};
 use crate::layer_rows::LayerRows;
 use crate::scene_path::ScenePath;
@@ -54,6 +55,9 @@ pub(crate) struct Manifest {
     /// The scene's variant, by name, where one was chosen.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub variant: Option<String>,
+    /// What was chosen of the capture, where the scene is one. An older program takes its folder for a file, and says so.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub capture: Option<CaptureRow>,
     /// What lies beyond all surfaces, where that was chosen: as in a world file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub world: Option<Value>,

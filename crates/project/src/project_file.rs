@@ -16,10 +16,12 @@
 //! together, with its checksum, so that a change is noticed.
 
 use crate::camera::{camera_from_json, camera_to_json};
+use crate::capture_choices::{CaptureChoices, CaptureRow};
 use crate::container::{Container, DAMAGED_CURE, pack};
 use crate::disk::{read_bytes, write_verified};
 use crate::layer_entries;
 use crate::manifest::{CameraEntry, MANIFEST, Manifest, MapEntry, SceneReference, sha256_hex};
+use crate::scene_checksum::scene_checksum;
 use crate::scene_path::ScenePath;
 use crate::texel_bytes::pairs;
 use crate::texel_set::TexelSet;
@@ -55,7 +57,7 @@ pub struct NamedCamera {
 /// A document as it is saved.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ProjectFile {
-    /// The scene file.
+    /// The scene file, or the folder of a capture.
     pub scene: PathBuf,
     /// Hex SHA-256 of the scene file when the document was made; see [`Self::scene_state`].
     pub scene_sha256: String,
@@ -69,6 +71,8 @@ pub struct ProjectFile {
     pub back_faces: BackFaces,
     /// The scene's variant that was chosen, by name; else it has its own materials.
     pub variant: Option<String>,
+    /// Of a project of a capture: what of it was chosen.
+    pub capture: Option<CaptureChoices>,
     /// The world that was chosen; else the scene has one of its own.
     pub world: Option<WorldFile>,
     /// The brush.
@@ -113,6 +117,7 @@ impl ProjectFile {
             exposure: Exposure::default(),
             back_faces: BackFaces::default(),
             variant: None,
+            capture: None,
             world: None,
             brush: Brush::default(),
             view: Value::Null,
@@ -124,9 +129,9 @@ impl ProjectFile {
         })
     }
 
-    /// Hex SHA-256 of a scene file.
+    /// Hex SHA-256 of a scene file; of a capture's folder that of the files that tell of its cameras and its surface.
     pub fn scene_checksum(scene: &Path) -> Result<String, ProjectError> {
-        Ok(sha256_hex(&read_bytes(scene)?))
+        scene_checksum(scene)
     }
 
     /// Whether the scene file is still what it was.
@@ -241,6 +246,7 @@ impl ProjectFile {
             exposure: exposure_name(self.exposure).to_string(),
             back_faces: (self.back_faces != BackFaces::default()).then(|| self.back_faces.name().to_string()),
             variant: self.variant.clone(),
+            capture: self.capture.as_ref().map(|choices| CaptureRow::new(choices, file)),
             world: self.world.as_ref().map(|world| world.to_json(file)),
             background_focus: [background.t, background.anchor],
             brush: self.brush.clone(),
@@ -319,6 +325,13 @@ impl ProjectFile {
             return Err(error("has a selection of another size than its focus map".to_string()));
         }
         let scene = manifest.scene.path.from(file);
+        let capture = match &manifest.capture {
+            Some(row) => Some(
+                row.choices(file)
+                    .ok_or_else(|| error("capture.mesh.path_bytes is not in hex".to_string()))?,
+            ),
+            None => None,
+        };
         Ok(Self {
             scene: scene.ok_or_else(|| error("scene.path_bytes is not in hex".to_string()))?,
             scene_sha256: manifest.scene.sha256.clone(),
@@ -327,6 +340,7 @@ impl ProjectFile {
             exposure,
             back_faces,
             variant: manifest.variant,
+            capture,
             world,
             brush: manifest.brush,
             view: manifest.view,

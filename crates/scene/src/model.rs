@@ -1,6 +1,6 @@
 //! The scene in memory: flat, world space, triangles only.
 
-use crate::{BackFaces, Material, World};
+use crate::{BackFaces, Material, View, World};
 use glam::{DMat4, DVec3, Vec2, Vec3, Vec4};
 use std::ops::Range;
 use std::path::PathBuf;
@@ -56,6 +56,10 @@ pub struct Scene {
     pub world: Option<World>,
     /// Whether light that meets microfacets more than once is left out, as in renderers that do.
     pub single_scattering: bool,
+    /// Photographs of it, where these light it.
+    pub views: Vec<View>,
+    /// Photographs that are only compared with: no light is made of them.
+    pub left_out: Vec<View>,
     /// What was wrong with the file but did no harm, a sentence each.
     pub warnings: Vec<String>,
 }

@@ -1,20 +1,24 @@
 //! What can be opened: a scene, a project or a light field, as the renderers need it.
 
+use super::capture_scene::{CaptureScene, camera_of_photograph, load_capture, photograph};
 use super::scene_camera::camera_of;
 use super::stage::{Stage, atlas_error, load_variant};
 use super::variant_choice::VariantChoice;
 use crate::error::SessionError;
 use crate::jobs::Steps;
+use crate::light_field::{is_photographed, keep_photographs_at};
 use atlas::{Atlas, UnwrapOptions};
+use capture::CaptureError;
 use focus::{Focus, FocusMap, FocusRecipe, RecipeEntry};
 use lens::{Camera, Exposure, FocusOffset};
-use project::{FocusFile, ProjectError, ProjectFile, SceneState, read_camera, read_focus};
+use project::{CaptureChoices, FocusFile, ProjectError, ProjectFile, SceneState, read_camera, read_focus};
 use salf::{Salf, SalfFile};
 use scene::{BackFaces, Fault, Scene, SceneError, World};
 use std::fs::File;
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use trace::Tracer;
 
 impl From<ProjectError> for SessionError {
     fn from(error: ProjectError) -> Self {
@@ -44,8 +48,12 @@ pub struct Input {
     pub project: Option<ProjectFile>,
     /// Of a light field: the light field.
     pub salf: Option<Arc<Salf>>,
+    /// Of a capture that was opened as such: what of it was chosen.
+    pub capture: Option<CaptureChoices>,
     /// What is odd but does no harm, a sentence each.
     pub warnings: Vec<String>,
+    /// Whether something is missing that the file speaks of: photographs of a capture.
+    pub is_incomplete: bool,
 }
 
 /// A camera, as asked for.
@@ -66,12 +74,20 @@ pub enum InputKind {
     Project,
     /// `.salf`.
     LightField,
+    /// The folder of a capture.
+    Capture,
 }
 
 impl InputKind {
     /// What `path` seems to be; an error for a file that is none of them.
     pub fn of(path: &Path) -> Result<Self, SessionError> {
         let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
+        if path.is_dir() {
+            return match capture::recognise(path) {
+                Some(_) => Ok(Self::Capture),
+                None => Err(CaptureError::NoCameras { folder: path.into() }.into()),
+            };
+        }
         match extension.as_str() {
             "glb" | "gltf" => Ok(Self::Scene),
             ProjectFile::EXTENSION | "recovery" => Ok(Self::Project),
@@ -100,14 +116,46 @@ impl Input {
             InputKind::Scene => Self::open_scene(path, variant, steps),
             InputKind::Project => Self::open_project(path, ProjectFile::load(path)?, variant, steps),
             InputKind::LightField => Self::open_light_field(path, variant, steps),
+            InputKind::Capture => Self::open_capture(path, CaptureChoices::default(), steps),
         }
+    }
+
+    /// Opens the capture in a folder.
+    pub fn open_capture(
+        path: &Path,
+        choices: CaptureChoices,
+        steps: &dyn Steps,
+    ) -> Result<Self, SessionError> {
+        let read = load_capture(path, &choices, &*steps.begin("reading"))?;
+        let CaptureScene { scene, remarks: mut warnings, is_incomplete } = read;
+        warnings.extend(named(path, &scene.warnings));
+        let camera = camera_of(&scene.cameras[0], &Camera::default());
+        Ok(Self {
+            path: path.into(),
+            scene,
+            camera,
+            project: None,
+            salf: None,
+            capture: Some(choices),
+            warnings,
+            is_incomplete,
+        })
     }
 
     fn open_scene(path: &Path, variant: &VariantChoice, steps: &dyn Steps) -> Result<Self, SessionError> {
         let scene = load_variant(path, variant.name(None), &*steps.begin("reading"))?;
         let camera = camera_of(&scene.cameras[0], &Camera::default());
         let warnings = named(path, &scene.warnings);
-        Ok(Self { path: path.into(), scene, camera, project: None, salf: None, warnings })
+        Ok(Self {
+            path: path.into(),
+            scene,
+            camera,
+            project: None,
+            salf: None,
+            capture: None,
+            warnings,
+            is_incomplete: false,
+        })
     }
 
     /// Opens what `project` says, which was read from `path`.
@@ -130,6 +178,11 @@ impl Input {
                 return Err(SessionError::bad(path, what));
             }
         }
+        if let Some(choices) = &project.capture {
+            let read = load_capture(&project.scene, choices, &*steps.begin("reading"))?;
+            warnings.extend(read.remarks);
+            return Ok(Self::of_project(path, project, read.scene, warnings));
+        }
         let load = |variant| load_variant(&project.scene, variant, &*steps.begin("reading"));
         let scene = match load(variant.name(project.variant.as_deref())) {
             Err(SceneError::Bad { file, fault: fault @ Fault::NoVariant { .. } })
@@ -141,11 +194,24 @@ impl Input {
             }
             loaded => loaded?,
         };
+        Ok(Self::of_project(path, project, scene, warnings))
+    }
+
+    /// A project whose scene was read.
+    fn of_project(path: &Path, project: ProjectFile, scene: Arc<Scene>, mut warnings: Vec<String>) -> Self {
         warnings.extend(named(&project.scene, &scene.warnings));
         let camera = project.cameras[project.active_camera].camera.clone();
         let (back_faces, world) = (project.back_faces, project.world.clone());
-        let mut input =
-            Self { path: path.into(), scene, camera, project: Some(project), salf: None, warnings };
+        let mut input = Self {
+            path: path.into(),
+            scene,
+            camera,
+            capture: project.capture.clone(),
+            project: Some(project),
+            salf: None,
+            warnings,
+            is_incomplete: false,
+        };
         input.set_back_faces(back_faces);
         match world.map(|world| world.load(&input.scene)).transpose() {
             Ok(world) => input.set_world(world),
@@ -155,7 +221,7 @@ impl Input {
                     .push(format!("{error}; the scene has its own world (choose one before saving)"));
             }
         }
-        Ok(input)
+        input
     }
 
     /// Has faces seen from behind, or not, whatever the project says.
@@ -215,6 +281,11 @@ impl Input {
             Some(CameraChoice::Named(name)) => {
                 let saved = self.project.iter().flat_map(|project| &project.cameras);
                 let mut saved = saved.filter(|named| named.name == *name).map(|named| named.camera.clone());
+                let of_photograph = photograph(&self.scene, name).transpose();
+                let of_photograph = of_photograph.map_err(|what| SessionError::bad(&self.path, what))?;
+                if let Some(view) = of_photograph {
+                    return Ok(camera_of_photograph(&self.scene, view, &self.camera));
+                }
                 let in_scene = || self.scene.cameras.iter().find(|camera| camera.name == *name);
                 saved.next().or_else(|| in_scene().map(|c| camera_of(c, &self.camera))).ok_or_else(|| {
                     let names: Vec<_> =
@@ -295,6 +366,17 @@ impl Input {
             None => Atlas::unwrap(&self.scene, unwrap, &*steps.begin("unwrapping")),
         };
         Ok(Arc::new(atlas.map_err(|error| atlas_error(&self.path, error))?))
+    }
+
+    /// Has the light of photographs kept at the texels of the project's atlas, if it has one.
+    pub(crate) fn tell_atlas(&self, tracer: &Arc<Tracer>) -> Result<(), SessionError> {
+        let stored = self.project.as_ref().and_then(|project| project.atlas.as_ref());
+        if let Some(bytes) = stored.filter(|_| is_photographed(tracer)) {
+            let atlas =
+                Atlas::from_bytes(bytes, &self.scene).map_err(|error| atlas_error(&self.path, error))?;
+            keep_photographs_at(tracer, &Arc::new(atlas));
+        }
+        Ok(())
     }
 
     /// Everything that painting needs, and the focus map.

@@ -30,6 +30,11 @@ pub(crate) fn light_hash(scene: &Scene) -> [u8; 32] {
         arrays(format!("{} {}", map.width, map.height).as_bytes());
         arrays(bytemuck::cast_slice(&map.texels));
     }
+    for view in &scene.views {
+        // A picture is taken for the same where file, size and time of change are.
+        let of_file = std::fs::metadata(&view.picture).map(|data| (data.len(), data.modified().ok())).ok();
+        arrays(format!("{view:?} {of_file:?}").as_bytes());
+    }
     // Written out, numbers are as exact as they are.
     arrays(
         format!(

@@ -5,6 +5,7 @@
 
 mod adjusted_view;
 mod camera_edit;
+mod capture_scene;
 mod input;
 mod light_hash;
 mod open_document;
@@ -15,6 +16,7 @@ mod undo;
 mod variant_choice;
 
 pub use camera_edit::CameraEdit;
+pub use capture_scene::camera_of_photograph;
 pub use input::{CameraChoice, Input, InputKind};
 pub(crate) use light_hash::light_hash;
 pub use open_document::{Beginning, Document};
@@ -25,5 +27,6 @@ pub use undo::HistoryStep;
 pub use variant_choice::VariantChoice;
 
 pub(crate) use adjusted_view::AdjustedView;
+pub(crate) use capture_scene::{PHOTOGRAPH, photograph};
 pub(crate) use stage::atlas_error;
 pub(crate) use undo::{Undo, Undoable, Undone};

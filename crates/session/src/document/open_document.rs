@@ -133,7 +133,16 @@ impl Document {
         if InputKind::of(scene)? != InputKind::Scene {
             return Err(SessionError::bad(scene, "is no scene (give a .glb or .gltf)"));
         }
-        let input = Input::open_in(scene, &beginning.variant, steps)?;
+        Self::begin_with(Input::open_in(scene, &beginning.variant, steps)?, beginning, unwrap, steps)
+    }
+
+    /// Begins a document of a scene or capture that was read.
+    pub fn begin_with(
+        input: Input,
+        beginning: &Beginning<'_>,
+        unwrap: &UnwrapOptions,
+        steps: &dyn Steps,
+    ) -> Result<Self, SessionError> {
         let camera = input.camera(beginning.camera)?;
         let mut document = Self::of(input, unwrap, steps)?;
         document.camera = camera;
@@ -194,7 +203,8 @@ impl Document {
                 let (low, high) = input.scene.bounds();
                 let radius = brush_radius(&input.camera, (high - low).length());
                 let brush = Brush { radius, ..Brush::default() };
-                ProjectFile { brush, ..ProjectFile::new(&input.scene.path, vec![shot])? }
+                let capture = input.capture.clone();
+                ProjectFile { brush, capture, ..ProjectFile::new(&input.scene.path, vec![shot])? }
             }
         };
         let selection = template.selection.as_ref().and_then(|saved| selected_of(&stage, saved));

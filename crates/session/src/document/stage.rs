@@ -3,6 +3,7 @@
 use super::light_hash::light_hash;
 use super::picking::SurfaceHit;
 use crate::error::SessionError;
+use crate::light_field::keep_photographs_at;
 use atlas::{Atlas, AtlasError, TexelMap};
 use focus::Canvas;
 use glam::{DVec2, DVec3};
@@ -126,6 +127,7 @@ impl Stage {
         let tracer = Arc::new(Tracer::new(scene.clone()));
         progress.check()?;
         let (atlas, texels, canvas) = (self.atlas.clone(), self.texels.clone(), self.canvas.clone());
+        keep_photographs_at(&tracer, &atlas);
         Ok(Self { scene, bounds: self.bounds, atlas, tracer, texels, canvas, light_hash: OnceLock::new() })
     }
 
@@ -133,6 +135,7 @@ impl Stage {
     pub fn of(scene: Arc<Scene>, atlas: Arc<Atlas>, progress: &dyn Progress) -> Result<Self, SessionError> {
         progress.check()?;
         let tracer = Arc::new(Tracer::new(scene.clone()));
+        keep_photographs_at(&tracer, &atlas);
         progress.report(0.3);
         progress.check()?;
         let texels = Arc::new(atlas.texel_map(&scene));

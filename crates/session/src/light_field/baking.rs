@@ -41,7 +41,7 @@ fn bake_with(
     steps: &dyn Steps,
 ) -> Result<Salf, SessionError> {
     let light = light(tracer, camera, LightQuality::Fine, &*steps.begin("light"))?;
-    let (salf, outliers) = salf::bake_and_tell(tracer, &light, camera, options, &*steps.begin("baking"))?;
+    let (salf, outliers) = salf::bake_and_tell(tracer, &*light, camera, options, &*steps.begin("baking"))?;
     if outliers.samples > 0 {
         let (samples, percent) = (outliers.samples, 100.0 * outliers.share());
         steps.tell(&format!(

@@ -1,13 +1,18 @@
 //! The light that light fields are baked from: the one place that chooses where radiance comes from.
 
 use super::kept_light::{self, LightQuality};
+use super::photographed;
+use crate::error::SessionError;
 use glam::DVec3;
 use lens::Camera;
-use progress::{Cancelled, Progress};
+use progress::Progress;
 use scene::World;
 use slf::Transport;
 use std::sync::Arc;
-use trace::Tracer;
+use trace::{Radiance, Tracer};
+
+/// Light that leaves a scene.
+pub(crate) type Light = Arc<dyn Radiance + Send + Sync>;
 
 /// Paths and lights of a point of the light field, where irradiance is known: a sample has several points.
 const PATHS: u32 = 2;
@@ -16,35 +21,61 @@ const LIGHT_SAMPLES: u32 = 16;
 /// Lights of a point of a picture that is soon replaced.
 const ROUGH_LIGHT_SAMPLES: u32 = 4;
 
-/// The light that leaves the scene in `tracer`, for a camera. The first time for a scene and its world its irradiance is solved for,
-/// which `progress` watches; it is kept for every camera.
+/// The light that leaves the scene in `tracer`, for a camera: that of its photographs, if it has any. The first time for a scene (and its
+/// world) it is found out, which `progress` watches; it is kept for every camera. Rough light of photographs is that of the bare
+/// surface as long as theirs is not there.
 pub(crate) fn light(
     tracer: &Arc<Tracer>,
     camera: &Camera,
     quality: LightQuality,
     progress: &dyn Progress,
-) -> Result<Transport, Cancelled> {
+) -> Result<Light, SessionError> {
+    if is_photographed(tracer) {
+        match (photographed::known(tracer), quality) {
+            (Some(light), _) => return Ok(light),
+            (None, LightQuality::Fine) => return Ok(photographed::wait(tracer, progress)?),
+            (None, LightQuality::Rough) => {}
+        }
+    }
     let light_samples = if quality == LightQuality::Rough { ROUGH_LIGHT_SAMPLES } else { LIGHT_SAMPLES };
     let transport = transport(tracer, camera, PATHS, light_samples);
     if !needs_light(tracer) {
-        return Ok(transport);
+        return Ok(Arc::new(transport));
     }
     let irradiance = kept_light::wait(tracer, &world(tracer, camera), quality, progress)?;
-    Ok(transport.with_irradiance(irradiance))
+    Ok(Arc::new(transport.with_irradiance(irradiance)))
 }
 
 /// The same as far as it is known at once: without irradiance, where that is not solved for yet, it is exact and noisy.
-pub(crate) fn light_at_once(tracer: &Arc<Tracer>, camera: &Camera) -> Transport {
+pub(crate) fn light_at_once(tracer: &Arc<Tracer>, camera: &Camera) -> Light {
+    if is_photographed(tracer)
+        && let Some(light) = photographed::known(tracer)
+    {
+        return light;
+    }
     let transport = transport(tracer, camera, PATHS, LIGHT_SAMPLES);
-    match kept_light::known(tracer, &world(tracer, camera)) {
+    Arc::new(match kept_light::known(tracer, &world(tracer, camera)) {
         Some(irradiance) => transport.with_irradiance(irradiance),
         None => transport,
-    }
+    })
 }
 
-/// Light for the ground truth: whole paths, nothing known. It shades many points a pixel: a path each is enough.
-pub(crate) fn light_for_many_points(tracer: &Arc<Tracer>, camera: &Camera) -> Transport {
-    transport(tracer, camera, 1, LIGHT_SAMPLES)
+/// Light for the ground truth: whole paths, nothing known; of photographs what they show. It shades many points a pixel: a path each is
+/// enough.
+pub(crate) fn light_for_many_points(
+    tracer: &Arc<Tracer>,
+    camera: &Camera,
+    progress: &dyn Progress,
+) -> Result<Light, SessionError> {
+    if is_photographed(tracer) {
+        return Ok(photographed::wait(tracer, progress)?);
+    }
+    Ok(Arc::new(transport(tracer, camera, 1, LIGHT_SAMPLES)))
+}
+
+/// Whether photographs light the scene.
+pub(crate) fn is_photographed(tracer: &Tracer) -> bool {
+    !tracer.scene().views.is_empty()
 }
 
 /// Whether any surface scatters light at all.

@@ -109,7 +109,7 @@ impl LightField {
         let options = BakeOptions { margin_px, ..BakeOptions::default() };
         let radiance = light(&stage.tracer, camera, how.light, &Share::new(progress, 0.0, LIGHT_SHARE))?;
         let baking = Share::new(progress, LIGHT_SHARE, 1.0);
-        let salf = salf::bake(&stage.tracer, &radiance, camera, &options, &baking)?;
+        let salf = salf::bake(&stage.tracer, &*radiance, camera, &options, &baking)?;
         Ok(Self::of(stage, Arc::new(salf), how.tolerance, how.gpu))
     }
 

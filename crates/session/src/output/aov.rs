@@ -17,6 +17,9 @@ pub enum Aov {
     Depth,
     /// The focus offset t, and with it the anchor a.
     Focus,
+    /// Of a capture: 1 where the surface was photographed, 0 where its light is filled in from around, and beside it. Other scenes leave
+    /// it out.
+    Seen,
     /// The standard error of conserved radiance, luminance and coverage, and of their ratios. Only the ground truth knows
     /// it; other renderers leave the layers out.
     StandardError,
@@ -27,16 +30,19 @@ pub(crate) struct Known<'a> {
     pub picture: &'a Picture,
     pub hits: Option<&'a FirstHits>,
     pub estimate: Option<&'a Estimate>,
+    /// What [`Aov::Seen`] is.
+    pub seen: Option<&'a [f32]>,
     pub camera: &'a Camera,
 }
 
 impl Aov {
     /// All of them, by the names that the command line knows.
-    pub const ALL: [(&'static str, Aov); 5] = [
+    pub const ALL: [(&'static str, Aov); 6] = [
         ("coverage", Aov::Coverage),
         ("coc", Aov::CircleOfConfusion),
         ("depth", Aov::Depth),
         ("t", Aov::Focus),
+        ("seen", Aov::Seen),
         ("stderr", Aov::StandardError),
     ];
 
@@ -47,7 +53,7 @@ impl Aov {
 
     /// Whether it is made of first hits.
     pub(crate) fn needs_first_hits(self) -> bool {
-        !matches!(self, Self::Coverage | Self::StandardError)
+        !matches!(self, Self::Coverage | Self::Seen | Self::StandardError)
     }
 
     /// Its layers; none if what they are made of is missing.
@@ -58,6 +64,7 @@ impl Aov {
             (Self::CircleOfConfusion, Some(hits), _) => {
                 vec![layer("coc", hits.circle_of_confusion_px(known.camera))]
             }
+            (Self::Seen, ..) => known.seen.map(|seen| layer("seen", seen.to_vec())).into_iter().collect(),
             (Self::Depth, Some(hits), _) => vec![layer("depth", hits.depth.clone())],
             (Self::Focus, Some(hits), _) => vec![
                 layer("t", hits.focus.iter().map(|focus| focus.t as f32).collect()),

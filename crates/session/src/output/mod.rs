@@ -4,6 +4,7 @@
 
 mod aov;
 mod blur_histogram;
+mod photograph_picture;
 mod reference;
 mod render;
 mod renderer;

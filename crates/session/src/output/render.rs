@@ -2,14 +2,18 @@
 
 use super::aov::{Aov, Known};
 use super::renderer::Renderer;
-use crate::document::Input;
+use crate::document::{Input, chief_ray};
 use crate::error::SessionError;
 use crate::jobs::Steps;
-use crate::light_field::{LightQuality, bake, light, light_for_many_points, serves};
+use crate::light_field::{
+    LightQuality, bake, is_photographed, light, light_for_many_points, photograph_light, serves,
+};
 use baselines::{BaselineError, FirstHits, LayeredOptions, ScatterOptions, ViewsOptions};
 use focus::Focus;
+use glam::DVec2;
 use lens::{Camera, Picture};
 use project::Layer;
+use rayon::prelude::*;
 use salf::{BakeOptions, Salf, SalfStatistics};
 use serde::Serialize;
 use splat::{Gpu, Splatter, Tolerance};
@@ -171,9 +175,9 @@ pub fn render(
             return finish(shot, options, Drawn { picture, estimate: None, cost }, steps);
         }
         Renderer::Truth => {
-            let light = light_for_many_points(tracer, camera);
+            let light = light_for_many_points(tracer, camera, &*steps.begin("light"))?;
             let progress = steps.begin("tracing");
-            let found = trace::truth::render(tracer, &light, focus, camera, &options.truth, &*progress)?;
+            let found = trace::truth::render(tracer, &*light, focus, camera, &options.truth, &*progress)?;
             estimate.insert(found).picture.clone()
         }
         Renderer::Blur => {
@@ -187,7 +191,7 @@ pub fn render(
         Renderer::Views => {
             let radiance = light(tracer, camera, LightQuality::Fine, &*steps.begin("light"))?;
             let progress = steps.begin("views");
-            baselines::shift_and_add(tracer, &radiance, focus, camera, &options.views, &*progress)?
+            baselines::shift_and_add(tracer, &*radiance, focus, camera, &options.views, &*progress)?
         }
     };
     cost.picture_seconds = start.elapsed().as_secs_f64();
@@ -206,6 +210,7 @@ pub fn render_input(
     camera.validate().map_err(|error| SessionError::bad(&input.path, error))?;
     let start = Instant::now();
     let tracer = Arc::new(Tracer::new(input.scene.clone()));
+    input.tell_atlas(&tracer)?;
     let prepare_seconds = start.elapsed().as_secs_f64();
     let mut rendered = match input.salf.as_ref().filter(|_| options.renderer.draws_light_field()) {
         None => render(&tracer, camera, focus, options, steps)?,
@@ -305,9 +310,28 @@ fn finish(
 ) -> Result<Rendered, SessionError> {
     let asks = options.aovs.iter().any(|aov| aov.needs_first_hits());
     let hits = asks.then(|| first_hits(tracer, camera, focus, steps)).transpose()?;
-    let known = Known { picture: &picture, hits: hits.as_ref(), estimate: estimate.as_ref(), camera };
+    let is_seen_asked = options.aovs.contains(&Aov::Seen) && is_photographed(tracer);
+    let seen = is_seen_asked.then(|| seen(tracer, camera, steps)).transpose()?;
+    let (hits, estimate, seen) = (hits.as_ref(), estimate.as_ref(), seen.as_deref());
+    let known = Known { picture: &picture, hits, estimate, seen, camera };
     let layers = options.aovs.iter().flat_map(|aov| aov.layers(&known)).collect();
     Ok(Rendered { picture, layers, cost, warnings: Vec::new() })
+}
+
+/// How far the surface along each pixel's chief ray was photographed.
+pub(crate) fn seen(
+    tracer: &Arc<Tracer>,
+    camera: &Camera,
+    steps: &dyn Steps,
+) -> Result<Vec<f32>, SessionError> {
+    let light = photograph_light(tracer, &*steps.begin("light"))?;
+    let of_pixel = |number: u32| {
+        let pixel = DVec2::new(f64::from(number % camera.width), f64::from(number / camera.width)) + 0.5;
+        let size = DVec2::new(f64::from(camera.width), f64::from(camera.height));
+        let hit = tracer.first_hit(&chief_ray(camera, pixel / size));
+        hit.map_or(0.0, |hit| light.seen(hit.point))
+    };
+    Ok((0..camera.width * camera.height).into_par_iter().map(of_pixel).collect())
 }
 
 fn first_hits(
@@ -317,5 +341,5 @@ fn first_hits(
     steps: &dyn Steps,
 ) -> Result<FirstHits, SessionError> {
     let light = light(tracer, camera, LightQuality::Fine, &*steps.begin("light"))?;
-    Ok(FirstHits::trace(tracer, &light, focus, camera, &*steps.begin("first hits"))?)
+    Ok(FirstHits::trace(tracer, &*light, focus, camera, &*steps.begin("first hits"))?)
 }

@@ -302,7 +302,7 @@ impl Worker {
         let start = Instant::now();
         let camera = &between_of(camera).unwrap_or_else(|| camera.clone());
         let radiance = light(&stage.tracer, camera, LightQuality::Rough, &self.shared.quick)?;
-        let hits = FirstHits::trace(&stage.tracer, &radiance, focus, camera, &self.shared.quick)?;
+        let hits = FirstHits::trace(&stage.tracer, &*radiance, focus, camera, &self.shared.quick)?;
         self.presenter.show(Made {
             picture: Source::Here(&hits.picture()),
             camera,

@@ -72,7 +72,7 @@ impl Session {
                 ReferenceKind::Pinhole => {
                     let radiance = light(&stage.tracer, &camera, LightQuality::Fine, &*steps.begin("light"))?;
                     let progress = steps.begin("first hits");
-                    FirstHits::trace(&stage.tracer, &radiance, &focus, &camera, &*progress)?.picture()
+                    FirstHits::trace(&stage.tracer, &*radiance, &focus, &camera, &*progress)?.picture()
                 }
                 ReferenceKind::Standard => {
                     at_hand.render(&camera, &focus, &RenderOptions::default(), &steps)?.picture

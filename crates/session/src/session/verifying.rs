@@ -54,10 +54,10 @@ impl Session {
         self.verification = Some(kept);
         let (sender, waker) = (self.sender.clone(), self.options.waker.clone());
         let id = self.start("verifying".into(), move |progress| {
-            let light = light_for_many_points(&stage.tracer, &camera);
+            let light = light_for_many_points(&stage.tracer, &camera, progress)?;
             let options =
                 TruthOptions { samples_per_pixel: SAMPLES, region: Some(region), ..TruthOptions::default() };
-            let mut truth = Truth::new(&stage.tracer, &light, &focus, &camera, &options);
+            let mut truth = Truth::new(&stage.tracer, &*light, &focus, &camera, &options);
             let share = |samples: u32| samples as f32 / SAMPLES as f32;
             while !truth.is_done() {
                 let done = truth.samples_per_pixel();

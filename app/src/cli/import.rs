@@ -1,0 +1,31 @@
+//! `focus-brush import`.
+
+use super::arguments::ImportArguments;
+use super::console::Console;
+use super::failure::Failure;
+use super::new::check_project_name;
+use super::shot::{check_folder, unwrap_options};
+use project::CaptureChoices;
+use session::{Beginning, Document, Input, InputKind};
+
+/// Makes a project of a capture. What is missing of it is told, and what was found is imported: then the work is partly done.
+pub fn run(arguments: &ImportArguments, console: &Console) -> Result<(), Failure> {
+    let ImportArguments { capture, output, mesh, leave_out } = arguments;
+    check_project_name(output)?;
+    check_folder(output)?;
+    if InputKind::of(capture)? != InputKind::Capture {
+        let what = "is no capture (give the folder of one; `focus-brush new` makes projects of scenes)";
+        return Err(Failure::bad(format!("{}: {what}", capture.display())));
+    }
+    let choices = CaptureChoices { mesh: mesh.clone(), leave_out: leave_out.clone() };
+    let input = Input::open_capture(capture, choices, console)?;
+    let is_incomplete = input.is_incomplete;
+    let document = Document::begin_with(input, &Beginning::default(), &unwrap_options(None), console)?;
+    console.warn(&document.warnings);
+    document.to_project().save(output)?;
+    console.note(&format!("wrote {}", output.display()));
+    match is_incomplete {
+        true => Err(Failure::partly(format!("{}: something of it is missing, see above", capture.display()))),
+        false => Ok(()),
+    }
+}

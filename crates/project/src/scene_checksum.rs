@@ -1,0 +1,92 @@
+//! Whether a scene is still what it was.
+
+use crate::ProjectError;
+use crate::disk::read_bytes;
+use crate::manifest::sha256_hex;
+use sha2::{Digest, Sha256};
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
+/// What tells of a capture's cameras and its surface, and so of what paint lies on; pictures are many, and nothing lies on them.
+const OF_CAPTURES: [&str; 9] = ["txt", "bin", "json", "xml", "out", "nvm", "ply", "obj", "glb"];
+
+/// How deep such files lie in a capture's folder.
+const DEEPEST: usize = 3;
+
+/// More files are no capture's.
+const MOST: usize = 1000;
+
+/// Hex SHA-256 of a scene file; of a capture's folder that of its cameras and meshes.
+pub(crate) fn scene_checksum(scene: &Path) -> Result<String, ProjectError> {
+    if !scene.is_dir() {
+        return Ok(sha256_hex(&read_bytes(scene)?));
+    }
+    let mut files = Vec::new();
+    visit(scene, DEEPEST, &mut files)?;
+    files.sort();
+    let mut hash = Sha256::new();
+    for file in files {
+        let unreadable = |source| ProjectError::Read { file: file.clone(), source };
+        let name = file.strip_prefix(scene).unwrap_or(&file).as_os_str().as_encoded_bytes();
+        let mut opened = File::open(&file).map_err(unreadable)?;
+        let size = opened.metadata().map_err(unreadable)?.len();
+        hash.update((name.len() as u64).to_le_bytes());
+        hash.update(name);
+        hash.update(size.to_le_bytes());
+        let mut part = vec![0; 1 << 16];
+        loop {
+            match opened.read(&mut part).map_err(unreadable)? {
+                0 => break,
+                read => hash.update(&part[..read]),
+            }
+        }
+    }
+    Ok(hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect())
+}
+
+fn visit(folder: &Path, deeper: usize, files: &mut Vec<std::path::PathBuf>) -> Result<(), ProjectError> {
+    let unreadable = |source| ProjectError::Read { file: folder.to_owned(), source };
+    for entry in std::fs::read_dir(folder).map_err(unreadable)?.flatten() {
+        let path = entry.path();
+        // Links are not followed: they may lead anywhere, and round.
+        let Ok(kind) = entry.file_type() else { continue };
+        if kind.is_dir() && deeper > 0 {
+            visit(&path, deeper - 1, files)?;
+        }
+        let extension = path.extension().map(|extension| extension.to_string_lossy().to_lowercase());
+        let counts = extension.is_some_and(|extension| OF_CAPTURES.contains(&extension.as_str()));
+        if kind.is_file() && counts && files.len() < MOST {
+            files.push(path);
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn of_a_capture_cameras_and_mesh_count() {
+        let folder = tempfile::tempdir().unwrap();
+        let write = |name: &str, text: &str| {
+            let path = folder.path().join(name);
+            std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+            std::fs::write(path, text).unwrap();
+        };
+        let sum = || scene_checksum(folder.path()).unwrap();
+        write("sparse/0/cameras.txt", "1");
+        write("mesh.ply", "ply");
+        let before = sum();
+        write("images/a.jpg", "jpg");
+        write("painted.fbrush", "project");
+        assert_eq!(sum(), before);
+        write("mesh.ply", "plY");
+        let other_mesh = sum();
+        assert_ne!(other_mesh, before);
+        write("sparse/0/images.txt", "1");
+        assert_ne!(sum(), other_mesh);
+        assert!(scene_checksum(&folder.path().join("none")).is_err());
+    }
+}

@@ -1,0 +1,126 @@
+//! A photograph as pictures are compared with it: without its lens's distortion, in linear light, exposed as all of them together.
+
+use super::render::seen;
+use crate::document::{Input, camera_of_photograph, chief_ray, photograph};
+use crate::error::SessionError;
+use crate::jobs::Steps;
+use crate::light_field::photograph_light;
+use glam::{DVec2, Vec3};
+use lens::{Camera, Picture};
+use project::Layer;
+use rayon::prelude::*;
+use scene::{LoadOptions, Photograph, View};
+use slf::{Exposure, PhotographLight};
+use std::sync::Arc;
+use trace::{Radiance, Tracer};
+
+/// From here on a point counts as photographed.
+const SEEN: f32 = 0.5;
+
+impl Input {
+    /// The photograph of a capture as its camera ([`camera_of_photograph`]) would show it, and the layer `seen`: 1 where others have
+    /// photographed the surface, 0 where they have not, and beside what the photograph shows. The exposure of one that was left out is
+    /// fitted afterwards, a gain a channel; it feeds nothing else.
+    ///
+    /// # Errors
+    /// There is no photograph of that name, it cannot be read, or there is no light from the others.
+    pub fn photograph_picture(
+        &self,
+        name: &str,
+        steps: &dyn Steps,
+    ) -> Result<(Picture, Vec<Layer>), SessionError> {
+        let scene = &self.scene;
+        let named = format!("{}{name}", crate::document::PHOTOGRAPH);
+        let view = photograph(scene, &named).expect("the name says so");
+        let view = view.map_err(|what| SessionError::bad(&self.path, what))?;
+        let tracer = Arc::new(Tracer::new(scene.clone()));
+        self.tell_atlas(&tracer)?;
+        let light = photograph_light(&tracer, &*steps.begin("light"))?;
+        let camera = camera_of_photograph(scene, view, &self.camera);
+        let shown =
+            view.photograph(&LoadOptions::default()).map_err(|e| SessionError::BadInput(e.to_string()))?;
+        let seen = seen(&tracer, &camera, steps)?;
+        let place = Place { camera: &camera, view, shown: &shown };
+        let exposure = match scene.views.iter().position(|other| other.name == view.name) {
+            Some(index) => light.exposures()[index],
+            None => place.fitted(&tracer, &light, &seen),
+        };
+        let pixels: Vec<_> = (0..camera.width * camera.height).into_par_iter().map(|n| place.at(n)).collect();
+        let radiance = |found: &Option<(DVec2, Vec3)>| {
+            found.map_or([0.0; 3], |(at, value)| (value * exposure.to_radiance(view, at)).to_array())
+        };
+        let seen = pixels.iter().zip(seen).map(|(found, seen)| if found.is_some() { seen } else { 0.0 });
+        let layer = Layer { name: "seen".into(), values: seen.collect() };
+        let picture = Picture {
+            width: camera.width,
+            height: camera.height,
+            radiance: pixels.iter().map(radiance).collect(),
+            coverage: vec![1.0; pixels.len()],
+        };
+        Ok((picture, vec![layer]))
+    }
+}
+
+/// A photograph, and the camera that it is shown by.
+struct Place<'a> {
+    camera: &'a Camera,
+    view: &'a View,
+    shown: &'a Photograph,
+}
+
+impl Place<'_> {
+    fn middle(&self, number: u32) -> DVec2 {
+        DVec2::new(f64::from(number % self.camera.width), f64::from(number / self.camera.width)) + 0.5
+    }
+
+    fn ray(&self, number: u32) -> trace::Ray {
+        let size = DVec2::new(f64::from(self.camera.width), f64::from(self.camera.height));
+        chief_ray(self.camera, self.middle(number) / size)
+    }
+
+    /// What the photograph has for a pixel of the camera, and where; bilinear.
+    fn at(&self, number: u32) -> Option<(DVec2, Vec3)> {
+        let ray = self.ray(number);
+        let at = self.view.project(ray.origin + ray.direction)?;
+        let size = DVec2::new(f64::from(self.shown.width), f64::from(self.shown.height));
+        if at.min(size - at).min_element() < 0.5 {
+            return None;
+        }
+        let corner = (at - 0.5).floor().min(size - 2.0).max(DVec2::ZERO);
+        let [right, down] = (at - 0.5 - corner).as_vec2().to_array();
+        let pixel = |x: u32, y: u32| {
+            let [column, row] = [corner.x as u32 + x, corner.y as u32 + y];
+            Vec3::from(
+                self.shown.pixels[(row.min(self.shown.height - 1) * self.shown.width
+                    + column.min(self.shown.width - 1)) as usize],
+            )
+        };
+        let row = |y: u32| pixel(0, y).lerp(pixel(1, y), right);
+        Some((at, row(0).lerp(row(1), down)))
+    }
+
+    /// Gains with which it shows least squares' best of the light where that is photographed; vignetting as of another photograph of its
+    /// lens.
+    fn fitted(&self, tracer: &Tracer, light: &PhotographLight, seen: &[f32]) -> Exposure {
+        let views = &tracer.scene().views;
+        let of_lens = views.iter().position(|other| other.lens == self.view.lens);
+        let vignetting_stops = of_lens.map_or([0.0; 2], |index| light.exposures()[index].vignetting_stops);
+        let flat = Exposure { vignetting_stops, ..Exposure::default() };
+        let products = |number: u32| {
+            let there = seen[number as usize] >= SEEN;
+            let (at, shown) = self.at(number).filter(|_| there)?;
+            let ray = self.ray(number);
+            let hit = tracer.first_hit(&ray)?;
+            let shown = (shown * flat.to_radiance(self.view, at)).as_dvec3();
+            let light = light.toward(hit.point, ray.origin).as_dvec3();
+            Some([shown * light, shown * shown])
+        };
+        // In order, so that the sum is the same for any number of threads.
+        let found: Vec<_> =
+            (0..self.camera.width * self.camera.height).into_par_iter().filter_map(products).collect();
+        let [both, square] = found.into_iter().fold([glam::DVec3::ZERO; 2], |[a, b], [c, d]| [a + c, b + d]);
+        let gain = |both: f64, square: f64| if both > 0.0 { (square / both).log2() } else { 0.0 };
+        let gain_stops = std::array::from_fn(|channel| gain(both[channel], square[channel]));
+        Exposure { gain_stops, vignetting_stops }
+    }
+}
