@@ -164,7 +164,7 @@ impl Reader<'_> {
             "frame" => Projection::Perspective,
             "fisheye" | "equidistant_fisheye" => Projection::Equidistant,
             "spherical" => {
-                let lens = crate::colmap::panorama([width, height]);
+                let lens = CalibratedLens::panorama([width, height]);
                 return lens.map_err(|error| wrong(&error.to_string()));
             }
             _ => return Err(wrong(&format!("cameras of type {} are not known", quoted(kind)))),

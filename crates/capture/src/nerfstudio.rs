@@ -1,7 +1,6 @@
 //! `transforms.json` of nerfstudio and instant-ngp: poses in OpenGL's axes, a lens for all pictures or one each.
 
 use crate::CaptureError;
-use crate::colmap::panorama;
 use crate::pose::{Axes, of_camera_to_world};
 use crate::shot::{Focal, Shot, ShotLens, Shots};
 use crate::text::quoted;
@@ -173,7 +172,7 @@ impl Properties<'_> {
         let said = |error: CameraError| error.to_string();
         if projection == Projection::Equirectangular {
             let size = size.ok_or("a panorama without w and h")?;
-            return panorama(size).map(ShotLens::Calibrated).map_err(said);
+            return CalibratedLens::panorama(size).map(ShotLens::Calibrated).map_err(said);
         }
         let angle = |key: &str| -> Result<Option<f64>, String> {
             let angle = self.number(key)?;
