@@ -8,7 +8,7 @@
 //! paths, so that nothing outside is read unless the caller names it.
 //!
 //! The road of a capture: `layout` (whose cameras lie where) → `colmap`, `nerfstudio`, `bundler`, `nvm`, `metashape` (each to
-//! [`shot::Shot`]s: name, lens, pose) → `picture_place`, `picture_names` (which file is whose) →
+//! `shot`s: name, lens, pose) → `picture_place`, `picture_names` (which file is whose) →
 //! `pictures`, `picture_header` (size, EXIF, masks: views) → `mesh_file`,
 //! `ply`, `obj` (the surface) → `open`. What COLMAP's world calls up is guessed from the cameras (`upright`) and told, not applied.
 
