@@ -12,7 +12,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("capture", &["scene", "lens", "progress"]),
     ("atlas", &["scene", "progress"]),
     ("trace", &["scene", "lens", "progress"]),
-    ("slf", &["material", "trace", "scene", "progress"]),
+    ("slf", &["material", "trace", "scene", "atlas", "progress"]),
     ("salf", &["slf", "trace", "scene", "lens", "progress"]),
     ("focus", &["atlas", "scene", "lens"]),
     ("splat", &["salf", "focus", "scene", "lens", "progress"]),

@@ -2,7 +2,7 @@
 
 use crate::fresnel::dielectric_reflectance;
 use crate::ggx::Ggx;
-use crate::points::spread;
+use crate::points::{LATTICE, lattice};
 use glam::{DVec2, DVec3};
 use std::sync::OnceLock;
 
@@ -10,8 +10,6 @@ use std::sync::OnceLock;
 const COSINES: usize = 48;
 /// Roughnesses in the table.
 const ROUGHNESSES: usize = 24;
-/// Normals that an entry is the mean of.
-const NORMALS: usize = 1024;
 /// The table's smoothest row.
 const SMOOTHEST_ROUGHNESS: f64 = 2e-3;
 
@@ -193,7 +191,7 @@ impl GlassRow {
 /// What is mirrored, and what crosses, of light from a cosine.
 fn integrate(ggx: &Ggx, cos: f64, eta: f64) -> DVec2 {
     let o = DVec3::new((1.0 - cos * cos).max(0.0).sqrt(), 0.0, cos);
-    let sum: DVec2 = spread(NORMALS)
+    let sum: DVec2 = lattice()
         .map(|u| {
             let h = ggx.visible_normal(o, u);
             let facing = o.dot(h);
@@ -204,7 +202,7 @@ fn integrate(ggx: &Ggx, cos: f64, eta: f64) -> DVec2 {
             DVec2::new(stays, beyond.map_or(0.0, |i| (1.0 - mirrored) * ggx.seen(i)))
         })
         .sum();
-    sum / NORMALS as f64
+    sum / LATTICE as f64
 }
 
 /// Where light seen from `o` comes from through a facet of normal `h`; none beyond the critical angle.

@@ -2,11 +2,12 @@
 
 use glam::DVec2;
 
-/// The first `count` points of Roberts' sequence (2018): 1/g and 1/g² of the golden ratio's generalisation g³ = g + 1.
-pub fn spread(count: usize) -> impl Iterator<Item = DVec2> {
-    const STEPS: DVec2 = DVec2::new(0.754_877_666_246_692_8, 0.569_840_290_998_053_3);
-    (0..count).map(|k| {
-        let at = DVec2::splat(0.5) + STEPS * k as f64;
-        at - at.floor()
-    })
+/// How many points [`lattice`] has.
+pub const LATTICE: usize = 610;
+
+/// Fibonacci's lattice of 610 points: the most even that there is of so many for what is periodic along x (Niederreiter and
+/// Sloan 1994).
+pub fn lattice() -> impl Iterator<Item = DVec2> {
+    const STEP: usize = 377;
+    (0..LATTICE).map(|k| DVec2::new((k * STEP % LATTICE) as f64, k as f64 + 0.5) / LATTICE as f64)
 }

@@ -1,17 +1,17 @@
 //! Emissive surfaces as area lights.
 
+use crate::light_tree::{Light, LightTree};
 use glam::{DVec2, DVec3, Vec3};
 use scene::{Scene, SurfacePoint};
 use std::collections::HashMap;
 
-/// The triangles that light others, chosen in proportion to the power they send.
+/// The triangles that light others, chosen by how much of what they send may arrive ([`LightTree`]).
 #[derive(Debug, Default)]
 pub(crate) struct Emitters {
     triangles: Vec<Emitter>,
     /// By triangle of the scene: its place in `triangles`.
     places: HashMap<u32, u32>,
-    /// Running sums of their shares; the last is 1.
-    cumulative: Vec<f64>,
+    tree: LightTree,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -21,8 +21,6 @@ struct Emitter {
     /// Unit, on its counter-clockwise side.
     normal: DVec3,
     both_sides: bool,
-    /// Its probability.
-    share: f64,
 }
 
 /// A place on an emitter, seen from a position.
@@ -41,9 +39,7 @@ pub(crate) struct EmitterSample {
 impl Emitters {
     /// The emissive triangles of a scene. Unlit ones are not: their radiance is a picture, not light.
     pub fn of(scene: &Scene) -> Self {
-        let mut triangles = Vec::new();
-        let mut sums = Vec::new();
-        let mut sum = 0.0;
+        let (mut triangles, mut lights) = (Vec::new(), Vec::new());
         for part in &scene.parts {
             let material = &scene.materials[part.material as usize];
             if material.unlit || material.emissive == Vec3::ZERO {
@@ -55,17 +51,17 @@ impl Emitters {
                 let sides = if material.double_sided { 2.0 } else { 1.0 };
                 let power = area * sides * mean_emission(scene, triangle);
                 if power > 0.0 && power.is_finite() {
-                    sum += power;
-                    sums.push(sum);
-                    let normal = area_normal.normalize();
-                    let both_sides = material.double_sided;
-                    triangles.push(Emitter { triangle, area, normal, both_sides, share: power });
+                    let (normal, both_sides) = (area_normal.normalize(), material.double_sided);
+                    triangles.push(Emitter { triangle, area, normal, both_sides });
+                    let corners = scene.corners(triangle);
+                    let low = corners.into_iter().fold(DVec3::INFINITY, DVec3::min);
+                    let high = corners.into_iter().fold(DVec3::NEG_INFINITY, DVec3::max);
+                    lights.push(Light { low, high, normal, both_sides, power });
                 }
             }
         }
-        triangles.iter_mut().for_each(|emitter| emitter.share /= sum);
         let places = (0..).zip(&triangles).map(|(place, emitter)| (emitter.triangle, place)).collect();
-        Self { triangles, places, cumulative: sums.into_iter().map(|running| running / sum).collect() }
+        Self { triangles, places, tree: LightTree::of(&lights) }
     }
 
     /// Whether there are none.
@@ -76,31 +72,32 @@ impl Emitters {
     /// Draws a place on an emitter by uniform numbers, for light that arrives at a position. `None` where that place sends nothing
     /// there.
     pub fn sample(&self, scene: &Scene, position: DVec3, choice: f64, u: [f64; 2]) -> Option<EmitterSample> {
-        let chosen = self.cumulative.partition_point(|&end| end <= choice).min(self.triangles.len() - 1);
+        let (chosen, share) = self.tree.draw(position, choice)?;
         let emitter = &self.triangles[chosen];
         let barycentric = uniform_barycentric(DVec2::from_array(u));
         let point = SurfacePoint { triangle: emitter.triangle, barycentric };
         let place = point.position(scene);
         let toward = place - position;
         let from = toward.try_normalize()?;
-        let density = emitter.density(toward)?;
+        let density = share * emitter.density(toward)?;
         Some(EmitterSample { place, from, radiance: scene.emitted(point), density })
     }
 
-    /// The density, 1/sr, with which [`Self::sample`] finds the place on `triangle` that lies `toward` from a position: 0 if none.
-    pub fn density(&self, triangle: u32, toward: DVec3) -> f64 {
-        let emitter = self.places.get(&triangle).map(|&place| &self.triangles[place as usize]);
-        emitter.and_then(|emitter| emitter.density(toward)).unwrap_or(0.0)
+    /// The density, 1/sr, with which [`Self::sample`] finds a place on `triangle` from a position: 0 if none.
+    pub fn density(&self, triangle: u32, place: DVec3, position: DVec3) -> f64 {
+        let Some(&number) = self.places.get(&triangle) else { return 0.0 };
+        let of_place = self.triangles[number as usize].density(place - position);
+        of_place.map_or(0.0, |density| density * self.tree.probability(position, number as usize))
     }
 }
 
 impl Emitter {
-    /// Its share, spread over its area as it is seen from `-toward`; none where it sends nothing there.
+    /// One over the solid angle that its area is seen under, were it all as that place; none where it sends nothing there.
     fn density(&self, toward: DVec3) -> Option<f64> {
         let r2 = toward.length_squared();
         let facing = -toward.dot(self.normal) / r2.sqrt();
         let facing = if self.both_sides { facing.abs() } else { facing };
-        (facing > 0.0).then(|| self.share / self.area * r2 / facing)
+        (facing > 0.0).then(|| r2 / (self.area * facing))
     }
 }
 

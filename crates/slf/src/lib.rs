@@ -8,11 +8,13 @@
 mod emitters;
 mod environment_light;
 mod irradiance;
+mod light_tree;
 mod lights;
 mod material_point;
 mod media;
 mod open_sky;
 mod path_random;
+mod photographs;
 mod punctual;
 mod solving;
 mod spots;
@@ -20,5 +22,6 @@ mod transport;
 
 pub use irradiance::Irradiance;
 pub use material::Scattering;
+pub use photographs::{Exposure, PhotographError, PhotographLight, PhotographOptions};
 pub use solving::IrradianceOptions;
 pub use transport::{Transport, TransportOptions};

@@ -166,8 +166,8 @@ impl Lights {
         self.environment.as_ref().map_or(0.0, |environment| environment.density(world.unturned(direction)))
     }
 
-    /// The same of a triangle that lies `toward` from a position.
-    pub fn density_of_emitter(&self, triangle: u32, toward: DVec3) -> f64 {
-        self.emitters.density(triangle, toward)
+    /// The same of a place on a triangle.
+    pub fn density_of_emitter(&self, triangle: u32, place: DVec3, position: DVec3) -> f64 {
+        self.emitters.density(triangle, place, position)
     }
 }

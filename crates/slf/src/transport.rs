@@ -44,8 +44,8 @@ impl Default for TransportOptions {
 /// | emissive | the emitted radiance, on the front; on both sides if double sided |
 /// | any but unlit | + what its lobes scatter of light that arrives ([`Bsdf`]) |
 ///
-/// At every surface a path meets, light is looked for in two ways: a light is drawn (an emissive triangle by its power, a
-/// direction of the environment by its brightness, punctual lights all, or one by what it would send), and a direction is drawn by
+/// At every surface a path meets, light is looked for in two ways: a light is drawn (an emissive triangle by what of its power
+/// may arrive, a direction of the environment by its brightness, punctual lights all, or one by what it would send), and a direction is drawn by
 /// how the surface scatters. What both may find is weighted by the power heuristic (Veach and Guibas 1995). Unlit surfaces send the
 /// colour they show, and are found by the second way alone. Paths end by Russian roulette, or after the world's bounces: nothing
 /// else is left out or cut off, so the mean over points and paths is exact, and depends on the point and the eye alone.
@@ -89,6 +89,13 @@ enum Known<'a> {
     All(&'a Irradiance),
 }
 
+/// A place that a path came to, where what arrives at diffuse lobes is known or will be.
+struct Reached {
+    place: Place,
+    /// Irradiance/π there; 0 where it is not solved for yet.
+    irradiance: Vec3,
+}
+
 /// What a path found.
 struct Arriving {
     /// Light that came straight from where lights are drawn, too.
@@ -98,7 +105,7 @@ struct Arriving {
     /// How far the first surface is.
     distance: f64,
     /// Where what arrives at diffuse lobes is known, and what of that is sent on.
-    onward: Option<(Place, DVec3)>,
+    onward: Option<(Reached, DVec3)>,
 }
 
 /// What a patch finds in one direction, as irradiance/π.
@@ -176,8 +183,9 @@ impl Transport {
             found.drawn += (weight * arriving.drawn).as_vec3();
             found.other = (weight * arriving.other).as_vec3();
             found.distance = arriving.distance;
-            found.onward =
-                arriving.onward.map(|(place, share)| (place, (weight * share).as_vec3(), path.random.next()));
+            found.onward = arriving
+                .onward
+                .map(|(reached, share)| (reached.place, (weight * share).as_vec3(), path.random.next()));
         }
         found
     }
@@ -288,8 +296,8 @@ impl Transport {
         path: &Path,
     ) -> DVec3 {
         let Some(hit) = self.tracer.first_met(from, direction) else { return DVec3::ZERO };
-        let toward = hit.point.position(self.scene()) - position;
-        let of_light = self.lights.density_of_emitter(hit.point.triangle, toward);
+        let place = hit.point.position(self.scene());
+        let of_light = self.lights.density_of_emitter(hit.point.triangle, place, position);
         if of_light == 0.0 {
             return DVec3::ZERO;
         }
@@ -322,8 +330,8 @@ impl Transport {
             let outgoing = -step.direction;
             let shines = emitted(scene, point, outgoing).as_dvec3();
             if shines != DVec3::ZERO {
-                let toward = point.position(scene) - step.position;
-                let of_light = self.lights.density_of_emitter(point.triangle, toward);
+                let place = point.position(scene);
+                let of_light = self.lights.density_of_emitter(point.triangle, place, step.position);
                 found.add(throughput * shines, step.density, of_light, scatterings, path);
             }
             if scatterings > most || scene.material_of(point.triangle).unlit {
@@ -338,14 +346,14 @@ impl Transport {
             let interface = self.media.interface(at.material, &path.inside, is_front);
             let bsdf = Bsdf::new(&at.surface, at.frame, interface);
             let lobes = bsdf.toward(outgoing);
-            let scattered = match known.place(scene, point, is_front, t) {
+            let scattered = match known.reached(scene, point, is_front, t) {
                 None => {
                     found.other += throughput * self.direct(point, &at, &lobes, path).total();
                     let Some(scattered) = lobes.sample(path.random.next3()) else { return found };
                     throughput *= scattered.weight.total();
                     scattered
                 }
-                Some(place) => {
+                Some(reached) => {
                     // What is own is known; what is carried is followed.
                     let Split { own, carried } = lobes.albedo();
                     let [of_own, of_carried] = [own, carried].map(DVec3::element_sum);
@@ -355,7 +363,7 @@ impl Transport {
                     let ends = of_own / (of_own + of_carried);
                     if of_carried == 0.0 || path.random.next() < ends {
                         let share = if of_carried == 0.0 { 1.0 } else { ends };
-                        found.onward = (of_own > 0.0).then(|| (place, throughput * own / share));
+                        found.onward = (of_own > 0.0).then_some((reached, throughput * own / share));
                         return found;
                     }
                     let Some(scattered) = lobes.sample_sharp(path.random.next3()) else { return found };
@@ -392,18 +400,22 @@ impl Arriving {
 
 impl Known<'_> {
     /// A place that a path came to over a distance, if what arrives there is known.
-    fn place(self, scene: &Scene, point: SurfacePoint, is_front: bool, distance: f64) -> Option<Place> {
-        let (spacing, place) = match self {
+    fn reached(self, scene: &Scene, point: SurfacePoint, is_front: bool, distance: f64) -> Option<Reached> {
+        let spacing = match self {
             Self::Nothing => return None,
-            Self::Patches(patches) => (patches.spacing(), Place::of(scene, point, is_front)),
-            Self::All(irradiance) => (irradiance.spacing(), Place::of(scene, point, is_front)),
+            Self::Patches(patches) => patches.spacing(),
+            Self::All(irradiance) => irradiance.spacing(),
         };
-        let is_known = || match self {
-            Self::Nothing => false,
-            Self::Patches(patches) => patches.knows(&place),
-            Self::All(irradiance) => irradiance.total(&place).is_some(),
+        if distance < NEAR * spacing {
+            return None;
+        }
+        let place = Place::of(scene, point, is_front);
+        let irradiance = match self {
+            Self::Nothing => None,
+            Self::Patches(patches) => patches.knows(&place).then_some(Vec3::ZERO),
+            Self::All(irradiance) => irradiance.total(&place),
         };
-        (distance >= NEAR * spacing && is_known()).then_some(place)
+        irradiance.map(|irradiance| Reached { place, irradiance })
     }
 }
 

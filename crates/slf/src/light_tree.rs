@@ -1,0 +1,332 @@
+//! Which of many lights to draw, by how much of each may arrive at a position.
+//!
+//! A tree over all lights (Conty Estevez and Kulla 2018). Each node bounds where its lights are and which way they face, so that one
+//! can tell how much of their power may arrive: Φ·cos θ′/d², θ′ the least angle under which any of them may be left, d the distance to
+//! their middle. From the root on down one goes by that. What cannot arrive has probability 0, and nothing else has.
+
+use glam::DVec3;
+use std::f64::consts::{FRAC_PI_2, PI};
+
+/// A light as the tree sees it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Light {
+    pub low: DVec3,
+    pub high: DVec3,
+    /// Unit.
+    pub normal: DVec3,
+    pub both_sides: bool,
+    pub power: f64,
+}
+
+/// The lights, numbered as they came.
+#[derive(Debug, Default)]
+pub(crate) struct LightTree {
+    /// The first child of a node follows it.
+    nodes: Vec<Node>,
+    /// Of each light which children lead to it, from the lowest bit on.
+    trails: Vec<u64>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Node {
+    bounds: Bounds,
+    below: Below,
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Below {
+    /// The light of this number.
+    Light(u32),
+    /// Two nodes, the second of them this one.
+    Nodes(u32),
+}
+
+/// What is known of some lights.
+#[derive(Clone, Copy, Debug)]
+struct Bounds {
+    low: DVec3,
+    high: DVec3,
+    /// The axis of a cone that all normals lie in, and its half angle, rad.
+    axis: DVec3,
+    spread: f64,
+    both_sides: bool,
+    power: f64,
+}
+
+/// Splits are looked for between so many slices of an axis.
+const SLICES: usize = 12;
+/// Below so many nodes lights are halved by their number, so that a trail has bits enough.
+const DEEP: usize = 32;
+
+impl LightTree {
+    /// Of lights with power.
+    pub fn of(lights: &[Light]) -> Self {
+        let mut tree = Self { nodes: Vec::new(), trails: vec![0; lights.len()] };
+        let mut numbers: Vec<u32> = (0..lights.len() as u32).collect();
+        if !numbers.is_empty() {
+            tree.grow(lights, &mut numbers, 0, 0);
+        }
+        tree
+    }
+
+    fn grow(&mut self, lights: &[Light], numbers: &mut [u32], depth: usize, trail: u64) {
+        let all = numbers.iter().map(|&number| Bounds::of(&lights[number as usize]));
+        let bounds = all.reduce(Bounds::and).expect("a node has lights");
+        let place = self.nodes.len();
+        if let [number] = *numbers {
+            self.trails[number as usize] = trail;
+            self.nodes.push(Node { bounds, below: Below::Light(number) });
+            return;
+        }
+        self.nodes.push(Node { bounds, below: Below::Nodes(0) });
+        let middle = part(lights, numbers, depth);
+        let (first, second) = numbers.split_at_mut(middle);
+        self.grow(lights, first, depth + 1, trail);
+        self.nodes[place].below = Below::Nodes(self.nodes.len() as u32);
+        self.grow(lights, second, depth + 1, trail | 1 << depth);
+    }
+
+    /// Draws a light for a position by a uniform number: its number, and its probability. `None` where none can arrive of those it
+    /// came to.
+    pub fn draw(&self, position: DVec3, mut choice: f64) -> Option<(usize, f64)> {
+        let (mut node, mut probability) = (0, 1.0);
+        loop {
+            match self.nodes[node].below {
+                Below::Light(number) => return Some((number as usize, probability)),
+                Below::Nodes(second) => {
+                    let of_first = self.share_of_first(node, second as usize, position)?;
+                    let is_first = choice < of_first;
+                    let share = if is_first { of_first } else { 1.0 - of_first };
+                    choice = if is_first { choice / share } else { (choice - of_first) / share };
+                    probability *= share;
+                    node = if is_first { node + 1 } else { second as usize };
+                }
+            }
+        }
+    }
+
+    /// The probability with which [`Self::draw`] draws a light.
+    pub fn probability(&self, position: DVec3, number: usize) -> f64 {
+        let (mut node, mut probability, mut trail) = (0, 1.0, self.trails[number]);
+        while let Below::Nodes(second) = self.nodes[node].below {
+            let Some(of_first) = self.share_of_first(node, second as usize, position) else { return 0.0 };
+            let is_first = trail & 1 == 0;
+            probability *= if is_first { of_first } else { 1.0 - of_first };
+            node = if is_first { node + 1 } else { second as usize };
+            trail >>= 1;
+        }
+        probability
+    }
+
+    fn share_of_first(&self, node: usize, second: usize, position: DVec3) -> Option<f64> {
+        let [first, second] = [node + 1, second].map(|child| self.nodes[child].bounds.arriving(position));
+        let sum = first + second;
+        (sum > 0.0).then(|| first / sum)
+    }
+}
+
+/// Parts lights in two, neither of them empty: where what is known of both is least in all (the surface area orientation heuristic).
+fn part(lights: &[Light], numbers: &mut [u32], depth: usize) -> usize {
+    let middle_of = |number: u32| {
+        let light = &lights[number as usize];
+        0.5 * (light.low + light.high)
+    };
+    let (low, high) = numbers
+        .iter()
+        .map(|&number| middle_of(number))
+        .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), at| (low.min(at), high.max(at)));
+    let extent = high - low;
+    let axis = (0..3).fold(0, |best, axis| if extent[axis] > extent[best] { axis } else { best });
+    if depth >= DEEP || !(extent[axis] > 0.0 && extent[axis].is_finite()) {
+        return numbers.len() / 2;
+    }
+    let slice_of = |number: u32| {
+        let share = (middle_of(number)[axis] - low[axis]) / extent[axis];
+        ((share * SLICES as f64) as usize).min(SLICES - 1)
+    };
+    let mut slices: [Option<Bounds>; SLICES] = [None; SLICES];
+    for &number in numbers.iter() {
+        let bounds = Bounds::of(&lights[number as usize]);
+        let slice = &mut slices[slice_of(number)];
+        *slice = Some(slice.map_or(bounds, |sum| sum.and(bounds)));
+    }
+    let cost = |slices: &[Option<Bounds>]| {
+        slices.iter().flatten().copied().reduce(Bounds::and).map_or(f64::INFINITY, |bounds| bounds.cost())
+    };
+    let cost_at = |end: usize| cost(&slices[..end]) + cost(&slices[end..]);
+    let best = (1..SLICES).min_by(|&a, &b| cost_at(a).total_cmp(&cost_at(b))).expect("there are slices");
+    // Those of the first slice and those of the last are never on one side.
+    numbers.sort_by_key(|&number| slice_of(number) >= best);
+    numbers.partition_point(|&number| slice_of(number) < best)
+}
+
+impl Bounds {
+    fn of(light: &Light) -> Self {
+        let &Light { low, high, normal, both_sides, power } = light;
+        Self { low, high, axis: normal, spread: 0.0, both_sides, power }
+    }
+
+    fn and(self, other: Self) -> Self {
+        let (axis, spread) = joint_cone((self.axis, self.spread), (other.axis, other.spread));
+        Self {
+            low: self.low.min(other.low),
+            high: self.high.max(other.high),
+            axis,
+            spread,
+            both_sides: self.both_sides || other.both_sides,
+            power: self.power + other.power,
+        }
+    }
+
+    /// How much of the power may arrive at a position, up to a factor that all have in common.
+    fn arriving(&self, position: DVec3) -> f64 {
+        let toward = position - 0.5 * (self.low + self.high);
+        let radius2 = 0.25 * (self.high - self.low).length_squared();
+        let d2 = toward.length_squared();
+        if d2 <= radius2 {
+            // Among them: any may be near, and face this way.
+            return self.power / radius2;
+        }
+        let along = self.axis.dot(toward) / d2.sqrt();
+        let along = if self.both_sides { along.abs() } else { along };
+        let seen_as = (radius2 / d2).sqrt().asin();
+        let least = along.clamp(-1.0, 1.0).acos() - self.spread - seen_as;
+        if least >= FRAC_PI_2 { 0.0 } else { self.power * least.max(0.0).cos() / d2 }
+    }
+
+    /// Power by how large it is and how much of all directions it lights.
+    fn cost(&self) -> f64 {
+        let size = self.high - self.low;
+        let area = size.x * size.y + size.y * size.z + size.z * size.x;
+        // ∫ of the cosine from the cone's rim on, over all directions.
+        let spread = if self.both_sides { PI } else { self.spread };
+        let end = (spread + FRAC_PI_2).min(PI);
+        let lit = 2.0 * PI * (1.0 - spread.cos())
+            + FRAC_PI_2
+                * (2.0 * end * spread.sin() - (spread - 2.0 * end).cos() - 2.0 * spread * spread.sin()
+                    + spread.cos());
+        // What is flat along two axes still tells near from far by its length.
+        self.power * (area + size.length_squared()) * lit
+    }
+}
+
+/// The narrowest cone around two, by axis and half angle.
+fn joint_cone((a, of_a): (DVec3, f64), (b, of_b): (DVec3, f64)) -> (DVec3, f64) {
+    let between = a.angle_between(b);
+    if (between + of_b).min(PI) <= of_a {
+        return (a, of_a);
+    }
+    if (between + of_a).min(PI) <= of_b {
+        return (b, of_b);
+    }
+    let spread = 0.5 * (of_a + between + of_b);
+    let across = a.cross(b);
+    if spread >= PI || across == DVec3::ZERO {
+        return (a, PI);
+    }
+    let axis = glam::DQuat::from_axis_angle(across.normalize(), spread - of_a) * a;
+    (axis.normalize(), spread)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A number in [0, 1) by another (splitmix64).
+    fn random(seed: u64) -> f64 {
+        let mut z = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15);
+        z = (z ^ z >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ z >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
+        (z >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    fn place(seed: u64) -> DVec3 {
+        DVec3::new(random(seed), random(seed + 1), random(seed + 2))
+    }
+
+    fn lights(count: u64) -> Vec<Light> {
+        let light = |k: u64| {
+            let low = place(10 * k + 1) * 10.0;
+            let normal = (place(10 * k + 4) - 0.5).normalize();
+            let power = 0.1 + random(10 * k + 8);
+            Light { low, high: low + place(10 * k + 7) * 0.2, normal, both_sides: k % 3 == 0, power }
+        };
+        (0..count).map(light).collect()
+    }
+
+    /// What a light's middle sends, and whether any corner of its box may be seen from its front.
+    fn sends(light: &Light, position: DVec3) -> f64 {
+        let toward = position - 0.5 * (light.low + light.high);
+        let facing = light.normal.dot(toward.normalize());
+        let facing = if light.both_sides { facing.abs() } else { facing.max(0.0) };
+        light.power * facing / toward.length_squared()
+    }
+
+    #[test]
+    fn probabilities_are_those_of_draws() {
+        let lights = lights(57);
+        let tree = LightTree::of(&lights);
+        for eye in 0..40 {
+            let position = place(1000 + 5 * eye) * 14.0 - 2.0;
+            let all: Vec<f64> = (0..lights.len()).map(|k| tree.probability(position, k)).collect();
+            for (light, probability) in lights.iter().zip(&all) {
+                assert!(*probability > 0.0 || sends(light, position) == 0.0, "{light:?} is never drawn");
+            }
+            // The choices of a light are as wide as it is probable.
+            const STEPS: usize = 20_000;
+            let mut found = vec![0; lights.len()];
+            for k in 0..STEPS {
+                // A node that may be lit from need not have a child that may.
+                let Some((number, probability)) = tree.draw(position, (k as f64 + 0.5) / STEPS as f64) else {
+                    continue;
+                };
+                assert!((probability - all[number]).abs() < 1e-12);
+                found[number] += 1;
+            }
+            for (found, probability) in found.into_iter().zip(all) {
+                assert!((f64::from(found) / STEPS as f64 - probability).abs() < 1e-4);
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_far_or_turned_away_is_drawn_less() {
+        let lights = lights(3000);
+        let tree = LightTree::of(&lights);
+        let power: f64 = lights.iter().map(|light| light.power).sum();
+        // The second moment of sent/probability, over the square of the mean: 1 of what has no noise.
+        let (mut by_tree, mut by_power) = (0.0, 0.0);
+        for eye in 0..20 {
+            let position = place(90_000 + 5 * eye) * 10.0;
+            let sent: Vec<f64> = lights.iter().map(|light| sends(light, position)).collect();
+            let mean: f64 = sent.iter().sum();
+            for (number, (light, sent)) in lights.iter().zip(&sent).enumerate() {
+                if *sent > 0.0 {
+                    by_tree += sent * sent / tree.probability(position, number) / (mean * mean);
+                    by_power += sent * sent / (light.power / power) / (mean * mean);
+                }
+            }
+        }
+        assert!(by_tree * 4.0 < by_power, "{by_tree} for {by_power}");
+    }
+
+    #[test]
+    fn lights_in_one_place_or_far_apart_have_trails_that_lead_to_them() {
+        let at = |x: f64| Light {
+            low: DVec3::splat(x),
+            high: DVec3::splat(x),
+            normal: DVec3::Z,
+            both_sides: true,
+            power: 1.0,
+        };
+        // Each twice as far as the one before: the worst for slices.
+        let far: Vec<Light> = (0..200).map(|k| at(2f64.powi(k))).collect();
+        for lights in [vec![at(1.0); 100], far, vec![at(0.0)]] {
+            let tree = LightTree::of(&lights);
+            let position = DVec3::new(0.3, -4.0, 9.0);
+            let all = (0..lights.len()).map(|k| tree.probability(position, k));
+            assert!((all.sum::<f64>() - 1.0).abs() < 1e-9);
+        }
+        assert!(LightTree::of(&[]).nodes.is_empty());
+    }
+}

@@ -1,0 +1,251 @@
+//! How far the surface is that each pixel of a photograph shows, and how near each is to an edge of depth.
+//!
+//! The mesh is drawn into the picture through the lens as it is. Triangles whose sides the lens bends are split until they are straight to
+//! a quarter of a pixel. Depth is told along the lens's axis where directions are well in front of it (its inverse is linear in a
+//! perspective picture), elsewhere as distance; which of the two depends on the direction alone, so pictures and points agree.
+
+use glam::{DVec2, DVec3};
+use scene::{Scene, View};
+
+/// The depths of a picture's pixels.
+pub(crate) struct DepthPicture {
+    width: usize,
+    height: usize,
+    /// 1/depth; 0 where no surface is.
+    inverse: Vec<f32>,
+    /// Pixels to the nearest edge, at most [`FAR_FROM_EDGES`]; 0 beside one.
+    from_edge: Vec<u8>,
+}
+
+/// Distances from edges are told up to here, pixels.
+pub(crate) const FAR_FROM_EDGES: u8 = 6;
+/// Directions so far off the axis (cosine) have their depth told as distance.
+const OFF_AXIS: f64 = 0.2;
+/// What a surface may lie behind the pixel's, as a share of depth, beside what its slope explains.
+const BIAS: f32 = 2e-3;
+/// Depth jumps where neighbours differ by more than this share of it and than their slopes explain.
+const JUMP: f32 = 0.01;
+
+/// A corner of a triangle in the picture.
+#[derive(Clone, Copy)]
+struct Corner {
+    place: DVec2,
+    inverse: f64,
+}
+
+impl DepthPicture {
+    /// Draws a scene as a view sees it, `reduction` of its pixels to one each way.
+    pub fn of(scene: &Scene, view: &View, reduction: u32) -> Self {
+        let [width, height] = view.lens.size_px().map(|side| side.div_ceil(reduction) as usize);
+        let mut picture = Self { width, height, inverse: vec![0.0; width * height], from_edge: Vec::new() };
+        let corner = |position: DVec3| corner(view, position, reduction);
+        let vertices: Vec<Option<Corner>> = scene.positions.iter().map(|&p| corner(p)).collect();
+        for triangle in 0..scene.triangles.len() as u32 {
+            let indices = scene.triangles[triangle as usize].vertices;
+            let corners = indices.map(|v| vertices[v as usize]);
+            let positions = indices.map(|v| scene.positions[v as usize]);
+            if corners.iter().all(Option::is_none) && !may_be_seen(view, &positions) {
+                continue;
+            }
+            picture.draw(&positions, corners, &corner, 0);
+        }
+        picture.from_edge = picture.distances_from_edges();
+        picture
+    }
+
+    /// Draws a triangle, in parts where it is bent or partly behind the lens.
+    fn draw(
+        &mut self,
+        positions: &[DVec3; 3],
+        corners: [Option<Corner>; 3],
+        corner: &impl Fn(DVec3) -> Option<Corner>,
+        level: u32,
+    ) {
+        /// A side is halved so often at most.
+        const LEVELS: u32 = 9;
+        if corners.iter().all(Option::is_none) && level > 3 {
+            return;
+        }
+        let middles = [0, 1, 2].map(|k| (positions[k] + positions[(k + 1) % 3]) * 0.5);
+        let split = |corners: &[Option<Corner>; 3]| match corners {
+            [Some(a), Some(b), Some(c)] => {
+                let whole = [a, b, c];
+                let low = a.place.min(b.place).min(c.place);
+                let high = a.place.max(b.place).max(c.place);
+                let size = DVec2::new(self.width as f64, self.height as f64);
+                if high.cmplt(DVec2::ZERO).any() || low.cmpgt(size).any() {
+                    // Beside the picture, unless the lens bends it in: only large ones are looked at again.
+                    return (high - low).max_element() > size.max_element();
+                }
+                if (high - low).max_element() <= 2.0 {
+                    return false;
+                }
+                (0..3).any(|k| {
+                    let (from, to) = (whole[k].place, whole[(k + 1) % 3].place);
+                    let Some(middle) = corner(middles[k]) else { return true };
+                    let along = to - from;
+                    let length = along.length();
+                    length > 1.0 && along.perp_dot(middle.place - from).abs() > 0.25 * length
+                })
+            }
+            _ => true,
+        };
+        if level < LEVELS && split(&corners) {
+            let [ab, bc, ca] = middles;
+            let [a, b, c] = *positions;
+            let [ab_corner, bc_corner, ca_corner] = middles.map(corner);
+            let [a_corner, b_corner, c_corner] = corners;
+            self.draw(&[a, ab, ca], [a_corner, ab_corner, ca_corner], corner, level + 1);
+            self.draw(&[ab, b, bc], [ab_corner, b_corner, bc_corner], corner, level + 1);
+            self.draw(&[ca, bc, c], [ca_corner, bc_corner, c_corner], corner, level + 1);
+            self.draw(&[ab, bc, ca], [ab_corner, bc_corner, ca_corner], corner, level + 1);
+        } else if let [Some(a), Some(b), Some(c)] = corners {
+            self.fill([a, b, c]);
+        }
+    }
+
+    /// Fills the pixels whose middles lie in a straight triangle, where nothing nearer is.
+    fn fill(&mut self, [a, b, c]: [Corner; 3]) {
+        let area = (b.place - a.place).perp_dot(c.place - a.place);
+        if area == 0.0 || !area.is_finite() {
+            return;
+        }
+        let low = a.place.min(b.place).min(c.place);
+        let high = a.place.max(b.place).max(c.place);
+        let first = |low: f64| (low - 0.5).ceil().max(0.0) as usize;
+        let last = |high: f64, size: usize| ((high - 0.5).floor() + 1.0).clamp(0.0, size as f64) as usize;
+        for y in first(low.y)..last(high.y, self.height) {
+            for x in first(low.x)..last(high.x, self.width) {
+                let at = DVec2::new(x as f64 + 0.5, y as f64 + 0.5);
+                let of_a = (b.place - at).perp_dot(c.place - at) / area;
+                let of_b = (c.place - at).perp_dot(a.place - at) / area;
+                let of_c = 1.0 - of_a - of_b;
+                if of_a < 0.0 || of_b < 0.0 || of_c < 0.0 {
+                    continue;
+                }
+                let inverse = (of_a * a.inverse + of_b * b.inverse + of_c * c.inverse) as f32;
+                let pixel = &mut self.inverse[y * self.width + x];
+                *pixel = pixel.max(inverse);
+            }
+        }
+    }
+
+    /// How far each pixel is from an edge, up to [`FAR_FROM_EDGES`], in steps to any of the eight neighbours.
+    fn distances_from_edges(&self) -> Vec<u8> {
+        let (width, height) = (self.width, self.height);
+        let mut distance = vec![FAR_FROM_EDGES; width * height];
+        for y in 0..height {
+            for x in 0..width {
+                for [dx, dy] in [[1, 0], [0, 1]] {
+                    if x + dx < width && y + dy < height && self.jumps(x, y, dx, dy) {
+                        distance[y * width + x] = 0;
+                        distance[(y + dy) * width + x + dx] = 0;
+                    }
+                }
+            }
+        }
+        let spread = |distance: &mut Vec<u8>, x: usize, y: usize, neighbours: [(isize, isize); 4]| {
+            let mut least = distance[y * width + x];
+            for (dx, dy) in neighbours {
+                let (Some(x), Some(y)) = (x.checked_add_signed(dx), y.checked_add_signed(dy)) else { continue };
+                if x < width && y < height {
+                    least = least.min(distance[y * width + x] + 1);
+                }
+            }
+            distance[y * width + x] = least;
+        };
+        for y in 0..height {
+            for x in 0..width {
+                spread(&mut distance, x, y, [(-1, 0), (-1, -1), (0, -1), (1, -1)]);
+            }
+        }
+        for y in (0..height).rev() {
+            for x in (0..width).rev() {
+                spread(&mut distance, x, y, [(1, 0), (1, 1), (0, 1), (-1, 1)]);
+            }
+        }
+        distance
+    }
+
+    /// Whether depth jumps between a pixel and the next along (dx, dy): by more than either side's slope leads to expect.
+    fn jumps(&self, x: usize, y: usize, dx: usize, dy: usize) -> bool {
+        let at = |k: isize| {
+            let x = x.checked_add_signed(k * dx as isize)?;
+            let y = y.checked_add_signed(k * dy as isize)?;
+            (x < self.width && y < self.height).then(|| self.inverse[y * self.width + x])
+        };
+        let (Some(here), Some(there)) = (at(0), at(1)) else { return false };
+        if (here > 0.0) != (there > 0.0) {
+            return true;
+        }
+        if here == 0.0 {
+            return false;
+        }
+        let allowed = JUMP * here.max(there);
+        let step = there - here;
+        let explained = |before: Option<f32>, after: Option<f32>| match (before, after) {
+            (Some(before), Some(after)) if before > 0.0 && after > 0.0 => {
+                (step - (after - before)).abs() <= allowed
+            }
+            _ => false,
+        };
+        step.abs() > allowed && !explained(at(-1), Some(here)) && !explained(Some(there), at(2))
+    }
+
+    /// Whether a point is what the pixel shows where it is seen, and how many pixels (up to [`FAR_FROM_EDGES`]) edges are away; `None`
+    /// where something hides it. `place` in pixels of here.
+    pub fn sees(&self, view: &View, point: DVec3, place: DVec2) -> Option<u8> {
+        let (x, y) = (place.x as usize, place.y as usize);
+        if place.x < 0.0 || place.y < 0.0 || x >= self.width || y >= self.height {
+            return None;
+        }
+        let number = y * self.width + x;
+        let here = self.inverse[number];
+        if here == 0.0 {
+            return None;
+        }
+        let slope = |step: usize, can_less: bool, can_more: bool| {
+            let difference = |other: f32| if other > 0.0 { (other - here).abs() } else { f32::INFINITY };
+            let less = if can_less { difference(self.inverse[number - step]) } else { f32::INFINITY };
+            let more = if can_more { difference(self.inverse[number + step]) } else { f32::INFINITY };
+            let least = less.min(more);
+            if least.is_finite() { least } else { 0.0 }
+        };
+        let slopes = slope(1, x > 0, x + 1 < self.width) + slope(self.width, y > 0, y + 1 < self.height);
+        let inverse = inverse_depth(view, point)? as f32;
+        (inverse >= here - BIAS * here - slopes).then_some(self.from_edge[number])
+    }
+
+    /// How many pixels (up to [`FAR_FROM_EDGES`]) the surface is away from a place that shows none; `None` where it shows one.
+    pub fn sees_nothing(&self, place: DVec2) -> Option<u8> {
+        let (x, y) = (place.x as usize, place.y as usize);
+        if place.x < 0.0 || place.y < 0.0 || x >= self.width || y >= self.height {
+            return None;
+        }
+        let number = y * self.width + x;
+        (self.inverse[number] == 0.0).then_some(self.from_edge[number])
+    }
+}
+
+fn corner(view: &View, position: DVec3, reduction: u32) -> Option<Corner> {
+    let place = view.project(position)? / f64::from(reduction);
+    let inverse = inverse_depth(view, position)?;
+    place.is_finite().then_some(Corner { place, inverse })
+}
+
+/// 1/depth of a point, as the module's head tells; `None` where the camera is.
+fn inverse_depth(view: &View, position: DVec3) -> Option<f64> {
+    let offset = position - view.position();
+    let (distance, along) = (offset.length(), offset.dot(view.forward()));
+    let depth = if along > OFF_AXIS * distance { along } else { distance };
+    (depth > 0.0).then(|| 1.0 / depth)
+}
+
+/// Whether a triangle with all corners beyond what the lens can see may still be seen in its middle: whether it reaches before the camera.
+fn may_be_seen(view: &View, positions: &[DVec3; 3]) -> bool {
+    let middle = (positions[0] + positions[1] + positions[2]) / 3.0;
+    let reach = positions.iter().map(|p| p.distance(middle)).fold(0.0, f64::max);
+    let offset = middle - view.position();
+    // Small ones are seen as wholes: far corners lie close together in direction.
+    offset.dot(view.forward()) + reach > 0.0 && reach > 0.2 * offset.length()
+}

@@ -1,0 +1,176 @@
+//! What a texel sends differently toward different directions, from the few directions that photographs know.
+//!
+//! Gaussian process regression (Rasmussen and Williams 2006, chapter 2) of what is left over when the constant part is taken away: zero
+//! in the mean, so that it fades out where evidence ends, and smooth in the direction, so that nothing pops over an aperture.
+//!
+//! ```text
+//! r(ω) = Σᵢ αᵢ·k(|ω − ωᵢ|)        (K + N)·α = r        k(d) = (1 − d/ρ)⁴₊·(4d/ρ + 1)
+//! ```
+//!
+//! | symbol | meaning | unit |
+//! | --- | --- | --- |
+//! | ω, ωᵢ | unit directions from the point to the eye and to photograph i | |
+//! | r, rᵢ | radiance less the constant part | as the photographs |
+//! | k | Wendland's C² function: positive definite in space, 0 from ρ on | |
+//! | K | kᵢⱼ = k(\|ωᵢ − ωⱼ\|) | |
+//! | N | noise over signal, λ/wᵢ on the diagonal, wᵢ how well photograph i sees the point | |
+//!
+//! What each photograph would be told to show by the others alone is known without leaving any out: rᵢ − αᵢ/((K + N)⁻¹)ᵢᵢ (the same,
+//! equation 5.12). By that ρ and λ are chosen, and how much of r is believed at all in each region.
+
+use glam::{DVec3, Vec3};
+
+/// Photographs of a texel that are told apart; the best seen of more.
+pub(crate) const MOST: usize = 40;
+
+/// How residuals go with direction.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Kernel {
+    /// ρ: the distance between unit directions from which they know nothing of each other.
+    pub reach: f32,
+    /// λ.
+    pub noise: f32,
+}
+
+/// What a photograph knows of a texel's residual.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Known {
+    /// Unit, from the texel.
+    pub direction: Vec3,
+    pub residual: Vec3,
+    /// In (0, 1].
+    pub weight: f32,
+}
+
+/// Room for the sums of a texel.
+pub(crate) struct Regression {
+    matrix: Vec<f32>,
+    inverse: Vec<f32>,
+}
+
+impl Kernel {
+    /// k at a distance between unit directions.
+    pub fn at(&self, distance: f32) -> f32 {
+        let share = distance / self.reach;
+        if share >= 1.0 {
+            return 0.0;
+        }
+        let rest = (1.0 - share) * (1.0 - share);
+        rest * rest * (4.0 * share + 1.0)
+    }
+}
+
+impl Regression {
+    pub fn new() -> Self {
+        Self { matrix: vec![0.0; MOST * MOST], inverse: vec![0.0; MOST * MOST] }
+    }
+
+    /// The α of what is known (at most [`MOST`]), into `alpha`.
+    pub fn solve(&mut self, kernel: &Kernel, known: &[Known], alpha: &mut Vec<Vec3>) {
+        self.decompose(kernel, known);
+        let n = known.len();
+        alpha.clear();
+        alpha.extend(known.iter().map(|k| k.residual));
+        for i in 0..n {
+            for k in 0..i {
+                let before = alpha[k];
+                alpha[i] -= before * self.matrix[i * MOST + k];
+            }
+            alpha[i] /= self.matrix[i * MOST + i];
+        }
+        for i in (0..n).rev() {
+            for k in i + 1..n {
+                let after = alpha[k];
+                alpha[i] -= after * self.matrix[k * MOST + i];
+            }
+            alpha[i] /= self.matrix[i * MOST + i];
+        }
+    }
+
+    /// What each photograph would be told to show by the others, into `told`; after [`Self::solve`] of the same.
+    pub fn left_out(&mut self, known: &[Known], alpha: &[Vec3], told: &mut Vec<Vec3>) {
+        let n = known.len();
+        // The inverse of the triangle; columns of it give the diagonal of the whole inverse.
+        for j in 0..n {
+            self.inverse[j * MOST + j] = 1.0 / self.matrix[j * MOST + j];
+            for i in j + 1..n {
+                let sum: f32 =
+                    (j..i).map(|k| self.matrix[i * MOST + k] * self.inverse[k * MOST + j]).sum();
+                self.inverse[i * MOST + j] = -sum / self.matrix[i * MOST + i];
+            }
+        }
+        told.clear();
+        told.extend((0..n).map(|j| {
+            let diagonal: f32 = (j..n).map(|i| self.inverse[i * MOST + j].powi(2)).sum();
+            known[j].residual - alpha[j] / diagonal
+        }));
+    }
+
+    /// Cholesky's decomposition of K + N, its lower triangle.
+    fn decompose(&mut self, kernel: &Kernel, known: &[Known]) {
+        for (i, a) in known.iter().enumerate() {
+            let (above, rows) = self.matrix.split_at_mut(i * MOST);
+            for (j, b) in known[..i].iter().enumerate() {
+                let other = &above[j * MOST..j * MOST + j + 1];
+                let sum: f32 = rows[..j].iter().zip(other).map(|(x, y)| x * y).sum();
+                rows[j] = (kernel.at(a.direction.distance(b.direction)) - sum) / other[j];
+            }
+            let square: f32 = rows[..i].iter().map(|x| x * x).sum();
+            // Noise keeps it positive; rounding takes some 1e-6 of 1.
+            rows[i] = (1.0 + kernel.noise / a.weight - square).max(1e-5).sqrt();
+        }
+    }
+}
+
+/// The unit direction from a texel to an eye.
+pub(crate) fn toward(from: DVec3, eye: DVec3) -> Vec3 {
+    (eye - from).as_vec3().normalize_or_zero()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn known(count: usize) -> Vec<Known> {
+        (0..count)
+            .map(|k| {
+                let azimuth = k as f32 * 2.4;
+                let z = 1.0 - 0.6 * (k as f32 + 0.5) / count as f32;
+                let r = (1.0 - z * z).sqrt();
+                let direction = Vec3::new(r * azimuth.cos(), r * azimuth.sin(), z);
+                Known { direction, residual: Vec3::new(direction.x, direction.y.powi(2), 0.1), weight: 1.0 }
+            })
+            .collect()
+    }
+
+    fn at(kernel: &Kernel, known: &[Known], alpha: &[Vec3], direction: Vec3) -> Vec3 {
+        known.iter().zip(alpha).map(|(k, a)| *a * kernel.at(k.direction.distance(direction))).sum()
+    }
+
+    #[test]
+    fn what_was_left_out_is_what_the_others_tell() {
+        let (kernel, all) = (Kernel { reach: 1.2, noise: 0.1 }, known(12));
+        let (mut regression, mut alpha, mut told) = (Regression::new(), Vec::new(), Vec::new());
+        regression.solve(&kernel, &all, &mut alpha);
+        regression.left_out(&all, &alpha, &mut told);
+        for left in 0..all.len() {
+            let mut others = all.clone();
+            let out = others.remove(left);
+            let mut of_others = Vec::new();
+            regression.solve(&kernel, &others, &mut of_others);
+            let wanted = at(&kernel, &others, &of_others, out.direction);
+            assert!(told[left].distance(wanted) < 1e-4, "{left}: {} for {wanted}", told[left]);
+        }
+    }
+
+    #[test]
+    fn little_noise_leads_through_what_is_known_and_nothing_reaches_beyond_evidence() {
+        let (kernel, all) = (Kernel { reach: 0.5, noise: 1e-3 }, known(12));
+        let mut alpha = Vec::new();
+        Regression::new().solve(&kernel, &all, &mut alpha);
+        for one in &all {
+            assert!(at(&kernel, &all, &alpha, one.direction).distance(one.residual) < 0.02);
+        }
+        assert_eq!(at(&kernel, &all, &alpha, Vec3::NEG_Z), Vec3::ZERO);
+    }
+}

@@ -1,0 +1,291 @@
+//! Exposure, white balance and vignetting of all photographs, from surface points that several of them see.
+//!
+//! ```text
+//! log₂ I(v, c, x) = log₂ D(c, x) + g(v, c) + k₁(l)·r² + k₂(l)·r⁴
+//! ```
+//!
+//! | symbol | meaning | unit |
+//! | --- | --- | --- |
+//! | I | light that photograph v shows of point x in channel c | its white |
+//! | D | light of the point, the same for all that see it | |
+//! | g | gain of photograph and channel; its mean over photographs is 0 | stops |
+//! | k₁, k₂ | vignetting of lens l | stops |
+//! | r | distance from the lens's axis, over half the picture's diagonal | |
+//!
+//! D falls out: of every point only differences from its weighted mean count (Goldman 2010, without his response curve). Points that gloss
+//! or occlusion differ at are left out by Cauchy's weights, their scale the median of what is left over.
+
+use super::sightings::{Sighting, Sightings};
+use super::texels::Texels;
+use glam::{DVec2, Vec3};
+use rayon::prelude::*;
+use scene::View;
+
+/// How a photograph renders light.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub struct Exposure {
+    /// Gain of red, green and blue, stops; the mean over all photographs is 0 in each channel.
+    pub gain_stops: [f64; 3],
+    /// k₁ and k₂: what r² and r⁴ add, stops.
+    pub vignetting_stops: [f64; 2],
+}
+
+impl Exposure {
+    /// What the photograph's numbers are to be multiplied with at a pixel position of the view.
+    pub fn to_radiance(&self, view: &View, pixel: DVec2) -> Vec3 {
+        let falloff = self.falloff_stops(view, pixel);
+        Vec3::from_array(self.gain_stops.map(|gain| (-(gain + falloff)).exp2() as f32))
+    }
+
+    fn falloff_stops(&self, view: &View, pixel: DVec2) -> f64 {
+        let [k1, k2] = self.vignetting_stops;
+        let r2 = radius_squared(view, pixel);
+        (k1 + k2 * r2) * r2
+    }
+}
+
+/// r² of the module's head.
+fn radius_squared(view: &View, pixel: DVec2) -> f64 {
+    let intrinsics = view.lens.intrinsics();
+    let half_diagonal = DVec2::from(intrinsics.size_px.map(f64::from)).length() / 2.0;
+    (pixel - DVec2::from(intrinsics.principal_px)).length_squared() / (half_diagonal * half_diagonal)
+}
+
+/// Surface points that are asked.
+const POINTS: usize = 30_000;
+/// Light below this share of white says little about gains.
+const DARK: f32 = 0.004;
+/// Rounds of reweighting; weights have settled by then.
+const ROUNDS: usize = 12;
+/// Residuals are thought to be no smaller, stops.
+const LEAST_SCALE: f64 = 0.03;
+/// What holds a gain that nothing else does (at its hint, or at 0): as much as half a point.
+const HOLD: f64 = 0.5;
+/// What holds vignetting at 0: as much as so many points one stop off.
+const HOLD_VIGNETTING: f64 = 20.0;
+
+/// What one photograph says of one point.
+struct Said {
+    view: usize,
+    stops: [f64; 3],
+    vignetting: [f64; 2],
+    weight: f64,
+}
+
+/// Finds the exposures of all views.
+pub(crate) fn exposures(texels: &Texels, sightings: &Sightings, views: &[View]) -> Vec<Exposure> {
+    let lens_of = lenses(views);
+    let lens_count = lens_of.iter().max().map_or(0, |most| most + 1);
+    let shared: Vec<usize> =
+        (0..texels.count()).filter(|&texel| sightings.of_texel(texel).len() >= 2).collect();
+    let step = shared.len().div_ceil(POINTS).max(1);
+    let points: Vec<Vec<Said>> = shared
+        .par_iter()
+        .step_by(step)
+        .map(|&texel| {
+            let said = |s: &Sighting| said(texels, sightings, views, texel, s);
+            sightings.of_texel(texel).iter().filter_map(said).collect()
+        })
+        .collect();
+    let unknowns = 3 * views.len() + 2 * lens_count;
+    let hints = hints(views);
+    let mut solution = vec![0.0; unknowns];
+    for (view, hint) in hints.iter().enumerate() {
+        solution[3 * view..3 * view + 3].fill(hint.unwrap_or(0.0));
+    }
+    let mut scale = 1.0;
+    for _ in 0..ROUNDS {
+        let system = System { unknowns, views: views.len(), lens_of: &lens_of };
+        let parts: Vec<(Vec<f64>, Vec<f64>, Vec<f64>)> =
+            points.par_chunks(512).map(|points| system.of_points(points, &solution, scale)).collect();
+        let (mut matrix, mut right) = (vec![0.0; unknowns * unknowns], vec![0.0; unknowns]);
+        let mut left_over = Vec::new();
+        for (part, part_right, errors) in parts {
+            matrix.iter_mut().zip(part).for_each(|(sum, value)| *sum += value);
+            right.iter_mut().zip(part_right).for_each(|(sum, value)| *sum += value);
+            left_over.extend(errors);
+        }
+        for unknown in 0..unknowns {
+            let is_gain = unknown < 3 * views.len();
+            let hold = if is_gain { HOLD } else { HOLD_VIGNETTING };
+            matrix[unknown * unknowns + unknown] += hold;
+            if is_gain {
+                right[unknown] += hold * hints[unknown / 3].unwrap_or(0.0);
+            }
+        }
+        solve_positive(&mut matrix, &mut right);
+        solution = right;
+        if let Some(middle) = median(&mut left_over) {
+            // Of a normal distribution.
+            scale = (1.4826 * middle).max(LEAST_SCALE);
+        }
+    }
+    let mean = |channel: usize| {
+        (0..views.len()).map(|view| solution[3 * view + channel]).sum::<f64>() / views.len().max(1) as f64
+    };
+    let mean = [mean(0), mean(1), mean(2)];
+    (0..views.len())
+        .map(|view| Exposure {
+            gain_stops: std::array::from_fn(|channel| solution[3 * view + channel] - mean[channel]),
+            vignetting_stops: std::array::from_fn(|k| solution[3 * views.len() + 2 * lens_of[view] + k]),
+        })
+        .collect()
+}
+
+/// Views with the same lens have the same number.
+fn lenses(views: &[View]) -> Vec<usize> {
+    let mut known: Vec<&View> = Vec::new();
+    let mut numbers = Vec::with_capacity(views.len());
+    for view in views {
+        numbers.push(known.iter().position(|other| other.lens == view.lens).unwrap_or(known.len()));
+        if numbers.last() == Some(&known.len()) {
+            known.push(view);
+        }
+    }
+    numbers
+}
+
+/// What EXIF says of each view's gain, relative to the mean of those that say anything.
+fn hints(views: &[View]) -> Vec<Option<f64>> {
+    let said: Vec<f64> = views.iter().filter_map(|view| view.exposure_hint).filter(|h| h.is_finite()).collect();
+    let mean = said.iter().sum::<f64>() / said.len().max(1) as f64;
+    views.iter().map(|view| view.exposure_hint.filter(|h| h.is_finite()).map(|hint| hint - mean)).collect()
+}
+
+fn said(
+    texels: &Texels,
+    sightings: &Sightings,
+    views: &[View],
+    texel: usize,
+    sighting: &Sighting,
+) -> Option<Said> {
+    let light = sightings.light(sighting);
+    if sighting.clipped() > 0.0 || light.min_element() < DARK {
+        return None;
+    }
+    let view = &views[usize::from(sighting.view)];
+    let r2 = radius_squared(view, view.project(texels.position(texel))?);
+    // Noise of 8 bits weighs more in the dark.
+    let trust = light.min_element() / (light.min_element() + 0.02);
+    Some(Said {
+        view: sighting.view.into(),
+        stops: light.to_array().map(|v| f64::from(v).log2()),
+        vignetting: [r2, r2 * r2],
+        weight: f64::from(sighting.weight() * trust),
+    })
+}
+
+/// The normal equations.
+struct System<'a> {
+    unknowns: usize,
+    views: usize,
+    lens_of: &'a [usize],
+}
+
+impl System<'_> {
+    /// Matrix, right side and absolute residuals of some points, weighted by how a solution explains them.
+    fn of_points(&self, points: &[Vec<Said>], solution: &[f64], scale: f64) -> (Vec<f64>, Vec<f64>, Vec<f64>) {
+        let n = self.unknowns;
+        let (mut matrix, mut right, mut errors) = (vec![0.0; n * n], vec![0.0; n], Vec::new());
+        let mut mean_row = vec![0.0; n];
+        for point in points {
+            for channel in 0..3 {
+                let row = |said: &Said| {
+                    let lens = 3 * self.views + 2 * self.lens_of[said.view];
+                    let [k1, k2] = said.vignetting;
+                    [(3 * said.view + channel, 1.0), (lens, k1), (lens + 1, k2)]
+                };
+                let off = |said: &Said| {
+                    let told: f64 = row(said).iter().map(|&(at, factor)| factor * solution[at]).sum();
+                    said.stops[channel] - told
+                };
+                // The point's own light, as most say: a median holds out where half of them are wrong.
+                let mut all: Vec<f64> = point.iter().map(off).collect();
+                if all.len() < 2 {
+                    continue;
+                }
+                let middle = median(&mut all).unwrap_or(0.0);
+                let (mut weights, mut mean) = (0.0, 0.0);
+                let mut touched = Vec::with_capacity(point.len() * 3);
+                for said in point {
+                    let error = off(said) - middle;
+                    errors.push(error.abs());
+                    let weight = said.weight / (1.0 + (error / scale).powi(2));
+                    weights += weight;
+                    mean += weight * said.stops[channel];
+                    let row = row(said);
+                    for &(i, a) in &row {
+                        right[i] += weight * a * said.stops[channel];
+                        for &(j, b) in &row {
+                            matrix[i * n + j] += weight * a * b;
+                        }
+                        mean_row[i] += weight * a;
+                        touched.push(i);
+                    }
+                }
+                touched.sort_unstable();
+                touched.dedup();
+                if weights > 0.0 {
+                    for &i in &touched {
+                        right[i] -= mean_row[i] * mean / weights;
+                        for &j in &touched {
+                            matrix[i * n + j] -= mean_row[i] * mean_row[j] / weights;
+                        }
+                    }
+                }
+                for &i in &touched {
+                    mean_row[i] = 0.0;
+                }
+            }
+        }
+        (matrix, right, errors)
+    }
+}
+
+/// The middle value; `None` of nothing.
+fn median(values: &mut [f64]) -> Option<f64> {
+    let middle = values.len() / 2;
+    (!values.is_empty()).then(|| *values.select_nth_unstable_by(middle, f64::total_cmp).1)
+}
+
+/// Solves a symmetric positive definite system in place by Cholesky's decomposition.
+fn solve_positive(matrix: &mut [f64], right: &mut [f64]) {
+    let n = right.len();
+    for j in 0..n {
+        let square: f64 = matrix[j * n..j * n + j].iter().map(|x| x * x).sum();
+        matrix[j * n + j] -= square;
+        let pivot = matrix[j * n + j].sqrt();
+        matrix[j * n + j] = pivot;
+        let (head, below) = matrix.split_at_mut((j + 1) * n);
+        let own = &head[j * n..j * n + j];
+        below.par_chunks_mut(n).for_each(|row| {
+            let sum: f64 = own.iter().zip(&row[..j]).map(|(a, b)| a * b).sum();
+            row[j] = (row[j] - sum) / pivot;
+        });
+    }
+    for i in 0..n {
+        let sum: f64 = (0..i).map(|k| matrix[i * n + k] * right[k]).sum();
+        right[i] = (right[i] - sum) / matrix[i * n + i];
+    }
+    for i in (0..n).rev() {
+        let sum: f64 = (i + 1..n).map(|k| matrix[k * n + i] * right[k]).sum();
+        right[i] = (right[i] - sum) / matrix[i * n + i];
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_system_is_solved() {
+        let matrix = [4.0, 1.0, 0.5, 1.0, 3.0, 0.2, 0.5, 0.2, 2.0];
+        let wanted = [1.0, -2.0, 3.0];
+        let mut right: Vec<f64> =
+            (0..3).map(|i| (0..3).map(|j| matrix[3 * i + j] * wanted[j]).sum()).collect();
+        solve_positive(&mut matrix.clone(), &mut right);
+        for (found, wanted) in right.iter().zip(wanted) {
+            assert!((found - wanted).abs() < 1e-12, "{right:?}");
+        }
+    }
+}

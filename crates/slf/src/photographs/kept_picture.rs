@@ -1,0 +1,138 @@
+//! A photograph as it is kept in memory: four bytes a pixel.
+//!
+//! Ten bits a channel hold the square root of the light, so that a step is some two thousandths of white at white and finer in the dark:
+//! about what eight bits of sRGB hold. The last two bits tell whether the sensor was at its limit.
+
+use glam::{DVec2, Vec3};
+use scene::Photograph;
+
+/// A photograph, linear light between 0 and its brightest pixel.
+#[derive(Debug)]
+pub(crate) struct KeptPicture {
+    pub width: u32,
+    pub height: u32,
+    /// How many pixels of the photograph a pixel is wide and high.
+    pub reduction: u32,
+    brightest: f32,
+    pixels: Vec<u32>,
+}
+
+/// What a picture shows at a place.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Shown {
+    pub light: Vec3,
+    /// The share of pixels there that were at the sensor's limit, in [0, 1].
+    pub clipped: f32,
+}
+
+/// Photographs reach their white here: JPEG and demosaicking leave clipped pixels a little below 1.
+const CLIPPED: f32 = 0.985;
+const STEPS: f32 = 1023.0;
+
+impl KeptPicture {
+    /// Keeps a photograph, each pixel the mean of `reduction`² of its own.
+    pub fn of(photograph: &Photograph, reduction: u32) -> Self {
+        let reduction = reduction.max(1);
+        let [width, height] =
+            [photograph.width, photograph.height].map(|side| side.div_ceil(reduction).max(1));
+        let brightest = photograph.pixels.iter().flatten().copied().filter(|v| v.is_finite());
+        let brightest = brightest.fold(1.0, f32::max);
+        let mut pixels = Vec::with_capacity(width as usize * height as usize);
+        for y in 0..height {
+            for x in 0..width {
+                let (mut sum, mut count, mut is_clipped) = (Vec3::ZERO, 0.0, false);
+                for row in (y * reduction)..((y + 1) * reduction).min(photograph.height) {
+                    for column in (x * reduction)..((x + 1) * reduction).min(photograph.width) {
+                        let pixel = photograph.pixels[(row * photograph.width + column) as usize];
+                        let light = Vec3::from_array(pixel).max(Vec3::ZERO);
+                        is_clipped |= brightest <= 1.0 && light.max_element() >= CLIPPED;
+                        sum += light;
+                        count += 1.0;
+                    }
+                }
+                pixels.push(packed(sum / (count * brightest), is_clipped));
+            }
+        }
+        Self { width, height, reduction, brightest, pixels }
+    }
+
+    /// Where a pixel position of the photograph lies in here, from the corner of the upper left pixel.
+    pub fn place(&self, pixel: DVec2) -> DVec2 {
+        pixel / f64::from(self.reduction)
+    }
+
+    /// Interpolated linearly at a [`Self::place`]; beyond the border what lies on it.
+    pub fn at(&self, place: DVec2) -> Shown {
+        let at = place - 0.5;
+        let floor = at.floor();
+        let share = (at - floor).as_vec2();
+        let (x, y) = (floor.x as i64, floor.y as i64);
+        let mut shown = Shown { light: Vec3::ZERO, clipped: 0.0 };
+        for (dx, dy, weight) in [
+            (0, 0, (1.0 - share.x) * (1.0 - share.y)),
+            (1, 0, share.x * (1.0 - share.y)),
+            (0, 1, (1.0 - share.x) * share.y),
+            (1, 1, share.x * share.y),
+        ] {
+            let column = (x + dx).clamp(0, i64::from(self.width) - 1) as usize;
+            let row = (y + dy).clamp(0, i64::from(self.height) - 1) as usize;
+            let (light, is_clipped) = self.pixel(row * self.width as usize + column);
+            shown.light += light * weight;
+            shown.clipped += if is_clipped { weight } else { 0.0 };
+        }
+        shown
+    }
+
+    /// A pixel by its number, row by row, and whether it is clipped.
+    pub fn pixel(&self, number: usize) -> (Vec3, bool) {
+        let word = self.pixels[number];
+        let root = Vec3::new((word & 1023) as f32, (word >> 10 & 1023) as f32, (word >> 20 & 1023) as f32);
+        let root = root / STEPS;
+        (root * root * self.brightest, word >> 30 != 0)
+    }
+
+    /// What its brightest pixel may be.
+    pub fn brightest(&self) -> f32 {
+        self.brightest
+    }
+
+    pub fn bytes(&self) -> usize {
+        size_of_val(self.pixels.as_slice())
+    }
+}
+
+fn packed(share: Vec3, is_clipped: bool) -> u32 {
+    let [r, g, b] = share.to_array().map(|v| (v.clamp(0.0, 1.0).sqrt() * STEPS + 0.5) as u32);
+    r | g << 10 | b << 20 | u32::from(is_clipped) << 30
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn photograph(pixels: &[f32]) -> Photograph {
+        let pixels = pixels.iter().map(|&v| [v, v / 2.0, v / 4.0]).collect::<Vec<_>>();
+        Photograph { width: 2, height: 2, pixels }
+    }
+
+    #[test]
+    fn what_is_kept_is_what_was_shown() {
+        let kept = KeptPicture::of(&photograph(&[0.0, 0.25, 0.5, 1.0]), 1);
+        for (number, value) in [0.0, 0.25, 0.5, 1.0].into_iter().enumerate() {
+            let (light, is_clipped) = kept.pixel(number);
+            // Half a step of the root, twice the root.
+            assert!((light.x - value).abs() <= value.sqrt() / STEPS + 1e-6, "{light} for {value}");
+            assert_eq!(is_clipped, value == 1.0);
+        }
+        let middle = kept.at(DVec2::ONE);
+        assert!((middle.light.x - 0.4375).abs() < 2e-3 && middle.clipped == 0.25, "{middle:?}");
+    }
+
+    #[test]
+    fn reduced_pixels_are_means_and_bright_ones_stay_bright() {
+        let kept = KeptPicture::of(&photograph(&[0.0, 4.0, 8.0, 4.0]), 2);
+        let (light, is_clipped) = kept.pixel(0);
+        assert!((light.x - 4.0).abs() < 0.02 && !is_clipped, "{light}");
+        assert_eq!((kept.width, kept.height, kept.place(DVec2::ONE)), (1, 1, DVec2::splat(0.5)));
+    }
+}

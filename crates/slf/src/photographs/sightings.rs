@@ -1,0 +1,286 @@
+//! Which photograph sees which texel, how well, and what it shows there.
+//!
+//! A photograph is read once. What it sees is told by its [`DepthPicture`]: a weight in (0, 1] that falls smoothly to 0 toward edges of
+//! depth, the picture's border and glancing angles, so that nothing begins or ends abruptly on the surface.
+
+use super::depth_picture::{DepthPicture, FAR_FROM_EDGES};
+use super::kept_picture::KeptPicture;
+use super::sphere::Sphere;
+use super::texels::Texels;
+use glam::{DVec2, DVec3, Vec3};
+use progress::Progress;
+use rayon::prelude::*;
+use scene::{LoadOptions, Mask, PictureError, Scene, View};
+use std::ops::Range;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// Glancing views (cosine) see nothing that can be told from its neighbours; from the second value on they count in full.
+const GLANCING: [f32; 2] = [0.08, 0.35];
+/// So many pixels from an edge of depth a photograph begins to count, and counts in full.
+const FROM_EDGE: [f32; 2] = [1.0, 4.0];
+/// The same from the picture's border.
+const FROM_BORDER: [f32; 2] = [1.0, 8.0];
+
+/// What a texel looks like to one photograph.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Sighting {
+    pub view: u16,
+    /// How well it is seen, in (0, 1] by 255ths.
+    weight: u8,
+    /// The share of clipped pixels, by 255ths.
+    clipped: u8,
+    /// Linear light, exposure as it was, as square roots.
+    root: [u16; 3],
+}
+
+/// Everything that photographs show of the surface.
+pub(crate) struct Sightings {
+    pub pictures: Vec<KeptPicture>,
+    /// `all[start[t]..start[t + 1]]` are of texel t, by view.
+    start: Vec<u32>,
+    all: Vec<Sighting>,
+    /// By view, how well each cell of a [`Sphere`] is seen beyond the surface, by 255ths.
+    pub beyond: Vec<Vec<u8>>,
+    brightest: f32,
+}
+
+/// How much is read and kept.
+pub(crate) struct Reading<'a> {
+    pub load: &'a LoadOptions,
+    /// Pixels of a photograph that are joined to one, each way.
+    pub reduction: u32,
+    /// Photographs that are worked on at once.
+    pub at_once: usize,
+    /// The cells at infinity.
+    pub sphere: &'a Sphere,
+}
+
+impl Sighting {
+    pub fn weight(&self) -> f32 {
+        f32::from(self.weight) / 255.0
+    }
+
+    pub fn clipped(&self) -> f32 {
+        f32::from(self.clipped) / 255.0
+    }
+}
+
+impl Sightings {
+    /// Reads the photographs and looks what they see.
+    ///
+    /// # Errors
+    /// The first view's, by order, whose picture or mask cannot be had; none if the work was cancelled: then what is returned is
+    /// incomplete, and the caller has to ask `progress`.
+    pub fn of(
+        scene: &Scene,
+        texels: &Texels,
+        views: &[View],
+        reading: &Reading<'_>,
+        progress: &dyn Progress,
+    ) -> Result<Self, PictureError> {
+        let done = AtomicUsize::new(0);
+        let mut pictures = Vec::with_capacity(views.len());
+        let (mut weights, mut beyond) = (Vec::new(), Vec::new());
+        for chunk in views.chunks(reading.at_once.max(1)) {
+            let read: Vec<_> = chunk
+                .par_iter()
+                .map(|view| {
+                    if progress.cancelled() {
+                        return Ok(None);
+                    }
+                    let picture = KeptPicture::of(&view.photograph(reading.load)?, reading.reduction);
+                    let mask = view.mask(reading.load)?;
+                    let depth = DepthPicture::of(scene, view, reading.reduction);
+                    let seen = seen(texels, view, &picture, mask.as_ref(), &depth);
+                    let beyond = seen_beyond(reading.sphere, view, &picture, mask.as_ref(), &depth);
+                    let count = done.fetch_add(1, Ordering::Relaxed) + 1;
+                    progress.report(0.8 * count as f32 / views.len() as f32);
+                    Ok(Some((picture, seen, beyond)))
+                })
+                .collect::<Result<_, PictureError>>()?;
+            for (picture, seen, sky) in read.into_iter().flatten() {
+                pictures.push(picture);
+                weights.push(seen);
+                beyond.push(sky);
+            }
+        }
+        if progress.cancelled() {
+            return Ok(Self { pictures, start: vec![0; texels.count() + 1], all: Vec::new(), beyond, brightest: 1.0 });
+        }
+        keep_one_side(texels, views, &mut weights);
+        let brightest = pictures.iter().map(KeptPicture::brightest).fold(1.0, f32::max);
+        let (start, all) = gathered(texels, views, &pictures, &weights, brightest);
+        Ok(Self { pictures, start, all, beyond, brightest })
+    }
+
+    /// What photographs show of a texel, by view.
+    pub fn of_texel(&self, texel: usize) -> &[Sighting] {
+        &self.all[self.range(texel)]
+    }
+
+    /// The numbers of a texel's sightings among all.
+    pub fn range(&self, texel: usize) -> Range<usize> {
+        self.start[texel] as usize..self.start[texel + 1] as usize
+    }
+
+    pub fn count(&self) -> usize {
+        self.all.len()
+    }
+
+    /// The light that a sighting shows, exposure as it was.
+    pub fn light(&self, sighting: &Sighting) -> Vec3 {
+        let root = Vec3::from_array(sighting.root.map(|v| f32::from(v) / 65535.0));
+        root * root * self.brightest
+    }
+
+    pub fn bytes(&self) -> usize {
+        self.pictures.iter().map(KeptPicture::bytes).sum::<usize>()
+            + size_of_val(self.start.as_slice())
+            + size_of_val(self.all.as_slice())
+            + self.beyond.iter().map(Vec::len).sum::<usize>()
+    }
+}
+
+fn root_of(light: Vec3, brightest: f32) -> [u16; 3] {
+    light.to_array().map(|v| ((v / brightest).clamp(0.0, 1.0).sqrt() * 65535.0 + 0.5) as u16)
+}
+
+/// Rises smoothly from 0 at the first value to 1 at the second.
+fn ramp(value: f32, [from, to]: [f32; 2]) -> f32 {
+    let share = ((value - from) / (to - from)).clamp(0.0, 1.0);
+    share * share * (3.0 - 2.0 * share)
+}
+
+/// How a place in the picture counts by itself: its distance from the border, and the mask.
+fn counts(view: &View, mask: Option<&Mask>, picture: &KeptPicture, pixel: DVec2, place: DVec2) -> f32 {
+    if !view.lens.is_in_picture(pixel) {
+        return 0.0;
+    }
+    let is_masked = mask.is_some_and(|mask| {
+        let (x, y) = (pixel.x as u32, pixel.y as u32);
+        x < mask.width && y < mask.height && !mask.counts[(y * mask.width + x) as usize]
+    });
+    if is_masked {
+        return 0.0;
+    }
+    let size = DVec2::new(f64::from(picture.width), f64::from(picture.height));
+    ramp(place.min(size - place).min_element() as f32, FROM_BORDER)
+}
+
+fn from_edge(pixels: u8) -> f32 {
+    if pixels >= FAR_FROM_EDGES { 1.0 } else { ramp(f32::from(pixels), FROM_EDGE) }
+}
+
+/// How well a view sees every texel, by 255ths; 0 not at all.
+fn seen(
+    texels: &Texels,
+    view: &View,
+    picture: &KeptPicture,
+    mask: Option<&Mask>,
+    depth: &DepthPicture,
+) -> Vec<u8> {
+    let eye = view.position();
+    let weight = |texel: usize| {
+        let position = texels.position(texel);
+        let cosine = texels.normal(texel).dot((eye - position).as_vec3().normalize_or_zero()).abs();
+        let of_angle = ramp(cosine, GLANCING);
+        if of_angle == 0.0 {
+            return 0.0;
+        }
+        let Some(pixel) = view.project(position) else { return 0.0 };
+        let place = picture.place(pixel);
+        let Some(edge) = depth.sees(view, position, place) else { return 0.0 };
+        of_angle * from_edge(edge) * counts(view, mask, picture, pixel, place)
+    };
+    (0..texels.count()).into_par_iter().map(|texel| (weight(texel) * 255.0 + 0.5) as u8).collect()
+}
+
+/// How well a view sees every cell at infinity, by 255ths.
+fn seen_beyond(
+    sphere: &Sphere,
+    view: &View,
+    picture: &KeptPicture,
+    mask: Option<&Mask>,
+    depth: &DepthPicture,
+) -> Vec<u8> {
+    let eye = view.position();
+    let weight = |cell: usize| {
+        let Some(pixel) = view.project(eye + sphere.direction(cell).as_dvec3()) else { return 0.0 };
+        let place = picture.place(pixel);
+        let Some(edge) = depth.sees_nothing(place) else { return 0.0 };
+        from_edge(edge) * counts(view, mask, picture, pixel, place)
+    };
+    (0..sphere.count()).map(|cell| (weight(cell) * 255.0 + 0.5) as u8).collect()
+}
+
+/// A texel has one light, so of views of its front and its back only those of the side that is seen better count.
+fn keep_one_side(texels: &Texels, views: &[View], weights: &mut [Vec<u8>]) {
+    let is_front = |texel: usize, view: &View| {
+        texels.normal(texel).as_dvec3().dot(view.position() - texels.position(texel)) >= 0.0
+    };
+    let front_wins: Vec<bool> = (0..texels.count())
+        .into_par_iter()
+        .map(|texel| {
+            let balance: i32 = views
+                .iter()
+                .zip(&*weights)
+                .filter(|(_, weights)| weights[texel] > 0)
+                .map(|(view, w)| if is_front(texel, view) { i32::from(w[texel]) } else { -i32::from(w[texel]) })
+                .sum();
+            balance >= 0
+        })
+        .collect();
+    weights.par_iter_mut().zip(views).for_each(|(weights, view)| {
+        for (texel, weight) in weights.iter_mut().enumerate() {
+            if *weight > 0 && is_front(texel, view) != front_wins[texel] {
+                *weight = 0;
+            }
+        }
+    });
+}
+
+/// All sightings, by texel.
+fn gathered(
+    texels: &Texels,
+    views: &[View],
+    pictures: &[KeptPicture],
+    weights: &[Vec<u8>],
+    brightest: f32,
+) -> (Vec<u32>, Vec<Sighting>) {
+    let mut start = vec![0u32; texels.count() + 1];
+    for texel in 0..texels.count() {
+        let count = weights.iter().filter(|weights| weights[texel] > 0).count() as u32;
+        start[texel + 1] = start[texel] + count;
+    }
+    let nothing = Sighting { view: 0, weight: 0, clipped: 0, root: [0; 3] };
+    let mut all = vec![nothing; start[texels.count()] as usize];
+    let mut rest = all.as_mut_slice();
+    /// Texels that are worked on as one.
+    const BLOCK: usize = 4096;
+    let mut blocks = Vec::new();
+    for first in (0..texels.count()).step_by(BLOCK) {
+        let end = (first + BLOCK).min(texels.count());
+        let (block, after) = rest.split_at_mut((start[end] - start[first]) as usize);
+        blocks.push((first..end, block));
+        rest = after;
+    }
+    blocks.into_par_iter().for_each(|(range, block)| {
+        let mut slots = block.iter_mut();
+        for texel in range {
+            for (number, view) in views.iter().enumerate() {
+                let weight = weights[number][texel];
+                if weight == 0 {
+                    continue;
+                }
+                let Some(slot) = slots.next() else { return };
+                let position: DVec3 = texels.position(texel);
+                // It was projected before, by the same lens.
+                let pixel = view.project(position).unwrap_or_default();
+                let shown = pictures[number].at(pictures[number].place(pixel));
+                let clipped = (shown.clipped.clamp(0.0, 1.0) * 255.0 + 0.5) as u8;
+                *slot = Sighting { view: number as u16, weight, clipped, root: root_of(shown.light, brightest) };
+            }
+        }
+    });
+    (start, all)
+}

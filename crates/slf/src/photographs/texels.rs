@@ -1,0 +1,144 @@
+//! The texels that light is kept at, and how a surface point lies among them.
+
+use atlas::{Atlas, NO_TEXEL, TexelMap};
+use glam::{DVec2, DVec3, Vec2, Vec3};
+use rayon::prelude::*;
+use scene::{Scene, SurfacePoint};
+
+/// Texels of a surface, of the density that its photographs are worth.
+pub(crate) struct Texels {
+    /// The places of the caller's atlas times this are ours.
+    scale: f64,
+    width: u32,
+    height: u32,
+    /// The caller's corners of each triangle.
+    corners: Vec<[Vec2; 3]>,
+    /// By row and column, the number of the texel, or [`NO_TEXEL`].
+    index: Vec<u32>,
+    /// Column and row of each.
+    places: Vec<[u32; 2]>,
+    positions: Vec<DVec3>,
+    /// Unit, geometric, on the front.
+    normals: Vec<Vec3>,
+    /// Unit, as the mesh's normals say, on the front.
+    shading_normals: Vec<Vec3>,
+    /// World area.
+    areas: Vec<f32>,
+}
+
+/// Up to four texels around a point and their shares, which sum to 1; none where the atlas has no place for it.
+pub(crate) type Around = [(u32, f32); 4];
+
+impl Texels {
+    /// The texels of an atlas made finer or coarser by `scale`.
+    pub fn of(scene: &Scene, atlas: &Atlas, scale: f64) -> Self {
+        let side = |side: u32| (f64::from(side) * scale).ceil().max(1.0) as u32;
+        let scaled = |corners: &[Vec2; 3]| corners.map(|corner| corner * scale as f32);
+        let finer = Atlas {
+            width: side(atlas.width),
+            height: side(atlas.height),
+            corners: atlas.corners.iter().map(scaled).collect(),
+            chart_of: atlas.chart_of.clone(),
+            charts: Vec::new(),
+            hash: String::new(),
+            density: atlas.density * scale,
+            notes: Vec::new(),
+        };
+        let TexelMap { width, height, texels, index, positions, normals, .. } = finer.texel_map(scene);
+        let shading_normals =
+            texels.par_iter().map(|texel| scene.shading_normal(texel.centroid).as_vec3()).collect();
+        Self {
+            scale,
+            width,
+            height,
+            corners: atlas.corners.clone(),
+            index,
+            places: texels.iter().map(|texel| [texel.x, texel.y]).collect(),
+            positions,
+            normals,
+            shading_normals,
+            areas: texels.iter().map(|texel| texel.area as f32).collect(),
+        }
+    }
+
+    pub fn count(&self) -> usize {
+        self.positions.len()
+    }
+
+    /// Columns and rows.
+    pub fn size(&self) -> [u32; 2] {
+        [self.width, self.height]
+    }
+
+    pub fn position(&self, texel: usize) -> DVec3 {
+        self.positions[texel]
+    }
+
+    pub fn normal(&self, texel: usize) -> Vec3 {
+        self.normals[texel]
+    }
+
+    pub fn shading_normal(&self, texel: usize) -> Vec3 {
+        self.shading_normals[texel]
+    }
+
+    pub fn area(&self, texel: usize) -> f32 {
+        self.areas[texel]
+    }
+
+    /// Column and row.
+    pub fn place(&self, texel: usize) -> [u32; 2] {
+        self.places[texel]
+    }
+
+    /// The texel at a column and row.
+    pub fn at(&self, x: i64, y: i64) -> Option<usize> {
+        let is_inside = x >= 0 && y >= 0 && x < i64::from(self.width) && y < i64::from(self.height);
+        let number = is_inside.then(|| self.index[y as usize * self.width as usize + x as usize])?;
+        (number != NO_TEXEL).then_some(number as usize)
+    }
+
+    /// The texels around a point, for linear interpolation.
+    pub fn around(&self, point: SurfacePoint) -> Option<Around> {
+        let corners = self.corners.get(point.triangle as usize)?.map(Vec2::as_dvec2);
+        let [a, b, c] = point.weights();
+        let at = (corners[0] * a + corners[1] * b + corners[2] * c) * self.scale - 0.5;
+        if !at.is_finite() {
+            return None;
+        }
+        let floor = at.floor();
+        let share = at - floor;
+        let (x, y) = (floor.x as i64, floor.y as i64);
+        let mut around = [(0, 0.0); 4];
+        let mut sum = 0.0;
+        for (k, slot) in around.iter_mut().enumerate() {
+            let (dx, dy) = (k as i64 & 1, k as i64 >> 1);
+            let weight = DVec2::new(
+                if dx == 0 { 1.0 - share.x } else { share.x },
+                if dy == 0 { 1.0 - share.y } else { share.y },
+            );
+            if let Some(texel) = self.at(x + dx, y + dy) {
+                *slot = (texel as u32, (weight.x * weight.y) as f32);
+                sum += slot.1;
+            }
+        }
+        if sum <= 0.0 {
+            // Where a place has no area its texel may lie a step away.
+            let (x, y) = (at.x.round() as i64, at.y.round() as i64);
+            let steps = [[0, 0], [1, 0], [0, 1], [-1, 0], [0, -1], [1, 1], [-1, 1], [1, -1], [-1, -1]];
+            let texel = steps.into_iter().find_map(|[dx, dy]| self.at(x + dx, y + dy))?;
+            return Some([(texel as u32, 1.0), (texel as u32, 0.0), (texel as u32, 0.0), (texel as u32, 0.0)]);
+        }
+        Some(around.map(|(texel, weight)| (texel, weight / sum)))
+    }
+
+    pub fn bytes(&self) -> usize {
+        size_of_val(self.corners.as_slice())
+            + size_of_val(self.index.as_slice())
+            + size_of_val(self.places.as_slice())
+            + size_of_val(self.positions.as_slice())
+            + size_of_val(self.normals.as_slice())
+            + size_of_val(self.shading_normals.as_slice())
+            + size_of_val(self.areas.as_slice())
+    }
+}
