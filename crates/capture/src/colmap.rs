@@ -3,15 +3,12 @@
 
 mod binary_model;
 mod camera_model;
+mod records;
 mod text_model;
-
-pub(crate) use camera_model::panorama;
 
 use crate::CaptureError;
 use crate::shot::{Shot, ShotLens, Shots};
 use crate::{folder::Folder, pose};
-use lens::CalibratedLens;
-use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 /// The two files of a model that are read.
@@ -69,17 +66,4 @@ impl Model {
         }
         Ok(shots)
     }
-}
-
-/// The lenses by COLMAP's ids, which have gaps.
-type Cameras = HashMap<u32, CalibratedLens>;
-
-/// An entry of `images`.
-struct Image {
-    place: String,
-    name: String,
-    camera: u32,
-    /// (w, x, y, z) of the rotation from the world to the camera.
-    quaternion: [f64; 4],
-    translation: [f64; 3],
 }

@@ -1,9 +1,5 @@
 //! Whose cameras a capture has.
 
-use crate::folder::Folder;
-use crate::layout::Cameras;
-use std::path::Path;
-
 /// Whose cameras a capture has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Kind {
@@ -30,10 +26,4 @@ impl Kind {
             Self::Metashape => "Metashape",
         }
     }
-}
-
-/// Whose capture a folder is, if it is one: by the names of some files in it, and the first line of a few.
-pub fn recognise(path: &Path) -> Option<Kind> {
-    let folder = Folder::open(path).ok()?;
-    Cameras::find(&folder).first().map(Cameras::kind)
 }

@@ -6,6 +6,12 @@ use crate::{CaptureError, Kind, bundler, colmap, metashape, nerfstudio, nvm};
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
+/// Whose capture a folder is, if it is one: by the names of some files in it, and the first lines of a few.
+pub fn recognise(path: &Path) -> Option<Kind> {
+    let folder = Folder::open(path).ok()?;
+    Cameras::find(&folder).first().map(Cameras::kind)
+}
+
 /// Files that tell of cameras.
 #[derive(Clone, Debug)]
 pub(crate) enum Cameras {

@@ -8,7 +8,8 @@
 //! paths, so that nothing outside is read unless the caller names it.
 //!
 //! The road of a capture: `layout` (whose cameras lie where) → `colmap`, `nerfstudio`, `bundler`, `nvm`, `metashape` (each to
-//! [`shot::Shot`]s: name, lens, pose) → `picture_names` (which file is whose) → `pictures` (size, EXIF, masks: views) → `mesh_file`,
+//! `shot`s: name, lens, pose) → `picture_place`, `picture_names` (which file is whose) →
+//! `pictures`, `picture_header` (size, EXIF, masks: views) → `mesh_file`,
 //! `ply`, `obj` (the surface) → `open`. What COLMAP's world calls up is guessed from the cameras (`upright`) and told, not applied.
 
 mod binary;
@@ -16,6 +17,7 @@ mod bundler;
 mod colmap;
 mod error;
 mod exif;
+mod fan;
 mod folder;
 mod kind;
 mod layout;
@@ -25,7 +27,9 @@ mod nerfstudio;
 mod nvm;
 mod obj;
 mod open;
+mod picture_header;
 mod picture_names;
+mod picture_place;
 mod pictures;
 mod ply;
 mod pose;
@@ -35,6 +39,7 @@ mod text;
 mod upright;
 
 pub use error::CaptureError;
-pub use kind::{Kind, recognise};
+pub use kind::Kind;
+pub use layout::recognise;
 pub use open::{Capture, CaptureOptions, open};
 pub use remark::Remark;

@@ -19,8 +19,10 @@ use std::collections::HashMap;
 use std::path::Path;
 
 /// The largest file that is read, and the most elements: parsed, each takes some hundred bytes.
-const LARGEST: u64 = 64 << 20;
+const LARGEST: u64 = 32 << 20;
 const MOST_NODES: u32 = 2_000_000;
+/// The most attributes of an element: the parser compares each with each.
+const MOST_ATTRIBUTES: usize = 1000;
 
 /// The pictures of a file's first chunk that has any.
 pub(crate) fn read(file: &Path) -> Result<Shots, CaptureError> {
@@ -33,6 +35,11 @@ pub(crate) fn read(file: &Path) -> Result<Shots, CaptureError> {
     let bytes = std::fs::read(file).map_err(unreadable)?;
     let text = String::from_utf8_lossy(&bytes);
     let text = text.trim_start_matches('\u{feff}');
+    // An element's tag ends before the next begins.
+    if text.split('<').any(|tag| tag.bytes().filter(|byte| *byte == b'=').count() > MOST_ATTRIBUTES) {
+        let what = format!("has an element of more than {MOST_ATTRIBUTES} attributes");
+        return Err(CaptureError::TooBig { file: file.into(), what });
+    }
     let options = ParsingOptions { nodes_limit: MOST_NODES, ..ParsingOptions::default() };
     let document = Document::parse_with_options(text, options).map_err(|error| {
         CaptureError::malformed(
@@ -164,7 +171,7 @@ impl Reader<'_> {
             "frame" => Projection::Perspective,
             "fisheye" | "equidistant_fisheye" => Projection::Equidistant,
             "spherical" => {
-                let lens = crate::colmap::panorama([width, height]);
+                let lens = CalibratedLens::panorama([width, height]);
                 return lens.map_err(|error| wrong(&error.to_string()));
             }
             _ => return Err(wrong(&format!("cameras of type {} are not known", quoted(kind)))),

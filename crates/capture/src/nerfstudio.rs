@@ -1,7 +1,6 @@
 //! `transforms.json` of nerfstudio and instant-ngp: poses in OpenGL's axes, a lens for all pictures or one each.
 
 use crate::CaptureError;
-use crate::colmap::panorama;
 use crate::pose::{Axes, of_camera_to_world};
 use crate::shot::{Focal, Shot, ShotLens, Shots};
 use crate::text::quoted;
@@ -11,8 +10,10 @@ use serde_json::{Map, Value};
 use std::io::Read;
 use std::path::Path;
 
-/// The largest file that is read; parsed it takes some ten times that.
+/// The largest file that is read, and the most objects and values in it: parsed, an object takes some 700 bytes, a value 64.
 const LARGEST: u64 = 32 << 20;
+const MOST_OBJECTS: usize = 200_000;
+const MOST_VALUES: usize = 4_000_000;
 
 /// What a frame, or the file for all frames, may say of the lens.
 const OF_LENS: [&str; 21] = [
@@ -115,6 +116,11 @@ fn parsed(file: &Path) -> Result<Value, CaptureError> {
     let mut bytes = Vec::with_capacity(size as usize);
     (&mut input).take(size).read_to_end(&mut bytes).map_err(unreadable)?;
     let text = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(&bytes);
+    let number = |of: &[u8]| text.iter().filter(|byte| of.contains(byte)).count();
+    if number(b"{") > MOST_OBJECTS || number(b"[,") > MOST_VALUES {
+        let what = format!("has more than {MOST_OBJECTS} objects or {MOST_VALUES} values");
+        return Err(CaptureError::TooBig { file: file.into(), what });
+    }
     serde_json::from_slice(text).map_err(|error| {
         let place = format!("line {}", error.line());
         CaptureError::malformed(file, place, format!("its JSON is invalid: {error}"))
@@ -173,7 +179,7 @@ impl Properties<'_> {
         let said = |error: CameraError| error.to_string();
         if projection == Projection::Equirectangular {
             let size = size.ok_or("a panorama without w and h")?;
-            return panorama(size).map(ShotLens::Calibrated).map_err(said);
+            return CalibratedLens::panorama(size).map(ShotLens::Calibrated).map_err(said);
         }
         let angle = |key: &str| -> Result<Option<f64>, String> {
             let angle = self.number(key)?;

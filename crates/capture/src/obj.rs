@@ -2,7 +2,7 @@
 //! photographs know better.
 
 use crate::CaptureError;
-use crate::mesh_file::fan;
+use crate::fan::fan;
 use crate::text::{Lines, number, quoted};
 use glam::{DVec3, Vec3, Vec4};
 use scene::{LoadOptions, SurfaceMesh, linear_from_srgb};

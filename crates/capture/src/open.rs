@@ -2,6 +2,7 @@
 
 use crate::folder::Folder;
 use crate::layout::Cameras;
+use crate::picture_place::Source;
 use crate::upright::upright;
 use crate::{CaptureError, Kind, Remark, mesh_file, pictures};
 use glam::DQuat;
@@ -108,14 +109,8 @@ fn views<'a>(
     for cameras in candidates {
         let shots = cameras.read()?;
         let mut own_remarks = Vec::new();
-        match pictures::views(
-            folder,
-            cameras.file(),
-            shots,
-            options.pictures.as_deref(),
-            progress,
-            &mut own_remarks,
-        ) {
+        let source = Source { folder, cameras: cameras.file(), given: options.pictures.as_deref() };
+        match pictures::views(&source, shots, progress, &mut own_remarks) {
             Ok(views) => {
                 remarks.extend(own_remarks);
                 return Ok((cameras, views));

@@ -8,7 +8,7 @@ mod body;
 mod header;
 
 use crate::CaptureError;
-use crate::mesh_file::fan;
+use crate::fan::fan;
 use body::Body;
 use glam::{DVec3, Vec3, Vec4};
 use header::{Element, Header, Kind};
@@ -23,7 +23,8 @@ pub(crate) fn may_have_faces(file: &Path) -> bool {
 
 /// The mesh of a file.
 pub(crate) fn read(file: &Path, options: &LoadOptions) -> Result<SurfaceMesh, CaptureError> {
-    let (header, mut body) = Header::open(file)?;
+    let (header, rest) = Header::open(file)?;
+    let mut body = Body::new(file, header.format, rest);
     let name = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     let mut mesh = SurfaceMesh { path: file.into(), name, ..SurfaceMesh::default() };
     for (element, is_wanted) in header.until(&["vertex", "face"]) {

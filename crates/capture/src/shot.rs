@@ -35,6 +35,14 @@ pub(crate) enum Focal {
 }
 
 impl ShotLens {
+    /// The size of the pictures that it was found with, if it knows.
+    pub fn size_px(&self) -> Option<[u32; 2]> {
+        match self {
+            Self::Calibrated(lens) => Some(lens.size_px()),
+            Self::Centred { .. } => None,
+        }
+    }
+
     /// The lens of a picture of this size, if it does not know better.
     pub fn for_size(&self, size_px: [u32; 2]) -> Result<CalibratedLens, CameraError> {
         match *self {

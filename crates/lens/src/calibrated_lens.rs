@@ -89,6 +89,18 @@ impl CalibratedLens {
         Self::new(intrinsics, Projection::Perspective, Distortion::default())
     }
 
+    /// A panorama of all directions ([`Projection::Equirectangular`]), straight ahead in its middle.
+    ///
+    /// # Errors
+    /// A size of 0.
+    pub fn panorama(size_px: [u32; 2]) -> Result<Self, CameraError> {
+        let [width, height] = size_px.map(f64::from);
+        let focal_px = [width / (2.0 * PI), height / PI];
+        let intrinsics =
+            Intrinsics { size_px, focal_px, skew_px: 0.0, principal_px: [0.5 * width, 0.5 * height] };
+        Self::new(intrinsics, Projection::Equirectangular, Distortion::default())
+    }
+
     /// Scale and place of its picture.
     pub fn intrinsics(&self) -> &Intrinsics {
         &self.intrinsics

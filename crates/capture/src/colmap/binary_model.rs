@@ -1,6 +1,7 @@
 //! COLMAP's binary files: little endian, counts of 64 bits, names that end with a zero.
 
-use super::{Cameras, Image, camera_model};
+use super::camera_model;
+use super::records::{Cameras, Image};
 use crate::CaptureError;
 use crate::binary::Binary;
 use std::path::Path;

@@ -41,7 +41,7 @@ pub(super) fn lens(model: &str, size_px: [u32; 2], parameters: &[f64]) -> Result
         return Err(format!("{model} has {count} parameters, not {}", parameters.len()));
     }
     if model == "EQUIRECTANGULAR" {
-        return panorama(size_px).map_err(|error| error.to_string());
+        return CalibratedLens::panorama(size_px).map_err(|error| error.to_string());
     }
     // One focal length or two, the principal point, and the rest.
     let is_simple = matches!(
@@ -97,18 +97,6 @@ fn flaws(model: &str, rest: &[f64]) -> (Projection, Distortion) {
         // SIMPLE_PINHOLE, PINHOLE, SIMPLE_RADIAL, RADIAL.
         _ => (Perspective, Distortion::radial(rest)),
     }
-}
-
-/// A panorama of all directions.
-pub(crate) fn panorama(size_px: [u32; 2]) -> Result<CalibratedLens, lens::CameraError> {
-    let [width, height] = size_px.map(f64::from);
-    let intrinsics = Intrinsics {
-        size_px,
-        focal_px: [width / std::f64::consts::TAU, height / std::f64::consts::PI],
-        skew_px: 0.0,
-        principal_px: [0.5 * width, 0.5 * height],
-    };
-    CalibratedLens::new(intrinsics, Projection::Equirectangular, Distortion::default())
 }
 
 #[cfg(test)]

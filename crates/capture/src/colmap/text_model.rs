@@ -3,7 +3,8 @@
 //! `images.txt` has two lines a picture: the pose, and the points that were found in it. The second may be empty, and is left out by
 //! programs that drop empty lines; so what a line is, is told by what stands in it.
 
-use super::{Cameras, Image, camera_model};
+use super::camera_model;
+use super::records::{Cameras, Image};
 use crate::CaptureError;
 use crate::text::{Lines, count, number, numbers, quoted};
 use std::path::Path;

@@ -1,6 +1,6 @@
 //! The tables of a PLY file, row by row.
 
-use super::header::{Element, Format, Kind, Scalar};
+use super::header::{Element, Format, Kind, Rest, Scalar};
 use crate::CaptureError;
 use crate::text::Lines;
 use scene::LoadOptions;
@@ -24,14 +24,9 @@ enum Input {
 }
 
 impl Body {
-    /// The body of a file after a header of so many lines and bytes, of how many.
-    pub fn new(
-        file: &Path,
-        input: BufReader<File>,
-        format: Format,
-        lines: usize,
-        [at, size]: [u64; 2],
-    ) -> Self {
+    /// The body of a file, after its header.
+    pub fn new(file: &Path, format: Format, rest: Rest) -> Self {
+        let Rest { input, lines, at, size } = rest;
         let input = match format {
             Format::Ascii => {
                 Input::Ascii { lines: Lines::rest_of(file, input, lines), line: String::new(), next: 0 }

@@ -1,6 +1,5 @@
 //! What a PLY file says it holds.
 
-use super::body::Body;
 use crate::CaptureError;
 use crate::text::quoted;
 use std::fs::File;
@@ -10,7 +9,21 @@ use std::path::Path;
 /// The elements in the order of the file.
 #[derive(Debug)]
 pub(super) struct Header {
+    /// How what follows is written.
+    pub format: Format,
     pub elements: Vec<Element>,
+}
+
+/// What follows the header.
+#[derive(Debug)]
+pub(super) struct Rest {
+    pub input: BufReader<File>,
+    /// Lines of the header.
+    pub lines: usize,
+    /// Bytes of the header.
+    pub at: u64,
+    /// Bytes of the file.
+    pub size: u64,
 }
 
 /// A table of the file.
@@ -106,19 +119,19 @@ impl Element {
 
 impl Header {
     /// The header of a file, and what follows it.
-    pub fn open(file: &Path) -> Result<(Self, Body), CaptureError> {
+    pub fn open(file: &Path) -> Result<(Self, Rest), CaptureError> {
         let unreadable = |source| CaptureError::unreadable(file, source);
         let mut input = BufReader::new(File::open(file).map_err(unreadable)?);
         let size = input.get_ref().metadata().map_err(unreadable)?.len();
-        let mut header = Self { elements: Vec::new() };
+        let mut elements: Vec<Element> = Vec::new();
         let mut format = None;
-        let mut read = 0;
+        let mut at = 0;
         /// More is no header.
         const MOST_LINES: usize = 1000;
         for number in 1..=MOST_LINES {
             const LONGEST: u64 = 4096;
             let mut line = Vec::new();
-            read += (&mut input).take(LONGEST).read_until(b'\n', &mut line).map_err(unreadable)? as u64;
+            at += (&mut input).take(LONGEST).read_until(b'\n', &mut line).map_err(unreadable)? as u64;
             let line = String::from_utf8_lossy(&line);
             let fields: Vec<&str> = line.split_whitespace().collect();
             let wrong = |what: &str| CaptureError::malformed(file, format!("line {number}"), what);
@@ -136,7 +149,7 @@ impl Header {
                 ["element", name, count] => {
                     let count =
                         count.parse().map_err(|_| wrong(&format!("{} is no count", quoted(count))))?;
-                    header.elements.push(Element { name: name.into(), count, properties: Vec::new() });
+                    elements.push(Element { name: name.into(), count, properties: Vec::new() });
                 }
                 ["property", .., name] => {
                     let kind = match fields[1..fields.len() - 1] {
@@ -147,13 +160,12 @@ impl Header {
                         _ => None,
                     };
                     let kind = kind.ok_or_else(|| wrong("is no property of a known type"))?;
-                    let element =
-                        header.elements.last_mut().ok_or_else(|| wrong("is a property of no element"))?;
+                    let element = elements.last_mut().ok_or_else(|| wrong("is a property of no element"))?;
                     element.properties.push(Property { name: name.into(), kind });
                 }
                 ["end_header"] => {
                     let format = format.ok_or_else(|| wrong("no format was given"))?;
-                    return Ok((header, Body::new(file, input, format, number, [read, size])));
+                    return Ok((Self { format, elements }, Rest { input, lines: number, at, size }));
                 }
                 ["comment" | "obj_info", ..] | [] => {}
                 _ => return Err(wrong(&format!("{} is no line of a header", quoted(line.trim())))),

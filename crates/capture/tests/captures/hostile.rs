@@ -108,6 +108,12 @@ fn deep_nesting_is_refused() {
     let json = folder("transforms.json", format!("{{\"frames\": {}}}", deep("[", "]")));
     assert!(json.contains("recursion limit"), "{json}");
     folder("cameras.xml", format!("<document><chunk>{}</chunk></document>", deep("<a>", "</a>")));
+    // What takes a parser much more than its text.
+    let objects = folder("transforms.json", format!("{{\"frames\": [{}0]}}", "{\"\":0},".repeat(4_000_000)));
+    assert!(objects.contains("more than 200000 objects"), "{objects}");
+    let attributes: String = (0..200_000).map(|k| format!(" a{k}=\">\"")).collect();
+    let xml = folder("cameras.xml", format!("<document><chunk{attributes}></chunk></document>"));
+    assert!(xml.contains("more than 1000 attributes"), "{xml}");
     // Entities that grow.
     let bomb = "<!DOCTYPE d [<!ENTITY a \"aaaaaaaaaa\"><!ENTITY b \"&a;&a;&a;\">]><document><chunk>&b;</chunk></document>";
     let xml = folder("cameras.xml", bomb.into());

@@ -1,0 +1,163 @@
+//! Where a capture's pictures and masks lie.
+
+use crate::CaptureError;
+use crate::folder::{Folder, Found, extension};
+use crate::picture_names::{EXTENSIONS, PictureFiles};
+use crate::shot::Shot;
+use std::path::{Path, PathBuf};
+
+/// What folders of pictures are called, likelier ones first; also `images_2` and the like.
+const PICTURE_FOLDERS: [&str; 8] =
+    ["images", "image", "imgs", "photos", "photographs", "pictures", "input", "rgb"];
+/// What folders of masks are called.
+const MASK_FOLDERS: [&str; 2] = ["masks", "mask"];
+/// Folders whose pictures are no photographs.
+const OTHER_FOLDERS: [&str; 9] =
+    ["masks", "mask", "depth", "depths", "depth_maps", "normals", "normal_maps", "stereo", "thumbnails"];
+
+/// How deep pictures lie in subfolders, and how many are looked at.
+const DEEPEST: usize = 8;
+const MOST: usize = 100_000;
+
+/// Where to look.
+#[derive(Clone, Copy)]
+pub(crate) struct Source<'a> {
+    /// The capture's folder.
+    pub folder: &'a Folder,
+    /// The file with the cameras.
+    pub cameras: &'a Path,
+    /// Where the pictures are, wherever that is, if somebody says so.
+    pub given: Option<&'a Path>,
+}
+
+/// A folder of pictures, and which of them are those of some names.
+pub(crate) struct Place {
+    pub base: PathBuf,
+    /// Whether it is a folder of pictures and of nothing else.
+    is_named: bool,
+    /// Below `base`, with `/`.
+    paths: Vec<String>,
+    /// For each name the index of its path.
+    files: Vec<Option<usize>>,
+}
+
+impl Place {
+    /// The folder where most pictures of these names are.
+    pub fn find(source: &Source<'_>, names: &[String]) -> Result<Self, CaptureError> {
+        let Source { folder, cameras, given } = *source;
+        if let Some(given) = given {
+            return Ok(Self::of(&Folder::open(given)?, given.into(), true, names));
+        }
+        let above = || cameras.ancestors().skip(1).take_while(|place| place.starts_with(&folder.shown));
+        let (mut bases, mut outside) = (Vec::new(), None);
+        for (path, found) in above().flat_map(|place| picture_folders(folder, place)) {
+            match found {
+                Found::Folder => bases.push((path, true)),
+                Found::Outside => drop(outside.get_or_insert(path)),
+                Found::File => {}
+            }
+        }
+        bases.extend(above().map(|place| (place.to_path_buf(), false)));
+        let mut best = Self {
+            base: folder.shown.clone(),
+            is_named: false,
+            paths: Vec::new(),
+            files: vec![None; names.len()],
+        };
+        for (base, is_named) in bases {
+            let place = Self::of(folder, base, is_named, names);
+            if place.hits() > best.hits() {
+                best = place;
+            }
+            if best.hits() == names.len() {
+                break;
+            }
+        }
+        match outside {
+            Some(file) if best.hits() == 0 => {
+                Err(CaptureError::Outside { file, cure: "copy the pictures there, or name their folder" })
+            }
+            _ => Ok(best),
+        }
+    }
+
+    fn of(folder: &Folder, base: PathBuf, is_named: bool, names: &[String]) -> Self {
+        let paths = listed(folder, &base, &OTHER_FOLDERS);
+        let files = PictureFiles::new(paths.clone()).resolve(names);
+        Self { base, is_named, paths, files }
+    }
+
+    fn hits(&self) -> usize {
+        self.files.iter().flatten().count()
+    }
+
+    /// The path, below the folder, of the picture of a name.
+    pub fn path(&self, name: usize) -> Option<&str> {
+        self.files[name].map(|file| self.paths[file].as_str())
+    }
+
+    /// Pictures that nobody asked for.
+    pub fn unused(&self) -> Vec<String> {
+        let mut is_used = vec![false; self.paths.len()];
+        self.files.iter().flatten().for_each(|&file| is_used[file] = true);
+        let unused = self.paths.iter().zip(is_used).filter(|(_, is_used)| !is_used && self.is_named);
+        unused.map(|(path, _)| path.clone()).collect()
+    }
+}
+
+/// The folders of pictures in a folder, likelier ones first.
+fn picture_folders(folder: &Folder, place: &Path) -> Vec<(PathBuf, Found)> {
+    let rank = |path: &Path| {
+        let name = path.file_name().unwrap_or_default().to_string_lossy().to_lowercase();
+        let known = PICTURE_FOLDERS.iter().position(|known| *known == name);
+        known.or(name.starts_with("images_").then_some(PICTURE_FOLDERS.len()))
+    };
+    let entries = folder.entries(place).into_iter();
+    let mut ranked: Vec<_> = entries.filter_map(|(path, found)| Some((rank(&path)?, path, found))).collect();
+    ranked.sort_by_key(|(rank, ..)| *rank);
+    ranked.into_iter().map(|(_, path, found)| (path, found)).collect()
+}
+
+/// For each shot its mask, if it has one: what the file says, or what lies beside the pictures, called `NAME.png` as COLMAP has it,
+/// or like the picture.
+pub(crate) fn masks(source: &Source<'_>, place: &Place, shots: &[Shot]) -> Vec<Option<PathBuf>> {
+    let Source { folder, cameras, .. } = *source;
+    let mut masks = vec![None; shots.len()];
+    let mut resolve = |base: &Path, names: Vec<(usize, String)>| {
+        let (indices, names): (Vec<usize>, Vec<String>) = names.into_iter().unzip();
+        if names.is_empty() || folder.find(base) != Some(Found::Folder) {
+            return;
+        }
+        let paths = listed(folder, base, &[]);
+        for (index, file) in indices.into_iter().zip(PictureFiles::new(paths.clone()).resolve(&names)) {
+            if let (None, Some(file)) = (&masks[index], file) {
+                masks[index] = Some(base.join(&paths[file]));
+            }
+        }
+    };
+    let said =
+        shots.iter().enumerate().filter_map(|(index, shot)| Some((index, shot.mask.clone()?))).collect();
+    resolve(cameras.parent().unwrap_or(&folder.shown), said);
+    let beside = place.base.parent().into_iter().chain([place.base.as_path()]);
+    for base in beside.flat_map(|place| MASK_FOLDERS.map(|name| place.join(name))) {
+        for ending in [".png", ""] {
+            let names = place.files.iter().enumerate();
+            let names =
+                names.filter_map(|(index, file)| Some((index, format!("{}{ending}", place.paths[(*file)?]))));
+            resolve(&base, names.collect());
+        }
+    }
+    masks
+}
+
+/// The paths of the pictures in a folder, relative to it, with `/`; of subfolders but for some.
+fn listed(folder: &Folder, base: &Path, without: &[&str]) -> Vec<String> {
+    let relative = |path: &PathBuf| -> Option<String> {
+        let path = path.strip_prefix(base).ok()?;
+        let parts: Vec<_> = path.iter().map(|part| part.to_string_lossy()).collect();
+        let (_, folders) = parts.split_last()?;
+        let is_other = folders.iter().any(|name| without.contains(&name.to_lowercase().as_str()));
+        (!is_other && EXTENSIONS.contains(&extension(path).as_str())).then(|| parts.join("/"))
+    };
+    folder.files(base, DEEPEST, MOST).iter().filter_map(relative).collect()
+}
