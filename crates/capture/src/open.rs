@@ -5,9 +5,9 @@ use crate::layout::Cameras;
 use crate::picture_place::Source;
 use crate::upright::upright;
 use crate::{CaptureError, Kind, Remark, mesh_file, pictures};
-use glam::DQuat;
+use glam::{DQuat, DVec2};
 use progress::{Progress, Stage};
-use scene::{LoadOptions, Scene, View};
+use scene::{LoadOptions, Scene, SurfacePoint, View};
 use std::path::{Path, PathBuf};
 
 /// How a capture is read.
@@ -124,13 +124,22 @@ fn views<'a>(
 
 /// A remark if no picture shows anything of the mesh: it is in another world than the cameras.
 fn unseen(scene: &Scene, views: &[View], mesh: &Path) -> Option<Remark> {
-    /// As many vertices tell.
+    /// As many points of it tell, spread over its triangles.
     const SAMPLES: usize = 500;
-    let step = scene.positions.len().div_ceil(SAMPLES).max(1);
-    let mut samples = scene.positions.iter().step_by(step);
+    let triangles = scene.triangles.len();
+    let (step, each) = (triangles.div_ceil(SAMPLES).max(1), SAMPLES.div_ceil(triangles.max(1)));
+    // Roberts's sequence, folded into the triangle.
+    let barycentric = |k: usize| {
+        let at = (DVec2::new(0.754_877_666_246_692_8, 0.569_840_290_998_053_3) * (k + 1) as f64).fract();
+        if at.element_sum() > 1.0 { 1.0 - at } else { at }
+    };
+    let of_triangle = |triangle: usize| {
+        (0..each).map(move |k| SurfacePoint { triangle: triangle as u32, barycentric: barycentric(k) })
+    };
+    let mut samples = (0..triangles).step_by(step).flat_map(of_triangle);
     let is_seen =
         |view: &View, point| view.project(point).is_some_and(|pixel| view.lens.is_in_picture(pixel));
-    let is_unseen = samples.all(|point| !views.iter().any(|view| is_seen(view, *point)));
+    let is_unseen = samples.all(|point| !views.iter().any(|view| is_seen(view, point.position(scene))));
     is_unseen.then(|| Remark {
         text: format!(
             "{}: no picture shows anything of it (its axes or scale are not those of the cameras; export both from one program)",

@@ -7,7 +7,6 @@ use glam::{DVec2, DVec3};
 use lens::FocusOffset;
 use rayon::prelude::*;
 use salf::Visibility;
-use trace::Radiance;
 
 /// The image of the aperture as one surface point sees it, by rays.
 #[derive(Clone, Debug, PartialEq)]

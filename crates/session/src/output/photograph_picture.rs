@@ -82,18 +82,17 @@ impl Place<'_> {
     fn at(&self, number: u32) -> Option<(DVec2, Vec3)> {
         let ray = self.ray(number);
         let at = self.view.project(ray.origin + ray.direction)?;
-        let size = DVec2::new(f64::from(self.shown.width), f64::from(self.shown.height));
-        if at.min(size - at).min_element() < 0.5 {
+        if !self.view.lens.is_in_picture(at) {
             return None;
         }
-        let corner = (at - 0.5).floor().min(size - 2.0).max(DVec2::ZERO);
-        let [right, down] = (at - 0.5 - corner).as_vec2().to_array();
+        let last = DVec2::new(f64::from(self.shown.width - 1), f64::from(self.shown.height - 1));
+        let place = (at - 0.5).clamp(DVec2::ZERO, last);
+        let corner = place.floor();
+        let [right, down] = (place - corner).as_vec2().to_array();
         let pixel = |x: u32, y: u32| {
-            let [column, row] = [corner.x as u32 + x, corner.y as u32 + y];
-            Vec3::from(
-                self.shown.pixels[(row.min(self.shown.height - 1) * self.shown.width
-                    + column.min(self.shown.width - 1)) as usize],
-            )
+            let column = (corner.x as u32 + x).min(self.shown.width - 1);
+            let row = (corner.y as u32 + y).min(self.shown.height - 1);
+            Vec3::from(self.shown.pixels[(row * self.shown.width + column) as usize])
         };
         let row = |y: u32| pixel(0, y).lerp(pixel(1, y), right);
         Some((at, row(0).lerp(row(1), down)))
