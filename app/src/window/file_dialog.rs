@@ -18,6 +18,8 @@ const LISTED: usize = 200;
 pub enum Purpose {
     /// A scene or a project to open.
     Open,
+    /// The folder of a capture to open.
+    OpenCapture,
     /// The project.
     SaveAs,
     /// The picture.
@@ -46,6 +48,7 @@ impl Purpose {
     fn title(self) -> &'static str {
         match self {
             Self::Open => "Open a scene or a project",
+            Self::OpenCapture => "Open the folder of a capture",
             Self::SaveAs => "Save the project as",
             Self::ExportPicture => "Export the picture",
             Self::ExportShown => "Export the picture as shown",
@@ -63,6 +66,7 @@ impl Purpose {
     fn extensions(self) -> &'static [&'static str] {
         match self {
             Self::Open => &["glb", "gltf", "fbrush"],
+            Self::OpenCapture => &[],
             Self::SaveAs => &["fbrush"],
             Self::ExportPicture | Self::ExportShown | Self::ExportFocusMap => &["exr", "png"],
             Self::ImportFocusMap => &["exr", "png", "json"],
@@ -88,6 +92,11 @@ impl Purpose {
         }
     }
 
+    /// Whether a folder is meant.
+    fn is_folder(self) -> bool {
+        self == Self::OpenCapture
+    }
+
     /// Whether a file is written.
     pub fn writes(self) -> bool {
         matches!(
@@ -104,7 +113,7 @@ impl Purpose {
 
     fn verb(self) -> &'static str {
         match self {
-            Self::Open => "Open",
+            Self::Open | Self::OpenCapture => "Open",
             Self::SaveAs => "Save",
             _ if self.writes() => "Export",
             Self::ImportFocusMap | Self::ImportPreset => "Import",
@@ -214,7 +223,7 @@ fn system_dialog(
     context: &Context,
 ) -> Option<mpsc::Receiver<Option<PathBuf>>> {
     let mut dialog = rfd::AsyncFileDialog::new().set_title(purpose.title());
-    if purpose.formats().is_empty() {
+    if purpose.formats().is_empty() && !purpose.is_folder() {
         dialog = dialog.add_filter(purpose.extensions().join(", "), purpose.extensions());
     }
     for (extension, name, _) in purpose.formats() {
@@ -229,8 +238,11 @@ fn system_dialog(
     let (sender, receiver) = mpsc::channel();
     let context = context.clone();
     // Some systems want the dialog made on this thread; none minds where it is waited for.
-    let waiting: std::pin::Pin<Box<dyn Future<Output = Option<rfd::FileHandle>> + Send>> =
-        if purpose.writes() { Box::pin(dialog.save_file()) } else { Box::pin(dialog.pick_file()) };
+    let waiting: std::pin::Pin<Box<dyn Future<Output = Option<rfd::FileHandle>> + Send>> = match () {
+        () if purpose.writes() => Box::pin(dialog.save_file()),
+        () if purpose.is_folder() => Box::pin(dialog.pick_folder()),
+        () => Box::pin(dialog.pick_file()),
+    };
     let wait = move || {
         let path = pollster::block_on(waiting).map(|file| file.path().to_path_buf());
         // Nobody waits any more if a path was typed meanwhile.
@@ -286,8 +298,9 @@ fn typed_dialog(
         ui.heading(purpose.title());
         ui.add_space(4.0);
         let mut chosen: Option<PathBuf> = None;
-        let edit =
-            egui::TextEdit::singleline(text).hint_text("path of the file").desired_width(f32::INFINITY);
+        let edit = egui::TextEdit::singleline(text)
+            .hint_text(if purpose.is_folder() { "path of the folder" } else { "path of the file" })
+            .desired_width(f32::INFINITY);
         let output = edit.show(ui);
         let response = output.response.response;
         super::controls::named(&response, "Path");
@@ -310,7 +323,11 @@ fn typed_dialog(
         egui::ScrollArea::vertical().auto_shrink([false; 2]).max_height(240.0).show(ui, |ui| {
             let entries = entries(purpose, text);
             if entries.is_empty() {
-                ui.weak("No files of this kind here yet.");
+                ui.weak(if purpose.is_folder() {
+                    "No folders in here."
+                } else {
+                    "No files of this kind here yet."
+                });
             }
             for entry in entries {
                 let name =
@@ -400,6 +417,9 @@ fn replaceable(purpose: Purpose, text: &str) -> [usize; 2] {
 fn problem(purpose: Purpose, path: &Path) -> Option<&'static str> {
     if path.as_os_str().is_empty() {
         return Some("Type a path.");
+    }
+    if purpose.is_folder() {
+        return (!path.is_dir()).then_some("There is no such folder.");
     }
     if path.is_dir() {
         return Some("This is a folder.");

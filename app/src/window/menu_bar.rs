@@ -102,9 +102,9 @@ fn with_what(name: &str, what: Option<&str>) -> String {
 pub fn is_possible(id: CommandId, state: &MenuState<'_>) -> bool {
     use CommandId::*;
     match id {
-        Open | OpenDemo | Quit | ResetLayout | EnlargePanel | FloatPanel | FullScreen | ShowInspector
-        | NextToneCurve | LightOrDark | ScaleUp | ScaleDown | KeysBlender | KeysSubstance | KeysKrita
-        | ImportPreset | Palette | Shortcuts | About => true,
+        Open | OpenCapture | OpenDemo | Quit | ResetLayout | EnlargePanel | FloatPanel | FullScreen
+        | ShowInspector | NextToneCurve | LightOrDark | ScaleUp | ScaleDown | KeysBlender | KeysSubstance
+        | KeysKrita | ImportPreset | Palette | Shortcuts | About => true,
         SelectAll | InvertSelection | MaskFromSelection => {
             state.document.is_some_and(|document| document.selection.is_some())
         }

@@ -14,6 +14,8 @@ pub enum Next {
     OpenDemo,
     /// A file to open is asked for.
     AskOpen,
+    /// The folder of a capture is.
+    AskCapture,
 }
 
 /// What the user wants done with the changes.

@@ -132,19 +132,24 @@ fn scene_camera_row(ui: &mut Ui, document: &Document, actions: &mut Vec<Action>)
         .scene_cameras()
         .find(|(_, camera)| camera.camera_to_world == document.camera.camera_to_world);
     let name = current.map_or("own", |(name, _)| name).to_string();
-    row(ui, "Camera", "A camera of the scene; the lens stays as it is.", |ui| {
-        let combo = ComboBox::from_id_salt("camera").selected_text(&name).width(150.0);
-        combo
-            .show_ui(ui, |ui| {
-                for (candidate, camera) in document.scene_cameras() {
-                    if ui.selectable_label(candidate == name, candidate).clicked() {
-                        actions.push(Command::Camera(CameraEdit::Whole(camera)).into());
-                        actions.push(Command::FinishEdit.into());
+    row(
+        ui,
+        "Camera",
+        "A camera of the scene, or of one of its photographs; the lens stays as it is.",
+        |ui| {
+            let combo = ComboBox::from_id_salt("camera").selected_text(&name).width(150.0);
+            combo
+                .show_ui(ui, |ui| {
+                    for (candidate, camera) in document.scene_cameras() {
+                        if ui.selectable_label(candidate == name, candidate).clicked() {
+                            actions.push(Command::Camera(CameraEdit::Whole(camera)).into());
+                            actions.push(Command::FinishEdit.into());
+                        }
                     }
-                }
-            })
-            .response
-    });
+                })
+                .response
+        },
+    );
 }
 
 /// Size, exposure, and how large the preview is drawn.

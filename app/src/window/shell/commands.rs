@@ -33,6 +33,7 @@ impl Shell {
     pub(super) fn carry_out(&mut self, id: CommandId, context: &Context) {
         match id {
             CommandId::Open => self.ask_then(Next::AskOpen, context),
+            CommandId::OpenCapture => self.ask_then(Next::AskCapture, context),
             CommandId::OpenDemo => self.ask_then(Next::OpenDemo, context),
             CommandId::Save => self.save(context),
             CommandId::SaveAs => self.ask_for(Purpose::SaveAs, context),

@@ -43,10 +43,11 @@ impl Shell {
             }
             Next::Open(path) => self.open(path),
             Next::OpenDemo => self.open_demo(),
-            Next::AskOpen => {
+            Next::AskOpen | Next::AskCapture => {
+                let purpose = if next == Next::AskCapture { Purpose::OpenCapture } else { Purpose::Open };
                 let folder = self.settings.recent.first().and_then(|path| Some(path.parent()?.to_path_buf()));
                 let folder = folder.or_else(|| std::env::current_dir().ok()).unwrap_or_default();
-                self.dialog.ask(Purpose::Open, folder.join(""), context);
+                self.dialog.ask(purpose, folder.join(""), context);
             }
         }
     }
@@ -84,6 +85,7 @@ impl Shell {
             Purpose::ExportScene => format!("{stem}-unwrapped.glb"),
             Purpose::ExportStrokes => format!("{stem}-strokes.json"),
             Purpose::Open
+            | Purpose::OpenCapture
             | Purpose::ImportFocusMap
             | Purpose::ApertureMask
             | Purpose::Environment
@@ -125,7 +127,7 @@ impl Shell {
 
     pub(super) fn answered(&mut self, purpose: Purpose, path: PathBuf) {
         match purpose {
-            Purpose::Open => self.open(path),
+            Purpose::Open | Purpose::OpenCapture => self.open(path),
             Purpose::SaveAs => {
                 self.keep_viewpoint();
                 self.apply(Command::SaveAs(path));

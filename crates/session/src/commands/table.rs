@@ -8,6 +8,7 @@
 #[allow(missing_docs, reason = "the table below says what each one does")]
 pub enum CommandId {
     Open,
+    OpenCapture,
     OpenDemo,
     Save,
     SaveAs,
@@ -237,6 +238,7 @@ const fn row(
 #[rustfmt::skip]
 pub const COMMANDS: &[CommandInfo] = &[
     row(CommandId::Open, Menu::File, Shortcut::command("O"), "Open…", "Open a glTF scene (.glb, .gltf) or a project."),
+    row(CommandId::OpenCapture, Menu::File, Shortcut::command_shift("O"), "Open a capture…", "Open the folder of a photographed place: pictures, their cameras and a mesh."),
     row(CommandId::OpenDemo, Menu::File, None, "Open the demo", "Open the scene that comes with Focus Brush."),
     row(CommandId::Save, Menu::File, Shortcut::command("S"), "Save", "Save the project."),
     row(CommandId::SaveAs, Menu::File, Shortcut::command_shift("S"), "Save as…", "Save the project under another name."),

@@ -1,6 +1,7 @@
 //! What is open: the scene, its focus and its camera.
 
 use super::adjusted_view::AdjustedView;
+use super::capture_scene::camera_of_photograph;
 use super::input::{CameraChoice, Input, InputKind, named};
 use super::picking::SurfaceHit;
 use super::scene_camera::camera_of;
@@ -15,7 +16,7 @@ use focus::{
 };
 use lens::{Camera, Exposure, FocusOffset};
 use project::{FocusFile, NamedCamera, ProjectFile, TexelSet, WorldFile};
-use scene::Scene;
+use scene::{Scene, View};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -333,10 +334,17 @@ impl Document {
         self.undo.bytes()
     }
 
-    /// The cameras of the scene by name, as shot cameras: with the lens of the current one.
+    /// The cameras of the scene by name, as shot cameras: with the lens of the current one. Those of its photographs follow.
     pub fn scene_cameras(&self) -> impl Iterator<Item = (&str, Camera)> {
-        let cameras = self.stage.scene.cameras.iter();
-        cameras.map(|camera| (camera.name.as_str(), camera_of(camera, &self.camera)))
+        let scene = &self.stage.scene;
+        let cameras = scene.cameras.iter();
+        let cameras = cameras.map(|camera| (camera.name.as_str(), camera_of(camera, &self.camera)));
+        let of_photograph = |view: &'_ View| Camera {
+            aperture_radius: self.camera.aperture_radius,
+            ..camera_of_photograph(scene, view, &self.camera)
+        };
+        let photographs = scene.views.iter().chain(&scene.left_out);
+        cameras.chain(photographs.map(move |view| (view.name.as_str(), of_photograph(view))))
     }
 }
 
