@@ -94,7 +94,7 @@ mod tests {
         let tracer = &document.stage.tracer;
         let options = salf::BakeOptions::default();
         let light = light(tracer, &camera, LightQuality::Fine, &Unwatched).unwrap();
-        let salf = Arc::new(salf::bake(tracer, &light, &camera, &options, &Unwatched).unwrap());
+        let salf = Arc::new(salf::bake(tracer, &*light, &camera, &options, &Unwatched).unwrap());
         let long = Duration::from_secs(60);
         let start = Instant::now();
         std::thread::scope(|scope| {
