@@ -30,14 +30,21 @@ fn main() {
     let tracer = Tracer::new(scene.clone());
     let clock = Instant::now();
     let atlas = kept_atlas(capture, &scene, side);
-    println!("atlas {} × {}, {} charts: {:.1} s", atlas.width, atlas.height, atlas.charts.len(), clock.elapsed().as_secs_f64());
+    println!(
+        "atlas {} × {}, {} charts: {:.1} s",
+        atlas.width,
+        atlas.height,
+        atlas.charts.len(),
+        clock.elapsed().as_secs_f64()
+    );
     if arguments.iter().any(|argument| argument == "card") {
         paint_cards(&mut views);
     }
     let (left, kept): (Vec<View>, Vec<View>) =
         views.into_iter().partition(|view| left_out.split(',').any(|name| name == view.name));
     let clock = Instant::now();
-    let light = PhotographLight::solve(&tracer, &atlas, &kept, &PhotographOptions::default(), &Unwatched).unwrap();
+    let light =
+        PhotographLight::solve(&tracer, &atlas, &kept, &PhotographOptions::default(), &Unwatched).unwrap();
     println!("light: {:.1} s, peak {} MB", clock.elapsed().as_secs_f64(), peak_megabytes());
     exposure_errors(capture, &kept, &light);
     let mut sums = [0.0; 4];
@@ -45,16 +52,28 @@ fn main() {
         let photograph = view.photograph(&LoadOptions::default()).unwrap();
         let compared = Compared::of(&tracer, view, &kept);
         let db = [
-            compared.psnr(view, &tracer, &photograph, &|point, eye| light.toward(point, eye), &light, "light"),
+            compared.psnr(
+                view,
+                &tracer,
+                &photograph,
+                &|point, eye| light.toward(point, eye),
+                &light,
+                "light",
+            ),
             compared.psnr(view, &tracer, &photograph, &|point, _| light.constant(point), &light, "constant"),
             compared.psnr_inside(view, &tracer, &photograph, &|point, eye| light.toward(point, eye), &light),
             compared.psnr_inside(view, &tracer, &photograph, &|point, _| light.constant(point), &light),
         ];
-        println!("{} light {:.2} constant {:.2}   inside: light {:.2} constant {:.2}", view.name, db[0], db[1], db[2], db[3]);
+        println!(
+            "{} light {:.2} constant {:.2}   inside: light {:.2} constant {:.2}",
+            view.name, db[0], db[1], db[2], db[3]
+        );
         sums.iter_mut().zip(db).for_each(|(sum, db)| *sum += db);
     }
     let [light, constant, inside, constant_inside] = sums.map(|sum| sum / left.len() as f64);
-    println!("all light {light:.2} constant {constant:.2}   inside: light {inside:.2} constant {constant_inside:.2}");
+    println!(
+        "all light {light:.2} constant {constant:.2}   inside: light {inside:.2} constant {constant_inside:.2}"
+    );
 }
 
 /// Pixels of a left out view that count, and the points that they show.
@@ -96,7 +115,11 @@ impl Compared {
             })
             .collect();
         let at = |x: i64, y: i64| {
-            x >= 0 && y >= 0 && x < i64::from(width) && y < i64::from(height) && counts[(y * i64::from(width) + x) as usize]
+            x >= 0
+                && y >= 0
+                && x < i64::from(width)
+                && y < i64::from(height)
+                && counts[(y * i64::from(width) + x) as usize]
         };
         let inner = (0..i64::from(width * height)).map(|n| {
             let (x, y) = (n % i64::from(width), n / i64::from(width));
@@ -106,16 +129,40 @@ impl Compared {
         Self { width, counts, inner }
     }
 
-    fn psnr(&self, view: &View, tracer: &Tracer, photograph: &Photograph, of: &(dyn Fn(SurfacePoint, DVec3) -> Vec3 + Sync), light: &PhotographLight, name: &str) -> f64 {
+    fn psnr(
+        &self,
+        view: &View,
+        tracer: &Tracer,
+        photograph: &Photograph,
+        of: &(dyn Fn(SurfacePoint, DVec3) -> Vec3 + Sync),
+        light: &PhotographLight,
+        name: &str,
+    ) -> f64 {
         self.psnr_of(&self.counts, view, tracer, photograph, of, light, Some(name))
     }
 
-    fn psnr_inside(&self, view: &View, tracer: &Tracer, photograph: &Photograph, of: &(dyn Fn(SurfacePoint, DVec3) -> Vec3 + Sync), light: &PhotographLight) -> f64 {
+    fn psnr_inside(
+        &self,
+        view: &View,
+        tracer: &Tracer,
+        photograph: &Photograph,
+        of: &(dyn Fn(SurfacePoint, DVec3) -> Vec3 + Sync),
+        light: &PhotographLight,
+    ) -> f64 {
         self.psnr_of(&self.inner, view, tracer, photograph, of, light, None)
     }
 
     #[allow(clippy::too_many_arguments, reason = "an example")]
-    fn psnr_of(&self, counts: &[bool], view: &View, tracer: &Tracer, photograph: &Photograph, of: &(dyn Fn(SurfacePoint, DVec3) -> Vec3 + Sync), light: &PhotographLight, name: Option<&str>) -> f64 {
+    fn psnr_of(
+        &self,
+        counts: &[bool],
+        view: &View,
+        tracer: &Tracer,
+        photograph: &Photograph,
+        of: &(dyn Fn(SurfacePoint, DVec3) -> Vec3 + Sync),
+        light: &PhotographLight,
+        name: Option<&str>,
+    ) -> f64 {
         let eye = view.position();
         let shown: Vec<(usize, Vec3)> = (0..counts.len())
             .into_par_iter()
@@ -124,18 +171,26 @@ impl Compared {
                 let (x, y) = (number as u32 % self.width, number as u32 / self.width);
                 let mut sum = Vec3::ZERO;
                 for k in 0..RAYS * RAYS {
-                    let inside = DVec2::new(f64::from(k % RAYS) + 0.5, f64::from(k / RAYS) + 0.5) / f64::from(RAYS);
+                    let inside =
+                        DVec2::new(f64::from(k % RAYS) + 0.5, f64::from(k / RAYS) + 0.5) / f64::from(RAYS);
                     let pixel = DVec2::new(x.into(), y.into()) + inside;
                     sum += match hit(tracer, view, pixel) {
                         Some(point) => of(point, eye),
-                        None => view.direction(pixel).map_or(Vec3::ZERO, |direction| light.from_infinity(direction)),
+                        None => view
+                            .direction(pixel)
+                            .map_or(Vec3::ZERO, |direction| light.from_infinity(direction)),
                     };
                 }
                 (number, sum / (RAYS * RAYS) as f32)
             })
             .collect();
         let gain = Vec3::from_array(std::array::from_fn(|channel| {
-            let mut ratios: Vec<f32> = shown.iter().map(|&(number, light)| (photograph.pixels[number][channel], light[channel])).filter(|&(photo, light)| (0.01..0.97).contains(&photo) && light > 0.001).map(|(photo, light)| photo / light).collect();
+            let mut ratios: Vec<f32> = shown
+                .iter()
+                .map(|&(number, light)| (photograph.pixels[number][channel], light[channel]))
+                .filter(|&(photo, light)| (0.01..0.97).contains(&photo) && light > 0.001)
+                .map(|(photo, light)| photo / light)
+                .collect();
             ratios.sort_by(f32::total_cmp);
             ratios.get(ratios.len() / 2).copied().unwrap_or(1.0)
         }));
@@ -145,7 +200,8 @@ impl Compared {
                 let (x, y) = (number % self.width as usize, number / self.width as usize);
                 let at = (y * 2 * self.width as usize + x + usize::from(right) * self.width as usize) * 3;
                 for channel in 0..3 {
-                    bytes[at + channel] = (light[channel].clamp(0.0, 1.0).powf(1.0 / 2.2) * 255.0 + 0.5) as u8;
+                    bytes[at + channel] =
+                        (light[channel].clamp(0.0, 1.0).powf(1.0 / 2.2) * 255.0 + 0.5) as u8;
                 }
             };
             for &(number, light) in &shown {
@@ -155,7 +211,14 @@ impl Compared {
                 put(number, true, Vec3::from_array(*pixel));
             }
             let file = format!("{folder}/{}.{name}.png", view.name);
-            image::save_buffer(file, &bytes, self.width * 2, photograph.height, image::ExtendedColorType::Rgb8).unwrap();
+            image::save_buffer(
+                file,
+                &bytes,
+                self.width * 2,
+                photograph.height,
+                image::ExtendedColorType::Rgb8,
+            )
+            .unwrap();
         }
         let error: f64 = shown
             .iter()
@@ -175,9 +238,23 @@ fn exposure_errors(capture: &Path, kept: &[View], light: &PhotographLight) {
     let truth: serde_json::Value = serde_json::from_str(&text).unwrap();
     let wanted: Vec<f64> = kept.iter().map(|view| truth[&view.name].as_f64().unwrap()).collect();
     let mean = wanted.iter().sum::<f64>() / wanted.len() as f64;
-    let errors: Vec<f64> = light.exposures().iter().zip(&wanted).flat_map(|(found, wanted)| found.gain_stops.map(|gain| (gain - (wanted - mean)).abs())).collect();
+    let errors: Vec<f64> = light
+        .exposures()
+        .iter()
+        .zip(&wanted)
+        .flat_map(|(found, wanted)| found.gain_stops.map(|gain| (gain - (wanted - mean)).abs()))
+        .collect();
+    if std::env::var("VERBOSE").is_ok() {
+        for (view, (found, wanted)) in kept.iter().zip(light.exposures().iter().zip(&wanted)) {
+            println!("{} {:.3?} wanted {:.3}", view.name, found.gain_stops, wanted - mean);
+        }
+    }
     let worst = errors.iter().copied().fold(0.0, f64::max);
-    println!("exposures off by {:.3} stops in the mean, {worst:.3} at most; vignetting {:?}", errors.iter().sum::<f64>() / errors.len() as f64, light.exposures()[0].vignetting_stops);
+    println!(
+        "exposures off by {:.3} stops in the mean, {worst:.3} at most; vignetting {:?}",
+        errors.iter().sum::<f64>() / errors.len() as f64,
+        light.exposures()[0].vignetting_stops
+    );
 }
 
 /// Paints a card into every fifth picture, into a copy.
@@ -187,7 +264,8 @@ fn paint_cards(views: &mut [View]) {
     for (number, view) in views.iter_mut().enumerate().filter(|(number, _)| number % 5 == 2) {
         let mut picture = image::open(&view.picture).unwrap().into_rgb8();
         let (width, height) = picture.dimensions();
-        let corner = [width / 3 + (number as u32 * 7) % (width / 6), height / 3 + (number as u32 * 5) % (height / 6)];
+        let corner =
+            [width / 3 + (number as u32 * 7) % (width / 6), height / 3 + (number as u32 * 5) % (height / 6)];
         for y in corner[1]..(corner[1] + height / 4).min(height) {
             for x in corner[0]..(corner[0] + width / 5).min(width) {
                 picture.put_pixel(x, y, image::Rgb([230, 60, 200]));
@@ -210,7 +288,8 @@ fn kept_atlas(capture: &Path, scene: &Scene, side: Option<u32>) -> Atlas {
     if let Ok(bytes) = std::fs::read(&file) {
         return Atlas::from_bytes(&bytes, scene).unwrap();
     }
-    let atlas = Atlas::unwrap(scene, &UnwrapOptions { density, ..UnwrapOptions::default() }, &Unwatched).unwrap();
+    let atlas =
+        Atlas::unwrap(scene, &UnwrapOptions { density, ..UnwrapOptions::default() }, &Unwatched).unwrap();
     std::fs::write(file, atlas.to_bytes()).unwrap();
     atlas
 }
@@ -219,7 +298,8 @@ fn views(capture: &Path) -> Vec<View> {
     let folder = if capture.join("sparse").exists() { "sparse" } else { "sparse_txt" };
     let lines = |name: &str| std::fs::read_to_string(capture.join(folder).join(name)).unwrap();
     let cameras = lines("cameras.txt");
-    let camera: Vec<&str> = cameras.lines().find(|line| !line.starts_with('#')).unwrap().split_whitespace().collect();
+    let camera: Vec<&str> =
+        cameras.lines().find(|line| !line.starts_with('#')).unwrap().split_whitespace().collect();
     let numbers: Vec<f64> = camera[2..].iter().map(|word| word.parse().unwrap()).collect();
     let size_px = [numbers[0] as u32, numbers[1] as u32];
     let (focal_px, principal_px, distortion) = match camera[1] {
@@ -247,7 +327,11 @@ fn views(capture: &Path) -> Vec<View> {
             exposure_hint: None,
         }
     };
-    lines("images.txt").lines().filter(|line| line.split_whitespace().count() == 10 && line.contains(".jpg")).map(view).collect()
+    lines("images.txt")
+        .lines()
+        .filter(|line| line.split_whitespace().count() == 10 && line.contains(".jpg"))
+        .map(view)
+        .collect()
 }
 
 fn mesh(file: &Path) -> SurfaceMesh {

@@ -3,7 +3,7 @@
 //! [`Transport`] traces it by paths. `material_point` looks up what a point is made of; `lights` draws what may shine on it:
 //! `punctual` (the laws of point, spot and directional lights), `emitters` (emissive surfaces), `environment_light` (and `open_sky`, what it sends where nothing shades). `media` knows
 //! what bodies a path is in; `path_random` has its numbers. [`Irradiance`] keeps what was scattered before, for
-//! every camera; `solving` finds it. `spots` tells many points of a picture by a few.
+//! every camera; `solving` finds it. [`PhotographLight`] answers the same question from photographs. `spots` tells many points of a picture by a few.
 
 mod emitters;
 mod environment_light;

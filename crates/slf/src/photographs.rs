@@ -2,17 +2,29 @@
 //!
 //! ```text
 //! views ─▶ kept_picture ─┐
-//!    └──▶ depth_picture ─┴▶ sightings ─▶ gains ─▶ constant ─▶ directions ─▶ PhotographLight
-//!                                                    │
-//!                                                    └▶ filling (what no photograph sees)
+//!    └──▶ depth_picture ─┴▶ sightings ─▶ gains ─▶ constant ─▶ mirrored ─▶ residuals ─▶ PhotographLight
+//!                           (by texel)     └▶ beyond  └▶ filling             └ directions
 //! ```
+//!
+//! A texel sends what it sends toward all directions (`constant`: a robust mean), what it mirrors of the surroundings (`mirrored`: one
+//! picture at infinity for all texels, as in Wood et al. 2000 the mirrored direction is what a lobe stays still in), and what remains
+//! toward directions near those of its photographs (`residuals`, interpolated by `directions`). Each part is there as far as photographs
+//! that are left out are told better with it. Where directions are far from all photographs, only the first two remain.
+//!
+//! `budget` decides how fine all is kept. `blocks` has numbers that change slowly over the atlas, `sphere` those that go with direction.
 
+mod beyond;
+mod blocks;
+mod budget;
+mod calibrated;
 mod constant;
 mod depth_picture;
 mod directions;
 mod filling;
 mod gains;
 mod kept_picture;
+mod mirrored;
+mod residuals;
 mod sightings;
 mod sphere;
 mod texels;
@@ -20,11 +32,15 @@ mod texels;
 pub use gains::Exposure;
 
 use atlas::Atlas;
-use constant::{Sample, robust_mean};
-use directions::{Kernel, Known, MOST, Regression, toward};
+use budget::Budget;
+use calibrated::Calibrated;
+use constant::robust_mean;
+use directions::toward;
 use glam::{DVec3, Vec3};
+use mirrored::Mirrored;
 use progress::{Cancelled, Progress, Stage};
 use rayon::prelude::*;
+use residuals::{Residuals, Told};
 use scene::{LoadOptions, PictureError, Scene, SurfacePoint, View};
 use sightings::{Reading, Sightings};
 use sphere::Sphere;
@@ -85,21 +101,12 @@ pub struct PhotographLight {
     constant: Vec<Vec3>,
     /// By texel, 1 photographed, 0 filled.
     seen: Vec<f32>,
-    /// `residuals[start[t]..start[t + 1]]` are of texel t.
-    start: Vec<u32>,
-    residuals: Vec<Residual>,
-    kernel: Kernel,
+    residuals: Residuals,
+    /// Cells at infinity, and the light from them.
+    sphere: Sphere,
+    beyond: Vec<Vec3>,
+    mirrored: Mirrored,
 }
-
-/// α of a photograph and texel.
-#[derive(Clone, Copy, Debug, Default)]
-struct Residual {
-    view: u16,
-    alpha: [i16; 3],
-}
-
-/// α is kept by steps of this; larger ones than 16 do not occur.
-const ALPHA_STEP: f32 = 1.0 / 2048.0;
 
 impl PhotographLight {
     /// Makes the light of the scene in `tracer` from views of it, kept at the texels of an atlas of it. Deterministic: the same bits for
@@ -121,37 +128,60 @@ impl PhotographLight {
             return Err(PhotographError::TooMany { count: views.len() });
         }
         let scene = tracer.scene();
-        let sphere = Sphere::of_rows(256);
-        let reduction = 1;
-        let clock = std::time::Instant::now();
-        let texels = Texels::of(scene, atlas, 1.0);
-        let reading = Reading { load: &options.load, reduction, at_once: 4, sphere: &sphere };
-        let sightings =
-            Sightings::of(scene, &texels, views, &reading, &Stage::new(progress, 0.0, 0.5))?;
+        let sphere = Sphere::of_rows(128);
+        let budget = Budget::of(scene, atlas, views, options.max_memory);
+        let texels = Texels::of(scene, atlas, budget.texel_scale);
         progress.check()?;
-        eprintln!("{} texels {} sightings {:.2}s", texels.count(), sightings.count(), clock.elapsed().as_secs_f64());
-        let exposures = gains::exposures(&texels, &sightings, views);
+        let reading = Reading {
+            load: &options.load,
+            reduction: budget.reduction,
+            at_once: budget.at_once,
+            sphere: &sphere,
+        };
+        let sightings = Sightings::of(scene, &texels, views, &reading, &Stage::new(progress, 0.0, 0.5))?;
         progress.check()?;
-        eprintln!("gains {:.2}s", clock.elapsed().as_secs_f64());
+        let exposures = gains::exposures(&texels, &sightings, &sphere, views);
+        progress.check()?;
         let eyes: Vec<DVec3> = views.iter().map(View::position).collect();
         let radiance = Calibrated { texels: &texels, sightings: &sightings, views, exposures: &exposures };
         let (mut constant, seen): (Vec<Vec3>, Vec<f32>) = (0..texels.count())
             .into_par_iter()
-            .map_init(Vec::new, |belonging, texel| {
-                let samples = radiance.samples(texel);
-                let evidence: f32 = samples.iter().map(|sample| sample.weight).sum();
-                (robust_mean(&samples, belonging), (evidence / 0.25).min(1.0))
-            })
+            .map_init(
+                || (Vec::new(), Vec::new()),
+                |(samples, belonging), texel| {
+                    radiance.samples_into(texel, samples);
+                    let evidence: f32 = samples.iter().map(|sample| sample.weight).sum();
+                    (robust_mean(samples, belonging), (evidence / 0.25).min(1.0))
+                },
+            )
             .unzip();
-        eprintln!("constant {:.2}s", clock.elapsed().as_secs_f64());
-        let kernel = Kernel { reach: 0.9, noise: 0.3 };
-        let residuals = residuals(&radiance, &eyes, &constant, &kernel);
-        eprintln!("residual {:.2}s", clock.elapsed().as_secs_f64());
+        let (mirrored, beside_mirrored) = Mirrored::of(&radiance, &constant);
+        let told = Told {
+            radiance: &radiance,
+            plain: &constant,
+            beside_mirrored: &beside_mirrored,
+            mirrored: &mirrored,
+        };
+        let (share, residuals) = told.residuals();
+        for ((constant, beside), share) in constant.iter_mut().zip(beside_mirrored).zip(&share) {
+            *constant = constant.lerp(beside, *share);
+        }
+        let mirrored = mirrored.scaled(&share);
+        let beyond = beyond::beyond(&sphere, views, &exposures, &sightings.pictures, &sightings.beyond);
         filling::fill(&texels, &seen, &mut constant);
-        eprintln!("filled {:.2}s", clock.elapsed().as_secs_f64());
-        let start = (0..=texels.count()).map(|t| if t == 0 { 0 } else { sightings.range(t - 1).end as u32 }).collect();
         progress.report(1.0);
-        Ok(Self { scene: scene.clone(), texels, exposures, eyes, constant, seen, start, residuals, kernel })
+        Ok(Self {
+            scene: scene.clone(),
+            texels,
+            exposures,
+            eyes,
+            constant,
+            seen,
+            residuals,
+            mirrored,
+            sphere,
+            beyond,
+        })
     }
 
     /// How each photograph renders light, by view.
@@ -182,81 +212,32 @@ impl Radiance for PhotographLight {
         let Some(around) = self.texels.around(point) else { return Leaving::default() };
         let position = point.position(&self.scene);
         let outgoing = toward(position, eye);
-        let mut sum = Vec3::ZERO;
+        let normal = self.scene.shading_normal(point).as_vec3();
+        let (mut sum, mut carried, mut carried_share) = (Vec3::ZERO, Vec3::ZERO, 0.0);
         for (texel, share) in around {
             if share == 0.0 {
                 continue;
             }
             let texel = texel as usize;
             let mut light = self.constant[texel];
-            for residual in &self.residuals[self.start[texel] as usize..self.start[texel + 1] as usize] {
+            for residual in self.residuals.of_texel(texel) {
                 let direction = toward(position, self.eyes[usize::from(residual.view)]);
-                let factor = self.kernel.at(direction.distance(outgoing));
+                let factor = self.residuals.kernel.at(direction.distance(outgoing));
                 if factor > 0.0 {
-                    light += Vec3::from_array(residual.alpha.map(f32::from)) * (ALPHA_STEP * factor);
+                    light += residual.alpha() * factor;
                 }
             }
             sum += light * share;
+            carried += self.mirrored.at(texel, normal, outgoing) * share;
+            carried_share += self.mirrored.share(texel, normal, outgoing) * share;
         }
-        Leaving::own(sum.max(Vec3::ZERO))
+        // What was left over may be below 0 where less is mirrored than was thought.
+        let own = sum.max(-carried);
+        Leaving { own, carried, carried_share, ..Leaving::default() }
     }
 
-    fn from_infinity(&self, _direction: DVec3) -> Vec3 {
-        Vec3::ZERO
+    fn from_infinity(&self, direction: DVec3) -> Vec3 {
+        let around = self.sphere.around(direction.as_vec3().normalize_or(Vec3::Y));
+        around.iter().map(|&(cell, share)| self.beyond[cell] * share).sum()
     }
-}
-
-/// Sightings with their exposures undone.
-struct Calibrated<'a> {
-    texels: &'a Texels,
-    sightings: &'a Sightings,
-    views: &'a [View],
-    exposures: &'a [Exposure],
-}
-
-impl Calibrated<'_> {
-    /// What photographs show of a texel, by view.
-    fn samples(&self, texel: usize) -> Vec<Sample> {
-        let position = self.texels.position(texel);
-        let sample = |sighting: &sightings::Sighting| {
-            let number = usize::from(sighting.view);
-            let view = &self.views[number];
-            let pixel = view.project(position).unwrap_or_default();
-            let light = self.sightings.light(sighting) * self.exposures[number].to_radiance(view, pixel);
-            Sample { light, weight: sighting.weight() * (1.0 - 0.95 * sighting.clipped()) }
-        };
-        self.sightings.of_texel(texel).iter().map(sample).collect()
-    }
-}
-
-fn residuals(radiance: &Calibrated<'_>, eyes: &[DVec3], constant: &[Vec3], kernel: &Kernel) -> Vec<Residual> {
-    let texels = radiance.texels;
-    let mut all = vec![Residual::default(); radiance.sightings.count()];
-    let mut rest = all.as_mut_slice();
-    let mut slots = Vec::with_capacity(texels.count());
-    for texel in 0..texels.count() {
-        let (own, after) = rest.split_at_mut(radiance.sightings.range(texel).len());
-        slots.push(own);
-        rest = after;
-    }
-    slots.into_par_iter().enumerate().for_each_init(
-        || (Regression::new(), Vec::new(), Vec::new()),
-        |(regression, known, alpha), (texel, slots)| {
-            let position = texels.position(texel);
-            known.clear();
-            for (sighting, sample) in radiance.sightings.of_texel(texel).iter().zip(radiance.samples(texel)) {
-                let direction = toward(position, eyes[usize::from(sighting.view)]);
-                known.push(Known { direction, residual: sample.light - constant[texel], weight: sample.weight });
-            }
-            known.truncate(MOST);
-            regression.solve(kernel, known, alpha);
-            for ((slot, sighting), alpha) in
-                slots.iter_mut().zip(radiance.sightings.of_texel(texel)).zip(&*alpha)
-            {
-                let kept = (*alpha / ALPHA_STEP).round().clamp(Vec3::splat(-32767.0), Vec3::splat(32767.0));
-                *slot = Residual { view: sighting.view, alpha: kept.to_array().map(|v| v as i16) };
-            }
-        },
-    );
-    all
 }

@@ -147,7 +147,9 @@ impl DepthPicture {
         let spread = |distance: &mut Vec<u8>, x: usize, y: usize, neighbours: [(isize, isize); 4]| {
             let mut least = distance[y * width + x];
             for (dx, dy) in neighbours {
-                let (Some(x), Some(y)) = (x.checked_add_signed(dx), y.checked_add_signed(dy)) else { continue };
+                let (Some(x), Some(y)) = (x.checked_add_signed(dx), y.checked_add_signed(dy)) else {
+                    continue;
+                };
                 if x < width && y < height {
                     least = least.min(distance[y * width + x] + 1);
                 }

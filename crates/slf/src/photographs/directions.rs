@@ -20,7 +20,7 @@
 
 use glam::{DVec3, Vec3};
 
-/// Photographs of a texel that are told apart; the best seen of more.
+/// Photographs of a texel that count; the best seen of more.
 pub(crate) const MOST: usize = 40;
 
 /// How residuals go with direction.
@@ -35,6 +35,8 @@ pub(crate) struct Kernel {
 /// What a photograph knows of a texel's residual.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Known {
+    /// Its place among the texel's sightings.
+    pub place: usize,
     /// Unit, from the texel.
     pub direction: Vec3,
     pub residual: Vec3,
@@ -94,8 +96,7 @@ impl Regression {
         for j in 0..n {
             self.inverse[j * MOST + j] = 1.0 / self.matrix[j * MOST + j];
             for i in j + 1..n {
-                let sum: f32 =
-                    (j..i).map(|k| self.matrix[i * MOST + k] * self.inverse[k * MOST + j]).sum();
+                let sum: f32 = (j..i).map(|k| self.matrix[i * MOST + k] * self.inverse[k * MOST + j]).sum();
                 self.inverse[i * MOST + j] = -sum / self.matrix[i * MOST + i];
             }
         }
@@ -138,7 +139,12 @@ mod tests {
                 let z = 1.0 - 0.6 * (k as f32 + 0.5) / count as f32;
                 let r = (1.0 - z * z).sqrt();
                 let direction = Vec3::new(r * azimuth.cos(), r * azimuth.sin(), z);
-                Known { direction, residual: Vec3::new(direction.x, direction.y.powi(2), 0.1), weight: 1.0 }
+                Known {
+                    place: k,
+                    direction,
+                    residual: Vec3::new(direction.x, direction.y.powi(2), 0.1),
+                    weight: 1.0,
+                }
             })
             .collect()
     }
@@ -153,13 +159,13 @@ mod tests {
         let (mut regression, mut alpha, mut told) = (Regression::new(), Vec::new(), Vec::new());
         regression.solve(&kernel, &all, &mut alpha);
         regression.left_out(&all, &alpha, &mut told);
-        for left in 0..all.len() {
+        for (left, told) in told.iter().enumerate() {
             let mut others = all.clone();
             let out = others.remove(left);
             let mut of_others = Vec::new();
             regression.solve(&kernel, &others, &mut of_others);
             let wanted = at(&kernel, &others, &of_others, out.direction);
-            assert!(told[left].distance(wanted) < 1e-4, "{left}: {} for {wanted}", told[left]);
+            assert!(told.distance(wanted) < 1e-4, "{left}: {told} for {wanted}");
         }
     }
 

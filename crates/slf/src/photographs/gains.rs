@@ -15,7 +15,9 @@
 //! D falls out: of every point only differences from its weighted mean count (Goldman 2010, without his response curve). Points that gloss
 //! or occlusion differ at are left out by Cauchy's weights, their scale the median of what is left over.
 
+use super::kept_picture::Shown;
 use super::sightings::{Sighting, Sightings};
+use super::sphere::Sphere;
 use super::texels::Texels;
 use glam::{DVec2, Vec3};
 use rayon::prelude::*;
@@ -56,11 +58,16 @@ const POINTS: usize = 30_000;
 /// Light below this share of white says little about gains.
 const DARK: f32 = 0.004;
 /// Rounds of reweighting; weights have settled by then.
-const ROUNDS: usize = 12;
+const ROUNDS: usize = 16;
 /// Residuals are thought to be no smaller, stops.
 const LEAST_SCALE: f64 = 0.03;
 /// What holds a gain that nothing else does (at its hint, or at 0): as much as half a point.
 const HOLD: f64 = 0.5;
+/// What holds the channels of a photograph together, as points: its white balance is at first thought to be that of all others, so that
+/// a colour that is dark in some does not lead them astray.
+const HOLD_WHITE_AT_FIRST: f64 = 1e5;
+/// And then on.
+const HOLD_WHITE: f64 = 100.0;
 /// What holds vignetting at 0: as much as so many points one stop off.
 const HOLD_VIGNETTING: f64 = 20.0;
 
@@ -73,13 +80,18 @@ struct Said {
 }
 
 /// Finds the exposures of all views.
-pub(crate) fn exposures(texels: &Texels, sightings: &Sightings, views: &[View]) -> Vec<Exposure> {
+pub(crate) fn exposures(
+    texels: &Texels,
+    sightings: &Sightings,
+    sphere: &Sphere,
+    views: &[View],
+) -> Vec<Exposure> {
     let lens_of = lenses(views);
     let lens_count = lens_of.iter().max().map_or(0, |most| most + 1);
     let shared: Vec<usize> =
         (0..texels.count()).filter(|&texel| sightings.of_texel(texel).len() >= 2).collect();
     let step = shared.len().div_ceil(POINTS).max(1);
-    let points: Vec<Vec<Said>> = shared
+    let near: Vec<Vec<Said>> = shared
         .par_iter()
         .step_by(step)
         .map(|&texel| {
@@ -87,23 +99,41 @@ pub(crate) fn exposures(texels: &Texels, sightings: &Sightings, views: &[View]) 
             sightings.of_texel(texel).iter().filter_map(said).collect()
         })
         .collect();
+    let far = far_points(sightings, sphere, views);
     let unknowns = 3 * views.len() + 2 * lens_count;
     let hints = hints(views);
     let mut solution = vec![0.0; unknowns];
     for (view, hint) in hints.iter().enumerate() {
         solution[3 * view..3 * view + 3].fill(hint.unwrap_or(0.0));
     }
-    let mut scale = 1.0;
-    for _ in 0..ROUNDS {
+    let mut scales = [1.0; 2];
+    for round in 0..ROUNDS {
         let system = System { unknowns, views: views.len(), lens_of: &lens_of };
-        let parts: Vec<(Vec<f64>, Vec<f64>, Vec<f64>)> =
-            points.par_chunks(512).map(|points| system.of_points(points, &solution, scale)).collect();
         let (mut matrix, mut right) = (vec![0.0; unknowns * unknowns], vec![0.0; unknowns]);
-        let mut left_over = Vec::new();
-        for (part, part_right, errors) in parts {
-            matrix.iter_mut().zip(part).for_each(|(sum, value)| *sum += value);
-            right.iter_mut().zip(part_right).for_each(|(sum, value)| *sum += value);
-            left_over.extend(errors);
+        // What agrees better says more: by the square of its scale.
+        let trust = scales.map(|scale: f64| (scales[0].min(scales[1]) / scale).powi(2));
+        for ((points, scale), trust) in [&near, &far].into_iter().zip(&mut scales).zip(trust) {
+            let parts: Vec<(Vec<f64>, Vec<f64>, Vec<f64>)> =
+                points.par_chunks(2048).map(|points| system.of_points(points, &solution, *scale)).collect();
+            let mut left_over = Vec::new();
+            for (part, part_right, errors) in parts {
+                matrix.iter_mut().zip(part).for_each(|(sum, value)| *sum += trust * value);
+                right.iter_mut().zip(part_right).for_each(|(sum, value)| *sum += trust * value);
+                left_over.extend(errors);
+            }
+            if let Some(middle) = median(&mut left_over) {
+                // Of a normal distribution.
+                *scale = (1.4826 * middle).max(LEAST_SCALE);
+            }
+        }
+        let hold_white = if round < ROUNDS / 2 { HOLD_WHITE_AT_FIRST } else { HOLD_WHITE };
+        for view in 0..views.len() {
+            for (a, b) in [(0, 1), (1, 2), (2, 0)].map(|(a, b)| (3 * view + a, 3 * view + b)) {
+                matrix[a * unknowns + a] += hold_white;
+                matrix[b * unknowns + b] += hold_white;
+                matrix[a * unknowns + b] -= hold_white;
+                matrix[b * unknowns + a] -= hold_white;
+            }
         }
         for unknown in 0..unknowns {
             let is_gain = unknown < 3 * views.len();
@@ -115,10 +145,6 @@ pub(crate) fn exposures(texels: &Texels, sightings: &Sightings, views: &[View]) 
         }
         solve_positive(&mut matrix, &mut right);
         solution = right;
-        if let Some(middle) = median(&mut left_over) {
-            // Of a normal distribution.
-            scale = (1.4826 * middle).max(LEAST_SCALE);
-        }
     }
     let mean = |channel: usize| {
         (0..views.len()).map(|view| solution[3 * view + channel]).sum::<f64>() / views.len().max(1) as f64
@@ -147,9 +173,33 @@ fn lenses(views: &[View]) -> Vec<usize> {
 
 /// What EXIF says of each view's gain, relative to the mean of those that say anything.
 fn hints(views: &[View]) -> Vec<Option<f64>> {
-    let said: Vec<f64> = views.iter().filter_map(|view| view.exposure_hint).filter(|h| h.is_finite()).collect();
+    let said: Vec<f64> =
+        views.iter().filter_map(|view| view.exposure_hint).filter(|h| h.is_finite()).collect();
     let mean = said.iter().sum::<f64>() / said.len().max(1) as f64;
     views.iter().map(|view| view.exposure_hint.filter(|h| h.is_finite()).map(|hint| hint - mean)).collect()
+}
+
+/// What lies beyond the surface, far enough for all photographs to see it in the same direction. Where it does not, they disagree, and
+/// it counts for little.
+fn far_points(sightings: &Sightings, sphere: &Sphere, views: &[View]) -> Vec<Vec<Said>> {
+    let shared: Vec<usize> = (0..sphere.count())
+        .filter(|&cell| sightings.beyond.iter().filter(|beyond| beyond[cell] > 0).count() >= 2)
+        .collect();
+    let step = shared.len().div_ceil(POINTS).max(1);
+    let point = |&cell: &usize| {
+        let direction = sphere.direction(cell).as_dvec3();
+        let said = |(number, view): (usize, &View)| {
+            let weight = f32::from(sightings.beyond[number][cell]) / 255.0;
+            if weight == 0.0 {
+                return None;
+            }
+            let pixel = view.project(view.position() + direction)?;
+            let picture = &sightings.pictures[number];
+            say(number, view, pixel, picture.at(picture.place(pixel)), weight)
+        };
+        views.iter().enumerate().filter_map(said).collect()
+    };
+    shared.par_iter().step_by(step).map(point).collect()
 }
 
 fn said(
@@ -159,19 +209,24 @@ fn said(
     texel: usize,
     sighting: &Sighting,
 ) -> Option<Said> {
-    let light = sightings.light(sighting);
-    if sighting.clipped() > 0.0 || light.min_element() < DARK {
+    let number = usize::from(sighting.view);
+    let shown = Shown { light: sightings.light(sighting), clipped: sighting.clipped() };
+    say(number, &views[number], views[number].project(texels.position(texel))?, shown, sighting.weight())
+}
+
+fn say(number: usize, view: &View, pixel: DVec2, shown: Shown, weight: f32) -> Option<Said> {
+    let least = shown.light.min_element();
+    if shown.clipped > 0.0 || least < DARK {
         return None;
     }
-    let view = &views[usize::from(sighting.view)];
-    let r2 = radius_squared(view, view.project(texels.position(texel))?);
+    let r2 = radius_squared(view, pixel);
     // Noise of 8 bits weighs more in the dark.
-    let trust = light.min_element() / (light.min_element() + 0.02);
+    let trust = least / (least + 0.02);
     Some(Said {
-        view: sighting.view.into(),
-        stops: light.to_array().map(|v| f64::from(v).log2()),
+        view: number,
+        stops: shown.light.to_array().map(|v| f64::from(v).log2()),
         vignetting: [r2, r2 * r2],
-        weight: f64::from(sighting.weight() * trust),
+        weight: f64::from(weight * trust),
     })
 }
 
@@ -184,7 +239,12 @@ struct System<'a> {
 
 impl System<'_> {
     /// Matrix, right side and absolute residuals of some points, weighted by how a solution explains them.
-    fn of_points(&self, points: &[Vec<Said>], solution: &[f64], scale: f64) -> (Vec<f64>, Vec<f64>, Vec<f64>) {
+    fn of_points(
+        &self,
+        points: &[Vec<Said>],
+        solution: &[f64],
+        scale: f64,
+    ) -> (Vec<f64>, Vec<f64>, Vec<f64>) {
         let n = self.unknowns;
         let (mut matrix, mut right, mut errors) = (vec![0.0; n * n], vec![0.0; n], Vec::new());
         let mut mean_row = vec![0.0; n];

@@ -95,10 +95,6 @@ impl KeptPicture {
     pub fn brightest(&self) -> f32 {
         self.brightest
     }
-
-    pub fn bytes(&self) -> usize {
-        size_of_val(self.pixels.as_slice())
-    }
 }
 
 fn packed(share: Vec3, is_clipped: bool) -> u32 {

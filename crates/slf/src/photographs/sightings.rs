@@ -105,7 +105,13 @@ impl Sightings {
             }
         }
         if progress.cancelled() {
-            return Ok(Self { pictures, start: vec![0; texels.count() + 1], all: Vec::new(), beyond, brightest: 1.0 });
+            return Ok(Self {
+                pictures,
+                start: vec![0; texels.count() + 1],
+                all: Vec::new(),
+                beyond,
+                brightest: 1.0,
+            });
         }
         keep_one_side(texels, views, &mut weights);
         let brightest = pictures.iter().map(KeptPicture::brightest).fold(1.0, f32::max);
@@ -131,13 +137,6 @@ impl Sightings {
     pub fn light(&self, sighting: &Sighting) -> Vec3 {
         let root = Vec3::from_array(sighting.root.map(|v| f32::from(v) / 65535.0));
         root * root * self.brightest
-    }
-
-    pub fn bytes(&self) -> usize {
-        self.pictures.iter().map(KeptPicture::bytes).sum::<usize>()
-            + size_of_val(self.start.as_slice())
-            + size_of_val(self.all.as_slice())
-            + self.beyond.iter().map(Vec::len).sum::<usize>()
     }
 }
 
@@ -225,7 +224,11 @@ fn keep_one_side(texels: &Texels, views: &[View], weights: &mut [Vec<u8>]) {
                 .iter()
                 .zip(&*weights)
                 .filter(|(_, weights)| weights[texel] > 0)
-                .map(|(view, w)| if is_front(texel, view) { i32::from(w[texel]) } else { -i32::from(w[texel]) })
+                .map(
+                    |(view, w)| {
+                        if is_front(texel, view) { i32::from(w[texel]) } else { -i32::from(w[texel]) }
+                    },
+                )
                 .sum();
             balance >= 0
         })
@@ -278,7 +281,8 @@ fn gathered(
                 let pixel = view.project(position).unwrap_or_default();
                 let shown = pictures[number].at(pictures[number].place(pixel));
                 let clipped = (shown.clipped.clamp(0.0, 1.0) * 255.0 + 0.5) as u8;
-                *slot = Sighting { view: number as u16, weight, clipped, root: root_of(shown.light, brightest) };
+                *slot =
+                    Sighting { view: number as u16, weight, clipped, root: root_of(shown.light, brightest) };
             }
         }
     });

@@ -44,6 +44,37 @@ impl Sphere {
             (row(y + dy) * self.columns + column(x + dx), across * down)
         })
     }
+
+    /// Means of sums and their weights, held by what lies around as by a weight of `hold`; black if nothing is known at all.
+    ///
+    /// Push and pull (Gortler et al. 1996): each coarser grid joins two by two cells, down to a single one.
+    pub fn smoothed(&self, sums: &[(Vec3, f32)], hold: f32) -> Vec<Vec3> {
+        if self.rows == 1 || self.rows % 2 == 1 {
+            let (sum, weight) =
+                sums.iter().fold((Vec3::ZERO, 0.0), |(s, w), (sum, weight)| (s + *sum, w + weight));
+            let mean = if weight > 0.0 { sum / weight } else { Vec3::ZERO };
+            return sums.iter().map(|(sum, weight)| (*sum + mean * hold) / (weight + hold)).collect();
+        }
+        let coarser = Self::of_rows(self.rows / 2);
+        let joined = |cell: usize| {
+            let (x, y) = (2 * (cell % coarser.columns), 2 * (cell / coarser.columns));
+            let cells = [[0, 0], [1, 0], [0, 1], [1, 1]].map(|[dx, dy]| (y + dy) * self.columns + x + dx);
+            cells.iter().fold((Vec3::ZERO, 0.0), |(sum, weight), &cell| {
+                // A cell speaks for its place, not for how often it was seen.
+                let known = sums[cell].1;
+                let share = if known > hold { hold / known } else { 1.0 };
+                (sum + sums[cell].0 * share, weight + known * share)
+            })
+        };
+        let around = coarser.smoothed(&(0..coarser.count()).map(joined).collect::<Vec<_>>(), hold);
+        (0..self.count())
+            .map(|cell| {
+                let shares = coarser.around(self.direction(cell));
+                let held = shares.iter().map(|&(cell, share)| around[cell] * share).sum::<Vec3>();
+                (sums[cell].0 + held * hold) / (sums[cell].1 + hold)
+            })
+            .collect()
+    }
 }
 
 #[cfg(test)]

@@ -127,18 +127,13 @@ impl Texels {
             let (x, y) = (at.x.round() as i64, at.y.round() as i64);
             let steps = [[0, 0], [1, 0], [0, 1], [-1, 0], [0, -1], [1, 1], [-1, 1], [1, -1], [-1, -1]];
             let texel = steps.into_iter().find_map(|[dx, dy]| self.at(x + dx, y + dy))?;
-            return Some([(texel as u32, 1.0), (texel as u32, 0.0), (texel as u32, 0.0), (texel as u32, 0.0)]);
+            return Some([
+                (texel as u32, 1.0),
+                (texel as u32, 0.0),
+                (texel as u32, 0.0),
+                (texel as u32, 0.0),
+            ]);
         }
         Some(around.map(|(texel, weight)| (texel, weight / sum)))
-    }
-
-    pub fn bytes(&self) -> usize {
-        size_of_val(self.corners.as_slice())
-            + size_of_val(self.index.as_slice())
-            + size_of_val(self.places.as_slice())
-            + size_of_val(self.positions.as_slice())
-            + size_of_val(self.normals.as_slice())
-            + size_of_val(self.shading_normals.as_slice())
-            + size_of_val(self.areas.as_slice())
     }
 }

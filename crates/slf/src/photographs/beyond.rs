@@ -1,0 +1,86 @@
+//! What photographs show beyond the surface, as a picture at infinity where they agree on one.
+//!
+//! What is not far enough moves against the directions, and photographs disagree about it: there, and where none looks, the light of the
+//! nearest directions that are known stands in; where they agree on next to nothing, their mean, from everywhere alike.
+
+use super::constant::{Sample, robust_mean};
+use super::gains::Exposure;
+use super::kept_picture::KeptPicture;
+use super::sphere::Sphere;
+use glam::Vec3;
+use rayon::prelude::*;
+use scene::View;
+
+/// Roots of light that differ by more (of the brighter) are no agreement.
+const AGREED: f32 = 0.1;
+/// Below this share of agreement, over all cells that several photographs see, there is no picture at infinity.
+const ENOUGH: f32 = 0.5;
+/// A cell is held at those around it as by so much of a photograph.
+const HOLD: f32 = 0.02;
+
+/// Light from beyond the surface by cell of the sphere. `seen` tells by view, in 255ths, how well each cell is seen.
+pub(crate) fn beyond(
+    sphere: &Sphere,
+    views: &[View],
+    exposures: &[Exposure],
+    pictures: &[KeptPicture],
+    seen: &[Vec<u8>],
+) -> Vec<Vec3> {
+    let cells: Vec<Cell> = (0..sphere.count())
+        .into_par_iter()
+        .map_init(
+            || (Vec::new(), Vec::new()),
+            |(samples, belonging), cell| {
+                let direction = sphere.direction(cell).as_dvec3();
+                samples.clear();
+                samples.extend((0..views.len()).filter(|&view| seen[view][cell] > 0).filter_map(|view| {
+                    let pixel = views[view].project(views[view].position() + direction)?;
+                    let shown = pictures[view].at(pictures[view].place(pixel)).light;
+                    let light = shown * exposures[view].to_radiance(&views[view], pixel);
+                    Some(Sample { light, weight: f32::from(seen[view][cell]) / 255.0 })
+                }));
+                Cell::of(samples, belonging)
+            },
+        )
+        .collect();
+    let shared = cells.iter().filter(|cell| cell.views >= 2);
+    let (agreed, count) = shared.fold((0.0, 0.0), |(sum, count), cell| (sum + cell.agreement, count + 1.0));
+    if agreed <= ENOUGH * count || count == 0.0 {
+        let (sum, weights) = cells
+            .iter()
+            .fold((Vec3::ZERO, 0.0), |(sum, w), cell| (sum + cell.light * cell.weight, w + cell.weight));
+        let neutral = if weights > 0.0 { sum / weights } else { Vec3::ZERO };
+        return vec![neutral; sphere.count()];
+    }
+    let trusted = |cell: &Cell| {
+        let weight = cell.weight * if cell.views >= 2 { cell.agreement } else { 0.5 };
+        (cell.light * weight, weight)
+    };
+    sphere.smoothed(&cells.iter().map(trusted).collect::<Vec<_>>(), HOLD)
+}
+
+/// What photographs show in one direction.
+struct Cell {
+    light: Vec3,
+    weight: f32,
+    views: usize,
+    /// The weighted share that agrees with the mean.
+    agreement: f32,
+}
+
+impl Cell {
+    fn of(samples: &[Sample], belonging: &mut Vec<f32>) -> Self {
+        let light = robust_mean(samples, belonging);
+        let root = |light: Vec3| light.max(Vec3::ZERO).to_array().map(f32::sqrt);
+        let agrees = |sample: &&Sample| {
+            let (a, b) = (Vec3::from_array(root(sample.light)), Vec3::from_array(root(light)));
+            a.distance(b) <= AGREED * a.length().max(b.length())
+        };
+        let weight =
+            |samples: &mut dyn Iterator<Item = &Sample>| samples.map(|sample| sample.weight).sum::<f32>();
+        let all = weight(&mut samples.iter());
+        let agreeing = weight(&mut samples.iter().filter(agrees));
+        let agreement = if all > 0.0 { agreeing / all } else { 0.0 };
+        Self { light, weight: all.min(1.0), views: samples.len(), agreement }
+    }
+}

@@ -1,0 +1,65 @@
+//! Numbers that are told by blocks of texels and interpolated between their middles, so that they have no borders.
+
+use super::texels::Texels;
+
+/// A grid of square blocks over the atlas.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Blocks {
+    columns: usize,
+    rows: usize,
+}
+
+/// Texels a side of a block.
+const SIDE: usize = 12;
+/// What the eight blocks around say counts this much.
+const AROUND: f32 = 0.25;
+
+impl Blocks {
+    pub fn of(texels: &Texels) -> Self {
+        let [columns, rows] = texels.size().map(|side| (side as usize).div_ceil(SIDE).max(1));
+        Self { columns, rows }
+    }
+
+    pub fn count(&self) -> usize {
+        self.columns * self.rows
+    }
+
+    /// The block that a texel lies in.
+    pub fn of_texel(&self, texels: &Texels, texel: usize) -> usize {
+        let [x, y] = texels.place(texel).map(|at| at as usize / SIDE);
+        y * self.columns + x
+    }
+
+    /// Of a product and a square by block their quotient, those of the blocks around joined in, within bounds; the lower bound where
+    /// nothing is known.
+    pub fn quotients(&self, sums: &[(f32, f32)], [low, high]: [f32; 2]) -> Vec<f32> {
+        (0..self.count())
+            .map(|block| {
+                let (x, y) = (block % self.columns, block / self.columns);
+                let (mut product, mut square) = (0.0, 0.0);
+                for row in y.saturating_sub(1)..(y + 2).min(self.rows) {
+                    for column in x.saturating_sub(1)..(x + 2).min(self.columns) {
+                        let share = if row == y && column == x { 1.0 } else { AROUND };
+                        product += sums[row * self.columns + column].0 * share;
+                        square += sums[row * self.columns + column].1 * share;
+                    }
+                }
+                if square > 0.0 { (product / square).clamp(low, high) } else { low }
+            })
+            .collect()
+    }
+
+    /// The value at a texel.
+    pub fn at(&self, texels: &Texels, texel: usize, values: &[f32]) -> f32 {
+        let [x, y] = texels.place(texel).map(|at| (at as f32 + 0.5) / SIDE as f32 - 0.5);
+        let [left, top] = [x.floor(), y.floor()];
+        let at = |column: f32, row: f32| {
+            let column = (column.max(0.0) as usize).min(self.columns - 1);
+            let row = (row.max(0.0) as usize).min(self.rows - 1);
+            values[row * self.columns + column]
+        };
+        let upper = at(left, top) + (at(left + 1.0, top) - at(left, top)) * (x - left);
+        let lower = at(left, top + 1.0) + (at(left + 1.0, top + 1.0) - at(left, top + 1.0)) * (x - left);
+        upper + (lower - upper) * (y - top)
+    }
+}

@@ -1,0 +1,82 @@
+//! How fine photographs and texels are kept, so that all of it fits the memory that there is.
+
+use atlas::Atlas;
+use glam::DVec3;
+use scene::{Scene, View};
+
+/// How fine, and how much at once.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Budget {
+    /// Pixels of a photograph that are joined to one, each way.
+    pub reduction: u32,
+    /// Texels of the light over those of the atlas, each way.
+    pub texel_scale: f64,
+    /// Photographs that are worked on at once.
+    pub at_once: usize,
+}
+
+/// Of the memory, kept photographs may take this share, and what they show of texels this.
+const OF_PICTURES: f64 = 0.3;
+const OF_SIGHTINGS: f64 = 0.4;
+/// A photograph being worked on: decoded and linear, kept, and its depth, bytes a pixel.
+const WORKING_BYTES: f64 = 28.0;
+const KEPT_BYTES: f64 = 4.0;
+/// Of a texel and one photograph: its weight; where it is seen, sighting and residual.
+const WEIGHT_BYTES: f64 = 1.0;
+const SIGHTING_BYTES: f64 = 18.0;
+/// Of the photographs about so many see a texel.
+const SEEING: f64 = 0.35;
+/// Of a texel by itself.
+const TEXEL_BYTES: f64 = 160.0;
+/// Pixels a texel, each way, as the photographs that see it best see it: many photographs know it finer than one.
+const PIXELS_A_TEXEL: f64 = 0.8;
+/// More photographs at once make nothing faster where two cores read them.
+const MOST_AT_ONCE: usize = 16;
+/// The atlas is made finer or coarser by so much at most.
+const SCALES: [f64; 2] = [0.125, 4.0];
+
+impl Budget {
+    /// For these photographs and `memory` bytes.
+    pub fn of(scene: &Scene, atlas: &Atlas, views: &[View], memory: u64) -> Self {
+        let memory = memory as f64;
+        let pixels = |view: &View| view.lens.size_px().iter().map(|&side| f64::from(side)).product::<f64>();
+        let all: f64 = views.iter().map(pixels).sum();
+        let reduction = (all * KEPT_BYTES / (memory * OF_PICTURES)).sqrt().ceil().max(1.0);
+        let largest = views.iter().map(pixels).fold(1.0, f64::max);
+        let rest = memory * (1.0 - OF_PICTURES - OF_SIGHTINGS);
+        let at_once = ((rest / (largest * WORKING_BYTES)) as usize).clamp(1, MOST_AT_ONCE);
+        let area: f64 = (0..scene.triangles.len() as u32)
+            .map(|triangle| 0.5 * scene.area_normal(triangle).length())
+            .filter(|area| area.is_finite())
+            .sum();
+        let a_texel = TEXEL_BYTES + views.len() as f64 * (WEIGHT_BYTES + SEEING * SIGHTING_BYTES);
+        let most_texels = memory * OF_SIGHTINGS / a_texel;
+        let by_memory = (most_texels / area).sqrt() / atlas.density;
+        let wanted = finest_pixel(scene, views)
+            .map_or(1.0, |pixel| 1.0 / (PIXELS_A_TEXEL * pixel * reduction * atlas.density));
+        let scale = wanted.min(by_memory);
+        let texel_scale = if scale.is_finite() { scale.clamp(SCALES[0], SCALES[1]) } else { 1.0 };
+        Self { reduction: reduction as u32, texel_scale, at_once }
+    }
+}
+
+/// How wide a pixel of the photographs that see a spot best is there, world units: the median over some spots; `None` if nothing is seen.
+/// Whether anything stands between does not matter.
+fn finest_pixel(scene: &Scene, views: &[View]) -> Option<f64> {
+    const SPOTS: usize = 500;
+    let step = scene.triangles.len().div_ceil(SPOTS).max(1);
+    let pixel_at = |triangle: usize| {
+        let [a, b, c] = scene.corners(triangle as u32);
+        let spot: DVec3 = (a + b + c) / 3.0;
+        let pixel = |view: &View| {
+            let at = view.project(spot)?;
+            let focal = view.lens.intrinsics().focal_px;
+            let is_seen = view.lens.is_in_picture(at);
+            is_seen.then(|| spot.distance(view.position()) / focal[0].min(focal[1]))
+        };
+        views.iter().filter_map(pixel).min_by(f64::total_cmp)
+    };
+    let mut pixels: Vec<f64> = (0..scene.triangles.len()).step_by(step).filter_map(pixel_at).collect();
+    let middle = pixels.len() / 2;
+    (!pixels.is_empty()).then(|| *pixels.select_nth_unstable_by(middle, f64::total_cmp).1)
+}

@@ -1,0 +1,264 @@
+//! What a glossy surface mirrors: one picture of everything around, found from all photographs at once.
+//!
+//! What a mirror shows lies far behind it, so that its picture glides over the surface as the eye moves, and photographs of it that are
+//! 10° apart cannot be interpolated at the surface. In the mirrored direction they can: all texels and photographs look into the same
+//! surroundings.
+//!
+//! ```text
+//! L(x, ω) = D(x) + s(x)·F(n·ω)·E(2(n·ω)n − ω) + …        F(μ) = 0.04 + 0.96·(1 − μ)⁵
+//! ```
+//!
+//! | symbol | meaning | unit |
+//! | --- | --- | --- |
+//! | D | constant part of texel x | radiance |
+//! | s | how glossy the surface is around x, ≥ 0 | 1 |
+//! | F | what lacquer, glass and skin mirror (Schlick 1994) | 1 |
+//! | E | the surroundings as this gloss shows them, at infinity, ≥ 0 | radiance |
+//! | n, ω | unit shading normal on the eye's side, direction to the eye | |
+//!
+//! D and E are found in turns, each the (weighted, robust) mean of what the other leaves. s is the regression of what D leaves on what E
+//! tells, over blocks of texels, and 0 where E tells nothing: so a matte surface has no such part.
+
+use super::blocks::Blocks;
+use super::calibrated::Calibrated;
+use super::constant::{Sample, robust_mean};
+use super::directions::toward;
+use super::sphere::Sphere;
+use glam::{DVec3, Vec3};
+use rayon::prelude::*;
+
+/// E and s.
+pub(crate) struct Mirrored {
+    sphere: Sphere,
+    /// E by cell.
+    surroundings: Vec<Vec3>,
+    /// s by texel.
+    strength: Vec<f32>,
+}
+
+/// Rows of the sphere: 1.4° each, about the sharpest gloss that a mesh's normals leave sharp.
+const ROWS: usize = 128;
+/// Texels that E is found from.
+const ASKED: usize = 50_000;
+/// Turns of D and E.
+const TURNS: usize = 12;
+/// Cells are held at what lies around them as by so much evidence (squared share of light, summed over sightings).
+const HOLD: f32 = 1e-3;
+/// No surface mirrors more than this, by F: a metal at normal incidence.
+const MOST: f32 = 25.0;
+
+impl Mirrored {
+    /// Finds what is mirrored, given the constant part without it; also returns the constant part beside it.
+    pub fn of(radiance: &Calibrated<'_>, constant: &[Vec3]) -> (Self, Vec<Vec3>) {
+        let texels = radiance.texels;
+        let sphere = Sphere::of_rows(ROWS);
+        let step = texels.count().div_ceil(ASKED).max(1);
+        let asked: Vec<Asked> = (0..texels.count())
+            .into_par_iter()
+            .step_by(step)
+            .filter_map(|texel| Asked::of(radiance, texel, constant[texel]))
+            .collect();
+        let mut surroundings = vec![Vec3::ZERO; sphere.count()];
+        let mut asked = asked;
+        for _ in 0..TURNS {
+            surroundings = looked_up(&sphere, &asked, &surroundings);
+            asked.par_iter_mut().for_each_init(
+                || (Vec::new(), Vec::new()),
+                |(samples, belonging), point| {
+                    point.constant = point.without(&sphere, &surroundings, samples, belonging);
+                },
+            );
+        }
+        let mut mirrored = Self { sphere, surroundings, strength: Vec::new() };
+        mirrored.strength = mirrored.strengths(radiance, constant);
+        let strength = &mirrored.strength;
+        let mut constant = constant.to_vec();
+        constant.par_iter_mut().enumerate().filter(|(texel, _)| strength[*texel] > 0.0).for_each_init(
+            || (Vec::new(), Vec::new()),
+            |(samples, belonging), (texel, constant)| {
+                radiance.samples_into(texel, samples);
+                let from = texels.position(texel);
+                for (sample, sighting) in samples.iter_mut().zip(radiance.sightings.of_texel(texel)) {
+                    let outgoing = toward(from, radiance.eye(sighting));
+                    sample.light -= mirrored.sent(texels.shading_normal(texel), outgoing) * strength[texel];
+                }
+                *constant = robust_mean(samples, belonging).max(Vec3::ZERO);
+            },
+        );
+        (mirrored, constant)
+    }
+
+    /// The same with less of it: as much of each texel as `share` says, in [0, 1].
+    pub fn scaled(mut self, share: &[f32]) -> Self {
+        self.strength.iter_mut().zip(share).for_each(|(strength, share)| *strength *= share);
+        self
+    }
+
+    /// What a texel mirrors toward a direction with this normal.
+    pub fn at(&self, texel: usize, normal: Vec3, outgoing: Vec3) -> Vec3 {
+        match self.strength.get(texel) {
+            Some(&strength) if strength > 0.0 => self.sent(normal, outgoing) * strength,
+            _ => Vec3::ZERO,
+        }
+    }
+
+    /// How strongly a texel mirrors: the share that a mirror at normal incidence would have, [0, 1].
+    pub fn share(&self, texel: usize, normal: Vec3, outgoing: Vec3) -> f32 {
+        let strength = self.strength.get(texel).copied().unwrap_or(0.0);
+        (strength * fresnel(normal.dot(outgoing).abs())).min(1.0)
+    }
+
+    /// F·E.
+    fn sent(&self, normal: Vec3, outgoing: Vec3) -> Vec3 {
+        let (direction, share) = reflection(normal, outgoing);
+        let around = self.sphere.around(direction);
+        around.iter().map(|&(cell, weight)| self.surroundings[cell] * weight).sum::<Vec3>() * share
+    }
+
+    /// s of every texel, by blocks between which it is interpolated.
+    fn strengths(&self, radiance: &Calibrated<'_>, constant: &[Vec3]) -> Vec<f32> {
+        let texels = radiance.texels;
+        let blocks = Blocks::of(texels);
+        // Of what a texel shows and what it should mirror, both less their means: product and square, summed.
+        let sums: Vec<(usize, f32, f32)> = (0..texels.count())
+            .into_par_iter()
+            .filter_map(|texel| {
+                let point = Asked::of(radiance, texel, constant[texel])?;
+                let (product, square) = point.covariance(&self.sphere, &self.surroundings);
+                Some((blocks.of_texel(texels, texel), product, square))
+            })
+            .collect();
+        let mut joined = vec![(0.0, 0.0); blocks.count()];
+        for (block, product, square) in sums {
+            joined[block].0 += product;
+            joined[block].1 += square;
+        }
+        let strengths = blocks.quotients(&joined, [0.0, MOST]);
+        (0..texels.count()).into_par_iter().map(|texel| blocks.at(texels, texel, &strengths)).collect()
+    }
+}
+
+/// The direction that is mirrored toward another, and F.
+fn reflection(normal: Vec3, outgoing: Vec3) -> (Vec3, f32) {
+    let cosine = normal.dot(outgoing);
+    (normal * (2.0 * cosine) - outgoing, fresnel(cosine.abs()))
+}
+
+/// F.
+fn fresnel(cosine: f32) -> f32 {
+    let rest = (1.0 - cosine).clamp(0.0, 1.0);
+    let square = rest * rest;
+    0.04 + 0.96 * square * square * rest
+}
+
+/// A texel that E is found from.
+struct Asked {
+    constant: Vec3,
+    seen: Vec<Seen>,
+}
+
+/// A sample and where its mirrored direction points.
+struct Seen {
+    sample: Sample,
+    is_clipped: bool,
+    direction: Vec3,
+    share: f32,
+}
+
+impl Asked {
+    fn of(radiance: &Calibrated<'_>, texel: usize, constant: Vec3) -> Option<Self> {
+        let sightings = radiance.sightings.of_texel(texel);
+        if sightings.len() < 3 {
+            return None;
+        }
+        let from: DVec3 = radiance.texels.position(texel);
+        let normal = radiance.texels.shading_normal(texel);
+        let mut samples = Vec::new();
+        radiance.samples_into(texel, &mut samples);
+        let seen = samples.iter().zip(sightings).map(|(&sample, sighting)| {
+            let (direction, share) = reflection(normal, toward(from, radiance.eye(sighting)));
+            Seen { sample, is_clipped: sighting.clipped() > 0.0, direction, share }
+        });
+        Some(Self { constant, seen: seen.collect() })
+    }
+
+    /// The mean of what remains without the surroundings.
+    fn without(
+        &self,
+        sphere: &Sphere,
+        surroundings: &[Vec3],
+        samples: &mut Vec<Sample>,
+        belonging: &mut Vec<f32>,
+    ) -> Vec3 {
+        samples.clear();
+        samples.extend(self.seen.iter().map(|seen| {
+            let light = seen.sample.light - seen.mirrored(sphere, surroundings);
+            Sample { light, weight: seen.sample.weight }
+        }));
+        robust_mean(samples, belonging).max(Vec3::ZERO)
+    }
+
+    /// Product and square of `strengths`.
+    fn covariance(&self, sphere: &Sphere, surroundings: &[Vec3]) -> (f32, f32) {
+        let told: Vec<Vec3> = self.seen.iter().map(|seen| seen.mirrored(sphere, surroundings)).collect();
+        let (mut light, mut mirrored, mut weights) = (Vec3::ZERO, Vec3::ZERO, 0.0);
+        for (seen, told) in self.seen.iter().zip(&told) {
+            light += seen.sample.light * seen.sample.weight;
+            mirrored += *told * seen.sample.weight;
+            weights += seen.sample.weight;
+        }
+        let (light, mirrored) = (light / weights, mirrored / weights);
+        self.seen.iter().zip(&told).fold((0.0, 0.0), |(product, square), (seen, told)| {
+            let told = *told - mirrored;
+            let weight = seen.sample.weight;
+            (product + told.dot(seen.sample.light - light) * weight, square + told.length_squared() * weight)
+        })
+    }
+}
+
+impl Seen {
+    fn mirrored(&self, sphere: &Sphere, surroundings: &[Vec3]) -> Vec3 {
+        let around = sphere.around(self.direction);
+        around.iter().map(|&(cell, weight)| surroundings[cell] * weight).sum::<Vec3>() * self.share
+    }
+}
+
+/// E as the constant parts leave it, from what it was.
+fn looked_up(sphere: &Sphere, asked: &[Asked], before: &[Vec3]) -> Vec<Vec3> {
+    /// Points that are summed as one, whatever the number of threads.
+    const TOGETHER: usize = 8192;
+    /// What lies off by this is trusted half, in roots of light.
+    const SCALE: f32 = 0.1;
+    let parts: Vec<Vec<(Vec3, f32)>> = asked
+        .par_chunks(TOGETHER)
+        .map(|points| {
+            let mut sums = vec![(Vec3::ZERO, 0.0f32); sphere.count()];
+            for point in points {
+                for seen in &point.seen {
+                    let known = seen.mirrored(sphere, before);
+                    let left = seen.sample.light - point.constant;
+                    if seen.is_clipped && known.cmpge(left).all() {
+                        continue;
+                    }
+                    let off = (left - known).length() / (SCALE * (0.05 + point.constant.length()).sqrt());
+                    let trust = seen.sample.weight * seen.share / (1.0 + off * off);
+                    for (cell, weight) in sphere.around(seen.direction) {
+                        let sum = &mut sums[cell];
+                        // Toward the old value: what the other three cells tell is taken away.
+                        sum.0 += (left - known + before[cell] * seen.share) * (trust * weight);
+                        sum.1 += seen.share * trust * weight;
+                    }
+                }
+            }
+            sums
+        })
+        .collect();
+    let mut sums = vec![(Vec3::ZERO, 0.0f32); sphere.count()];
+    for part in parts {
+        for (sum, part) in sums.iter_mut().zip(part) {
+            sum.0 += part.0;
+            sum.1 += part.1;
+        }
+    }
+    sphere.smoothed(&sums, HOLD).into_iter().map(|light| light.max(Vec3::ZERO)).collect()
+}
