@@ -28,6 +28,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "lens",
             "progress",
             "scene",
+            "capture",
             "atlas",
             "trace",
             "slf",
