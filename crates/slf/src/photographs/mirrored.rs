@@ -43,7 +43,7 @@ const ASKED: usize = 50_000;
 /// Turns of D and E.
 const TURNS: usize = 12;
 /// Cells are held at what lies around them as by so much evidence (squared share of light, summed over sightings).
-const HOLD: f32 = 1e-3;
+const HOLD: f32 = 0.02;
 /// No surface mirrors more than this, by F: a metal at normal incidence.
 const MOST: f32 = 25.0;
 
