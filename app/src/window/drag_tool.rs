@@ -67,7 +67,8 @@ impl Drag {
             (false, _) => GradientLine::View(view.frame, self.ends().map(view.position)),
         };
         let document = session.document()?;
-        let (from, to) = (document.brush.target, settings.gradient.to());
+        let from = document.brush.target;
+        let to = settings.gradient.to().map(|to| to.with_gloss(from.gloss));
         let symmetry = document.symmetry_at(self.hits[0].as_ref());
         let gradient = Gradient { shape: settings.gradient.shape, line, from, to, symmetry };
         gradient.is_valid().then(|| Command::DragGradient(gradient).into())

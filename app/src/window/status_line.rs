@@ -20,6 +20,8 @@ pub struct Hover {
     pub t: f64,
     /// The painted anchor.
     pub anchor: f64,
+    /// How far gloss obeys them.
+    pub gloss: f64,
 }
 
 /// What the line says beside what the session knows.
@@ -78,8 +80,9 @@ pub fn status_line(ui: &mut Ui, session: &Session, notes: StatusNotes<'_>, actio
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             if let Some(hover) = &notes.hover {
                 let becomes = hover.becomes_px.map(|px| format!(" becomes {}", controls::circle(px)));
+                let gloss = if hover.gloss > 0.0 { format!(" · gloss {:.2}", hover.gloss) } else { String::new() };
                 let text = format!(
-                    "{} · {} deep · {}{} · t {:.4} · anchor {:.2}",
+                    "{} · {} deep · {}{} · t {:.4} · anchor {:.2}{gloss}",
                     hover.object,
                     controls::length(hover.depth),
                     controls::circle(hover.circle_px),

@@ -160,7 +160,7 @@ impl Tool {
         match self {
             Tool::Brush | Tool::Curve => (brush.mode == BrushMode::Set).then_some(brush.target),
             Tool::FillObject | Tool::FillMaterial | Tool::FillChart => Some(brush.target),
-            Tool::SharpHere => Some(FocusOffset::SHARP),
+            Tool::SharpHere => Some(FocusOffset::SHARP.with_gloss(brush.target.gloss)),
             Tool::Reset => Some(FocusOffset::STANDARD),
             _ => None,
         }

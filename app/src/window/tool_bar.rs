@@ -126,7 +126,7 @@ pub fn target_slider(ui: &mut Ui, optics: &Optics, target: FocusOffset, width: f
         .on_disabled_hover_text("A pinhole blurs nothing: open the aperture first.");
     let kappa = optics.kappa_for_circle_px(circle_px).filter(|_| changed)?;
     let t = optics.offset_for_kappa(kappa, optics.inverse_focus_distance, 1.0)?;
-    Some(FocusOffset::new(t, target.anchor))
+    Some(FocusOffset { t, ..target })
 }
 
 #[cfg(test)]

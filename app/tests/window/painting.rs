@@ -164,6 +164,29 @@ fn clicking_tools_fill_focus_and_pick() {
 }
 
 #[test]
+fn gloss_obeys_the_paint_where_that_is_ticked() {
+    let (mut person, _folder) = opened();
+    person.window.get_by_label("obeys the paint").click();
+    person.window.run_ok();
+    assert_eq!(person.document().brush.target, FocusOffset::SHARP.with_gloss(1.0));
+    person.presses(Modifiers::NONE, Key::G);
+    let card = at(person.picture_rect(), 0.25, 0.5);
+    person.clicks(card);
+    assert_eq!(person.document().undo_name(), Some("Fill object"));
+    assert!(person.document().map.has_gloss());
+    person.presses(Modifiers::COMMAND, Key::Z);
+    assert!(!person.document().map.has_gloss());
+
+    // The palette has it, too.
+    person.presses(Modifiers::COMMAND | Modifiers::SHIFT, Key::P);
+    person.window.event(egui::Event::Text("gloss".into()));
+    person.window.run_steps(2);
+    person.presses(Modifiers::NONE, Key::Enter);
+    assert_eq!(person.document().brush.target, FocusOffset::SHARP);
+    assert!(person.complaints().is_empty(), "{:?}", person.complaints());
+}
+
+#[test]
 fn shift_and_a_click_draw_a_straight_line_from_the_last_stroke() {
     let (mut person, _folder) = opened();
     chooses_blur(&mut person);

@@ -18,7 +18,7 @@ use glam::DVec2;
 use lens::{ApertureSampler, Camera, FocusOffset, Picture};
 use progress::Progress;
 use rayon::prelude::*;
-use salf::{Salf, Sample, Visibility};
+use salf::{Salf, Sample, SampleFocus, Visibility};
 use scene::SurfaceField;
 use std::ops::Range;
 
@@ -68,8 +68,9 @@ pub fn scatter(
     }
     let stop = if baked_radius > 0.0 { optics.aperture_radius / baked_radius } else { 1.0 };
     let sets = ray_sets(camera, options);
+    let focus = SampleFocus::of(focus);
     let radius_px = |sample: &Sample| {
-        let offset = sample.focus(focus);
+        let offset = focus.at(sample.address());
         optics.splat_radius_px(optics.kappa(f64::from(sample.inverse_depth), offset))
     };
     let samples = salf.samples.to_vec();

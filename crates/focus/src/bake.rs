@@ -12,16 +12,18 @@ impl Focus {
     /// paintable. Where no surface is near, the map is standard.
     pub fn bake(&self, texels: &TexelMap) -> FocusMap {
         let (width, height) = (texels.width, texels.height);
-        let values: Vec<[f32; 2]> =
-            texels.texels.par_iter().map(|texel| texel_of(self.at(texel.centroid))).collect();
+        let values: Vec<FocusOffset> =
+            texels.texels.par_iter().map(|texel| self.at(texel.centroid)).collect();
         let mut map = FocusMap::new(width, height, FocusOffset::STANDARD);
         map.background = self.background;
         for (texel, value) in texels.texels.iter().zip(values) {
-            map.set(texel.x, texel.y, value);
+            map.set(texel.x, texel.y, texel_of(value));
+            map.set_gloss(texel.x, texel.y, value.gloss as f32);
         }
         for gutter in &texels.dilations {
             let [from, to] = [gutter.source, gutter.texel].map(|index| [index % width, index / width]);
             map.set(to[0], to[1], map.texel(from[0], from[1]));
+            map.set_gloss(to[0], to[1], map.gloss_at(from[0], from[1]));
         }
         map
     }

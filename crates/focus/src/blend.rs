@@ -7,15 +7,15 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Blend {
-    /// t and anchor each move toward the layer's.
+    /// t, anchor and gloss each move toward the layer's.
     #[default]
     Set,
-    /// The defocus κ moves toward the layer's, in proportion at every depth: (t − 1) and t(1 − a) each move.
+    /// The defocus κ moves toward the layer's, in proportion at every depth: (t − 1) and t(1 − a) each move; and gloss.
     Mix,
-    /// t − 1 and anchor of the layer are added.
+    /// t − 1, anchor and gloss of the layer are added.
     Add,
     /// The defocus κ is multiplied by the layer's t (0 makes sharp, 1 changes nothing, 2 doubles). What the lens itself
-    /// gives cannot grow (the anchor would leave [0, 1]), only what was painted.
+    /// gives cannot grow (the anchor would leave [0, 1]), only what was painted. Gloss stays.
     MultiplyDefocus,
 }
 
@@ -42,6 +42,17 @@ impl Blend {
                 }
                 with_lens_part(1.0 + factor * (t0 - 1.0), factor * t0 * (1.0 - a0), a0)
             }
+        }
+    }
+
+    /// Joins a layer's gloss to that beneath.
+    pub fn join_gloss(self, beneath: f32, layer: f32, w: f32) -> f32 {
+        match self {
+            _ if w <= 0.0 => beneath,
+            Self::Set | Self::Mix if w >= 1.0 => layer,
+            Self::Set | Self::Mix => beneath + (layer - beneath) * w,
+            Self::Add => (beneath + w * layer).clamp(0.0, 1.0),
+            Self::MultiplyDefocus => beneath,
         }
     }
 }

@@ -24,12 +24,12 @@ pub struct Brush {
     pub spacing: f64,
     /// What it does.
     pub mode: BrushMode,
-    /// What is set; for adding and subtracting, t − 1 and anchor are what a full dab adds.
+    /// What is set; for adding and subtracting, t − 1, anchor and gloss are what a full dab adds.
     #[serde(with = "FocusOffsetFields")]
     pub target: FocusOffset,
     /// Where, from each painted point, cloning takes the focus from; world units.
     pub clone_offset: [f64; 3],
-    /// Which of the two numbers it touches.
+    /// Which of the three numbers it touches.
     pub channels: Channels,
     /// What t is kept within, lowest and highest, by adding and subtracting.
     pub offset_limits: [f64; 2],
@@ -62,9 +62,9 @@ pub enum BrushMode {
     /// Moves them to the target. Dabs of a stroke do not build up: its strength is a ceiling.
     #[default]
     Set,
-    /// Adds t − 1 and anchor of the target; dabs build up.
+    /// Adds t − 1, anchor and gloss of the target; dabs build up.
     Add,
-    /// Subtracts t − 1 and anchor of the target; dabs build up.
+    /// Subtracts t − 1, anchor and gloss of the target; dabs build up.
     Subtract,
     /// Evens out differences; dabs build up.
     Smooth,
@@ -84,17 +84,22 @@ pub enum Channels {
     T,
     /// Only the anchor.
     Anchor,
-    /// Both.
+    /// Only how far gloss obeys them.
+    Gloss,
+    /// All three.
     #[default]
-    Both,
-    /// Neither, only how much the layer counts: its mask.
+    #[serde(rename = "both")]
+    All,
+    /// None, only how much the layer counts: its mask.
     Mask,
 }
 
 impl Channels {
-    /// Whether t, the anchor and the mask are touched. Whoever paints a layer paints its mask too.
-    pub fn touches(self) -> [bool; 3] {
-        [matches!(self, Self::T | Self::Both), matches!(self, Self::Anchor | Self::Both), true]
+    /// Whether t, the anchor, gloss and the mask are touched. Whoever paints a layer paints its mask too.
+    pub fn touches(self) -> [bool; 4] {
+        let [t, anchor, gloss] =
+            [Self::T, Self::Anchor, Self::Gloss].map(|own| self == own || self == Self::All);
+        [t, anchor, gloss, true]
     }
 }
 
@@ -124,7 +129,7 @@ impl Default for Brush {
             mode: BrushMode::Set,
             target: FocusOffset::SHARP,
             clone_offset: [0.0; 3],
-            channels: Channels::Both,
+            channels: Channels::All,
             offset_limits: [0.0, 2.0],
             normal_limit_degrees: 90.0,
             mirror: [false; 3],
@@ -152,7 +157,7 @@ impl Brush {
             _ if !unit.contains(&self.strength) => Some("strength must be in [0, 1]"),
             _ if !(self.flow > 0.0 && self.flow <= 1.0) => Some("flow must be above 0 and at most 1"),
             _ if !(0.01..=10.0).contains(&self.spacing) => Some("spacing must be in [0.01, 10]"),
-            _ if !self.target.is_valid() => Some("target needs a finite t and an anchor in [0, 1]"),
+            _ if !self.target.is_valid() => Some("target needs a finite t, an anchor and a gloss in [0, 1]"),
             _ if !(low <= high && low.is_finite() && high.is_finite()) => {
                 Some("offset_limits must be finite, the lower one first")
             }
@@ -207,6 +212,11 @@ impl Brush {
         }
     }
 
+    /// Whether it says something of gloss, which older programs do not know.
+    pub fn paints_gloss(&self) -> bool {
+        self.target.gloss != 0.0 || self.channels == Channels::Gloss
+    }
+
     /// Whether it says something that programs which only know the world's axes do not understand.
     pub fn has_own_axes(&self) -> bool {
         self.mirror_by_object || !self.symmetry().is_along_world()
@@ -241,4 +251,11 @@ pub struct FocusOffsetFields {
     t: f64,
     /// What it is relative to, in [0, 1].
     anchor: f64,
+    /// How far gloss obeys it, in [0, 1].
+    #[serde(default, skip_serializing_if = "is_zero")]
+    gloss: f64,
+}
+
+fn is_zero(number: &f64) -> bool {
+    *number == 0.0
 }

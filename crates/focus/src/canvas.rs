@@ -184,20 +184,20 @@ impl Canvas {
         self.tree.points()[index] - (center - self.origin).as_vec3()
     }
 
-    /// [t, anchor, mask] of a texel.
-    pub(crate) fn value(&self, map: &FocusMap, index: usize) -> [f32; 3] {
-        let texel = &self.texels[index];
-        let [t, anchor] = map.texel(texel.x, texel.y);
-        [t, anchor, map.mask_at(texel.x, texel.y)]
+    /// [t, anchor, gloss, mask] of a texel.
+    pub(crate) fn value(&self, map: &FocusMap, index: usize) -> [f32; 4] {
+        let CanvasTexel { x, y, .. } = self.texels[index];
+        let [t, anchor] = map.texel(x, y);
+        [t, anchor, map.gloss_at(x, y), map.mask_at(x, y)]
     }
 
-    /// Writes [t, anchor, mask] of a texel and the gutters that copy it (a map without mask ignores the mask);
+    /// Writes [t, anchor, gloss, mask] of a texel and the gutters that copy it (a map without mask ignores the mask);
     /// notes in `changed` what was not so before.
     pub(crate) fn write(
         &self,
         map: &mut FocusMap,
         index: usize,
-        [t, anchor, share]: [f32; 3],
+        [t, anchor, gloss, share]: [f32; 4],
         changed: &mut Vec<[u32; 2]>,
     ) {
         let texel = &self.texels[index];
@@ -205,6 +205,10 @@ impl Canvas {
             let mut differs = map.texel(x, y) != [t, anchor];
             if differs {
                 map.set(x, y, [t, anchor]);
+            }
+            if map.gloss_at(x, y) != gloss {
+                map.set_gloss(x, y, gloss);
+                differs = true;
             }
             if let Some(mask) = map.mask.as_mut().filter(|mask| mask.at(x, y) != share) {
                 mask.set(x, y, share);
@@ -221,12 +225,12 @@ impl Canvas {
         &self,
         map: &mut FocusMap,
         index: usize,
-        value: [f32; 3],
-        touches: [bool; 3],
+        value: [f32; 4],
+        touches: [bool; 4],
         changed: &mut Vec<[u32; 2]>,
     ) {
         let now = self.value(map, index);
-        let kept = [0, 1, 2].map(|k| if touches[k] { value[k] } else { now[k] });
+        let kept = [0, 1, 2, 3].map(|k| if touches[k] { value[k] } else { now[k] });
         if kept != now {
             self.write(map, index, kept, changed);
         }

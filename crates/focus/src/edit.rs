@@ -10,6 +10,7 @@ use std::sync::Arc;
 pub struct Edit {
     name: String,
     values: Vec<TileChange<[f32; 2]>>,
+    gloss: Vec<TileChange<f32>>,
     mask: Vec<TileChange<f32>>,
     /// Before, after: the background's focus and mask.
     background: [(FocusOffset, f32); 2],
@@ -33,11 +34,13 @@ impl Edit {
         debug_assert_eq!(before.size(), after.size());
         debug_assert_eq!(before.mask.is_some(), after.mask.is_some());
         let values = changes(&before.texels, &after.texels);
+        let gloss = changes(&before.gloss, &after.gloss);
         let masks = before.mask.as_ref().zip(after.mask.as_ref());
         let mask = masks.map_or(Vec::new(), |(before, after)| changes(before, after));
         let background = [before, after].map(|map| (map.background, map.background_mask));
-        let empty = values.is_empty() && mask.is_empty() && background[0] == background[1];
-        (!empty).then(|| Self { name: name.into(), values, mask, background })
+        let empty =
+            values.is_empty() && gloss.is_empty() && mask.is_empty() && background[0] == background[1];
+        (!empty).then(|| Self { name: name.into(), values, gloss, mask, background })
     }
 
     /// Its name in the undo list.
@@ -48,7 +51,7 @@ impl Edit {
     /// Memory that it keeps alive: in a history each tile is shared with the neighbouring edit or the map, so
     /// an edit counts one of its two.
     pub fn bytes(&self) -> usize {
-        size_of::<Self>() + bytes_of(&self.values) + bytes_of(&self.mask)
+        size_of::<Self>() + bytes_of(&self.values) + bytes_of(&self.gloss) + bytes_of(&self.mask)
     }
 
     /// Whether the background's focus is part of it.
@@ -68,6 +71,7 @@ impl Edit {
 
     fn replace(&self, map: &mut FocusMap, end: End) -> Changed {
         let mut changed = replace_tiles(&self.values, &mut map.texels, end);
+        changed.extend(replace_tiles(&self.gloss, &mut map.gloss, end));
         if let Some(mask) = &mut map.mask {
             changed.extend(replace_tiles(&self.mask, mask, end));
         }

@@ -29,7 +29,7 @@ pub enum FocusError {
     )]
     BackgroundMap,
     /// A number that cannot be used.
-    #[error("{entry}: t must be finite and anchor in [0, 1]")]
+    #[error("{entry}: t must be finite, anchor and gloss in [0, 1]")]
     BadValue {
         /// The recipe's entry.
         entry: String,

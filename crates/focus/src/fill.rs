@@ -1,6 +1,6 @@
 //! The same value over a whole piece of the scene.
 
-use crate::focus_map::texel_of;
+use crate::focus_map::numbers_of;
 use crate::{Canvas, CanvasTexel, Changed, Channels, FocusError, FocusMap, Selection};
 use lens::FocusOffset;
 use serde::{Deserialize, Serialize};
@@ -66,17 +66,18 @@ pub fn fill_selected(
     }
     let touches = channels.touches();
     if targets.contains(&FillTarget::Background) {
-        let [t, anchor, _] = touches;
+        let [t, anchor, gloss, _] = touches;
         map.background_mask = 1.0;
         map.background.t = if t { value.t } else { map.background.t };
         map.background.anchor = if anchor { value.anchor } else { map.background.anchor };
+        map.background.gloss = if gloss { value.gloss } else { map.background.gloss };
     }
-    let [t, anchor] = texel_of(value);
+    let [t, anchor, gloss] = numbers_of(value);
     let mut changed = Vec::new();
     for (index, texel) in canvas.texels().iter().enumerate() {
         let is_inside = targets.iter().any(|target| target.contains(canvas, texel));
         if is_inside && selection.is_none_or(|selection| selection.contains(index)) {
-            canvas.write_channels(map, index, [t, anchor, 1.0], touches, &mut changed);
+            canvas.write_channels(map, index, [t, anchor, gloss, 1.0], touches, &mut changed);
         }
     }
     Ok(Changed::new(changed))

@@ -14,6 +14,8 @@ pub struct FocusImage {
     pub height: u32,
     /// [t, anchor] a texel, row 0 on top.
     pub texels: Vec<[f32; 2]>,
+    /// The gloss of every texel, in the same order; `None` where all of it is 0.
+    pub gloss: Option<Vec<f32>>,
 }
 
 impl FocusImage {
@@ -24,11 +26,14 @@ impl FocusImage {
         let low = p.floor();
         let [x0, x1] = [low.x, low.x + 1.0].map(|x| wrapped(x, self.width, wrap[0]));
         let [y0, y1] = [low.y, low.y + 1.0].map(|y| wrapped(y, self.height, wrap[1]));
-        let texel = |x: usize, y: usize| self.texels[y * self.width as usize + x];
-        bilinear([texel(x0, y0), texel(x1, y0), texel(x0, y1), texel(x1, y1)], p - low)
+        let corners = [[x0, y0], [x1, y0], [x0, y1], [x1, y1]].map(|[x, y]| y * self.width as usize + x);
+        let [t, anchor] = bilinear(corners.map(|index| self.texels[index]), p - low);
+        let gloss =
+            self.gloss.as_ref().map(|gloss| bilinear(corners.map(|index| [gloss[index]]), p - low)[0]);
+        FocusOffset { t, anchor, gloss: gloss.unwrap_or(0.0) }
     }
 
-    /// The least and the greatest t and anchor of the texels of a box: the first and the last column and row,
+    /// The least and the greatest t, anchor and gloss of the texels of a box: the first and the last column and row,
     /// whole numbers on a picture that goes on as `wrap` says.
     pub fn bounds(&self, box_texels: [DVec2; 2], wrap: [Wrap; 2]) -> [FocusOffset; 2] {
         let indices = |axis: usize, count: u32| {
@@ -40,7 +45,13 @@ impl FocusImage {
         };
         let columns: Vec<usize> = indices(0, self.width).collect();
         let rows = indices(1, self.height);
-        bounds(rows.flat_map(|y| columns.iter().map(move |x| self.texels[y * self.width as usize + x])))
+        bounds(rows.flat_map(|y| columns.iter().map(move |x| self.at(y * self.width as usize + x))))
+    }
+
+    /// The value of a texel.
+    fn at(&self, index: usize) -> FocusOffset {
+        let [t, anchor] = self.texels[index].map(f64::from);
+        FocusOffset { t, anchor, gloss: self.gloss.as_ref().map_or(0.0, |gloss| f64::from(gloss[index])) }
     }
 
     /// The smallest and largest t.
@@ -77,7 +88,7 @@ mod tests {
     fn ramp() -> FocusImage {
         // t: 0 1 2 3 / 10 11 12 13
         let texels = (0..8).map(|i| [(i % 4) as f32 + 10.0 * (i / 4) as f32, (i / 4) as f32]).collect();
-        FocusImage { width: 4, height: 2, texels }
+        FocusImage { width: 4, height: 2, texels, gloss: None }
     }
 
     #[test]

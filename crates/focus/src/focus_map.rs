@@ -1,12 +1,14 @@
 //! A focus offset a texel of the atlas, and on a layer how much each counts.
 
-use crate::tile_grid::TileGrid;
+use crate::tile_grid::{Tile, TileGrid, is_blank};
 use glam::{DVec2, UVec2};
 use lens::FocusOffset;
 use std::sync::Arc;
 
-/// The painted focus map: t and anchor over the atlas, and the background's focus. Texels that no surface
+/// The painted focus map: t, anchor and gloss over the atlas, and the background's focus. Texels that no surface
 /// covers hold dilated values.
+///
+/// Gloss is seldom painted: where it never was, its tiles are one blank tile that all maps share.
 ///
 /// The map of a layer may have a *mask*: how much each texel of it counts, in [0, 1]. Without one all count
 /// fully.
@@ -16,6 +18,7 @@ use std::sync::Arc;
 #[derive(Clone, Debug, PartialEq)]
 pub struct FocusMap {
     pub(crate) texels: TileGrid<[f32; 2]>,
+    pub(crate) gloss: TileGrid<f32>,
     pub(crate) mask: Option<TileGrid<f32>>,
     /// The focus of what lies at infinity.
     pub background: FocusOffset,
@@ -27,7 +30,8 @@ impl FocusMap {
     /// A map of one value, the background included. Both sides must be above 0.
     pub fn new(width: u32, height: u32, value: FocusOffset) -> Self {
         let texels = TileGrid::new(width, height, texel_of(value));
-        Self { texels, mask: None, background: value, background_mask: 1.0 }
+        let gloss = TileGrid::new(width, height, value.gloss as f32).with_blank_tiles();
+        Self { texels, gloss, mask: None, background: value, background_mask: 1.0 }
     }
 
     /// A map of the ordinary lens whose mask is 0: nothing of it counts yet.
@@ -38,15 +42,35 @@ impl FocusMap {
         map
     }
 
-    /// A map of the given texels, [t, anchor] each, row 0 on top. `None` unless there are width × height.
+    /// A map of the given texels, [t, anchor] each and without gloss, row 0 on top. `None` unless there are width × height.
     pub fn from_rows(width: u32, height: u32, texels: &[[f32; 2]], background: FocusOffset) -> Option<Self> {
         let texels = TileGrid::from_rows(width, height, texels, texel_of(FocusOffset::STANDARD))?;
-        Some(Self { texels, mask: None, background, background_mask: 1.0 })
+        let gloss = TileGrid::blank(width, height);
+        Some(Self { texels, gloss, mask: None, background, background_mask: 1.0 })
     }
 
     /// All texels, [t, anchor] each, row 0 on top. Inverse of [`Self::from_rows`].
     pub fn to_rows(&self) -> Vec<[f32; 2]> {
         self.texels.to_rows()
+    }
+
+    /// The gloss of all texels, row 0 on top; `None` where all of it is 0.
+    pub fn gloss_rows(&self) -> Option<Vec<f32>> {
+        let is_some = |tile: &Arc<Tile<f32>>| !is_blank(tile) && tile.iter().any(|gloss| *gloss != 0.0);
+        self.gloss.tiles().iter().any(is_some).then(|| self.gloss.to_rows())
+    }
+
+    /// Gives the texels their gloss, row 0 on top. False, and nothing is done, unless there are width × height values.
+    #[must_use]
+    pub fn set_gloss_rows(&mut self, gloss: &[f32]) -> bool {
+        let [width, height] = self.size();
+        let grid = TileGrid::from_rows(width, height, gloss, 0.0).map(TileGrid::with_blank_tiles);
+        grid.map(|grid| self.gloss = grid).is_some()
+    }
+
+    /// Whether gloss obeys the paint anywhere, the background included, or did once: quick.
+    pub fn has_gloss(&self) -> bool {
+        self.background.gloss != 0.0 || !self.gloss.is_blank()
     }
 
     /// The mask of all texels, row 0 on top; `None` where there is no mask.
@@ -111,13 +135,18 @@ impl FocusMap {
 
     /// The value of a texel, which must lie in the map.
     pub fn at(&self, x: u32, y: u32) -> FocusOffset {
-        let [t, anchor] = self.texel(x, y);
-        FocusOffset { t: t as f64, anchor: anchor as f64 }
+        let [t, anchor] = self.texel(x, y).map(f64::from);
+        FocusOffset { t, anchor, gloss: f64::from(self.gloss_at(x, y)) }
     }
 
     /// [t, anchor] of a texel, which must lie in the map.
     pub fn texel(&self, x: u32, y: u32) -> [f32; 2] {
         self.texels.at(x, y)
+    }
+
+    /// How far gloss obeys the paint on a texel, in [0, 1]; it must lie in the map.
+    pub fn gloss_at(&self, x: u32, y: u32) -> f32 {
+        self.gloss.at(x, y)
     }
 
     /// How much a texel counts, in [0, 1].
@@ -130,6 +159,13 @@ impl FocusMap {
         self.texels.set(x, y, value);
     }
 
+    /// Sets how far gloss obeys the paint on a texel, which must lie in the map; the same.
+    pub fn set_gloss(&mut self, x: u32, y: u32, gloss: f32) {
+        if self.gloss.at(x, y) != gloss {
+            self.gloss.set(x, y, gloss);
+        }
+    }
+
     /// The value at a position in texel coordinates (x right, y down; texel (i, j) is centred at
     /// (i + ½, j + ½)), bilinear; outside the map its border goes on. Between equal texels it is exactly
     /// their value.
@@ -139,10 +175,16 @@ impl FocusMap {
         let low = p.as_uvec2();
         let high = (low + UVec2::ONE).min(last);
         let corners = [[low.x, low.y], [high.x, low.y], [low.x, high.y], [high.x, high.y]];
-        bilinear(corners.map(|[x, y]| self.texel(x, y)), p - low.as_dvec2())
+        let share = p - low.as_dvec2();
+        let [t, anchor] = bilinear(corners.map(|[x, y]| self.texel(x, y)), share);
+        let gloss = match self.gloss.is_blank_at(corners.into_iter()) {
+            true => 0.0,
+            false => bilinear(corners.map(|[x, y]| [self.gloss_at(x, y)]), share)[0],
+        };
+        FocusOffset { t, anchor, gloss }
     }
 
-    /// The least and the greatest t and anchor of the texels of a box, the first and the last column and row;
+    /// The least and the greatest t, anchor and gloss of the texels of a box, the first and the last column and row;
     /// outside the map its border goes on.
     pub fn bounds(&self, box_texels: [DVec2; 2]) -> [FocusOffset; 2] {
         let within = |axis: usize, count: u32| {
@@ -155,36 +197,41 @@ impl FocusMap {
         };
         let [width, height] = self.size();
         let columns = within(0, width);
-        bounds(within(1, height).flat_map(|y| columns.clone().map(move |x| self.texel(x, y))))
+        bounds(within(1, height).flat_map(|y| columns.clone().map(move |x| self.at(x, y))))
     }
 
     /// Whether this is a snapshot of another map, or the other way round, and neither was written since. Quick: where both
     /// were written alike it says no.
     pub fn shares_tiles_with(&self, other: &Self) -> bool {
-        let pairs = || self.texels.tiles().iter().zip(other.texels.tiles());
         self.size() == other.size()
             && self.background == other.background
-            && pairs().all(|(a, b)| Arc::ptr_eq(a, b))
+            && self.texels.shares_tiles_with(&other.texels)
+            && self.gloss.shares_tiles_with(&other.gloss)
     }
 
-    /// Whether all numbers are usable: t finite, anchor and mask in [0, 1].
+    /// Whether all numbers are usable: t finite, anchor, gloss and mask in [0, 1].
     pub fn is_valid(&self) -> bool {
         let unit = 0.0..=1.0;
         let usable = |[t, a]: &[f32; 2]| t.is_finite() && unit.contains(a);
         self.background.is_valid()
             && unit.contains(&self.background_mask)
             && self.texels.tiles().iter().all(|tile| tile.iter().all(usable))
+            && self.gloss.tiles().iter().all(|tile| is_blank(tile) || tile.iter().all(|g| unit.contains(g)))
             && self.mask.iter().flat_map(TileGrid::tiles).all(|tile| tile.iter().all(|m| unit.contains(m)))
     }
 }
 
-/// The least and the greatest t and anchor of some texels, at least one.
-pub(crate) fn bounds(texels: impl Iterator<Item = [f32; 2]>) -> [FocusOffset; 2] {
-    let none = ([f32::INFINITY; 2], [f32::NEG_INFINITY; 2]);
-    let (least, greatest) = texels.fold(none, |(least, greatest), texel| {
-        (std::array::from_fn(|c| least[c].min(texel[c])), std::array::from_fn(|c| greatest[c].max(texel[c])))
-    });
-    [least, greatest].map(|[t, anchor]| FocusOffset::new(f64::from(t), f64::from(anchor)))
+/// The least and the greatest t, anchor and gloss of some texels, at least one.
+pub(crate) fn bounds(texels: impl Iterator<Item = FocusOffset>) -> [FocusOffset; 2] {
+    let all = |number: f64| FocusOffset { t: number, anchor: number, gloss: number };
+    let by = |pick: fn(f64, f64) -> f64, a: FocusOffset, b: FocusOffset| FocusOffset {
+        t: pick(a.t, b.t),
+        anchor: pick(a.anchor, b.anchor),
+        gloss: pick(a.gloss, b.gloss),
+    };
+    texels.fold([all(f64::INFINITY), all(f64::NEG_INFINITY)], |[least, greatest], texel| {
+        [by(f64::min, least, texel), by(f64::max, greatest, texel)]
+    })
 }
 
 /// [t, anchor] of a value, as the map holds it.
@@ -192,16 +239,20 @@ pub(crate) fn texel_of(value: FocusOffset) -> [f32; 2] {
     [value.t as f32, value.anchor as f32]
 }
 
+/// t, anchor and gloss of a value, as the map holds them.
+pub(crate) fn numbers_of(value: FocusOffset) -> [f32; 3] {
+    [value.t as f32, value.anchor as f32, value.gloss as f32]
+}
+
 /// The bilinear mean of upper left, upper right, lower left and lower right, `f` in [0, 1]². Written as
 /// a + (b − a)·f, so that equal corners give exactly their value.
-pub(crate) fn bilinear([a, b, c, d]: [[f32; 2]; 4], f: DVec2) -> FocusOffset {
+pub(crate) fn bilinear<const N: usize>([a, b, c, d]: [[f32; N]; 4], f: DVec2) -> [f64; N] {
     let lerp = |a: f64, b: f64, f: f64| a + (b - a) * f;
-    let channel = |k: usize| {
+    std::array::from_fn(|k| {
         let upper = lerp(a[k] as f64, b[k] as f64, f.x);
         let lower = lerp(c[k] as f64, d[k] as f64, f.x);
         lerp(upper, lower, f.y)
-    };
-    FocusOffset { t: channel(0), anchor: channel(1) }
+    })
 }
 
 #[cfg(test)]

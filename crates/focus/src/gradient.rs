@@ -1,7 +1,7 @@
 //! Gradients: a focus that changes evenly along a line, over everything that may be painted.
 
 use crate::brush::FocusOffsetFields;
-use crate::focus_map::texel_of;
+use crate::focus_map::numbers_of;
 use crate::wash::over;
 use crate::{Canvas, Changed, Channels, FocusError, FocusMap, Selection, Symmetry, ViewFrame};
 use glam::{DVec2, DVec3};
@@ -48,18 +48,27 @@ pub struct Gradient {
     pub symmetry: Symmetry,
 }
 
-/// [t, anchor] or null.
+/// [t, anchor], [t, anchor, gloss] or null.
 mod optional {
     use lens::FocusOffset;
+    use serde::de::Error;
     use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
     pub fn serialize<S: Serializer>(value: &Option<FocusOffset>, to: S) -> Result<S::Ok, S::Error> {
-        value.map(|value| [value.t, value.anchor]).serialize(to)
+        let numbers = |FocusOffset { t, anchor, gloss }| match gloss {
+            0.0 => vec![t, anchor],
+            gloss => vec![t, anchor, gloss],
+        };
+        value.map(numbers).serialize(to)
     }
 
     pub fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<Option<FocusOffset>, D::Error> {
-        let pair = Option::<[f64; 2]>::deserialize(from)?;
-        Ok(pair.map(|[t, anchor]| FocusOffset::new(t, anchor)))
+        let Some(numbers) = Option::<Vec<f64>>::deserialize(from)? else { return Ok(None) };
+        match numbers[..] {
+            [t, anchor] => Ok(Some(FocusOffset::new(t, anchor))),
+            [t, anchor, gloss] => Ok(Some(FocusOffset { t, anchor, gloss })),
+            _ => Err(D::Error::invalid_length(numbers.len(), &"t, anchor and perhaps gloss")),
+        }
     }
 }
 
@@ -73,6 +82,11 @@ impl Gradient {
             }
         };
         line && self.symmetry.is_valid() && self.from.is_valid() && self.to.is_none_or(|to| to.is_valid())
+    }
+
+    /// Whether it says something of gloss, which older programs do not know.
+    pub fn paints_gloss(&self) -> bool {
+        self.from.gloss != 0.0 || self.to.is_some_and(|to| to.gloss != 0.0)
     }
 
     /// How far along the gradient a world point lies: 0 at its start, 1 at its end, clamped; of several images the
@@ -114,7 +128,7 @@ pub fn draw_gradient(
         return Err(FocusError::SizesDiffer { map: map.size(), canvas: canvas.size() });
     }
     let along: Vec<f64> = canvas.texels().par_iter().map(|texel| gradient.along(texel.position)).collect();
-    let from = texel_of(gradient.from);
+    let from = numbers_of(gradient.from);
     let mut changed = Vec::new();
     for (index, along) in along.into_iter().enumerate() {
         if !selection.is_none_or(|selection| selection.contains(index)) {
@@ -124,8 +138,13 @@ pub fn draw_gradient(
             None => over(canvas.value(map, index), from, (1.0 - along) as f32),
             Some(to) => {
                 let mix = |a: f64, b: f64| if along >= 1.0 { b } else { a + (b - a) * along };
-                let (t, anchor) = (mix(gradient.from.t, to.t), mix(gradient.from.anchor, to.anchor));
-                [t as f32, anchor as f32, 1.0]
+                let from = gradient.from;
+                let [t, anchor, gloss] = numbers_of(FocusOffset {
+                    t: mix(from.t, to.t),
+                    anchor: mix(from.anchor, to.anchor),
+                    gloss: mix(from.gloss, to.gloss),
+                });
+                [t, anchor, gloss, 1.0]
             }
         };
         canvas.write_channels(map, index, value, channels.touches(), &mut changed);

@@ -39,6 +39,14 @@ impl FocusLayer {
         self.is_visible && self.opacity == 1.0 && self.blend == Blend::Set && !self.map.has_mask()
     }
 
+    /// How much each texel of a tile counts, in [0, 1]: opacity times mask. `None` where none does.
+    pub(crate) fn shares(&self, tile: usize) -> Option<impl Fn(usize) -> f32> {
+        let (opacity, mask) = (self.opacity as f32, self.map.mask.as_ref().map(|mask| &mask.tiles()[tile]));
+        let is_empty = mask.is_some_and(|mask| mask.iter().all(|m| *m == 0.0));
+        let counts = self.is_visible && !is_empty;
+        counts.then_some(move |k: usize| opacity * mask.map_or(1.0, |mask| mask[k]))
+    }
+
     /// Takes the values of its rule, if it has one, for a shot camera; the mask stays.
     pub fn evaluate(&mut self, canvas: &Canvas, camera: &Camera) {
         if let Some(rule) = &self.adjustment {

@@ -1,7 +1,7 @@
 //! The layers of focus, bottom to top, and what they make together.
 
 use crate::focus_map::texel_of;
-use crate::tile_grid::{TILE_TEXELS, Tile, TileGrid};
+use crate::tile_grid::{TILE_TEXELS, Tile, TileGrid, blank, is_blank};
 use crate::{Blend, Canvas, Changed, FocusLayer, FocusMap};
 use lens::{Camera, FocusOffset};
 use rayon::prelude::*;
@@ -162,35 +162,58 @@ impl LayerStack {
         map.background = self.background();
         let tiles = tiles.unwrap_or_else(|| (0..map.texels.tiles().len()).collect());
         let beneath = Arc::new([texel_of(FocusOffset::STANDARD); TILE_TEXELS]);
-        let made: Vec<_> =
-            tiles.par_iter().map(|&index| (index, self.composite_tile(index, &beneath))).collect();
+        let composite =
+            |&index: &usize| (index, self.composite_tile(index, &beneath), self.composite_gloss(index));
+        let made: Vec<_> = tiles.par_iter().map(composite).collect();
         let mut changed = Vec::new();
-        for (index, tile) in made {
+        for (index, tile, gloss) in made {
             changed.extend(map.texels.differing(index, &map.texels.tiles()[index], &tile));
             map.texels.set_tile(index, tile);
+            changed.extend(map.gloss.differing(index, &map.gloss.tiles()[index], &gloss));
+            map.gloss.set_tile(index, gloss);
         }
         Changed::new(changed)
     }
 
     /// A tile of the composite. What a plain layer hides is not looked at; its own tile is shared.
     fn composite_tile(&self, index: usize, beneath: &Arc<Tile<[f32; 2]>>) -> Arc<Tile<[f32; 2]>> {
-        let lowest = self.layers.iter().rposition(FocusLayer::is_plain);
+        let (hiding, above) = self.above_hidden();
         let mut tile =
-            lowest.map_or_else(|| beneath.clone(), |k| self.layers[k].map.texels.tiles()[index].clone());
-        for layer in &self.layers[lowest.map_or(0, |k| k + 1)..] {
-            let mask = layer.map.mask.as_ref().map(|mask: &TileGrid<f32>| &mask.tiles()[index]);
-            let is_empty = mask.is_some_and(|mask| mask.iter().all(|m| *m == 0.0));
-            if !layer.is_visible || is_empty {
-                continue;
-            }
-            let (opacity, values) = (layer.opacity as f32, &layer.map.texels.tiles()[index]);
+            hiding.map_or_else(|| beneath.clone(), |layer| layer.map.texels.tiles()[index].clone());
+        for (layer, share) in above.iter().filter_map(|layer| Some((layer, layer.shares(index)?))) {
+            let values = &layer.map.texels.tiles()[index];
             let joined = Arc::make_mut(&mut tile);
             for (k, value) in joined.iter_mut().enumerate() {
-                let share = opacity * mask.map_or(1.0, |mask| mask[k]);
-                *value = layer.blend.join(*value, values[k], share);
+                *value = layer.blend.join(*value, values[k], share(k));
             }
         }
         tile
+    }
+
+    /// The same of gloss; blank where no layer that counts has any.
+    fn composite_gloss(&self, index: usize) -> Arc<Tile<f32>> {
+        let (hiding, above) = self.above_hidden();
+        let of = |layer: &FocusLayer| layer.map.gloss.tiles()[index].clone();
+        let mut tile = hiding.map_or_else(blank, of);
+        for (layer, share) in above.iter().filter_map(|layer| Some((layer, layer.shares(index)?))) {
+            let values = &layer.map.gloss.tiles()[index];
+            if is_blank(&tile) && is_blank(values) {
+                continue;
+            }
+            let joined = Arc::make_mut(&mut tile);
+            for (k, value) in joined.iter_mut().enumerate() {
+                *value = layer.blend.join_gloss(*value, values[k], share(k));
+            }
+        }
+        tile
+    }
+
+    /// The topmost layer that hides all beneath it, if any does, and those above it, bottom to top.
+    fn above_hidden(&self) -> (Option<&FocusLayer>, &[FocusLayer]) {
+        match self.layers.iter().rposition(FocusLayer::is_plain) {
+            Some(index) => (Some(&self.layers[index]), &self.layers[index + 1..]),
+            None => (None, &self.layers),
+        }
     }
 
     fn background(&self) -> FocusOffset {
@@ -200,8 +223,10 @@ impl LayerStack {
             if layer.blend == Blend::Set && share == 1.0 {
                 return layer.map.background;
             }
-            let [t, anchor] = layer.blend.join(texel_of(beneath), texel_of(layer.map.background), share);
-            FocusOffset::new(t as f64, anchor as f64)
+            let own = layer.map.background;
+            let [t, anchor] = layer.blend.join(texel_of(beneath), texel_of(own), share);
+            let gloss = layer.blend.join_gloss(beneath.gloss as f32, own.gloss as f32, share);
+            FocusOffset::new(t as f64, anchor as f64).with_gloss(gloss as f64)
         })
     }
 
@@ -210,8 +235,9 @@ impl LayerStack {
         let mut shared = BTreeSet::new();
         for layer in &other.layers {
             shared.extend(layer.map.texels.tiles().iter().map(|tile| Arc::as_ptr(tile) as usize));
-            shared.extend(masks(layer).map(|tile| Arc::as_ptr(tile) as usize));
+            shared.extend(shares(layer).map(|tile| Arc::as_ptr(tile) as usize));
         }
+        shared.insert(Arc::as_ptr(&blank()) as usize);
         let mut bytes = 0;
         for layer in &self.layers {
             let own = |pointer: usize, bytes: usize| if shared.contains(&pointer) { 0 } else { bytes };
@@ -220,16 +246,17 @@ impl LayerStack {
                 let pointer = Arc::as_ptr(tile) as usize;
                 bytes += if seen.insert(pointer) { own(pointer, size_of_val(&**tile)) } else { 0 };
             }
-            for tile in masks(layer) {
+            for tile in shares(layer) {
                 let pointer = Arc::as_ptr(tile) as usize;
                 bytes += if seen.insert(pointer) { own(pointer, size_of_val(&**tile)) } else { 0 };
             }
-            bytes += size_of::<FocusLayer>() + layer.map.texels.tiles().len() * size_of::<usize>();
+            bytes += size_of::<FocusLayer>() + 2 * layer.map.texels.tiles().len() * size_of::<usize>();
         }
         bytes
     }
 }
 
-fn masks(layer: &FocusLayer) -> impl Iterator<Item = &Arc<Tile<f32>>> {
-    layer.map.mask.iter().flat_map(TileGrid::tiles)
+/// The tiles of mask and gloss.
+fn shares(layer: &FocusLayer) -> impl Iterator<Item = &Arc<Tile<f32>>> {
+    layer.map.mask.iter().chain([&layer.map.gloss]).flat_map(TileGrid::tiles)
 }

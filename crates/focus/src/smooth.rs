@@ -15,14 +15,14 @@ const CELLS_ALONG_RADIUS: f32 = 4.0;
 /// The means around a dab.
 pub(crate) struct Smoothed {
     /// The value that the sums are relative to.
-    reference: [f32; 3],
+    reference: [f32; 4],
     /// The least and the greatest of each number around the dab.
-    bounds: [[f32; 3]; 2],
+    bounds: [[f32; 4]; 2],
     cell_side: f32,
     /// Cells on each side of the grid.
     side: i32,
-    /// Weight and weighted differences of t, anchor and mask a cell.
-    cells: Vec<[f64; 4]>,
+    /// Weight and weighted differences of t, anchor, gloss and mask a cell.
+    cells: Vec<[f64; 5]>,
 }
 
 impl Smoothed {
@@ -39,9 +39,9 @@ impl Smoothed {
         let cell_side = (dab.radius as f32 / CELLS_ALONG_RADIUS).max(2.0 * texel_side);
         let reach = dab.radius as f32 + 2.0 * cell_side;
         let side = 2 * (reach / cell_side).ceil() as i32 + 2;
-        let empty = vec![[0.0; 4]; (side * side * side) as usize];
-        let bounds = [[f32::INFINITY; 3], [f32::NEG_INFINITY; 3]];
-        let mut smoothed = Self { reference: [0.0; 3], bounds, cell_side, side, cells: empty };
+        let empty = vec![[0.0; 5]; (side * side * side) as usize];
+        let bounds = [[f32::INFINITY; 4], [f32::NEG_INFINITY; 4]];
+        let mut smoothed = Self { reference: [0.0; 4], bounds, cell_side, side, cells: empty };
         let mut reference = None;
         canvas.within(dab.center, reach as f64, |index, _| {
             let texel = &canvas.texels()[index];
@@ -50,7 +50,7 @@ impl Smoothed {
             }
             let value = canvas.value(map, index);
             let from = *reference.get_or_insert(value);
-            let difference = [0, 1, 2].map(|k| value[k] as f64 - from[k] as f64);
+            let difference = [0, 1, 2, 3].map(|k| value[k] as f64 - from[k] as f64);
             for (k, value) in value.into_iter().enumerate() {
                 let [low, high] = &mut smoothed.bounds;
                 (low[k], high[k]) = (low[k].min(value), high[k].max(value));
@@ -59,7 +59,7 @@ impl Smoothed {
                 let weight = share * texel.area;
                 let sums = &mut smoothed.cells[cell];
                 sums[0] += weight;
-                (0..3).for_each(|k| sums[k + 1] += weight * difference[k]);
+                (0..4).for_each(|k| sums[k + 1] += weight * difference[k]);
             }
         });
         smoothed.reference = reference.unwrap_or_default();
@@ -67,22 +67,22 @@ impl Smoothed {
     }
 
     /// The mean at a point given relative to the dab's centre; `otherwise` where no texel is near.
-    pub fn at(&self, offset: Vec3, otherwise: [f32; 3]) -> [f32; 3] {
-        let mut sums = [0.0; 4];
+    pub fn at(&self, offset: Vec3, otherwise: [f32; 4]) -> [f32; 4] {
+        let mut sums = [0.0; 5];
         for (cell, share) in self.around(offset) {
             for (sum, value) in sums.iter_mut().zip(self.cells[cell]) {
                 *sum += share * value;
             }
         }
         if sums[0] > 0.0 {
-            [0, 1, 2].map(|k| (self.reference[k] as f64 + sums[k + 1] / sums[0]) as f32)
+            [0, 1, 2, 3].map(|k| (self.reference[k] as f64 + sums[k + 1] / sums[0]) as f32)
         } else {
             otherwise
         }
     }
 
-    /// The least and the greatest of t, anchor and mask around the dab.
-    pub fn bounds(&self) -> [[f32; 3]; 2] {
+    /// The least and the greatest of t, anchor, gloss and mask around the dab.
+    pub fn bounds(&self) -> [[f32; 4]; 2] {
         self.bounds
     }
 

@@ -73,6 +73,19 @@ impl SurfaceField<FocusOffset> for Focus {
         self.background
     }
 
+    fn concerns_carried(&self) -> bool {
+        // One map is most often that of all parts.
+        let mut looked_at = std::ptr::null();
+        let mut has_gloss = |source: &FocusSource| match source {
+            FocusSource::Constant(value) => value.gloss != 0.0,
+            FocusSource::Uv { image, .. } => image.gloss.is_some(),
+            FocusSource::Atlas { map, .. } => {
+                std::mem::replace(&mut looked_at, Arc::as_ptr(map)) != Arc::as_ptr(map) && map.has_gloss()
+            }
+        };
+        self.background.gloss != 0.0 || self.parts.iter().any(&mut has_gloss)
+    }
+
     /// Those of all texels that any point of the triangle may be interpolated from.
     fn bounds(&self, triangle: u32) -> Option<[FocusOffset; 2]> {
         let part = self.scene.triangles[triangle as usize].part;

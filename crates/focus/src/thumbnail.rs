@@ -32,9 +32,13 @@ impl Thumbnail {
         debug_assert_eq!(before.size(), after.size());
         let [width, height] = after.size();
         let mut sums = vec![[0.0f64; 2]; (SIDE * SIDE) as usize];
-        let tiles = before.texels.tiles().iter().zip(after.texels.tiles()).enumerate();
-        for (tile, (old, new)) in tiles.filter(|(_, (old, new))| !Arc::ptr_eq(old, new)) {
-            for k in (0..TILE_TEXELS).filter(|&k| old[k] != new[k]) {
+        for tile in 0..after.texels.tiles().len() {
+            let [old, new] = [before, after].map(|map| &map.texels.tiles()[tile]);
+            let [old_gloss, new_gloss] = [before, after].map(|map| &map.gloss.tiles()[tile]);
+            if Arc::ptr_eq(old, new) && Arc::ptr_eq(old_gloss, new_gloss) {
+                continue;
+            }
+            for k in (0..TILE_TEXELS).filter(|&k| old[k] != new[k] || old_gloss[k] != new_gloss[k]) {
                 if let Some([x, y]) = after.texels.position(tile, k) {
                     let cell = y * SIDE / height * SIDE + x * SIDE / width;
                     let [count, sum] = &mut sums[cell as usize];

@@ -1,6 +1,6 @@
 //! A value a texel, in tiles that clones share until one of them is written.
 
-use std::sync::Arc;
+use std::sync::{Arc, LazyLock};
 
 /// Rows and columns of a tile: the unit of copying, of undo and of comparing.
 pub const TILE_SIDE: u32 = 64;
@@ -23,8 +23,11 @@ impl<T: Copy + PartialEq> TileGrid<T> {
     /// A grid of one value. Both sides must be above 0.
     pub fn new(width: u32, height: u32, value: T) -> Self {
         let tile = Arc::new([value; TILE_TEXELS]);
-        let tiles = width.div_ceil(TILE_SIDE) as usize * height.div_ceil(TILE_SIDE) as usize;
-        Self { width, height, tiles: vec![tile; tiles] }
+        Self { width, height, tiles: vec![tile; Self::tile_count(width, height)] }
+    }
+
+    fn tile_count(width: u32, height: u32) -> usize {
+        width.div_ceil(TILE_SIDE) as usize * height.div_ceil(TILE_SIDE) as usize
     }
 
     /// A grid of the given texels, row 0 on top; what hangs over the border holds `over`. `None` unless there are
@@ -80,6 +83,11 @@ impl<T: Copy + PartialEq> TileGrid<T> {
         &self.tiles
     }
 
+    /// Whether all tiles are those of another grid of the same size, or the other way round.
+    pub fn shares_tiles_with(&self, other: &Self) -> bool {
+        self.tiles.iter().zip(&other.tiles).all(|(a, b)| Arc::ptr_eq(a, b))
+    }
+
     /// Replaces a tile.
     pub fn set_tile(&mut self, index: usize, tile: Arc<Tile<T>>) {
         self.tiles[index] = tile;
@@ -113,6 +121,45 @@ impl<T: Copy + PartialEq> TileGrid<T> {
         let tile = y / TILE_SIDE * self.width.div_ceil(TILE_SIDE) + x / TILE_SIDE;
         (tile as usize, (y % TILE_SIDE * TILE_SIDE + x % TILE_SIDE) as usize)
     }
+}
+
+/// The tile of all that is 0, the same everywhere: what was never written costs a pointer, and is told by it.
+static BLANK: LazyLock<Arc<Tile<f32>>> = LazyLock::new(|| Arc::new([0.0; TILE_TEXELS]));
+
+impl TileGrid<f32> {
+    /// A grid of 0. Both sides must be above 0.
+    pub fn blank(width: u32, height: u32) -> Self {
+        let count = Self::tile_count(width, height);
+        Self { width, height, tiles: vec![BLANK.clone(); count] }
+    }
+
+    /// The same values, blank where a whole tile of them is 0.
+    pub fn with_blank_tiles(mut self) -> Self {
+        for tile in self.tiles.iter_mut().filter(|tile| tile.iter().all(|value| *value == 0.0)) {
+            *tile = BLANK.clone();
+        }
+        self
+    }
+
+    /// Whether all is 0, and never was anything else.
+    pub fn is_blank(&self) -> bool {
+        self.tiles.iter().all(is_blank)
+    }
+
+    /// Whether that holds of the tiles of some texels.
+    pub fn is_blank_at(&self, mut texels: impl Iterator<Item = [u32; 2]>) -> bool {
+        texels.all(|texel| is_blank(&self.tiles[self.tile_of(texel)]))
+    }
+}
+
+/// The tile of 0.
+pub(crate) fn blank() -> Arc<Tile<f32>> {
+    BLANK.clone()
+}
+
+/// Whether a tile is the one of 0.
+pub(crate) fn is_blank(tile: &Arc<Tile<f32>>) -> bool {
+    Arc::ptr_eq(tile, &BLANK)
 }
 
 impl<T> std::fmt::Debug for TileGrid<T> {

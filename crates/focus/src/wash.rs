@@ -1,7 +1,7 @@
 //! What a dab does to the texels under it.
 
 use crate::dab::Dab;
-use crate::focus_map::texel_of;
+use crate::focus_map::numbers_of;
 use crate::smooth::Smoothed;
 use crate::{Brush, BrushMode, Canvas, Channels, FocusMap, Selection};
 use glam::DVec3;
@@ -58,24 +58,25 @@ impl Wash<'_> {
                         let share = before + (ceiling - before) * brush.flow as f32;
                         self.coverage[index] = share;
                         let [from, to] = [index, source].map(|index| canvas.value(self.before, index));
-                        write(map, index, [0, 1, 2].map(|k| toward(from[k], to[k], share)));
+                        write(map, index, [0, 1, 2, 3].map(|k| toward(from[k], to[k], share)));
                     }
                 }
             }
             BrushMode::Add | BrushMode::Subtract => {
                 let sign = if brush.mode == BrushMode::Add { 1.0 } else { -1.0 };
-                let step = [sign * (brush.target.t - 1.0), sign * brush.target.anchor];
+                let FocusOffset { t, anchor, gloss } = brush.target;
+                let step = [t - 1.0, anchor, gloss].map(|step| sign * step);
                 for (index, share) in covered {
                     let share = share * (dab.strength * brush.flow) as f32;
                     let from = canvas.value(map, index);
-                    let limits = [brush.offset_limits, [0.0, 1.0]];
-                    let [t, anchor] = [0, 1].map(|k| {
+                    let limits = [brush.offset_limits, [0.0, 1.0], [0.0, 1.0]];
+                    let [t, anchor, gloss] = [0, 1, 2].map(|k| {
                         // What already lies outside the limits may stay, but not go further.
                         let [low, high] = limits[k].map(|limit| limit as f32);
                         let sum = (from[k] as f64 + step[k] * share as f64) as f32;
                         sum.clamp(low.min(from[k]), high.max(from[k]))
                     });
-                    write(map, index, [t, anchor, toward(from[2], 1.0, share)]);
+                    write(map, index, [t, anchor, gloss, toward(from[3], 1.0, share)]);
                 }
             }
             BrushMode::Smooth | BrushMode::Sharpen => {
@@ -85,7 +86,7 @@ impl Wash<'_> {
                     let share = share * (dab.strength * brush.flow) as f32;
                     let from = canvas.value(map, index);
                     let mean = smoothed.at(canvas.offset_from(index, dab.center), from);
-                    let moved = [0, 1, 2].map(|k| match brush.mode {
+                    let moved = [0, 1, 2, 3].map(|k| match brush.mode {
                         // Away from the mean, but not beyond what is there: a ramp becomes a step, without a rim.
                         BrushMode::Sharpen => (from[k] + (from[k] - mean[k]) * share).clamp(low[k], high[k]),
                         _ => toward(from[k], mean[k], share),
@@ -97,25 +98,27 @@ impl Wash<'_> {
     }
 }
 
-/// [t, anchor, mask] of a texel that was `from` when the stroke began and is painted by `share`.
+/// [t, anchor, gloss, mask] of a texel that was `from` when the stroke began and is painted by `share`.
 ///
 /// On a map with a mask the paint lies over what is there (Porter and Duff's *over*): the mask grows to
 /// m + s(1 − m), and the value moves toward the target by the share that the new paint has of it. Reset then takes
 /// the mask away; without one it gives the ordinary lens back.
-fn washed(brush: &Brush, has_mask: bool, from: [f32; 3], share: f32) -> [f32; 3] {
-    let [t, anchor, mask] = from;
+fn washed(brush: &Brush, has_mask: bool, from: [f32; 4], share: f32) -> [f32; 4] {
+    let [t, anchor, gloss, mask] = from;
     let resets = brush.mode == BrushMode::Reset;
     if resets && (has_mask || brush.channels == Channels::Mask) {
-        return [t, anchor, toward(mask, 0.0, share)];
+        return [t, anchor, gloss, toward(mask, 0.0, share)];
     }
-    over(from, texel_of(if resets { FocusOffset::STANDARD } else { brush.target }), share)
+    over(from, numbers_of(if resets { FocusOffset::STANDARD } else { brush.target }), share)
 }
 
-/// [t, anchor, mask] of a texel that was `from`, with `share` of a focus laid over it (Porter and Duff's *over*).
-pub(crate) fn over([t, anchor, mask]: [f32; 3], target: [f32; 2], share: f32) -> [f32; 3] {
+/// [t, anchor, gloss, mask] of a texel that was `from`, with `share` of a focus laid over it (Porter and Duff's *over*).
+pub(crate) fn over([t, anchor, gloss, mask]: [f32; 4], target: [f32; 3], share: f32) -> [f32; 4] {
     let grown = toward(mask, 1.0, share);
     let own = if grown > 0.0 { (share / grown).min(1.0) } else { 0.0 };
-    [toward(t, target[0], own), toward(anchor, target[1], own), grown]
+    let [t, anchor, gloss] =
+        [(t, target[0]), (anchor, target[1]), (gloss, target[2])].map(|(from, to)| toward(from, to, own));
+    [t, anchor, gloss, grown]
 }
 
 /// `share` of the way from a to b; exactly b at 1, and exactly a where both are equal.

@@ -83,7 +83,7 @@ fn a_layer_paints_as_the_map_itself_would_and_leaves_what_lies_beneath() {
     // What lies beneath shows through where the layer is taken away, also if it has changed since.
     let white = FocusOffset::new(0.9, 1.0);
     layers.activate(0);
-    fill(&mut layers.active_mut().map, &canvas, FillTarget::Everything, white, Channels::Both).unwrap();
+    fill(&mut layers.active_mut().map, &canvas, FillTarget::Everything, white, Channels::All).unwrap();
     layers.activate(1);
     layers.recomposite_all(&mut map);
     assert!((map.at(50, 30).t - 1.2).abs() < 1e-6, "the stroke covers");
@@ -101,8 +101,8 @@ fn opacity_visibility_blending_and_order_count() {
     let value = |t: f64, anchor: f64| FocusOffset::new(t, anchor);
     let painted = |name: &str, focus: FocusOffset| {
         let mut map = empty();
-        fill(&mut map, &canvas, FillTarget::Everything, focus, Channels::Both).unwrap();
-        fill(&mut map, &canvas, FillTarget::Background, focus, Channels::Both).unwrap();
+        fill(&mut map, &canvas, FillTarget::Everything, focus, Channels::All).unwrap();
+        fill(&mut map, &canvas, FillTarget::Background, focus, Channels::All).unwrap();
         FocusLayer::painted(name, map)
     };
     let mut layers = stack();

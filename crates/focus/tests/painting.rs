@@ -140,7 +140,7 @@ fn smoothing_keeps_constants_and_evens_out_a_step_across_the_cut() {
     // A step exactly on the cut: afterwards it runs the same way on both sides.
     let mut map = blank();
     let two = FocusOffset::new(2.0, 0.0);
-    fill(&mut map, &canvas, FillTarget::Chart(1), two, Channels::Both).unwrap();
+    fill(&mut map, &canvas, FillTarget::Chart(1), two, Channels::All).unwrap();
     draw(&mut map, &canvas, &smooth, &[[2.0, 0.5]]);
     let t_at = |x: f64| {
         let place = DVec3::new(x, 0.5 + 0.5 / DENSITY as f64, 0.0);
@@ -203,7 +203,7 @@ fn fills_reach_what_they_name() {
     let canvas = strip();
     let count = |target| {
         let mut map = blank();
-        fill(&mut map, &canvas, target, FocusOffset::SHARP, Channels::Both).unwrap();
+        fill(&mut map, &canvas, target, FocusOffset::SHARP, Channels::All).unwrap();
         let painted = canvas.texels().iter().filter(|t| map.at(t.x, t.y) == FocusOffset::SHARP);
         (painted.count() as u32 / (DENSITY * DENSITY), map.background == FocusOffset::SHARP)
     };
@@ -241,7 +241,7 @@ fn a_thousand_edits_undo_and_redo_to_the_bit() {
             0 => {
                 let before = map.clone();
                 let target = [FillTarget::Chart(0), FillTarget::Node(1), FillTarget::Background];
-                fill(&mut map, &canvas, target[(random() * 3.0) as usize], brush.target, Channels::Both)
+                fill(&mut map, &canvas, target[(random() * 3.0) as usize], brush.target, Channels::All)
                     .unwrap();
                 Edit::between("Fill", &before, &map)
             }

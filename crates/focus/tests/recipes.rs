@@ -61,8 +61,12 @@ fn nodes_win_over_materials_and_later_over_earlier() {
 
 #[test]
 fn a_map_lies_in_the_first_uv_set() {
-    let image =
-        FocusImage { width: 2, height: 2, texels: vec![[1.0, 0.0], [2.0, 0.0], [3.0, 0.0], [4.0, 0.0]] };
+    let image = FocusImage {
+        width: 2,
+        height: 2,
+        texels: vec![[1.0, 0.0], [2.0, 0.0], [3.0, 0.0], [4.0, 0.0]],
+        gloss: None,
+    };
     let map = RecipeEntry::Map(Arc::new(image));
     let recipe = FocusRecipe { materials: vec![("wall".into(), map.clone())], ..FocusRecipe::default() };
     // uv (0.375, 0.125): a quarter past the centre of column 0, a quarter before that of row 0, where it
@@ -109,7 +113,7 @@ fn a_baked_recipe_gives_the_recipes_values() {
     recipe.nodes = vec![("left".into(), RecipeEntry::Value(FocusOffset::STANDARD))];
     // t = 1 + u, away from where it repeats.
     let ramp = (0..64).map(|i| [1.0 + (i as f32 + 0.5) / 64.0, 0.25]).collect();
-    let ramp = FocusImage { width: 64, height: 1, texels: ramp };
+    let ramp = FocusImage { width: 64, height: 1, texels: ramp, gloss: None };
     recipe.materials = vec![("wall".into(), RecipeEntry::Map(Arc::new(ramp)))];
 
     let focus = recipe.evaluate(&scene).unwrap();
@@ -137,7 +141,7 @@ fn a_baked_recipe_gives_the_recipes_values() {
         texels.dilations.iter().map(|d| [d.texel, d.source].map(|i| [i % 128, i / 128])).collect();
     let canvas = Canvas::new(&scene, &atlas, &texels.texels, &gutters);
     let mut map = FocusMap::clone(&baked);
-    focus::fill(&mut map, &canvas, FillTarget::Part(3), FocusOffset::SHARP, Channels::Both).unwrap();
+    focus::fill(&mut map, &canvas, FillTarget::Part(3), FocusOffset::SHARP, Channels::All).unwrap();
     let painted = Focus::painted(scene, atlas, Arc::new(map));
     for barycentric in [DVec2::ZERO, DVec2::X, DVec2::Y, DVec2::new(0.5, 0.5)] {
         assert_eq!(painted.at(SurfacePoint { triangle: 3, barycentric }), FocusOffset::SHARP);

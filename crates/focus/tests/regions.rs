@@ -42,7 +42,7 @@ fn gradients_run_evenly_across_charts_in_world_and_on_screen() {
     let half_texel = 0.5 / DENSITY as f64;
     let drawn = |gradient: &Gradient| {
         let mut map = blank();
-        let changed = draw_gradient(&mut map, &canvas, gradient, Channels::Both, None).unwrap();
+        let changed = draw_gradient(&mut map, &canvas, gradient, Channels::All, None).unwrap();
         assert!(!changed.is_empty());
         map
     };
@@ -82,14 +82,14 @@ fn gradients_run_evenly_across_charts_in_world_and_on_screen() {
     }
     let nowhere = GradientLine::World([DVec3::ONE; 2]);
     let bad = Gradient { line: nowhere, ..WORLD };
-    assert!(draw_gradient(&mut blank(), &canvas, &bad, Channels::Both, None).is_err());
+    assert!(draw_gradient(&mut blank(), &canvas, &bad, Channels::All, None).is_err());
 }
 
 #[test]
 fn on_a_layer_a_gradient_fades_by_its_mask() {
     let canvas = strip();
     let mut map = FocusMap::clear(SIZE[0], SIZE[1]);
-    draw_gradient(&mut map, &canvas, &WORLD, Channels::Both, None).unwrap();
+    draw_gradient(&mut map, &canvas, &WORLD, Channels::All, None).unwrap();
     for texel in canvas.texels().iter().filter(|texel| texel.normal == Vec3::Z) {
         let along = ((texel.position.x - 1.0) / 2.0).clamp(0.0, 1.0);
         let mask = map.mask_at(texel.x, texel.y);
@@ -121,11 +121,11 @@ fn what_is_not_selected_is_never_painted() {
         check(&map, "stroke");
     }
     let mut map = blank();
-    let sharp = (FocusOffset::SHARP, Channels::Both);
+    let sharp = (FocusOffset::SHARP, Channels::All);
     fill_selected(&mut map, &canvas, &[FillTarget::Everything], sharp, Some(&left)).unwrap();
     check(&map, "fill");
     let mut map = blank();
-    draw_gradient(&mut map, &canvas, &WORLD, Channels::Both, Some(&left)).unwrap();
+    draw_gradient(&mut map, &canvas, &WORLD, Channels::All, Some(&left)).unwrap();
     check(&map, "gradient");
     // A dab smaller than a texel, on a frozen one.
     let tiny = Brush { radius: 1e-4, ..brush(BrushMode::Set) };

@@ -103,7 +103,7 @@ fn exact_optics() -> Optics {
 
 fn depth_of_the_focal_length(_: Effort, _: &dyn Progress) -> Result<Finding, Cancelled> {
     let optics = exact_optics();
-    let naive = |inverse_depth: f64, FocusOffset { t, anchor }: FocusOffset| {
+    let naive = |inverse_depth: f64, FocusOffset { t, anchor, .. }: FocusOffset| {
         let d = optics.image_distance;
         let conjugate = 1.0 / (optics.inverse_focus_distance + 1.0 / d - inverse_depth);
         let travelled = t * ((1.0 - anchor) * d + anchor * conjugate);

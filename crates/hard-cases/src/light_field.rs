@@ -37,5 +37,14 @@ pub fn picture_of_stars(
     progress: &dyn Progress,
 ) -> Result<Picture, Cancelled> {
     let focus = Focus::constant(scene_of([]), offset);
-    picture_of(Salf { camera: camera.clone(), margin_px: 0, samples: samples.into() }, &focus, progress)
+    picture_of(
+        Salf {
+            camera: camera.clone(),
+            margin_px: 0,
+            carried: salf::Carried::Standard,
+            samples: samples.into(),
+        },
+        &focus,
+        progress,
+    )
 }

@@ -54,7 +54,7 @@ fn any_finite_offset(effort: Effort, progress: &dyn Progress) -> Result<Finding,
 }
 
 /// κ at depth 2 as it is written, without a guard.
-fn raw_kappa(camera: &Camera, FocusOffset { t, anchor }: FocusOffset) -> f64 {
+fn raw_kappa(camera: &Camera, FocusOffset { t, anchor, .. }: FocusOffset) -> f64 {
     let optics = camera.optics();
     (t - 1.0) / optics.image_distance + t * (1.0 - anchor) * (optics.inverse_focus_distance - 0.5)
 }

@@ -116,7 +116,7 @@ impl Seam {
     fn painted(&self, offset: FocusOffset, gutters: &[[[u32; 2]; 2]]) -> Option<Focus> {
         let mut map = FocusMap::new(self.atlas.width, self.atlas.height, FocusOffset::STANDARD);
         let canvas = Canvas::new(&self.scene, &self.atlas, &self.texels.texels, gutters);
-        fill(&mut map, &canvas, FillTarget::Part(1), offset, Channels::Both).ok()?;
+        fill(&mut map, &canvas, FillTarget::Part(1), offset, Channels::All).ok()?;
         Some(Focus::painted(self.scene.clone(), self.atlas.clone(), Arc::new(map)))
     }
 }

@@ -5,7 +5,7 @@
 //!
 //! * [`Camera`]: what is saved: resolution, field of view, focus distance, aperture, pose.
 //! * [`Optics`]: the same, reduced to the numbers of the formula, for inner loops.
-//! * [`FocusOffset`]: what is painted: t and its anchor a.
+//! * [`FocusOffset`]: what is painted: t, its anchor a, and how far gloss obeys them.
 //! * [`Aperture`]: its shape, how to sample it and how to cut it into rows.
 //! * [`CalibratedLens`]: what of a real camera calibration found: direction ↔ pixel of its photographs, distortion included.
 //! * [`Picture`]: what comes out: radiance and coverage a pixel, and the two exposures.

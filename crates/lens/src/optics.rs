@@ -37,13 +37,14 @@ impl Optics {
     /// ```
     ///
     /// κ < 0 is near defocus (the aperture's shape appears turned by 180°), κ > 0 far defocus (upright).
+    /// It is that of the light that the point sends of its own; what it carries has that of [`FocusOffset::of_carried`].
     /// Infinite s or z are the value 0 of their reciprocals, and z = f, where the focal conjugate z' is at
     /// infinity, is an ordinary value: z' and the travelled distance T = t·lerp(d, z', a) are never formed.
     /// Finite for every finite depth: an offset that is not valid counts as the standard one, and one beyond
     /// ±1e100 as that.
     #[inline]
     pub fn kappa(&self, inverse_depth: f64, focus: FocusOffset) -> f64 {
-        let FocusOffset { t, anchor: a } = focus.or_standard();
+        let FocusOffset { t, anchor: a, .. } = focus.or_standard();
         let t = t.clamp(-LARGEST_OFFSET, LARGEST_OFFSET);
         (t - 1.0) / self.image_distance + t * (1.0 - a) * (self.inverse_focus_distance - inverse_depth)
     }

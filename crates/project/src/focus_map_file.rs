@@ -1,13 +1,13 @@
 //! Focus maps as files.
 //!
-//! **EXR**, float: channels `focus.t` and `focus.anchor`. Attributes: `focusBrush.version` (1),
+//! **EXR**, float: channels `focus.t` and `focus.anchor`, and `focus.gloss` where gloss obeys the paint. Attributes: `focusBrush.version` (1),
 //! `focusBrush.uvSet` (the UV set that the map lies in: 0 is the mesh's first, 1 the atlas), for a map over an
-//! atlas `focusBrush.atlasHash`, and `focusBrush.backgroundT` and `focusBrush.backgroundAnchor`. A file without
-//! attributes is a map in the mesh's first UV set. Its display window is the map: texels outside the data window are
+//! atlas `focusBrush.atlasHash`, and `focusBrush.backgroundT`, `focusBrush.backgroundAnchor` and, where it is not 0,
+//! `focusBrush.backgroundGloss`. A file without attributes is a map in the mesh's first UV set. Its display window is the map: texels outside the data window are
 //! unpainted, those outside the display window are left out.
 //!
 //! **PNG**, 16-bit RGB without a colour profile: red = t·32768 (32768 is exactly t = 1), green = anchor·65535,
-//! blue 0. t is kept within [0, 65535/32768]. What the EXR has as attributes stands in `NAME.png.json`.
+//! blue 0: there is no gloss in it. t is kept within [0, 65535/32768]. What the EXR has as attributes stands in `NAME.png.json`.
 
 use crate::ProjectError;
 use crate::disk::{extension, with_suffix, write_bytes};
@@ -27,6 +27,8 @@ const VERSION: u32 = 1;
 /// The channels of an EXR.
 const T: &str = "focus.t";
 const ANCHOR: &str = "focus.anchor";
+/// Where it is missing, gloss is 0.
+const GLOSS: &str = "focus.gloss";
 
 /// Red of t = 1.
 const PNG_UNIT_OFFSET: f64 = 32768.0;
@@ -50,7 +52,8 @@ pub struct FocusMapFile {
 impl FocusMapFile {
     /// The map painted over `atlas`.
     pub fn of_atlas(map: &FocusMap, atlas: &Atlas) -> Self {
-        let image = FocusImage { width: map.width(), height: map.height(), texels: map.to_rows() };
+        let (width, height) = (map.width(), map.height());
+        let image = FocusImage { width, height, texels: map.to_rows(), gloss: map.gloss_rows() };
         Self {
             image,
             background: Some(map.background),
@@ -66,14 +69,18 @@ impl FocusMapFile {
         if self.atlas_hash.as_ref().is_some_and(|hash| *hash != atlas.hash) {
             return Err(error("the focus map belongs to another atlas"));
         }
-        let FocusImage { width, height, texels } = self.image;
+        let FocusImage { width, height, texels, gloss } = self.image;
         if [width, height] != [atlas.width, atlas.height] {
             let (w, h) = (atlas.width, atlas.height);
             return Err(error(&format!("the focus map has {width}×{height} texels, the atlas {w}×{h}")));
         }
         let background = self.background.unwrap_or(FocusOffset::STANDARD);
-        FocusMap::from_rows(width, height, &texels, background)
-            .ok_or_else(|| error("the focus map is incomplete"))
+        let incomplete = || error("the focus map is incomplete");
+        let mut map = FocusMap::from_rows(width, height, &texels, background).ok_or_else(incomplete)?;
+        match gloss.is_none_or(|gloss| map.set_gloss_rows(&gloss)) {
+            true => Ok(map),
+            false => Err(incomplete()),
+        }
     }
 
     /// Reads an EXR or PNG focus map, by extension.
@@ -98,6 +105,12 @@ impl FocusMapFile {
                 format!("texel ({x}, {y}) has t = {t}, anchor = {anchor}"),
                 "t must be finite and anchor in [0, 1]",
             ));
+        }
+        let gloss = map.image.gloss.iter().flatten();
+        if let Some((index, gloss)) = gloss.enumerate().find(|(_, gloss)| !(0.0..=1.0).contains(*gloss)) {
+            let (x, y) = (index % map.image.width as usize, index / map.image.width as usize);
+            let problem = format!("texel ({x}, {y}) has gloss = {gloss}");
+            return Err(ProjectError::content(file, problem, "gloss must be in [0, 1]"));
         }
         Ok(map)
     }
@@ -125,7 +138,10 @@ fn uv_set(map: &FocusMapFile) -> u32 {
 
 fn to_exr(map: &FocusMapFile) -> ExrImage {
     let channel = |k: usize| map.image.texels.iter().map(|texel| texel[k]).collect();
-    let channels = [(T.to_string(), channel(0)), (ANCHOR.to_string(), channel(1))];
+    let mut channels = BTreeMap::from([(T.to_string(), channel(0)), (ANCHOR.to_string(), channel(1))]);
+    if let Some(gloss) = &map.image.gloss {
+        channels.insert(GLOSS.to_string(), gloss.clone());
+    }
     let mut attributes = BTreeMap::new();
     let mut put = |name: &str, value| attributes.insert(format!("focusBrush.{name}"), value);
     put("version", ExrAttribute::Number(VERSION as f64));
@@ -136,14 +152,21 @@ fn to_exr(map: &FocusMapFile) -> ExrImage {
     if let Some(background) = map.background {
         put("backgroundT", ExrAttribute::Number(background.t));
         put("backgroundAnchor", ExrAttribute::Number(background.anchor));
+        if background.gloss != 0.0 {
+            put("backgroundGloss", ExrAttribute::Number(background.gloss));
+        }
     }
-    ExrImage { width: map.image.width, height: map.image.height, channels: channels.into(), attributes }
+    ExrImage { width: map.image.width, height: map.image.height, channels, attributes }
 }
 
 /// What a channel has where the file has no texel: the focus of the ordinary lens.
 fn unpainted(channel: &str) -> f32 {
-    let FocusOffset { t, anchor } = FocusOffset::STANDARD;
-    if channel == T { t as f32 } else { anchor as f32 }
+    let FocusOffset { t, anchor, gloss } = FocusOffset::STANDARD;
+    match channel {
+        T => t as f32,
+        ANCHOR => anchor as f32,
+        _ => gloss as f32,
+    }
 }
 
 fn from_exr(file: &Path, mut exr: ExrImage) -> Result<FocusMapFile, ProjectError> {
@@ -164,12 +187,13 @@ fn from_exr(file: &Path, mut exr: ExrImage) -> Result<FocusMapFile, ProjectError
         return Err(ProjectError::Newer { file: file.to_owned(), version: version as u64, newest });
     }
     let background = number("backgroundT").zip(number("backgroundAnchor"));
-    let background = background.map(|(t, anchor)| FocusOffset { t, anchor });
+    let background_gloss = number("backgroundGloss").unwrap_or(0.0);
+    let background = background.map(|(t, anchor)| FocusOffset::new(t, anchor).with_gloss(background_gloss));
     if background.is_some_and(|background| !background.is_valid()) {
         return Err(ProjectError::content(
             file,
             "the background's focus cannot be used",
-            "its t must be finite and its anchor in [0, 1]",
+            "its t must be finite, its anchor and gloss in [0, 1]",
         ));
     }
     let atlas_hash = match exr.attributes.get("focusBrush.atlasHash") {
@@ -177,7 +201,8 @@ fn from_exr(file: &Path, mut exr: ExrImage) -> Result<FocusMapFile, ProjectError
         _ => None,
     };
     let texels = t.into_iter().zip(anchor).map(|(t, anchor)| [t, anchor]).collect();
-    let image = FocusImage { width: exr.width, height: exr.height, texels };
+    let gloss = exr.channels.remove(GLOSS);
+    let image = FocusImage { width: exr.width, height: exr.height, texels, gloss };
     Ok(FocusMapFile { image, background, atlas_hash, warnings: Vec::new() })
 }
 
@@ -208,11 +233,17 @@ fn to_png(file: &Path, map: &FocusMapFile) -> Result<Vec<String>, ProjectError> 
     write_bytes(file, &bytes)?;
     let outside = |t: f32| !(0.0..=PNG_LARGEST / PNG_UNIT_OFFSET).contains(&(t as f64));
     let lost = map.image.texels.iter().filter(|[t, _]| outside(*t)).count();
-    let warning = format!(
+    let of_offsets = format!(
         "{}: {lost} texels have t outside [0, 2), which 16-bit PNG cannot hold; they were clipped (write an .exr to keep them)",
         file.display()
     );
-    Ok(if lost > 0 { vec![warning] } else { Vec::new() })
+    let of_gloss = format!(
+        "{}: gloss obeys the paint in places, which a PNG cannot hold; it was left out (write an .exr to keep it)",
+        file.display()
+    );
+    let background_gloss = map.background.is_some_and(|background| background.gloss != 0.0);
+    let warnings = [(lost > 0, of_offsets), (map.image.gloss.is_some() || background_gloss, of_gloss)];
+    Ok(warnings.into_iter().filter_map(|(is_lost, warning)| is_lost.then_some(warning)).collect())
 }
 
 fn from_png(file: &Path) -> Result<FocusMapFile, ProjectError> {
@@ -221,7 +252,7 @@ fn from_png(file: &Path) -> Result<FocusMapFile, ProjectError> {
         [(red as f64 / PNG_UNIT_OFFSET) as f32, (green as f64 / PNG_LARGEST) as f32]
     };
     let texels = png.rgb.into_iter().map(value).collect();
-    let image = FocusImage { width: png.width, height: png.height, texels };
+    let image = FocusImage { width: png.width, height: png.height, texels, gloss: None };
     let mut warnings = Vec::new();
     if png.has_color_space {
         warnings.push(format!(
@@ -247,7 +278,7 @@ fn from_png(file: &Path) -> Result<FocusMapFile, ProjectError> {
         if let Some(field) = fields.get("background") {
             let background = field.object()?;
             let number = |name, default| background.get(name).map_or(Ok(default), |field| field.number());
-            let background = FocusOffset { t: number("t", 1.0)?, anchor: number("anchor", 0.0)? };
+            let background = FocusOffset::new(number("t", 1.0)?, number("anchor", 0.0)?);
             if !background.is_valid() {
                 return Err(field.error("cannot be used", "its anchor must be in [0, 1]"));
             }

@@ -8,7 +8,7 @@ use crate::ProjectError;
 use crate::container::Container;
 use crate::layer_rows::{LayerRow, LayerRows};
 use crate::manifest::{MANIFEST, Manifest, MapEntry};
-use crate::texel_bytes::{floats, pairs};
+use crate::texel_bytes::{bytes_of, floats, pairs};
 use focus::{Adjustment, FocusLayer, FocusMap, LayerStack};
 use lens::FocusOffset;
 use std::path::Path;
@@ -24,11 +24,10 @@ pub(crate) fn write(layers: &LayerStack, entries: &mut Vec<(String, Vec<u8>)>) -
             let bytes = layer.map.to_rows().iter().flatten().flat_map(|value| value.to_le_bytes()).collect();
             put(format!("layers/{index}.f32"), bytes)
         });
-        let mask = layer.map.mask_rows().map(|mask| {
-            let bytes = mask.iter().flat_map(|share| share.to_le_bytes()).collect();
-            put(format!("layers/{index}.mask.f32"), bytes)
-        });
-        let FocusOffset { t, anchor } = layer.map.background;
+        let mask = layer.map.mask_rows().map(|mask| put(format!("layers/{index}.mask.f32"), bytes_of(&mask)));
+        let gloss =
+            layer.map.gloss_rows().map(|gloss| put(format!("layers/{index}.gloss.f32"), bytes_of(&gloss)));
+        let FocusOffset { t, anchor, gloss: background_gloss } = layer.map.background;
         let (curve, plane) = match layer.adjustment.clone() {
             Some(Adjustment::Curve(curve)) => (Some(curve), None),
             Some(Adjustment::Plane(plane)) => (None, Some(plane)),
@@ -43,6 +42,8 @@ pub(crate) fn write(layers: &LayerStack, entries: &mut Vec<(String, Vec<u8>)>) -
             curve,
             plane,
             values,
+            background_gloss,
+            gloss,
             mask,
         }
     };
@@ -61,7 +62,7 @@ pub(crate) fn read(
     let mut layers = Vec::new();
     for row in &rows.layers {
         let [t, anchor, background_mask] = row.background;
-        let background = FocusOffset { t, anchor };
+        let background = FocusOffset::new(t, anchor).with_gloss(row.background_gloss);
         let wrong_size = "does not have the size that the manifest says";
         let mut map = match &row.values {
             Some(entry) => {
@@ -71,6 +72,12 @@ pub(crate) fn read(
             }
             None => FocusMap::new(size.width, size.height, FocusOffset::STANDARD),
         };
+        if let Some(entry) = &row.gloss {
+            let bytes = manifest.entry(file, container, entry, texels * 4)?;
+            if !map.set_gloss_rows(&floats(&bytes)) {
+                return Err(container.error(entry, wrong_size));
+            }
+        }
         if let Some(entry) = &row.mask {
             let bytes = manifest.entry(file, container, entry, texels * 4)?;
             if !map.set_mask_rows(Some(&floats(&bytes))) {

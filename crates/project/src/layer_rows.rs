@@ -3,6 +3,11 @@
 use focus::{Adjustment, Blend, DepthCurve, FocalPlane};
 use serde::{Deserialize, Serialize};
 
+/// Whether a number may be left out.
+pub(crate) fn is_zero(number: &f64) -> bool {
+    *number == 0.0
+}
+
 /// The layers' part of the manifest.
 #[derive(Debug, Serialize, Deserialize)]
 pub(crate) struct LayerRows {
@@ -28,12 +33,23 @@ pub(crate) struct LayerRow {
     /// Entry of the values: t and anchor of every texel.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub values: Option<String>,
+    /// Of the background, where it is not 0.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub background_gloss: f64,
+    /// Entry of the gloss: a number a texel; where all of it is not 0.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub gloss: Option<String>,
     /// Entry of the mask: a number a texel.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub mask: Option<String>,
 }
 
 impl LayerRow {
+    /// Whether gloss obeys the paint anywhere.
+    pub fn has_gloss(&self) -> bool {
+        self.background_gloss != 0.0 || self.gloss.is_some()
+    }
+
     /// The rule of an adjustment layer.
     pub fn adjustment(&self) -> Option<Adjustment> {
         let curve = self.curve.clone().map(Adjustment::Curve);

@@ -3,7 +3,7 @@
 use crate::ProjectError;
 use crate::capture_choices::CaptureRow;
 use crate::container::{Container, DAMAGED_CURE};
-use crate::layer_rows::LayerRows;
+use crate::layer_rows::{LayerRow, LayerRows, is_zero};
 use crate::scene_path::ScenePath;
 use focus::Brush;
 use serde::{Deserialize, Serialize};
@@ -16,11 +16,8 @@ use std::path::Path;
 /// The manifest's entry: the first of the container.
 pub(crate) const MANIFEST: &str = "manifest.json";
 
-/// What the manifest calls the format.
-const FORMAT: &str = "focus-brush project";
-
-/// The newest version. It changes when an older program would misread the file.
-pub(crate) const VERSION: u64 = 5;
+/// The version of a project in which gloss keeps the lens's focus everywhere: older programs would take it so.
+const WITHOUT_GLOSS: u64 = 5;
 
 /// The version of a project in the scene's own materials, no variant of them: older programs would show these in its place.
 const WITHOUT_VARIANT: u64 = 4;
@@ -62,6 +59,9 @@ pub(crate) struct Manifest {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub world: Option<Value>,
     pub background_focus: [f64; 2],
+    /// How far gloss obeys it, where it does.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub background_gloss: f64,
     pub brush: Brush,
     #[serde(default)]
     pub view: Value,
@@ -100,20 +100,35 @@ pub(crate) struct MapEntry {
     pub entry: String,
     pub width: u32,
     pub height: u32,
+    /// Of a focus map: the entry that says how far gloss obeys it, a number a texel; where it does.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub gloss: Option<String>,
 }
 
 impl Manifest {
-    /// What a manifest calls the format, and the oldest version that can say it all.
-    pub fn format(brush: &Brush, layers: Option<&LayerRows>, variant: Option<&str>) -> (String, u64) {
-        let has_planes = layers.is_some_and(|rows| rows.layers.iter().any(|row| row.plane.is_some()));
-        let version = match (has_planes, brush.has_own_axes(), layers) {
-            _ if variant.is_some() => VERSION,
-            (true, ..) => WITHOUT_VARIANT,
-            (false, true, _) => WITHOUT_PLANES,
-            (false, false, Some(_)) => ALONG_WORLD_AXES,
-            (false, false, None) => WITHOUT_LAYERS,
+    /// What the manifest calls the format.
+    pub const FORMAT: &str = "focus-brush project";
+
+    /// The newest version. It changes when an older program would misread the file.
+    pub const VERSION: u64 = 6;
+
+    /// The same in the oldest version that can say it all.
+    pub fn in_oldest_version(self) -> Self {
+        let rows = self.layers.as_ref().map(|layers| &layers.layers);
+        let any_row = |of: fn(&LayerRow) -> bool| rows.is_some_and(|rows| rows.iter().any(of));
+        let has_gloss = self.background_gloss != 0.0
+            || self.brush.paints_gloss()
+            || self.focus_map.as_ref().is_some_and(|map| map.gloss.is_some())
+            || any_row(LayerRow::has_gloss);
+        let version = match () {
+            _ if has_gloss => Self::VERSION,
+            _ if self.variant.is_some() => WITHOUT_GLOSS,
+            _ if any_row(|row| row.plane.is_some()) => WITHOUT_VARIANT,
+            _ if self.brush.has_own_axes() => WITHOUT_PLANES,
+            _ if rows.is_some() => ALONG_WORLD_AXES,
+            _ => WITHOUT_LAYERS,
         };
-        (FORMAT.to_string(), version)
+        Self { version, ..self }
     }
 
     /// Reads and checks the manifest.
@@ -127,15 +142,15 @@ impl Manifest {
         let bytes = container.read(MANIFEST, LARGEST_MANIFEST)?;
         let header: Header = serde_json::from_slice(&bytes)
             .map_err(|error| container.error(MANIFEST, format!("cannot be understood: {error}")))?;
-        if header.format != FORMAT {
+        if header.format != Self::FORMAT {
             let problem = format!("is not a Focus Brush project but \"{}\"", header.format);
             return Err(ProjectError::content(file, problem, "open it with the program that wrote it"));
         }
-        if header.version > VERSION {
+        if header.version > Self::VERSION {
             return Err(ProjectError::Newer {
                 file: file.to_owned(),
                 version: header.version,
-                newest: VERSION,
+                newest: Self::VERSION,
             });
         }
         serde_json::from_slice(&bytes)

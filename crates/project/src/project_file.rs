@@ -8,7 +8,8 @@
 //! | `manifest.json` | format, version, scene, cameras, exposure, brush, view, checksums of the rest |
 //! | `atlas.bin` | the unwrapping, as the atlas writes it |
 //! | `focus.f32` | t and anchor a texel, f32 little endian, row by row: what all layers make together |
-//! | `layers/N.f32`, `layers/N.mask.f32` | the same of one layer, and its mask; where there are layers |
+//! | `focus.gloss.f32` | how far gloss obeys them, the same way; where it does |
+//! | `layers/N.f32`, `layers/N.gloss.f32`, `layers/N.mask.f32` | the same of one layer, and its mask; where there are layers |
 //! | `selection.bits` | what may be painted, a bit a texel; where that is not everything |
 //! | `masks/N.f32` | the aperture mask of camera N: width and height as u32, then transmissions as f32 |
 //!
@@ -23,7 +24,7 @@ use crate::layer_entries;
 use crate::manifest::{CameraEntry, MANIFEST, Manifest, MapEntry, SceneReference, sha256_hex};
 use crate::scene_checksum::scene_checksum;
 use crate::scene_path::ScenePath;
-use crate::texel_bytes::pairs;
+use crate::texel_bytes::{bytes_of, floats, pairs};
 use crate::texel_set::TexelSet;
 use crate::{ProjectError, WorldFile};
 use focus::{Brush, FocusLayer, FocusMap, LayerStack};
@@ -34,6 +35,7 @@ use std::path::{Path, PathBuf};
 
 const ATLAS: &str = "atlas.bin";
 const FOCUS_MAP: &str = "focus.f32";
+const FOCUS_GLOSS: &str = "focus.gloss.f32";
 const SELECTION: &str = "selection.bits";
 
 /// The largest atlas that is read, bytes.
@@ -223,19 +225,23 @@ impl ProjectFile {
             let texels = map.to_rows();
             let bytes = texels.iter().flatten().flat_map(|value| value.to_le_bytes()).collect();
             entries.push((FOCUS_MAP.to_string(), bytes));
-            MapEntry { entry: FOCUS_MAP.to_string(), width: map.width(), height: map.height() }
+            let gloss = map.gloss_rows().map(|gloss| {
+                entries.push((FOCUS_GLOSS.to_string(), bytes_of(&gloss)));
+                FOCUS_GLOSS.to_string()
+            });
+            MapEntry { entry: FOCUS_MAP.to_string(), width: map.width(), height: map.height(), gloss }
         });
         let layers = self.layers.as_ref().map(|layers| layer_entries::write(layers, &mut entries));
         let background = self.focus_map.as_ref().map_or(self.background_focus, |map| map.background);
         let selection = self.selection.as_ref().map(|selection| {
             entries.push((SELECTION.to_string(), selection.to_bytes()));
             let [width, height] = selection.size();
-            MapEntry { entry: SELECTION.to_string(), width, height }
+            MapEntry { entry: SELECTION.to_string(), width, height, gloss: None }
         });
-        let (format, version) = Manifest::format(&self.brush, layers.as_ref(), self.variant.as_deref());
+
         let manifest = Manifest {
-            format,
-            version,
+            format: Manifest::FORMAT.to_string(),
+            version: Manifest::VERSION,
             written_by: format!("Focus Brush {}", env!("CARGO_PKG_VERSION")),
             scene: SceneReference {
                 path: ScenePath::new(&self.scene, file),
@@ -249,6 +255,7 @@ impl ProjectFile {
             capture: self.capture.as_ref().map(|choices| CaptureRow::new(choices, file)),
             world: self.world.as_ref().map(|world| world.to_json(file)),
             background_focus: [background.t, background.anchor],
+            background_gloss: background.gloss,
             brush: self.brush.clone(),
             view: self.view.clone(),
             focus_map,
@@ -256,7 +263,8 @@ impl ProjectFile {
             selection,
             checksums: entries.iter().map(|(name, bytes)| (name.clone(), sha256_hex(bytes))).collect(),
         };
-        let manifest = serde_json::to_vec_pretty(&manifest).map_err(std::io::Error::other)?;
+        let manifest =
+            serde_json::to_vec_pretty(&manifest.in_oldest_version()).map_err(std::io::Error::other)?;
         entries.insert(0, (MANIFEST.to_string(), manifest));
         pack(&entries)
     }
@@ -296,7 +304,7 @@ impl ProjectFile {
             return Err(error(format!("brush: {problem}")));
         }
         let [t, anchor] = manifest.background_focus;
-        let background_focus = FocusOffset { t, anchor };
+        let background_focus = FocusOffset::new(t, anchor).with_gloss(manifest.background_gloss);
         if !background_focus.is_valid() {
             return Err(error("background_focus cannot be used".to_string()));
         }
@@ -402,8 +410,15 @@ fn read_focus_map(
         );
     }
     let bytes = manifest.entry(file, container, &entry.entry, size)?;
-    let map = FocusMap::from_rows(entry.width, entry.height, &pairs(&bytes), background)
-        .ok_or_else(|| container.error(&entry.entry, "does not have the size that the manifest says"))?;
+    let wrong_size = "does not have the size that the manifest says";
+    let mut map = FocusMap::from_rows(entry.width, entry.height, &pairs(&bytes), background)
+        .ok_or_else(|| container.error(&entry.entry, wrong_size))?;
+    if let Some(gloss) = &entry.gloss {
+        let bytes = manifest.entry(file, container, gloss, size / 2)?;
+        if !map.set_gloss_rows(&floats(&bytes)) {
+            return Err(container.error(gloss, wrong_size));
+        }
+    }
     if !map.is_valid() {
         return Err(container.error(&entry.entry, "has values that are not finite"));
     }

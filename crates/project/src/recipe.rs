@@ -4,8 +4,8 @@
 //! {"default": {"t": 1, "anchor": 0}, "background": {…}, "materials": {NAME: {…}}, "nodes": {NAME: {…}}}
 //! ```
 //!
-//! An entry is `{"t": x, "anchor": a}` (t is 1 and anchor 0 where missing) or `{"map": FILE}`, the file beside
-//! the recipe, in the mesh's first UV set.
+//! An entry is `{"t": x, "anchor": a, "gloss": g}` (t is 1, anchor and gloss 0 where missing) or `{"map": FILE}`, the file
+//! beside the recipe, in the mesh's first UV set.
 
 use crate::disk::extension;
 use crate::json::{Field, Fields, Json};
@@ -47,17 +47,21 @@ fn named(
 
 fn entry(field: &Field<'_>, maps: &mut Maps) -> Result<RecipeEntry, ProjectError> {
     let fields = field.object()?;
-    fields.only(&["t", "anchor", "map"])?;
+    fields.only(&["t", "anchor", "gloss", "map"])?;
     let Some(map) = fields.get("map") else {
         let t = fields.get("t").map_or(Ok(1.0), |field| field.number())?;
-        let anchor = fields.get("anchor").map_or(Ok(0.0), |field| field.number())?;
-        if let Some(field) = fields.get("anchor").filter(|_| !(0.0..=1.0).contains(&anchor)) {
-            return Err(field.error(format!("is {anchor}"), "give a number in [0, 1]"));
-        }
-        return Ok(RecipeEntry::Value(FocusOffset { t, anchor }));
+        let share = |name| {
+            let Some(field) = fields.get(name) else { return Ok(0.0) };
+            let share = field.number()?;
+            match (0.0..=1.0).contains(&share) {
+                true => Ok(share),
+                false => Err(field.error(format!("is {share}"), "give a number in [0, 1]")),
+            }
+        };
+        return Ok(RecipeEntry::Value(FocusOffset { t, anchor: share("anchor")?, gloss: share("gloss")? }));
     };
-    if fields.get("t").or(fields.get("anchor")).is_some() {
-        return Err(field.error("has a map and a value", "give either map, or t and anchor"));
+    if ["t", "anchor", "gloss"].iter().any(|name| fields.get(name).is_some()) {
+        return Err(field.error("has a map and a value", "give either map, or t, anchor and gloss"));
     }
     let path = fields.folder().join(map.text()?);
     if let Some(entry) = maps.get(&path) {

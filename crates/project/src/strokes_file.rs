@@ -14,7 +14,7 @@
 //! A point is where the pen was in the view it painted in ((0, 0) the upper left corner, (1, 1) the lower right) and
 //! how hard it pressed, in [0, 1]. When is not recorded: dabs follow the path, not the clock. A stroke in the atlas laid
 //! flat has the atlas's hash for a view, `{"atlas": "…"}`. Version 1 held `"strokes": [{"layer": …}, …]` alone, version 2
-//! no strokes in the atlas, version 3 no axes of symmetry but the world's; all are read.
+//! no strokes in the atlas, version 3 no axes of symmetry but the world's, version 4 nothing of gloss; all are read.
 
 use crate::ProjectError;
 use crate::disk::{read_bytes, write_verified};
@@ -28,7 +28,10 @@ use std::path::Path;
 const FORMAT: &str = "focus-brush strokes";
 
 /// The newest version.
-const VERSION: u64 = 4;
+const VERSION: u64 = 5;
+
+/// The version that is written where gloss keeps the lens's focus.
+const WITHOUT_GLOSS: u64 = 4;
 
 /// The version that is written where all symmetry is along the world's axes: older programs lose nothing of it.
 const ALONG_WORLD_AXES: u64 = 3;
@@ -73,6 +76,16 @@ impl RecordedStep {
         match self {
             Self::Stroke(stroke) => stroke.brush.has_own_axes(),
             Self::Gradient(drawn) => !drawn.gradient.symmetry.is_along_world(),
+            _ => false,
+        }
+    }
+
+    /// Whether it says something of gloss.
+    fn paints_gloss(&self) -> bool {
+        match self {
+            Self::Stroke(stroke) => stroke.brush.paints_gloss(),
+            Self::Fill(fill) => fill.focus.gloss != 0.0,
+            Self::Gradient(drawn) => drawn.gradient.paints_gloss(),
             _ => false,
         }
     }
@@ -228,7 +241,12 @@ struct StrokesFile {
 
 /// Writes what was recorded.
 pub fn write_strokes(file: &Path, steps: &[RecordedStep]) -> Result<(), ProjectError> {
-    let version = if steps.iter().any(RecordedStep::has_own_axes) { VERSION } else { ALONG_WORLD_AXES };
+    let any = |of: fn(&RecordedStep) -> bool| steps.iter().any(of);
+    let version = match () {
+        _ if any(RecordedStep::paints_gloss) => VERSION,
+        _ if any(RecordedStep::has_own_axes) => WITHOUT_GLOSS,
+        _ => ALONG_WORLD_AXES,
+    };
     let content = StrokesFile { format: FORMAT.into(), version, steps: steps.to_vec(), strokes: Vec::new() };
     let bytes = serde_json::to_vec(&content).map_err(std::io::Error::other);
     let bytes = bytes.map_err(|source| ProjectError::Write { file: file.to_owned(), source })?;

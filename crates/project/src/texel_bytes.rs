@@ -5,6 +5,11 @@ pub(crate) fn floats(bytes: &[u8]) -> Vec<f32> {
     bytes.as_chunks::<4>().0.iter().map(|word| f32::from_le_bytes(*word)).collect()
 }
 
+/// The bytes of numbers. Inverse of [`floats`].
+pub(crate) fn bytes_of(numbers: &[f32]) -> Vec<u8> {
+    numbers.iter().flat_map(|number| number.to_le_bytes()).collect()
+}
+
 /// The numbers two by two.
 pub(crate) fn pairs(bytes: &[u8]) -> Vec<[f32; 2]> {
     bytes

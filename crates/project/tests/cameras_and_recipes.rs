@@ -129,10 +129,13 @@ fn recipes_keep_order_and_repetition() {
         r#"{"nodes": {"b": {"t": 2}, "a": {"anchor": 1}, "b": {}}, "default": {"t": 1.5, "anchor": 0.25}}"#;
     let file = write(&folder, "focus.json", text);
     let recipe = read_recipe(&file).unwrap();
-    let value = |t, anchor| RecipeEntry::Value(FocusOffset { t, anchor });
+    let value = |t, anchor| RecipeEntry::Value(FocusOffset::new(t, anchor));
     let nodes = [("b", value(2.0, 0.0)), ("a", value(1.0, 1.0)), ("b", value(1.0, 0.0))];
     assert_eq!(recipe.nodes, nodes.map(|(name, entry)| (name.to_string(), entry)));
     assert_eq!((recipe.default, recipe.background), (value(1.5, 0.25), None));
+    let text = r#"{"default": {"t": 1.5, "gloss": 0.25}}"#;
+    let glossy = read_recipe(&write(&folder, "glossy.json", text)).unwrap();
+    assert_eq!(glossy.default, RecipeEntry::Value(FocusOffset::new(1.5, 0.0).with_gloss(0.25)));
     damage(&file, read_recipe);
 }
 
@@ -145,6 +148,9 @@ fn bad_recipes_are_told_with_their_key() {
         (r#"{"materials": {"wall": {"t": 1e999}}}"#, "in \"t\""),
         (r#"{"materials": {"wall": {"t": "NaN"}}}"#, "materials.wall.t: is the text"),
         (r#"{"materials": {"wall": {"anchor": 1.5}}}"#, "materials.wall.anchor: is 1.5"),
+        (r#"{"materials": {"wall": {"gloss": -0.1}}}"#, "materials.wall.gloss: is -0.1"),
+        (r#"{"nodes": {"car": {"gloss": true}}}"#, "nodes.car.gloss: is"),
+        (r#"{"nodes": {"car": {"gloss": 1, "map": "x.exr"}}}"#, "nodes.car: has a map and a value"),
         (r#"{"materials": {"wall": {"blur": 1}}}"#, "materials.wall.blur: is not a known field"),
         (r#"{"materials": {"wall": {"t": 1, "map": "x.exr"}}}"#, "materials.wall: has a map and a value"),
         (r#"{"material": {}}"#, "material: is not a known field"),

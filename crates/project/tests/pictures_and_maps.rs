@@ -86,7 +86,7 @@ fn map() -> FocusMapFile {
     texels[0] = [1.0, 0.0];
     texels[1] = [1.0, 1.0];
     FocusMapFile {
-        image: FocusImage { width: 33, height: 21, texels },
+        image: FocusImage { width: 33, height: 21, texels, gloss: None },
         background: Some(FocusOffset::new(0.1, 0.7)),
         atlas_hash: Some("0123abcd".to_string()),
         warnings: Vec::new(),
@@ -140,6 +140,37 @@ fn png_focus_maps_keep_the_standard_exactly() {
     let read = FocusMapFile::read(&file).unwrap();
     assert_eq!(read.image.texels[7][0], 65535.0 / 32768.0);
     assert_eq!(read.image.texels[8][0], 0.0);
+}
+
+#[test]
+fn gloss_comes_back_from_an_exr_and_is_said_to_be_lost_in_a_png() {
+    let folder = TempDir::new().unwrap();
+    let [exr, png] = ["focus.exr", "focus.png"].map(|name| folder.path().join(name));
+    let mut glossy = map();
+    glossy.image.gloss = Some(noise(33 * 21, 5));
+    glossy.background = Some(FocusOffset::new(0.1, 0.7).with_gloss(0.25));
+    assert!(write_focus_map(&exr, &glossy).unwrap().is_empty());
+    assert_eq!(FocusMapFile::read(&exr).unwrap(), glossy);
+    let warnings = write_focus_map(&png, &glossy).unwrap();
+    assert!(warnings.len() == 1 && warnings[0].contains("gloss"), "{warnings:?}");
+    write_focus_map(&png, &map()).unwrap();
+    let without = std::fs::read(&png).unwrap();
+    write_focus_map(&png, &glossy).unwrap();
+    assert_eq!(std::fs::read(&png).unwrap(), without, "the rest is as it was");
+
+    // Where nothing says anything of it, neither does the file.
+    let says = |file: &std::path::Path| {
+        std::fs::read(file).unwrap().windows(5).any(|word| word.eq_ignore_ascii_case(b"gloss"))
+    };
+    assert!(says(&exr));
+    write_focus_map(&exr, &map()).unwrap();
+    assert!(!says(&exr));
+
+    glossy.image.gloss.as_mut().unwrap()[35] = 1.5;
+    write_focus_map(&exr, &glossy).unwrap();
+    let error = FocusMapFile::read(&exr).unwrap_err().to_string();
+    is_one_line(&error, &exr);
+    assert!(error.contains("texel (2, 1) has gloss = 1.5"), "{error}");
 }
 
 #[test]

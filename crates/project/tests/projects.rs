@@ -134,6 +134,34 @@ fn layers_come_back_the_same_and_a_plain_document_stays_as_older_programs_know_i
     layered.save(&file).unwrap();
     assert_eq!((&manifest(&file)["version"], manifest(&file).get("variant")), (&2.into(), None));
 
+    // They would take gloss that obeys the paint for gloss that does not: in the map, in a layer, of the background, in hand.
+    let glossy = FocusOffset::new(1.1, 0.5).with_gloss(0.5);
+    let in_map = |changed: &dyn Fn(&mut FocusMap)| {
+        let mut map = varied.focus_map.clone().unwrap();
+        changed(&mut map);
+        map
+    };
+    let painted = in_map(&|map| map.set_gloss(100, 3, 0.25));
+    let behind = in_map(&|map| map.background = glossy);
+    let layer = focus::FocusLayer::painted("glossy", painted.clone());
+    let stack = focus::LayerStack::new(vec![layers.layers()[0].clone(), layer], 1).unwrap();
+    for glossy in [
+        ProjectFile { focus_map: Some(painted), ..varied.clone() },
+        ProjectFile { background_focus: behind.background, focus_map: Some(behind), ..varied.clone() },
+        ProjectFile { layers: Some(stack), ..varied.clone() },
+        ProjectFile { brush: Brush { target: glossy, ..Brush::default() }, ..varied.clone() },
+    ] {
+        glossy.save(&file).unwrap();
+        assert_eq!(manifest(&file)["version"], 6);
+        assert!(ProjectFile::load(&file).unwrap() == glossy && glossy != varied);
+    }
+    // What is painted and taken away again leaves nothing.
+    let blank = in_map(&|map| [0.25, 0.0].into_iter().for_each(|gloss| map.set_gloss(100, 3, gloss)));
+    ProjectFile { focus_map: Some(blank), ..varied.clone() }.save(&file).unwrap();
+    assert_eq!(manifest(&file)["version"], 5);
+    assert!(!manifest(&file).to_string().contains("gloss"));
+    layered.save(&file).unwrap();
+
     // What cannot be is refused, on saving and on opening.
     let small = focus::LayerStack::of(FocusMap::new(4, 4, FocusOffset::STANDARD));
     let error = ProjectFile { layers: Some(small), ..layered.clone() }.save(&file).unwrap_err();
@@ -271,7 +299,7 @@ fn wrong_content_is_told_with_its_entry() {
     };
     assert!(load(&|_, bytes| bytes).is_ok());
     let cases: [(Change<'_>, &str); 8] = [
-        (&in_manifest("\"version\": 1", "\"version\": 6"), "update the program"),
+        (&in_manifest("\"version\": 1", "\"version\": 7"), "update the program"),
         (&in_manifest("focus-brush project", "shopping list"), "shopping list"),
         (&in_manifest("\"active_camera\": 1", "\"active_camera\": 2"), "camera 2 of 2"),
         (&in_manifest("\"width\": 130", "\"width\": 131"), "focus.f32"),

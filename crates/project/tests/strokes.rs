@@ -1,7 +1,8 @@
 //! Recorded strokes, written and read.
 
 use focus::{
-    Brush, Combine, FillTarget, Gradient, GradientLine, GradientShape, LayerEdit, Symmetry, ViewFrame,
+    Brush, Channels, Combine, FillTarget, Gradient, GradientLine, GradientShape, LayerEdit, Symmetry,
+    ViewFrame,
 };
 use glam::{DMat4, DVec2, DVec3};
 use lens::FocusOffset;
@@ -83,6 +84,48 @@ fn what_is_written_is_read_to_the_bit_and_what_is_wrong_is_told() {
         std::fs::write(&file, text.replacen(from, to, 1)).unwrap();
         let error = read_strokes(&file).unwrap_err().to_string();
         assert!(error.contains(expected) && error.contains("strokes.json"), "{error}");
+    }
+}
+
+#[test]
+fn what_says_something_of_gloss_is_of_a_newer_version() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("strokes.json");
+    let written = |step: RecordedStep| {
+        write_strokes(&file, std::slice::from_ref(&step)).unwrap();
+        assert_eq!(read_strokes(&file).unwrap(), [step]);
+        std::fs::read_to_string(&file).unwrap()
+    };
+    let gradient = |from: FocusOffset, to: FocusOffset| {
+        let line = GradientLine::World([DVec3::ZERO, DVec3::X]);
+        let (shape, symmetry) = (GradientShape::Linear, Symmetry::default());
+        let gradient = Gradient { shape, line, from, to: Some(to), symmetry };
+        RecordedStep::Gradient(RecordedGradient { layer: "Paint".into(), gradient })
+    };
+    let glossy = FocusOffset::new(1.2, 0.5).with_gloss(0.75);
+    let brush = |brush: Brush| RecordedStep::Stroke(RecordedStroke { brush, ..stroke() });
+    let fill = |focus| {
+        let targets = vec![FillTarget::Everything];
+        RecordedStep::Fill(RecordedFill { layer: "Paint".into(), targets, focus })
+    };
+    for step in [
+        brush(Brush { target: glossy, ..Brush::default() }),
+        brush(Brush { channels: Channels::Gloss, ..Brush::default() }),
+        fill(glossy),
+        gradient(glossy, FocusOffset::SHARP),
+        gradient(FocusOffset::SHARP, glossy),
+    ] {
+        let text = written(step);
+        assert!(text.contains("\"version\":5"), "{text}");
+    }
+    let plain = [
+        brush(Brush::default()),
+        fill(FocusOffset::SHARP),
+        gradient(FocusOffset::SHARP, FocusOffset::STANDARD),
+    ];
+    for step in plain {
+        let text = written(step);
+        assert!(text.contains("\"version\":3") && !text.contains("gloss"), "{text}");
     }
 }
 

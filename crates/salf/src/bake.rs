@@ -72,7 +72,7 @@ pub fn bake_and_tell(
     options: &BakeOptions,
     progress: &dyn Progress,
 ) -> Result<(Salf, Outliers), Cancelled> {
-    let view = View::new(camera, options.tolerance_px);
+    let view = View::new(camera, options.tolerance_px).telling(options.carried);
     let margin = standard_margin_px(tracer.scene(), &view).max(options.margin_px);
     let domain = Domain::new(camera.width, camera.height, margin);
     let placement = Placement::new(tracer.scene(), &view);
@@ -119,7 +119,10 @@ pub fn bake_and_tell(
     beside.sort_by_key(|(corner, _)| (corner.y, corner.x));
     let beside = beside.into_iter().map(|(_, patches)| Samples::from(patches));
     let samples = Samples::join(parts.into_iter().map(|(samples, _)| samples).chain(beside));
-    Ok((Salf { camera: camera.clone(), margin_px: domain.margin as u32, samples }, outliers))
+    Ok((
+        Salf { camera: camera.clone(), margin_px: domain.margin as u32, carried: options.carried, samples },
+        outliers,
+    ))
 }
 
 fn are_of_one_block(a: &Cell, b: &Cell) -> bool {

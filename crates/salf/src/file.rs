@@ -34,7 +34,7 @@ mod error;
 mod little_endian;
 mod samples;
 
-use crate::Salf;
+use crate::{Carried, Salf};
 use camera::{read_camera, write_camera};
 pub use error::SalfFileError;
 use error::VERSION;
@@ -96,7 +96,11 @@ impl SalfFile {
         if found[..] != expected[..] {
             return Err(SalfFileError::Damaged("the checksum does not match".into()));
         }
-        Ok(Self { source, triangles, salf: Arc::new(Salf { camera, margin_px, samples }) })
+        Ok(Self {
+            source,
+            triangles,
+            salf: Arc::new(Salf { camera, margin_px, carried: Carried::Standard, samples }),
+        })
     }
 }
 
@@ -153,7 +157,12 @@ mod tests {
         };
         let background =
             Sample { surface: None, visibility: Visibility::Open, inverse_depth: 0.0, ..on_surface.clone() };
-        let salf = Salf { camera, margin_px: 32, samples: vec![on_surface, background].into() };
+        let salf = Salf {
+            camera,
+            margin_px: 32,
+            carried: Carried::Standard,
+            samples: vec![on_surface, background].into(),
+        };
         SalfFile { source: "garden.glb".into(), triangles: 7, salf: Arc::new(salf) }
     }
 

@@ -46,10 +46,14 @@ pub fn painted_margin_px(tracer: &Tracer, view: &View, focus: &dyn SurfaceField<
                     Some(hit) => (1.0 / hit.t, focus.at(hit.point)),
                     None => (0.0, focus.at_infinity()),
                 };
-                let radius = view.optics.splat_radius_px(view.optics.kappa(inverse_depth, offset)).abs();
                 let outside = (-pixel).max(pixel - frame).max_element();
-                if radius >= outside {
-                    reach = reach.max(radius * 1.05);
+                // What is carried may be spread wider than what is own; where no paint moves it, it is known to have room.
+                let carried = (offset.gloss > 0.0).then(|| offset.of_carried());
+                for offset in [offset].into_iter().chain(carried) {
+                    let radius = view.optics.splat_radius_px(view.optics.kappa(inverse_depth, offset)).abs();
+                    if radius >= outside {
+                        reach = reach.max(radius * 1.05);
+                    }
                 }
             }
             reach

@@ -16,13 +16,32 @@ pub struct BakeOptions {
     /// this circle of confusion, samples have 8 cells a side. A pixel of a surface whose radiance varies by more
     /// than [`Self::EVEN_PER_PX`] times this is a sample a quadrant. Smaller is more exact and takes more memory.
     pub tolerance_px: f64,
+    /// How finely carried light is told.
+    pub carried: Carried,
     /// Whether samples are packed ([`crate::Samples`]). It is right unless what that loses is to be measured.
     pub packs: bool,
 }
 
+/// How finely carried light is told.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Carried {
+    /// As its picture through the ordinary lens needs it: the more coarsely the farther out of focus.
+    #[default]
+    Standard,
+    /// As finely as any focus may show it.
+    Painted,
+}
+
+impl Carried {
+    /// What a focus needs.
+    pub fn of(focus: &dyn SurfaceField<FocusOffset>) -> Self {
+        if focus.concerns_carried() { Self::Painted } else { Self::Standard }
+    }
+}
+
 impl Default for BakeOptions {
     fn default() -> Self {
-        Self { margin_px: 0.0, tolerance_px: Self::TOLERANCE_PX, packs: true }
+        Self { margin_px: 0.0, tolerance_px: Self::TOLERANCE_PX, carried: Carried::Standard, packs: true }
     }
 }
 
@@ -34,9 +53,10 @@ impl BakeOptions {
     /// each px of tolerance.
     pub const EVEN_PER_PX: f64 = 0.05;
 
-    /// Sampled as far outside the frame as `focus` needs.
+    /// Sampled as far outside the frame, and as finely, as `focus` needs.
     pub fn for_focus(tracer: &Tracer, camera: &Camera, focus: &dyn SurfaceField<FocusOffset>) -> Self {
         let view = View::new(camera, Self::TOLERANCE_PX);
-        Self { margin_px: painted_margin_px(tracer, &view, focus), ..Self::default() }
+        let margin_px = painted_margin_px(tracer, &view, focus);
+        Self { margin_px, carried: Carried::of(focus), ..Self::default() }
     }
 }

@@ -7,6 +7,7 @@
 //! Own and carried light share the weight of their patch, as they share its coverage, so each is divided by its share.
 
 use crate::jitter::jitter;
+use crate::options::Carried;
 use crate::sample::Visibility;
 use crate::view::View;
 use glam::{DVec2, DVec3, Vec3};
@@ -110,7 +111,10 @@ impl Sent {
 pub fn cells_a_side(view: &View, inverse_depth: f64, width: f64) -> usize {
     let circle_px = view.circle_px(inverse_depth);
     let of_lobe = CELLS_A_WIDTH * 2.0 * view.optics.aperture_radius * inverse_depth / width;
-    let wanted = (circle_px / view.tolerance_px).min(of_lobe);
+    let wanted = match view.carried {
+        Carried::Standard => (circle_px / view.tolerance_px).min(of_lobe),
+        Carried::Painted => of_lobe,
+    };
     // Without an aperture there is nothing to tell apart, 0/0.
     if wanted > 1.0 { (wanted.min(MOST_CELLS as f64).ceil() as usize).next_power_of_two() } else { 1 }
 }
@@ -166,6 +170,9 @@ pub fn tile_side(view: &View, inverse_depth: f64) -> i32 {
     /// Its share of the image.
     const SHARE: f64 = 0.25;
     const LARGEST: f64 = 8.0;
+    if view.carried == Carried::Painted {
+        return 1;
+    }
     let circle_px = view.circle_px(inverse_depth);
     let side = (SHARE * circle_px).clamp(1.0, LARGEST);
     1 << (side as u32).ilog2()
@@ -173,6 +180,9 @@ pub fn tile_side(view: &View, inverse_depth: f64) -> i32 {
 
 /// Over how many pixels light is thrown that has the standard focus.
 pub fn blurred_px(view: &View, inverse_depth: f64) -> usize {
+    if view.carried == Carried::Painted {
+        return 1;
+    }
     let circle_px = view.circle_px(inverse_depth);
     (FRAC_PI_4 * circle_px * circle_px).max(1.0) as usize
 }

@@ -1,5 +1,6 @@
 //! The light field.
 
+use crate::options::Carried;
 use crate::samples::Samples;
 use lens::Camera;
 use serde::{Deserialize, Serialize};
@@ -12,6 +13,8 @@ pub struct Salf {
     pub camera: Camera,
     /// How far outside the frame it was sampled, px.
     pub margin_px: u32,
+    /// How finely its carried light is told.
+    pub carried: Carried,
     /// Its samples.
     pub samples: Samples,
 }

@@ -35,16 +35,17 @@ pub struct Sample {
     pub radiance: Vec3,
     /// Its address on the surface (and so in the atlas); `None` for the background.
     pub surface: Option<SurfacePoint>,
-    /// Whether its light is carried: mirrored or let through, so that it keeps the standard focus whatever is painted there.
+    /// Whether its light is carried: mirrored or let through, so that it is focused as [`FocusOffset::of_carried`] says: by the
+    /// ordinary lens, but where the paint says that gloss obeys it.
     pub is_carried: bool,
     /// What of the aperture it sees.
     pub visibility: Visibility,
 }
 
 impl Sample {
-    /// How it is focused by a paint.
-    pub fn focus(&self, paint: &dyn SurfaceField<FocusOffset>) -> FocusOffset {
-        Address { surface: self.surface, is_carried: self.is_carried }.focus(paint)
+    /// Where paint for it is looked up.
+    pub fn address(&self) -> Address {
+        Address { surface: self.surface, is_carried: self.is_carried }
     }
 }
 
@@ -57,14 +58,26 @@ pub struct Address {
     pub is_carried: bool,
 }
 
-impl Address {
-    /// What a paint says there; carried light has none.
-    pub fn focus(&self, paint: &dyn SurfaceField<FocusOffset>) -> FocusOffset {
-        match (self.is_carried, self.surface) {
-            (true, _) => FocusOffset::STANDARD,
-            (false, Some(point)) => paint.at(point),
-            (false, None) => paint.at_infinity(),
+/// A paint as samples are focused by it: carried light is looked up only in one that says something of it.
+#[derive(Clone, Copy)]
+pub struct SampleFocus<'a> {
+    paint: &'a dyn SurfaceField<FocusOffset>,
+    concerns_carried: bool,
+}
+
+impl<'a> SampleFocus<'a> {
+    /// How a paint focuses samples.
+    pub fn of(paint: &'a dyn SurfaceField<FocusOffset>) -> Self {
+        Self { paint, concerns_carried: paint.concerns_carried() }
+    }
+
+    /// How it focuses what is sent from an address.
+    pub fn at(&self, address: Address) -> FocusOffset {
+        if address.is_carried && !self.concerns_carried {
+            return FocusOffset::STANDARD;
         }
+        let painted = address.surface.map_or_else(|| self.paint.at_infinity(), |point| self.paint.at(point));
+        if address.is_carried { painted.of_carried() } else { painted }
     }
 }
 

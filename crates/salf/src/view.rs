@@ -1,5 +1,6 @@
 //! The baked camera, ready for rays: pixels to chief rays, aperture points to the world.
 
+use crate::options::Carried;
 use glam::{DVec2, DVec3};
 use lens::{ApertureSampler, Camera, Optics};
 use scene::Scene;
@@ -19,6 +20,8 @@ pub struct View<'a> {
     pub radius_per_kappa_px: f64,
     /// How large a cell of a partly visible aperture may be on the picture, px.
     pub tolerance_px: f64,
+    /// How finely carried light is told.
+    pub carried: Carried,
 }
 
 impl<'a> View<'a> {
@@ -33,7 +36,13 @@ impl<'a> View<'a> {
             up: camera.world_direction(DVec3::Y),
             radius_per_kappa_px: optics.splat_radius_px(1.0),
             tolerance_px,
+            carried: Carried::Standard,
         }
+    }
+
+    /// The same, with carried light told so finely.
+    pub fn telling(self, carried: Carried) -> Self {
+        Self { carried, ..self }
     }
 
     /// The chief ray through a pixel position; its t is the depth z.

@@ -38,4 +38,9 @@ pub trait SurfaceField<T>: Sync {
     fn bounds(&self, _triangle: u32) -> Option<[T; 2]> {
         None
     }
+    /// Whether any value says something of the light that surfaces carry (mirror, let through), too. Where none does, nobody
+    /// need look for that light; a field that does not know says yes.
+    fn concerns_carried(&self) -> bool {
+        true
+    }
 }

@@ -5,7 +5,7 @@ use crate::lens_in_use::{LARGEST_OFFSET, NodeFocus};
 use crate::nodes::Nodes;
 use lens::FocusOffset;
 use rayon::prelude::*;
-use salf::{Address, Samples};
+use salf::{Address, SampleFocus, Samples};
 use scene::SurfaceField;
 
 /// Focus of all nodes, block by block; a block on which nothing is painted has none.
@@ -20,6 +20,7 @@ pub static STANDARD: Paint = Paint { blocks: Vec::new() };
 impl Paint {
     /// Looks up the focus of every sample.
     pub fn look_up(nodes: &Nodes, samples: &Samples, focus: &dyn SurfaceField<FocusOffset>) -> Self {
+        let focus = SampleFocus::of(focus);
         let blocks = (0..nodes.blocks.len()).into_par_iter().map(|block| {
             let first = nodes.blocks[block].start as usize;
             let of_nodes = nodes.of_block(block);
@@ -60,6 +61,7 @@ impl Paint {
         samples: &Samples,
         focus: &dyn SurfaceField<FocusOffset>,
     ) -> Vec<(usize, Option<Box<[NodeFocus]>>)> {
+        let focus = SampleFocus::of(focus);
         let block_of = |leaf: &u32| nodes.block_of_node[*leaf as usize] as usize;
         let groups: Vec<&[u32]> = leaves.chunk_by(|a, b| block_of(a) == block_of(b)).collect();
         let updated = groups.par_iter().map(|leaves| {
@@ -80,7 +82,7 @@ impl Paint {
         block: usize,
         leaves: &[u32],
         samples: &Samples,
-        focus: &dyn SurfaceField<FocusOffset>,
+        focus: SampleFocus,
     ) -> Option<Box<[NodeFocus]>> {
         let first = nodes.blocks[block].start;
         let mut painted = self.blocks[block]
@@ -103,8 +105,8 @@ impl Paint {
 }
 
 /// What is painted at a surface address, or on the background; an offset that is not valid counts as nothing.
-fn offset(address: Address, focus: &dyn SurfaceField<FocusOffset>) -> NodeFocus {
-    NodeFocus::of(address.focus(focus).or_standard())
+fn offset(address: Address, focus: SampleFocus) -> NodeFocus {
+    NodeFocus::of(focus.at(address).or_standard())
 }
 
 /// Sets the focus of a node from those below it; a sample keeps its own.

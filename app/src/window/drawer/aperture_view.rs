@@ -106,7 +106,9 @@ fn seen(ui: &mut Ui, image: &ApertureImage) {
         line("Depth", "Axial depth in the shot camera.", controls::length(image.depth));
         let circle = controls::circle(image.circle_px);
         line("Lands as", "Its circle of confusion on the full-size picture.", circle);
-        let focus = format!("t {:.4}, anchor {:.2}", image.focus.t, image.focus.anchor);
+        let lens::FocusOffset { t, anchor, gloss } = image.focus;
+        let gloss = if gloss > 0.0 { format!(", gloss {gloss:.2}") } else { String::new() };
+        let focus = format!("t {t:.4}, anchor {anchor:.2}{gloss}");
         line("Painted", "The focus of the point.", focus);
     });
 }

@@ -64,12 +64,13 @@ pub fn brush_panel(
                 })
                 .response
         });
-        let tip = "Which of the two painted numbers the brush touches: the blur t, what it is relative to, both, or only how much the layer counts.";
+        let tip = "What the brush touches: the blur t, what that is relative to, whether gloss obeys it, all three, or only how much the layer counts.";
         row(ui, "Touches", tip, |ui| {
             let channels = [
-                (Channels::Both, "blur and anchor"),
+                (Channels::All, "blur, anchor, gloss"),
                 (Channels::T, "blur only"),
                 (Channels::Anchor, "anchor only"),
+                (Channels::Gloss, "gloss only"),
                 (Channels::Mask, "mask only"),
             ];
             let name =

@@ -3,11 +3,11 @@
 use crate::window::Action;
 use crate::window::controls::{self, format_number, proportional, row, rows};
 use crate::window::tool_bar::{push_brush, signed_circle_px, target_slider};
-use egui::{Button, DragValue, RichText, Ui};
+use egui::{Button, Checkbox, DragValue, RichText, Ui};
 use lens::FocusOffset;
 use session::{Command, CommandId, Document};
 
-/// The brush's focus, its anchor, and what to fill with it.
+/// The brush's focus, its anchor, whether gloss obeys it, and what to fill with it.
 pub fn focus_panel(ui: &mut Ui, document: &Document, actions: &mut Vec<Action>) {
     let mut brush = document.brush.clone();
     let optics = document.camera.optics();
@@ -57,6 +57,16 @@ pub fn focus_panel(ui: &mut Ui, document: &Document, actions: &mut Vec<Action>) 
                 mix
             })
             .inner
+        });
+        row(ui, "Gloss", CommandId::ToggleGloss.info().tooltip, |ui| {
+            let gloss = &mut brush.target.gloss;
+            let mut obeys = *gloss >= 1.0;
+            let in_part = *gloss > 0.0 && !obeys;
+            let response = ui.add(Checkbox::new(&mut obeys, "obeys the paint").indeterminate(in_part));
+            if response.clicked() {
+                *gloss = if obeys { 1.0 } else { 0.0 };
+            }
+            response
         });
     });
     ui.add(egui::Label::new(RichText::new(in_words(brush.target, px)).weak()).wrap());
@@ -133,11 +143,13 @@ fn fill_button(ui: &mut Ui, id: CommandId, label: &str, actions: &mut Vec<Action
 /// What the focus does, in one sentence.
 fn in_words(target: FocusOffset, px: f64) -> String {
     let blur = controls::circle_amount(px);
-    match target.anchor {
-        _ if target == FocusOffset::STANDARD => "Paints the ordinary lens.".into(),
-        1.0 if target.t == 1.0 => "Paints perfectly sharp, wherever the lens focuses.".into(),
-        1.0 => format!("Paints {blur}, wherever the lens focuses."),
-        0.0 => format!("Paints {blur} on top of the lens's own."),
-        anchor => format!("Paints {blur} and {:.0} % of the lens's own.", (1.0 - anchor) * 100.0),
-    }
+    let painted = match target.anchor {
+        _ if target.is_standard() => return "Paints the ordinary lens.".into(),
+        1.0 if target.t == 1.0 => "Paints perfectly sharp, wherever the lens focuses".into(),
+        1.0 => format!("Paints {blur}, wherever the lens focuses"),
+        0.0 => format!("Paints {blur} on top of the lens's own"),
+        anchor => format!("Paints {blur} and {:.0} % of the lens's own", (1.0 - anchor) * 100.0),
+    };
+    let gloss = if target.gloss > 0.0 { "; what is mirrored there, too" } else { "" };
+    format!("{painted}{gloss}.")
 }

@@ -141,9 +141,14 @@ impl Shell {
             }
             CommandId::BrushNearer => self.move_blur(-BLUR_STEP),
             CommandId::BrushFarther => self.move_blur(BLUR_STEP),
-            CommandId::BrushSharp => self.edit_brush(|brush, _| brush.target = FocusOffset::SHARP),
+            CommandId::BrushSharp => self.edit_brush(|brush, _| {
+                brush.target = FocusOffset::SHARP.with_gloss(brush.target.gloss);
+            }),
             CommandId::ToggleAnchor => self.edit_brush(|brush, _| {
                 brush.target.anchor = if brush.target.anchor < 0.5 { 1.0 } else { 0.0 };
+            }),
+            CommandId::ToggleGloss => self.edit_brush(|brush, _| {
+                brush.target.gloss = if brush.target.gloss < 1.0 { 1.0 } else { 0.0 };
             }),
             CommandId::AddLayer => self.apply(Command::Layer(LayerEdit::AddPaint)),
             CommandId::AddDepthCurve => self.apply(Command::Layer(LayerEdit::AddCurve)),

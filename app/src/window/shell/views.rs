@@ -53,7 +53,15 @@ impl Shell {
         let object = scene.nodes[node as usize].name.clone();
         (depth > 0.0).then(|| {
             let circle_px = circle_of(focus);
-            Hover { object, depth, circle_px, becomes_px, t: focus.t, anchor: focus.anchor }
+            Hover {
+                object,
+                depth,
+                circle_px,
+                becomes_px,
+                t: focus.t,
+                anchor: focus.anchor,
+                gloss: focus.gloss,
+            }
         })
     }
 

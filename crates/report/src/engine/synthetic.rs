@@ -65,7 +65,12 @@ fn salf(camera: &Camera, margin_px: f64, of: impl Fn(Cell, &mut Vec<Sample>)) ->
     let domain = Domain::new(camera.width, camera.height, margin_px);
     let mut samples = Vec::new();
     domain.block_rows().into_iter().flatten().for_each(|cell| of(cell, &mut samples));
-    Arc::new(Salf { camera: camera.clone(), margin_px: domain.margin as u32, samples: samples.into() })
+    Arc::new(Salf {
+        camera: camera.clone(),
+        margin_px: domain.margin as u32,
+        carried: salf::Carried::Standard,
+        samples: samples.into(),
+    })
 }
 
 /// A plane whose circle of confusion is `diameter` px wide.

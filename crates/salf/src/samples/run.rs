@@ -35,7 +35,7 @@ pub struct Run<'a> {
 
 impl Spot {
     pub(super) fn of(sample: &Sample) -> Self {
-        let address = Address { surface: sample.surface, is_carried: sample.is_carried };
+        let address = sample.address();
         Self { center: sample.center, inverse_depth: sample.inverse_depth, address }
     }
 }

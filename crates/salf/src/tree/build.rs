@@ -389,7 +389,12 @@ mod tests {
                 visibility: Visibility::Open,
             }
         };
-        Salf { samples: (0..40 * 24).map(sample).collect(), camera, margin_px: 0 }
+        Salf {
+            samples: (0..40 * 24).map(sample).collect(),
+            camera,
+            margin_px: 0,
+            carried: crate::Carried::Standard,
+        }
     }
 
     fn blocks(salf: &Salf) -> Vec<Block> {

@@ -50,7 +50,12 @@ mod tests {
                 visibility: Visibility::Open,
             };
             let samples = lights.iter().map(sample).collect();
-            stops_for(&Salf { camera: Camera::default(), margin_px: 0, samples })
+            stops_for(&Salf {
+                camera: Camera::default(),
+                margin_px: 0,
+                carried: salf::Carried::Standard,
+                samples,
+            })
         };
         assert_eq!(of(&[]), None);
         assert_eq!(of(&[0.5, 0.7, 0.2, 0.9, 0.4]), None);

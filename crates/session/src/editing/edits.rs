@@ -63,7 +63,7 @@ impl Document {
             Some(FillTarget::Background) => "Background focus",
             Some(FillTarget::Everything) | None => "Fill everything",
         };
-        let channels = paintable(self.layers.active(), Channels::Both)?;
+        let channels = paintable(self.layers.active(), Channels::All)?;
         let (canvas, selection) = (self.stage.canvas.clone(), self.selection.clone());
         let layer = self.layers.active_mut();
         let before = layer.map.clone();

@@ -7,7 +7,7 @@ use focus::Focus;
 use glam::DVec2;
 use lens::Camera;
 use rayon::prelude::*;
-use salf::{LARGEST_MARGIN_HEIGHTS, Salf, Spot};
+use salf::{LARGEST_MARGIN_HEIGHTS, Salf, SampleFocus, Spot};
 
 /// Which samples of a light field reach the frame with a circle of confusion that is wider than the baked margin.
 ///
@@ -84,7 +84,7 @@ fn samples_of(word: usize, bits: u64) -> impl Iterator<Item = u32> {
 
 /// How a sample is looked at.
 struct Look<'a> {
-    focus: &'a Focus,
+    focus: SampleFocus<'a>,
     optics: lens::Optics,
     frame: DVec2,
     margin_px: f64,
@@ -96,7 +96,7 @@ impl<'a> Look<'a> {
     fn new(salf: &Salf, camera: &Camera, focus: &'a Focus) -> Self {
         let frame = DVec2::new(f64::from(camera.width), f64::from(camera.height));
         Self {
-            focus,
+            focus: SampleFocus::of(focus),
             optics: camera.optics(),
             frame,
             margin_px: f64::from(salf.margin_px),
@@ -106,7 +106,7 @@ impl<'a> Look<'a> {
 
     /// The radius of its circle of confusion, px.
     fn radius_px(&self, spot: &Spot) -> f64 {
-        let offset = spot.address.focus(self.focus);
+        let offset = self.focus.at(spot.address);
         let kappa = self.optics.kappa(f64::from(spot.inverse_depth), offset.or_standard());
         self.optics.splat_radius_px(kappa).abs()
     }

@@ -13,7 +13,8 @@ use crate::error::SessionError;
 use focus::Focus;
 use lens::{Camera, Picture};
 use progress::{Progress, Stage as Share};
-use salf::{BakeOptions, Salf};
+use salf::{BakeOptions, Carried, Salf};
+use scene::SurfaceField;
 use splat::{Gpu, SplatError, Splatter, Tolerance};
 use std::sync::Arc;
 use std::time::Instant;
@@ -73,6 +74,8 @@ pub(crate) struct LightField {
     splatter: Splatter,
     index: Arc<SampleIndex>,
     modelled: Modelled,
+    /// Whether carried light may be where paint has moved it.
+    has_moved_carried: bool,
     /// The lens of the sum; none while there is no valid sum.
     summed: Option<Camera>,
     /// What the sum has not seen.
@@ -106,7 +109,7 @@ impl LightField {
     ) -> Result<Self, SessionError> {
         let needed = BakeOptions::for_focus(&stage.tracer, camera, focus).margin_px.max(how.least_margin_px);
         let margin_px = needed + MARGIN_HEADROOM * camera.height as f64;
-        let options = BakeOptions { margin_px, ..BakeOptions::default() };
+        let options = BakeOptions { margin_px, carried: Carried::of(focus), ..BakeOptions::default() };
         let radiance = light(&stage.tracer, camera, how.light, &Share::new(progress, 0.0, LIGHT_SHARE))?;
         let baking = Share::new(progress, LIGHT_SHARE, 1.0);
         let salf = salf::bake(&stage.tracer, &*radiance, camera, &options, &baking)?;
@@ -115,7 +118,7 @@ impl LightField {
 
     /// A light field that was baked before.
     pub fn of(stage: &Stage, salf: Arc<Salf>, tolerance: Tolerance, gpu: Option<Gpu>) -> Self {
-        let index = Arc::new(SampleIndex::new(&salf, &stage.atlas));
+        let index = Arc::new(SampleIndex::new(salf.clone(), stage.atlas.clone()));
         let modelled = Modelled::with_texels(&salf, &stage.tracer, Some(&stage.texels.texels));
         let mut splatter = Splatter::new(salf);
         splatter.set_tolerance(tolerance);
@@ -132,6 +135,7 @@ impl LightField {
             splatter,
             index,
             modelled,
+            has_moved_carried: false,
             summed: None,
             unseen: Changes::default(),
             reach: None,
@@ -174,8 +178,8 @@ impl LightField {
     }
 
     /// Whether another bake would serve better: paint or lens has come to spread light from further outside the
-    /// frame, or the aperture has become much smaller than the one whose cells were looked through. The least margin, px,
-    /// of that bake.
+    /// frame, the aperture has become much smaller than the one whose cells were looked through, or paint has come to move
+    /// carried light, which was told only as finely as the ordinary lens shows it. The least margin, px, of that bake.
     ///
     /// Quick after an update; after a whole sum every sample is looked at, unless [`Self::survey`] has done it.
     pub fn is_outgrown(&mut self, camera: &Camera, focus: &Focus) -> Option<f64> {
@@ -184,7 +188,8 @@ impl LightField {
         let exceeded = self.reach.as_ref().filter(|reach| reach.is_exceeded());
         let is_stopped_down = camera.aperture_radius < SMALLER_APERTURE * salf.camera.aperture_radius;
         let needed_px = exceeded.map(|reach| reach.needed_px(salf, camera, focus));
-        needed_px.or(is_stopped_down.then_some(0.0))
+        let is_coarse = salf.carried < Carried::of(focus);
+        needed_px.or((is_stopped_down || is_coarse).then_some(0.0))
     }
 
     /// Looks how far samples reach, those of which that is not known. It must be summed for this lens and focus.
@@ -201,13 +206,16 @@ impl LightField {
         self.unseen.join(changes);
     }
 
-    /// What it takes to bring the sum to a lens and all changes.
-    pub fn plan(&self, camera: &Camera) -> Plan {
+    /// What it takes to bring the sum to a lens, a focus and all changes.
+    pub fn plan(&self, camera: &Camera, focus: &Focus) -> Plan {
         let texels = match &self.unseen {
             Changes::Texels(texels) if self.summed.as_ref() == Some(camera) => texels,
             _ => return Plan::Whole,
         };
-        let samples = self.index.samples_reading(texels);
+        let mut samples = self.index.samples_reading(texels);
+        if self.has_moved_carried || focus.concerns_carried() {
+            samples.extend(self.index.carried_reading(texels));
+        }
         let few = samples.len() as f64 <= LARGEST_UPDATE * self.splatter.salf().samples.len() as f64;
         if few { Plan::Move(samples) } else { Plan::Whole }
     }
@@ -229,11 +237,11 @@ impl LightField {
         focus: &Focus,
         progress: &dyn Progress,
     ) -> Result<Brought, SessionError> {
-        let plan = self.plan(camera);
+        let plan = self.plan(camera, focus);
         self.carry_out(plan, camera, focus, progress)
     }
 
-    /// The same, as it was just planned for this lens.
+    /// The same, as it was just planned for this lens and focus.
     pub fn carry_out(
         &mut self,
         plan: Plan,
@@ -254,6 +262,7 @@ impl LightField {
             }
             Plan::Whole => {
                 self.reach = None;
+                self.has_moved_carried = false;
                 let start = Instant::now();
                 if was_summed && self.unseen.is_none() {
                     self.splatter.refocus(camera, progress)?;
@@ -265,6 +274,7 @@ impl LightField {
             }
         };
         self.unseen = Changes::default();
+        self.has_moved_carried |= focus.concerns_carried();
         self.summed = Some(camera.clone());
         Ok(brought)
     }
@@ -324,7 +334,10 @@ mod tests {
         };
         let all = (0..height).flat_map(|y| (0..width).map(move |x| [x, y]));
         let texels: Vec<_> = all.filter(inside).collect();
-        texels.iter().for_each(|&[x, y]| map.set(x, y, [value.t as f32, value.anchor as f32]));
+        for &[x, y] in &texels {
+            map.set(x, y, [value.t as f32, value.anchor as f32]);
+            map.set_gloss(x, y, value.gloss as f32);
+        }
         (Focus::painted(stage.scene.clone(), stage.atlas.clone(), Arc::new(map)), texels)
     }
 
@@ -384,6 +397,42 @@ mod tests {
         let stopped = Camera { aperture_radius: camera.aperture_radius * 0.5, ..camera.clone() };
         field.bring_up(&stopped, &focus, &Unwatched).unwrap();
         assert_eq!(field.is_outgrown(&stopped, &focus), Some(0.0));
+    }
+
+    #[test]
+    fn a_stroke_moves_carried_light_where_gloss_obeys_it() {
+        let document = quads();
+        let stage = &document.stage;
+        let camera = Camera { width: 90, height: 60, ..document.camera.clone() };
+        let (blank, _) = painted(&document, FocusOffset::STANDARD, |_| false);
+        let (tolerance, gpu) = (Tolerance::VIEWING, None);
+        let how = FieldOptions { least_margin_px: 0.0, tolerance, gpu, light: LightQuality::Fine };
+        let own = LightField::bake(stage, &camera, &blank, how, &Unwatched).unwrap();
+        let samples = own.baked().salf.samples.changed(|sample| sample.is_carried = true);
+        let salf = Arc::new(Salf { samples, ..Salf::clone(&own.baked().salf) });
+        let summed = |focus: &Focus| {
+            let mut field = LightField::of(stage, salf.clone(), tolerance, None);
+            field.bring_up(&camera, focus, &Unwatched).unwrap();
+            field
+        };
+        let mut field = summed(&blank);
+        let was = field.brought().unwrap().clone();
+        let mut dab = |gloss: f64| {
+            let value = FocusOffset::new(1.2, 1.0).with_gloss(gloss);
+            let (focus, texels) = painted(&document, value, |at| at.z < -3.5 && at.x.abs() < 0.3);
+            field.note(&Changes::Texels(texels));
+            let brought = field.bring_up(&camera, &focus, &Unwatched).unwrap();
+            let picture = field.brought().unwrap().clone();
+            assert!(picture == *summed(&focus).brought().unwrap(), "gloss {gloss}: as a whole sum");
+            (brought, picture != was, field.is_outgrown(&camera, &focus).is_some())
+        };
+        assert_eq!(dab(0.0), (Brought::Nothing, false, false), "it keeps the lens's focus");
+        let (brought, is_moved, is_outgrown) = dab(0.5);
+        assert!(matches!(brought, Brought::Update(_)) && is_moved);
+        assert!(is_outgrown, "it was told only as finely as the lens shows it");
+        // Undone, the map knows nothing of gloss any more.
+        let (brought, is_moved, is_outgrown) = dab(0.0);
+        assert!(matches!(brought, Brought::Update(_)) && !is_moved && !is_outgrown);
     }
 
     #[test]

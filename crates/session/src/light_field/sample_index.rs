@@ -4,12 +4,42 @@ use atlas::Atlas;
 use glam::DVec2;
 use salf::{Address, Salf};
 use std::collections::HashMap;
+use std::sync::{Arc, OnceLock};
 
 /// Side of a tile, texels: a tile's texels are the bits of a u64.
 const TILE: u32 = 8;
 
-/// The samples of every tile of the atlas, with where they lie.
+/// The samples of a light field by where in the atlas they lie. Those of carried light, which most paint does not move, are
+/// sorted when they are asked for first.
 pub(crate) struct SampleIndex {
+    salf: Arc<Salf>,
+    atlas: Arc<Atlas>,
+    own: Tiles,
+    carried: OnceLock<Tiles>,
+}
+
+impl SampleIndex {
+    /// Of `salf` in `atlas`.
+    pub fn new(salf: Arc<Salf>, atlas: Arc<Atlas>) -> Self {
+        let own = Tiles::of(&salf, &atlas, |address| !address.is_carried);
+        Self { salf, atlas, own, carried: OnceLock::new() }
+    }
+
+    /// The samples of own light whose bilinear lookup may read one of `texels` (column and row), each once, in no order.
+    pub fn samples_reading(&self, texels: &[[u32; 2]]) -> Vec<u32> {
+        self.own.samples_reading(texels)
+    }
+
+    /// The same of carried light.
+    pub fn carried_reading(&self, texels: &[[u32; 2]]) -> Vec<u32> {
+        let carried =
+            self.carried.get_or_init(|| Tiles::of(&self.salf, &self.atlas, |address| address.is_carried));
+        carried.samples_reading(texels)
+    }
+}
+
+/// The samples of every tile of the atlas, with where they lie.
+struct Tiles {
     tiles_across: u32,
     /// Where each tile's entries start; one more than there are tiles.
     starts: Vec<u32>,
@@ -18,14 +48,15 @@ pub(crate) struct SampleIndex {
     size: [u32; 2],
 }
 
-impl SampleIndex {
-    /// Sorts the samples of `salf` into the tiles of `atlas`.
-    pub fn new(salf: &Salf, atlas: &Atlas) -> Self {
+impl Tiles {
+    /// Sorts the samples of `salf` that `wanted` chooses into the tiles of `atlas`.
+    fn of(salf: &Salf, atlas: &Atlas, wanted: impl Fn(&Address) -> bool) -> Self {
         let mut addresses = salf.samples.addresses();
         let count = salf.samples.len() as u32;
-        // Paint does not move carried light.
-        let painted = |address: Address| address.surface.filter(|_| !address.is_carried);
-        let positions = (0..count).map(|index| Some(atlas.position_of(painted(addresses.of(index))?)));
+        let positions = (0..count).map(|index| {
+            let address = addresses.of(index);
+            Some(atlas.position_of(address.surface.filter(|_| wanted(&address))?))
+        });
         Self::of_positions([atlas.width, atlas.height], positions)
     }
 
@@ -55,10 +86,8 @@ impl SampleIndex {
         Self { tiles_across: across, starts, entries, size }
     }
 
-    /// The samples whose bilinear lookup may read one of `texels` (column and row), each once, in no order.
-    ///
     /// A lookup at p reads the texels whose centres lie within 1 of p in x and y: p's own and its neighbours.
-    pub fn samples_reading(&self, texels: &[[u32; 2]]) -> Vec<u32> {
+    fn samples_reading(&self, texels: &[[u32; 2]]) -> Vec<u32> {
         // A dab's texels come tile by tile.
         let mut own: HashMap<u32, u64> = HashMap::new();
         let mut last = (u32::MAX, 0);
@@ -83,7 +112,7 @@ impl SampleIndex {
     }
 }
 
-impl SampleIndex {
+impl Tiles {
     /// The same texels, and all that touch one of them.
     fn with_neighbours(&self, own: &HashMap<u32, u64>) -> HashMap<u32, u64> {
         let [across, down] = self.size.map(|side| side.div_ceil(TILE).max(1));
@@ -128,7 +157,7 @@ mod tests {
     #[test]
     fn a_texel_moves_exactly_the_samples_that_read_it() {
         let position = |k: u32| DVec2::new((k % 40) as f64 * 0.5 + 0.1, (k / 40) as f64 * 0.5 + 0.3);
-        let index = SampleIndex::of_positions([20, 20], (0..1600).map(|k| Some(position(k))));
+        let index = Tiles::of_positions([20, 20], (0..1600).map(|k| Some(position(k))));
         let texel = [8, 7];
         let expected: Vec<u32> = (0..1600)
             .filter(|&k| {
@@ -145,7 +174,7 @@ mod tests {
     #[test]
     fn positions_on_the_border_and_the_background_do_no_harm() {
         let positions = [Some(DVec2::new(20.0, 20.0)), None, Some(DVec2::new(-0.0, 0.0))];
-        let index = SampleIndex::of_positions([20, 20], positions.into_iter());
+        let index = Tiles::of_positions([20, 20], positions.into_iter());
         assert_eq!(index.samples_reading(&[[19, 19]]), [0]);
         assert_eq!(index.samples_reading(&[[0, 0]]), [2]);
     }

@@ -7,7 +7,7 @@
 use super::salf_file::write_salf;
 use crate::document::Stage;
 use lens::{Aperture, Camera};
-use salf::{Salf, SalfFile};
+use salf::{Carried, Salf, SalfFile};
 use sha2::{Digest, Sha256};
 use std::fs::File;
 use std::io::BufReader;
@@ -55,9 +55,15 @@ impl LightFieldStore {
         self.file(stage, camera).is_some_and(|file| file.exists())
     }
 
-    /// The light field of the stage for `camera`, if one is kept that reaches at least `least_margin_px` beyond the frame. One
-    /// that cannot be read is as good as none.
-    pub(crate) fn find(&self, stage: &Stage, camera: &Camera, least_margin_px: f64) -> Option<Salf> {
+    /// The light field of the stage for `camera`, if one is kept that reaches at least `least_margin_px` beyond the frame and tells
+    /// carried light as finely as is wanted. One that cannot be read is as good as none.
+    pub(crate) fn find(
+        &self,
+        stage: &Stage,
+        camera: &Camera,
+        least_margin_px: f64,
+        carried: Carried,
+    ) -> Option<Salf> {
         let path = self.file(stage, camera)?;
         let file = File::open(&path).ok()?;
         // It was looked for: it goes last. Where that cannot be noted, it goes by when it was written.
@@ -66,7 +72,8 @@ impl LightFieldStore {
         let salf = Arc::into_inner(found.salf)?;
         let fits = common(&salf.camera) == common(camera)
             && found.triangles as usize == stage.scene.triangles.len()
-            && f64::from(salf.margin_px) >= least_margin_px;
+            && f64::from(salf.margin_px) >= least_margin_px
+            && salf.carried >= carried;
         fits.then_some(salf)
     }
 

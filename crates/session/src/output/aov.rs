@@ -1,7 +1,7 @@
 //! Pictures beside the picture: what compositing and measuring ask for.
 
 use baselines::FirstHits;
-use lens::{Camera, Picture};
+use lens::{Camera, FocusOffset, Picture};
 use project::Layer;
 use trace::truth::Estimate;
 
@@ -15,7 +15,7 @@ pub enum Aov {
     CircleOfConfusion,
     /// Axial depth in scene units; infinite where no surface is.
     Depth,
-    /// The focus offset t, and with it the anchor a.
+    /// The focus offset t, and with it the anchor a; and gloss, where it obeys them.
     Focus,
     /// Of a capture: 1 where the surface was photographed, 0 where its light is filled in from around, and beside it. Other scenes leave
     /// it out.
@@ -66,10 +66,17 @@ impl Aov {
             }
             (Self::Seen, ..) => known.seen.map(|seen| layer("seen", seen.to_vec())).into_iter().collect(),
             (Self::Depth, Some(hits), _) => vec![layer("depth", hits.depth.clone())],
-            (Self::Focus, Some(hits), _) => vec![
-                layer("t", hits.focus.iter().map(|focus| focus.t as f32).collect()),
-                layer("anchor", hits.focus.iter().map(|focus| focus.anchor as f32).collect()),
-            ],
+            (Self::Focus, Some(hits), _) => {
+                let of = |name: &str, number: fn(&FocusOffset) -> f64| {
+                    layer(name, hits.focus.iter().map(|focus| number(focus) as f32).collect())
+                };
+                let has_gloss = hits.focus.iter().any(|focus| focus.gloss != 0.0);
+                let gloss = has_gloss.then(|| of("gloss", |focus| focus.gloss));
+                [of("t", |focus| focus.t), of("anchor", |focus| focus.anchor)]
+                    .into_iter()
+                    .chain(gloss)
+                    .collect()
+            }
             (Self::StandardError, _, Some(estimate)) => {
                 let rgb = |group: &str, errors: &[[f32; 3]]| {
                     ["R", "G", "B"]

@@ -9,6 +9,7 @@ use crate::light_field::{Changes, FieldOptions, LightField, LightFieldStore, Lig
 use focus::Focus;
 use lens::Camera;
 use progress::Stage as Share;
+use salf::Carried;
 use splat::Tolerance;
 use std::sync::Arc;
 use std::thread::JoinHandle;
@@ -153,7 +154,8 @@ fn make(order: Order, shared: &Shared, store: Option<&LightFieldStore>) -> Resul
         Begin::Sum(field) => *field,
         Begin::Bake => bake(0.0)?,
         Begin::Find { least_margin_px } => {
-            let stored = store.and_then(|store| store.find(&stage, &camera, least_margin_px));
+            let carried = Carried::of(&focus);
+            let stored = store.and_then(|store| store.find(&stage, &camera, least_margin_px, carried));
             match stored {
                 Some(salf) => LightField::of(&stage, Arc::new(salf), tolerance, shared.gpu()),
                 None => bake(least_margin_px)?,

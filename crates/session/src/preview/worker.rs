@@ -147,7 +147,8 @@ impl Worker {
         if self.fine.take_if(|fine| !fine.serves(&camera)).is_some() {
             self.refinement.forget();
         }
-        let plan = self.fine.as_ref().map(|fine| (fine.plan(&camera), fine.whole_seconds() < QUICK_SECONDS));
+        let plan =
+            self.fine.as_ref().map(|fine| (fine.plan(&camera, &focus), fine.whole_seconds() < QUICK_SECONDS));
         if let Some((plan, is_quick)) = plan
             && (is_quick || matches!(plan, Plan::Move(_)))
         {

@@ -12,7 +12,7 @@ use crate::preview::{Exporting, Quality, Shared};
 use focus::Focus;
 use lens::{Camera, Picture};
 use project::{Layer, PictureOptions, write_picture, write_rgb};
-use salf::{BakeOptions, Salf};
+use salf::{BakeOptions, Carried, Salf};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
@@ -45,9 +45,9 @@ impl AtHand {
         let live = self.live.clone().filter(|salf| serves(&salf.camera, camera));
         let found = live.or_else(|| {
             let store = self.store.as_ref()?;
-            store.find(&self.stage, camera, 0.0).map(Arc::new)
+            store.find(&self.stage, camera, 0.0, Carried::of(focus)).map(Arc::new)
         });
-        found.filter(|salf| is_wide_enough(salf, camera, focus))
+        found.filter(|salf| tells_all(salf, camera, focus))
     }
 
     /// Renders a picture, exactly unless `options` say otherwise. What is baked for it is kept.
@@ -64,7 +64,7 @@ impl AtHand {
             None => self
                 .preview
                 .wait_for_field(&self.stage, camera, &*steps.begin("baking the live picture"))?
-                .filter(|salf| is_wide_enough(salf, camera, focus)),
+                .filter(|salf| tells_all(salf, camera, focus)),
             found => found,
         };
         let salf = match found {
@@ -82,9 +82,9 @@ impl AtHand {
     }
 }
 
-/// Whether the margin of a light field holds all that comes into the frame.
-fn is_wide_enough(salf: &Salf, camera: &Camera, focus: &Focus) -> bool {
-    !Reach::of_all(salf, camera, focus).is_exceeded()
+/// Whether a light field tells carried light finely enough, and its margin holds all that comes into the frame.
+fn tells_all(salf: &Salf, camera: &Camera, focus: &Focus) -> bool {
+    salf.carried >= Carried::of(focus) && !Reach::of_all(salf, camera, focus).is_exceeded()
 }
 
 impl Session {

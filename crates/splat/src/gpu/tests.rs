@@ -193,19 +193,20 @@ impl Hard {
                 tilt: Vec2::new(self.tilt, (mixed % 5) as f32 * -0.1 * self.tilt),
                 radiance: bright * Vec3::new(1e-3, 0.5, (mixed % 9) as f32),
                 surface: Some(SurfacePoint { triangle: index, barycentric: DVec2::ZERO }),
-                is_carried: false,
+                is_carried: mixed % 3 == 1,
                 visibility,
             }
         };
         let is_within = |index: &u32| index % WIDTH * self.cell < WIDTH && index / WIDTH * self.cell < HEIGHT;
         let samples = (0..WIDTH * HEIGHT).filter(is_within).map(sample).collect();
-        Arc::new(Salf { camera: self.camera(), margin_px: 0, samples })
+        Arc::new(Salf { camera: self.camera(), margin_px: 0, carried: salf::Carried::Standard, samples })
     }
 
     fn focus(&self) -> ByTriangle {
         let offset = |k: u32| match (self.is_painted, k % WIDTH) {
-            (true, 20..40) => FocusOffset::new(0.97, 0.5),
-            (true, 55..60) => FocusOffset::new(1.04, 1.0),
+            (true, 20..40) => FocusOffset::new(0.97, 0.5).with_gloss(0.4),
+            (true, 55..58) => FocusOffset::new(1.04, 1.0),
+            (true, 58..62) => FocusOffset::new(1.04, 1.0).with_gloss(1.0),
             _ => FocusOffset::STANDARD,
         };
         ByTriangle((0..WIDTH * HEIGHT).map(offset).collect())
@@ -304,7 +305,8 @@ fn strokes_on_the_card_equal_renders_from_scratch() {
     for round in 0..6u32 {
         let changed: Vec<u32> = (0..200).map(|k| (round * 977 + k * 13) % (WIDTH * HEIGHT)).collect();
         for &index in &changed {
-            focus.0[index as usize] = FocusOffset::new(0.95 + 0.02 * round as f64, 0.5);
+            focus.0[index as usize] =
+                FocusOffset::new(0.95 + 0.02 * round as f64, 0.5).with_gloss((round % 3) as f64 / 2.0);
         }
         let window = here.update(&focus, &changed).unwrap();
         assert_eq!(there.update(&focus, &changed).unwrap(), window);
@@ -352,7 +354,8 @@ fn what_stays_on_the_card_is_fetched() {
     for round in 0..3u32 {
         let changed: Vec<u32> = (0..100).map(|k| (round * 977 + k * 13) % (WIDTH * HEIGHT)).collect();
         for &index in &changed {
-            focus.0[index as usize] = FocusOffset::new(0.95 + 0.02 * round as f64, 0.5);
+            focus.0[index as usize] =
+                FocusOffset::new(0.95 + 0.02 * round as f64, 0.5).with_gloss((round % 3) as f64 / 2.0);
         }
         here.update(&focus, &changed).unwrap();
         there.update(&focus, &changed).unwrap();

@@ -23,7 +23,7 @@ fn camera() -> Camera {
     Camera { width: 96, height: 80, focus_distance: 2.0, aperture_radius: 0.05, ..Camera::default() }
 }
 
-/// A pixel grid of samples at mixed depths, every third partly occluded, one very bright.
+/// A pixel grid of samples at mixed depths, every third partly occluded, every fifth of carried light, one very bright.
 fn light_field() -> Arc<Salf> {
     let camera = camera();
     let sample = |index: u32| {
@@ -41,12 +41,12 @@ fn light_field() -> Arc<Salf> {
             tilt: Vec2::new((mixed % 7) as f32 * 0.03, (mixed % 5) as f32 * -0.04),
             radiance: if index == 1234 { Vec3::splat(1e6) } else { Vec3::new(1e-3, 0.5, (mixed % 9) as f32) },
             surface: Some(SurfacePoint { triangle: index, barycentric: DVec2::ZERO }),
-            is_carried: false,
+            is_carried: index % 5 == 1,
             visibility,
         }
     };
     let samples = (0..camera.width * camera.height).map(sample).collect();
-    Arc::new(Salf { camera, margin_px: 0, samples })
+    Arc::new(Salf { camera, margin_px: 0, carried: salf::Carried::Standard, samples })
 }
 
 fn standard() -> ByTriangle {
@@ -67,9 +67,9 @@ fn an_update_equals_a_render_bit_for_bit() {
         let changed: Vec<u32> = (0..300).map(|k| (round * 977 + k * 13) % (96 * 80)).collect();
         for &index in &changed {
             let t = 0.9 + (index % 21) as f64 * 0.01 * round as f64;
-            let anchor = (round % 3) as f64 / 2.0;
-            focus.0[index as usize] =
-                if round % 7 == 6 { FocusOffset::STANDARD } else { FocusOffset::new(t, anchor) };
+            let (anchor, gloss) = ((round % 3) as f64 / 2.0, (round % 4) as f64 / 3.0);
+            let painted = FocusOffset::new(t, anchor).with_gloss(gloss);
+            focus.0[index as usize] = if round % 7 == 6 { FocusOffset::STANDARD } else { painted };
         }
         splatter.update(&focus, &changed).unwrap();
     }
@@ -77,6 +77,27 @@ fn an_update_equals_a_render_bit_for_bit() {
     assert!(splatter.sums == fresh.sums, "the accumulators");
     assert_eq!(splatter.picture(), fresh.picture());
     assert_ne!(splatter.picture(), rendered(&standard()).picture(), "the paint shows");
+}
+
+#[test]
+fn carried_light_obeys_the_paint_as_far_as_gloss_does() {
+    let is_carried = |carried: bool| {
+        let salf = Salf::clone(&light_field());
+        Arc::new(Salf { samples: salf.samples.changed(|sample| sample.is_carried = carried), ..salf })
+    };
+    let picture = |salf: &Arc<Salf>, focus: FocusOffset| {
+        let mut splatter = Splatter::new(salf.clone());
+        splatter.render(&camera(), &ByTriangle(vec![focus; 96 * 80]), &Unwatched).unwrap();
+        splatter.picture().clone()
+    };
+    let (own, carried) = (is_carried(false), is_carried(true));
+    let painted = FocusOffset::new(0.93, 0.6);
+    assert_eq!(picture(&carried, painted), picture(&own, FocusOffset::STANDARD));
+    assert_eq!(picture(&carried, painted.with_gloss(1.0)), picture(&own, painted));
+    let half = painted.with_gloss(0.5);
+    assert_eq!(picture(&carried, half), picture(&own, FocusOffset::new(0.965, 0.3)));
+    assert_eq!(picture(&own, half), picture(&own, painted), "what is own does not look at it");
+    assert_ne!(picture(&own, painted), picture(&own, FocusOffset::STANDARD));
 }
 
 #[test]
@@ -191,7 +212,8 @@ fn ten_thousand_dabs_and_undos_leave_no_trace() {
     for _ in 0..10_000 {
         let undone = if next(3) == 0 { done.pop() } else { None };
         let changes = undone.unwrap_or_else(|| {
-            let offset = FocusOffset::new(0.9 + f64::from(next(21)) * 0.01, f64::from(next(3)) / 2.0);
+            let offset = FocusOffset::new(0.9 + f64::from(next(21)) * 0.01, f64::from(next(3)) / 2.0)
+                .with_gloss(f64::from(next(3)) / 2.0);
             let corner = next(96 * 80);
             let square = (0..25).map(|k| (corner + k % 5 + k / 5 * 96) % (96 * 80));
             let dab: Vec<_> = square.map(|index| (index, offset)).collect();
@@ -283,8 +305,12 @@ fn ripple_of_wall(slope: f64, tilt: f64, across: bool) -> f64 {
             });
         }
     }
-    let mut splatter =
-        Splatter::new(Arc::new(Salf { camera: camera.clone(), margin_px: 48, samples: samples.into() }));
+    let mut splatter = Splatter::new(Arc::new(Salf {
+        camera: camera.clone(),
+        margin_px: 48,
+        carried: salf::Carried::Standard,
+        samples: samples.into(),
+    }));
     splatter.render(&camera, &standard(), &Unwatched).unwrap();
     let coverage = &splatter.picture().coverage;
     let inside = |k: &usize| [k % 120, k / 120].iter().all(|c| (20..100).contains(c));
@@ -315,8 +341,12 @@ fn what_sees_one_cell_loses_no_light() {
     };
     let samples: Vec<_> = (0..36 * 30).map(sample).collect();
     let sent = samples.len() as f64 / 256.0;
-    let mut splatter =
-        Splatter::new(Arc::new(Salf { camera: camera.clone(), margin_px: 0, samples: samples.into() }));
+    let mut splatter = Splatter::new(Arc::new(Salf {
+        camera: camera.clone(),
+        margin_px: 0,
+        carried: salf::Carried::Standard,
+        samples: samples.into(),
+    }));
     for tolerance in [Tolerance::NONE, Tolerance::VIEWING] {
         splatter.set_tolerance(tolerance);
         for radius_px in [0.3, 1.0, 1.7, 2.5, 4.0, 7.0, 15.0] {
@@ -382,7 +412,12 @@ fn a_bright_sample_of_a_large_cell_sends_all_its_light() {
         visibility: Visibility::Open,
     };
     for radiance in [3.0, 12.0, 300.0] {
-        let salf = Salf { camera: camera(), margin_px: 0, samples: vec![cell(radiance)].into() };
+        let salf = Salf {
+            camera: camera(),
+            margin_px: 0,
+            carried: salf::Carried::Standard,
+            samples: vec![cell(radiance)].into(),
+        };
         let mut splatter = Splatter::new(Arc::new(salf));
         splatter.render(&camera(), &standard(), &Unwatched).unwrap();
         let sum: f32 = splatter.picture().radiance.iter().map(|pixel| pixel[0]).sum();
@@ -407,7 +442,12 @@ fn pictures_of_any_width_are_summed() {
             visibility: Visibility::Open,
         };
         let samples = (0..width * 20).map(sample).collect();
-        let mut splatter = Splatter::new(Arc::new(Salf { camera: camera.clone(), margin_px: 0, samples }));
+        let mut splatter = Splatter::new(Arc::new(Salf {
+            camera: camera.clone(),
+            margin_px: 0,
+            carried: salf::Carried::Standard,
+            samples,
+        }));
         let mut focus = ByTriangle(vec![FocusOffset::STANDARD; (width * 20) as usize]);
         splatter.render(&camera, &focus, &Unwatched).unwrap();
         assert_eq!(splatter.nodes.as_ref().unwrap().scale, Scale::FINEST, "{width}: nothing overflows");
@@ -455,7 +495,12 @@ fn light_stays_within_reach() {
             visibility,
         };
         let samples = vec![sample].into();
-        let mut splatter = Splatter::new(Arc::new(Salf { camera: camera.clone(), margin_px: 64, samples }));
+        let mut splatter = Splatter::new(Arc::new(Salf {
+            camera: camera.clone(),
+            margin_px: 64,
+            carried: salf::Carried::Standard,
+            samples,
+        }));
         splatter.set_live(true);
         splatter.set_tolerance([Tolerance::NONE, Tolerance::px(2.0), Tolerance::px(10.0)][trial / 6 % 3]);
         let t = if trial % 5 == 0 { 1.0 + 0.05 * f64::from(random()) } else { 1.0 };

@@ -19,7 +19,7 @@ use super::options::{Sampler, TruthOptions};
 use super::reach::Reach;
 use super::samples;
 use super::sensor::Sensor;
-use super::view::View;
+use super::view::{Blurs, View};
 use crate::Radiance;
 use crate::random::{hash, unit};
 use glam::DVec2;
@@ -119,10 +119,10 @@ impl BrightSurfaces {
         let (camera, optics, scene) = (view.camera, &view.optics, view.tracer.scene());
         let position = camera.camera_from_world(point.position(scene));
         let inverse_depth = 1.0 / position.z;
-        let to = view.landing_px(position, u, view.blur(Some(point), inverse_depth, u).kappa);
-        // What is carried lands where the ordinary lens has it.
+        let Blurs { own, carried } = view.blurs(Some(point), inverse_depth, u);
+        let [to, of_carried] = [own, carried].map(|blur| view.landing_px(position, u, blur.kappa));
         let from = view.landing_px(position, u, optics.standard_kappa(inverse_depth));
-        if !sensor.sees(to) && !sensor.sees(from) {
+        if !sensor.sees(to) && !sensor.sees(of_carried) {
             return;
         }
         let eye = camera.world_from_camera(u.extend(0.0));
@@ -136,7 +136,7 @@ impl BrightSurfaces {
         let light = radiance.leaving(point, eye);
         sensor.expose(to, light.own, weight, 0.0);
         if light.carried != glam::Vec3::ZERO {
-            sensor.expose(from, light.carried, weight, 0.0);
+            sensor.expose(of_carried, light.carried, weight, 0.0);
         }
     }
 }
@@ -164,7 +164,7 @@ fn rate_wanted(view: &View, radiance: &dyn Radiance, reach: Reach, window: [DVec
     let middle = SurfacePoint { triangle, barycentric: DVec2::splat(1.0 / 3.0) };
     let position = (corners[0] + corners[1] + corners[2]) / 3.0;
     let inverse_depth = 1.0 / position.z;
-    let radius = view.radius_px(view.blur(Some(middle), inverse_depth, DVec2::ZERO).kappa);
+    let radius = view.radius_px(view.blurs(Some(middle), inverse_depth, DVec2::ZERO).own.kappa);
     let circle = PI * radius.powi(2) + 1.0;
     // Out of view if the whole triangle, with its widest blur, lies beyond one side of the window.
     let band = (window[0] - reach.low).max(reach.high - window[1]).max_element();

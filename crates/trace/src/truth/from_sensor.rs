@@ -2,7 +2,7 @@
 //!
 //! Every pixel of the reach ([`super::reach`]) sends rays through the aperture toward the focus plane, as any
 //! thin-lens camera does (Cook, Porter and Carpenter 1984). What a ray hits is then sent on to the sensor
-//! with the hit's own defocus κ: it lands not where it came from but
+//! with the hit's own defocus κ (what it carries with that of carried light): it lands not where it came from but
 //!
 //! ```text
 //! p + (κ − κ_standard)·U/tanθ
@@ -22,7 +22,7 @@ use super::samples::{self, PixelSample};
 use super::sensor::{self, Sensor};
 use super::sheared::{Sheared, Spread};
 use super::survey::{self, Look, Survey};
-use super::view::{Blur, View};
+use super::view::{Blurs, View};
 use crate::random::hash;
 use crate::{Leaving, Radiance, Ray};
 use glam::{DVec2, DVec3, Vec3};
@@ -61,10 +61,12 @@ struct Found {
     direction: DVec3,
     /// 1/depth, camera space; 0 for the background.
     inverse_depth: f64,
-    /// How it is focused.
-    blur: Blur,
-    /// Where it lands, less where it left: px.
+    /// How its light is focused.
+    blurs: Blurs,
+    /// Where what is its own lands, less where it left: px.
     displacement_px: DVec2,
+    /// The same of what it carries.
+    carried_displacement_px: DVec2,
 }
 
 impl FromSensor {
@@ -176,19 +178,19 @@ impl Exposure<'_> {
             let from = corner + sample.within_px;
             let found = self.trace(from, sample.u);
             let to = from + found.displacement_px;
-            if !self.sensor.sees(to) && !self.sensor.sees(from) {
+            let of_carried = from + found.carried_displacement_px;
+            if !self.sensor.sees(to) && !self.sensor.sees(of_carried) {
                 return;
             }
             let light = self.light(&found, sample.u);
-            if to == from {
-                land(from, light.total(), 1.0);
+            if to == of_carried {
+                land(to, light.total(), 1.0);
                 return;
             }
-            // What is carried stays where the ordinary lens has it.
             let carried = f64::from(light.carried_share);
             land(to, light.own, 1.0 - carried);
             if carried > 0.0 || light.carried != Vec3::ZERO {
-                land(from, light.carried, carried);
+                land(of_carried, light.carried, carried);
             }
         };
         if self.estimator.options.sampler == Sampler::Independent {
@@ -214,8 +216,8 @@ impl Exposure<'_> {
             let found = self.trace(corner + ray.within_px, ray.u);
             let standard = view.optics.standard_kappa(found.inverse_depth);
             let [radius_px, moved_px] =
-                [standard, found.blur.kappa - standard].map(|kappa| view.optics.splat_radius_px(kappa));
-            let moved_px = if found.blur.is_standard { 0.0 } else { moved_px };
+                [standard, found.blurs.own.kappa - standard].map(|kappa| view.optics.splat_radius_px(kappa));
+            let moved_px = if found.blurs.own.is_standard { 0.0 } else { moved_px };
             Look { radius_px, moved_px, light: self.light(&found, ray.u).total() }
         };
         Survey::of(region, &rays, view.camera.aperture_radius, look, progress)
@@ -233,9 +235,10 @@ impl Exposure<'_> {
         let hit = view.tracer.first_hit(&ray);
         let point = hit.as_ref().map(|hit| hit.point);
         let inverse_depth = hit.map_or(0.0, |hit| 1.0 / hit.t);
-        let blur = view.blur(point, inverse_depth, u);
-        let displacement_px = view.displacement_px(blur, inverse_depth, u);
-        Found { point, eye, direction, inverse_depth, blur, displacement_px }
+        let blurs = view.blurs(point, inverse_depth, u);
+        let [displacement_px, carried_displacement_px] =
+            [blurs.own, blurs.carried].map(|blur| view.displacement_px(blur, inverse_depth, u));
+        Found { point, eye, direction, inverse_depth, blurs, displacement_px, carried_displacement_px }
     }
 
     /// The radiance that a sample through the aperture point `u` carries.

@@ -19,7 +19,7 @@ use super::options::{Sampler, TruthOptions};
 use super::patches::{Patch, visit_patches};
 use super::samples;
 use super::sensor::Sensor;
-use super::view::View;
+use super::view::{Blurs, View};
 use crate::random::{hash, unit};
 use crate::{Radiance, Ray};
 use glam::{DVec2, DVec3};
@@ -184,11 +184,8 @@ impl Source {
                 if position.z <= 0.0 {
                     return;
                 }
-                let kappa = view.blur(Some(point), 1.0 / position.z, u).kappa;
-                let to = view.landing_px(position, u, kappa);
-                // What is carried lands where the ordinary lens has it.
-                let standard = view.optics.standard_kappa(1.0 / position.z);
-                let of_carried = view.landing_px(position, u, standard);
+                let Blurs { own, carried } = view.blurs(Some(point), 1.0 / position.z, u);
+                let [to, of_carried] = [own, carried].map(|blur| view.landing_px(position, u, blur.kappa));
                 let is_seen = sensor.sees(to) || sensor.sees(of_carried);
                 if !is_seen || !is_met_first(view, *triangle, eye, world - eye) {
                     return;
@@ -206,7 +203,7 @@ impl Source {
             Extent::Infinity { corner, size } => {
                 let sharp = camera.q_from_pixel(*corner + *size * v);
                 let slope = sharp * view.optics.tan_half_yfov;
-                let kappa = view.blur(None, 0.0, u).kappa;
+                let kappa = view.blurs(None, 0.0, u).own.kappa;
                 let to = view.landing_px(slope.extend(1.0), u, kappa);
                 let direction = camera.world_direction(slope.extend(1.0));
                 let ray = Ray { origin: eye, direction, t_min: 0.0, t_max: f64::INFINITY, skip: None };

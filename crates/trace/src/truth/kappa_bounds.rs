@@ -12,7 +12,7 @@ use scene::{SurfaceField, SurfacePoint};
 /// over a box and a range of depths lie at corners: bounds that are reached.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum FocusBox {
-    /// Of a painted focus: the least and the greatest t and anchor.
+    /// Of a painted focus: the least and the greatest t and anchor, also of carried light where paint moves it.
     Painted([FocusOffset; 2]),
     /// Of a focus by rays.
     ByRay([super::ray_focus::RayOptics; 2]),
@@ -23,7 +23,7 @@ impl FocusBox {
     pub fn of_triangle(view: &View, triangle: u32) -> Self {
         match view.ray_focus {
             Some(rays) => Self::ByRay(rays.bounds()),
-            None => Self::Painted(view.focus.bounds(triangle).unwrap_or_else(|| look(view.focus, triangle))),
+            None => Self::painted(view.focus.bounds(triangle).unwrap_or_else(|| look(view.focus, triangle))),
         }
     }
 
@@ -31,8 +31,20 @@ impl FocusBox {
     pub fn of_background(view: &View) -> Self {
         match view.ray_focus {
             Some(rays) => Self::ByRay(rays.bounds()),
-            None => Self::Painted([view.focus.at_infinity(); 2]),
+            None => Self::painted([view.focus.at_infinity(); 2]),
         }
+    }
+
+    /// Of a painted focus between bounds. Its carried light has a t' and an a' that are linear in t, anchor and gloss, each by
+    /// itself: their extremes lie at corners, too.
+    fn painted(bounds: [FocusOffset; 2]) -> Self {
+        let glosses = bounds.map(|bound| bound.gloss);
+        if glosses == [0.0; 2] {
+            return Self::Painted(bounds);
+        }
+        let carried =
+            bounds.into_iter().flat_map(|bound| glosses.map(|gloss| bound.with_gloss(gloss).of_carried()));
+        Self::Painted(carried.fold(bounds, around))
     }
 
     /// κ at its corners.
@@ -91,20 +103,26 @@ fn look(focus: &dyn SurfaceField<FocusOffset>, triangle: u32) -> [FocusOffset; 2
     });
     let at = |barycentric| focus.at(SurfacePoint { triangle, barycentric });
     let seen = [DVec2::ZERO, DVec2::X, DVec2::Y].into_iter().chain(within).map(at);
-    let none = [
-        FocusOffset::new(f64::INFINITY, f64::INFINITY),
-        FocusOffset::new(f64::NEG_INFINITY, f64::NEG_INFINITY),
-    ];
-    let [least, greatest] = seen.fold(none, |[least, greatest], focus| {
-        [
-            FocusOffset::new(least.t.min(focus.t), least.anchor.min(focus.anchor)),
-            FocusOffset::new(greatest.t.max(focus.t), greatest.anchor.max(focus.anchor)),
-        ]
-    });
-    let (t, anchor) = ((greatest.t - least.t) * BEYOND, (greatest.anchor - least.anchor) * BEYOND);
+    let none = [f64::INFINITY, f64::NEG_INFINITY];
+    let none = none.map(|none| FocusOffset::new(none, none).with_gloss(none));
+    let [least, greatest] = seen.fold(none, around);
+    let beyond = |of: fn(FocusOffset) -> f64| (of(greatest) - of(least)) * BEYOND;
+    let (t, anchor, gloss) = (beyond(|f| f.t), beyond(|f| f.anchor), beyond(|f| f.gloss));
     [
-        FocusOffset::new(least.t - t, (least.anchor - anchor).max(0.0)),
-        FocusOffset::new(greatest.t + t, (greatest.anchor + anchor).min(1.0)),
+        FocusOffset::new(least.t - t, (least.anchor - anchor).max(0.0))
+            .with_gloss((least.gloss - gloss).max(0.0)),
+        FocusOffset::new(greatest.t + t, (greatest.anchor + anchor).min(1.0))
+            .with_gloss((greatest.gloss + gloss).min(1.0)),
+    ]
+}
+
+/// Bounds that hold one more.
+fn around([least, greatest]: [FocusOffset; 2], focus: FocusOffset) -> [FocusOffset; 2] {
+    [
+        FocusOffset::new(least.t.min(focus.t), least.anchor.min(focus.anchor))
+            .with_gloss(least.gloss.min(focus.gloss)),
+        FocusOffset::new(greatest.t.max(focus.t), greatest.anchor.max(focus.anchor))
+            .with_gloss(greatest.gloss.max(focus.gloss)),
     ]
 }
 

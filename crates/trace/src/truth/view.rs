@@ -16,7 +16,16 @@ pub(super) struct View<'a> {
     pub optics: Optics,
 }
 
-/// How a ray is focused.
+/// How the light of a ray is focused: by whose it is.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Blurs {
+    /// That of what it found.
+    pub own: Blur,
+    /// What it found mirrors or lets through.
+    pub carried: Blur,
+}
+
+/// How light is focused.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Blur {
     /// κ.
@@ -26,19 +35,26 @@ pub(super) struct Blur {
 }
 
 impl View<'_> {
-    /// κ of the ray from `point` (`None`: the background) of depth 1/`inverse_depth` through the aperture
+    /// κ of the light of a ray from `point` (`None`: the background) of depth 1/`inverse_depth` through the aperture
     /// point `u`, scene units.
-    pub fn blur(&self, point: Option<SurfacePoint>, inverse_depth: f64, u: DVec2) -> Blur {
+    pub fn blurs(&self, point: Option<SurfacePoint>, inverse_depth: f64, u: DVec2) -> Blurs {
+        let painted = |focus: FocusOffset| Blur {
+            kappa: self.optics.kappa(inverse_depth, focus),
+            is_standard: focus.is_standard(),
+        };
         if let Some(ray_focus) = self.ray_focus {
             let radius = self.optics.aperture_radius;
             let within = if radius > 0.0 { u / radius } else { DVec2::ZERO };
             let ray = ray_focus.optics(point, within);
             let (inverse_f, distance) = (ray.inverse_focal_length, ray.transmission_distance);
             let kappa = self.optics.kappa_of_ray(inverse_depth, inverse_f, distance);
-            return Blur { kappa, is_standard: false };
+            return Blurs {
+                own: Blur { kappa, is_standard: false },
+                carried: painted(FocusOffset::STANDARD),
+            };
         }
         let focus = point.map_or_else(|| self.focus.at_infinity(), |point| self.focus.at(point));
-        Blur { kappa: self.optics.kappa(inverse_depth, focus), is_standard: focus.is_standard() }
+        Blurs { own: painted(focus), carried: painted(focus.of_carried()) }
     }
 
     /// How far from its standard place a ray of this blur lands, px, x right, y down.

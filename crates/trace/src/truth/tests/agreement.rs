@@ -35,7 +35,7 @@ impl SurfaceField<FocusOffset> for ByPart {
     fn at(&self, point: SurfacePoint) -> FocusOffset {
         let focus = self.of(self.0.triangles[point.triangle as usize].part);
         let t = 1.0 + (focus.t - 1.0) * (1.0 - 0.4 * point.barycentric.x);
-        FocusOffset::new(t, focus.anchor)
+        FocusOffset { t, ..focus }
     }
     fn at_infinity(&self) -> FocusOffset {
         self.of(0)
@@ -43,7 +43,7 @@ impl SurfaceField<FocusOffset> for ByPart {
     fn bounds(&self, triangle: u32) -> Option<[FocusOffset; 2]> {
         let at = |b1| self.at(SurfacePoint { triangle, barycentric: DVec2::new(b1, 0.0) });
         let (a, b) = (at(0.0), at(1.0));
-        let [low, high] = [a.t.min(b.t), a.t.max(b.t)].map(|t| FocusOffset::new(t, a.anchor));
+        let [low, high] = [a.t.min(b.t), a.t.max(b.t)].map(|t| FocusOffset { t, ..a });
         Some([low, high])
     }
 }
@@ -197,6 +197,29 @@ fn carried_light_keeps_the_focus_of_the_lens() {
     // The control: its own light moves.
     let share = mirrored(0.0);
     assert!(share < 0.9, "{share}");
+}
+
+#[test]
+fn carried_light_obeys_the_paint_as_far_as_gloss_does() {
+    let [.., (_, painted)] = focuses();
+    // The sky, and the floor, are not painted: nothing of them is carried either.
+    let with = |gloss: f64| painted.map(|focus| focus.with_gloss(gloss));
+    for gloss in [0.3, 1.0] {
+        let [a, b] = [(Estimator::Sensor, 1), (Estimator::Surface, 2)]
+            .map(|(estimator, seed)| carrying(0.5, &with(gloss), estimator, seed));
+        let share = share_in_agreement(&a, &b);
+        assert!(share >= SHARE_OF_FEW, "{gloss}: {share}");
+    }
+    // All of it carried is as if all of it were own, focused where the carried light is.
+    let own = |focus: &[FocusOffset; 7]| carrying(0.0, focus, Estimator::Sensor, 5);
+    let carried = |gloss: f64| carrying(1.0, &with(gloss), Estimator::Sensor, 4);
+    let share = share_in_agreement(&carried(1.0), &own(&painted));
+    assert!(share >= SHARE_OF_FEW, "{share}");
+    // The control: half of the way is neither end.
+    for end in [&painted, &focuses()[0].1] {
+        let share = share_in_agreement(&carried(0.5), &own(end));
+        assert!(share < 0.95, "{share}");
+    }
 }
 
 /// A bright square, whose level says how wide it is blurred.
