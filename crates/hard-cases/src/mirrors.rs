@@ -1,5 +1,4 @@
-//! What a mirror shows is the ordinary lens's picture of the mirrored scene, whatever is painted on the mirror; unless gloss is
-//! to obey the paint.
+//! What a mirror shows is the ordinary lens's picture of the mirrored scene, whatever is painted on the mirror.
 
 use crate::case::{Case, Effort, Finding};
 use crate::measure::rms_difference;
@@ -12,20 +11,12 @@ use progress::{Cancelled, Progress};
 use salf::Salf;
 use scene::{Material, Scalar, Workflow};
 
-pub const CASES: &[Case] = &[
-    Case {
-        name: "a mirror and the mirrored scene",
-        reason: "A mirror's light keeps the standard κ of where it is mirrored, and so shows what the lens sees behind it.",
-        control: "its light taken for its own: the paint moves it",
-        check: mirror,
-    },
-    Case {
-        name: "gloss that obeys the paint",
-        reason: "What a metal ball mirrors moves with its paint as far as gloss says: not at all, half of the way, as its own light.",
-        control: "a light field that is told to keep the lens's focus, in every picture",
-        check: glossy_ball,
-    },
-];
+pub const CASES: &[Case] = &[Case {
+    name: "a mirror and the mirrored scene",
+    reason: "A mirror's light keeps the standard κ of where it is mirrored, and so shows what the lens sees behind it.",
+    control: "its light taken for its own: the paint moves it",
+    check: mirror,
+}];
 
 /// Cards that show their colour, at some depths behind the camera, or in front of it beyond the mirror's plane.
 fn cards(is_mirrored: bool) -> Vec<(Mesh, Material)> {
@@ -41,37 +32,6 @@ fn cards(is_mirrored: bool) -> Vec<(Mesh, Material)> {
             (Mesh::rectangle(DVec3::new(x, y, place), DVec3::X * side, DVec3::Y * side), material)
         })
         .into()
-}
-
-/// A ball of metal out of focus before coloured cards, painted sharp.
-fn glossy_ball(effort: Effort, progress: &dyn Progress) -> Result<Finding, Cancelled> {
-    let camera = Camera {
-        width: 60,
-        height: 40,
-        yfov: 0.6,
-        focus_distance: 8.0,
-        aperture_radius: 0.08,
-        sensor_height: 0.05,
-        ..Camera::default()
-    };
-    let brass = Material {
-        base_color: Vec4::new(0.9, 0.7, 0.3, 1.0),
-        workflow: Workflow::MetallicRoughness { metallic: Scalar::plain(1.0), roughness: Scalar::plain(0.3) },
-        ..Material::default()
-    };
-    let mut meshes = cards(false);
-    meshes.push((Mesh::sphere(DVec3::new(0.1, 0.0, -3.0), 0.7, effort.pick(24, 12)), brass));
-    let shot = Shot::new(made_of(meshes), camera);
-    let mut found = [[0.0; 3]; 2];
-    for (k, gloss) in [0.0, 0.5, 1.0].into_iter().enumerate() {
-        let paint = FocusOffset::SHARP.with_gloss(gloss);
-        let wanted = shot.truth(paint, effort.pick(1024, 256), progress)?;
-        let keeping = shot.splat(FocusOffset::SHARP, progress)?;
-        found[0][k] = rms_difference(&shot.splat(paint, progress)?, &wanted);
-        found[1][k] = rms_difference(&keeping, &wanted);
-    }
-    let limits = [("none", 0.012), ("half", 0.012), ("all", 0.012)];
-    Ok(Finding::of("splat and truth alike: RMS ≤ 0.012", limits, found[0], found[1]))
 }
 
 fn mirror(effort: Effort, progress: &dyn Progress) -> Result<Finding, Cancelled> {
