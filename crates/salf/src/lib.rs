@@ -8,6 +8,7 @@
 //! they are kept packed ([`Samples`]).
 
 mod bake;
+mod carried;
 mod domain;
 mod file;
 mod jitter;
@@ -27,10 +28,11 @@ mod view;
 mod visibility;
 
 pub use bake::{bake, bake_and_tell};
+pub use carried::Carried;
 pub use domain::{Cell, Domain};
 pub use file::{SalfFile, SalfFileError};
 pub use margin::LARGEST_MARGIN_HEIGHTS;
-pub use options::{BakeOptions, Carried};
+pub use options::BakeOptions;
 pub use outliers::Outliers;
 pub use salf::{Salf, SalfStatistics};
 pub use sample::{Address, Sample, SampleFocus, Visibility};

@@ -1,5 +1,6 @@
 //! How a light field is baked.
 
+use crate::carried::Carried;
 use crate::margin::painted_margin_px;
 use crate::view::View;
 use lens::{Camera, FocusOffset};
@@ -20,23 +21,6 @@ pub struct BakeOptions {
     pub carried: Carried,
     /// Whether samples are packed ([`crate::Samples`]). It is right unless what that loses is to be measured.
     pub packs: bool,
-}
-
-/// How finely carried light is told.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Carried {
-    /// As its picture through the ordinary lens needs it: the more coarsely the farther out of focus.
-    #[default]
-    Standard,
-    /// As finely as any focus may show it.
-    Painted,
-}
-
-impl Carried {
-    /// What a focus needs.
-    pub fn of(focus: &dyn SurfaceField<FocusOffset>) -> Self {
-        if focus.concerns_carried() { Self::Painted } else { Self::Standard }
-    }
 }
 
 impl Default for BakeOptions {

@@ -6,8 +6,8 @@
 //!
 //! Own and carried light share the weight of their patch, as they share its coverage, so each is divided by its share.
 
+use crate::carried::Carried;
 use crate::jitter::jitter;
-use crate::options::Carried;
 use crate::sample::Visibility;
 use crate::view::View;
 use glam::{DVec2, DVec3, Vec3};

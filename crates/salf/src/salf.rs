@@ -1,6 +1,6 @@
 //! The light field.
 
-use crate::options::Carried;
+use crate::carried::Carried;
 use crate::samples::Samples;
 use lens::Camera;
 use serde::{Deserialize, Serialize};

@@ -1,6 +1,6 @@
 //! The baked camera, ready for rays: pixels to chief rays, aperture points to the world.
 
-use crate::options::Carried;
+use crate::carried::Carried;
 use glam::{DVec2, DVec3};
 use lens::{ApertureSampler, Camera, Optics};
 use scene::Scene;

@@ -1,0 +1,21 @@
+//! How finely what is carried is told.
+
+use lens::FocusOffset;
+use scene::SurfaceField;
+
+/// How finely carried light is told.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Carried {
+    /// As its picture through the ordinary lens needs it: the more coarsely the farther out of focus.
+    #[default]
+    Standard,
+    /// As finely as any focus may show it.
+    Painted,
+}
+
+impl Carried {
+    /// What a focus needs.
+    pub fn of(focus: &dyn SurfaceField<FocusOffset>) -> Self {
+        if focus.concerns_carried() { Self::Painted } else { Self::Standard }
+    }
+}
