@@ -17,7 +17,7 @@
 //!
 //! The road of a file: `container` (GLB chunks), `json_text` → `mending` (typed by the `gltf` crate) → `document` → `hierarchy` (which nodes, where) →
 //! `primitive` (checked `accessor`s to triangles, morphed) → `assembly` (instances and skins into the world) →
-//! `variants`, `material_textures`, `texture_reader`, `material_properties`, `material_file` (materials, images) → `view`, `punctual_light`, `image_based_light` (what is missing is made up). `flaws` tells authors what else is out of order.
+//! `variants`, `material_textures`, `texture_reader`, `material_properties`, `material_file` (materials, images) → `scene_cameras`, `punctual_light`, `image_based_light` (what is missing is made up). `flaws` tells authors what else is out of order.
 
 mod accessor;
 mod assembly;
@@ -53,6 +53,7 @@ mod percent_encoding;
 mod primitive;
 mod punctual_light;
 mod resource;
+mod scene_cameras;
 mod schema;
 mod skin;
 mod source;
@@ -65,7 +66,6 @@ mod texture_reader;
 mod triangulation;
 mod turned_faces;
 mod variants;
-mod view;
 mod views;
 mod world;
 

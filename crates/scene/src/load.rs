@@ -10,7 +10,9 @@ use crate::source::{PartSource, Source};
 use crate::triangulation::MODE_NAMES;
 use crate::variants::Variants;
 use crate::{Inspection, LoadOptions, Material, Node, Scene, SceneError};
-use crate::{compressed, extension, flaws, image_based_light, instancing, punctual_light, skin, view};
+use crate::{
+    compressed, extension, flaws, image_based_light, instancing, punctual_light, scene_cameras, skin,
+};
 use glam::{DMat4, DQuat, Vec3};
 use progress::{Progress, Unwatched};
 use std::collections::HashMap;
@@ -145,7 +147,7 @@ fn geometry(
         progress.report(i as f32 / hierarchy.shown.len() as f32);
         let Some(node) = document.typed().nodes().nth(index) else { continue };
         let Some(world) = hierarchy.world[index] else { continue };
-        scene.cameras.extend(view::node_camera(document, &node, world)?);
+        scene.cameras.extend(scene_cameras::node_camera(document, &node, world)?);
         if hierarchy.hidden[index] {
             continue;
         }
@@ -325,10 +327,10 @@ fn complete(document: &Document<'_>, scene: &mut Scene) {
         return;
     }
     if scene.cameras.is_empty() {
-        scene.cameras.push(view::framing(scene, DQuat::IDENTITY));
+        scene.cameras.push(scene_cameras::framing(scene, DQuat::IDENTITY));
         scene.camera_is_invented = true;
     }
-    view::focus_cameras(scene);
+    scene_cameras::focus_cameras(scene);
     let needs_light = scene.parts.iter().any(|part| !scene.materials[part.material as usize].unlit);
     let is_dark = !scene.lights.is_empty() && scene.lights.iter().all(|light| light.intensity == Vec3::ZERO);
     if needs_light && is_dark && !scene.has_lamps() && scene.own_world.is_none() {

@@ -2,7 +2,7 @@
 
 use crate::assembly::MAX_COORDINATE;
 use crate::primitive::compact;
-use crate::{LoadOptions, Material, Node, Part, Scene, SceneError, Triangle, view};
+use crate::{LoadOptions, Material, Node, Part, Scene, SceneError, Triangle, scene_cameras};
 use glam::{DMat4, DQuat, DVec3, Vec3, Vec4};
 use std::path::PathBuf;
 
@@ -97,8 +97,8 @@ impl Scene {
     /// Frames the scene anew, if its camera was made up: `upright` turns the world so that up is +y. The scene itself is not turned.
     pub fn set_upright(&mut self, upright: DQuat) {
         if self.camera_is_invented {
-            self.cameras = vec![view::framing(self, upright)];
-            view::focus_cameras(self);
+            self.cameras = vec![scene_cameras::framing(self, upright)];
+            scene_cameras::focus_cameras(self);
         }
     }
 }

@@ -3,6 +3,7 @@
 use super::View;
 use super::picture_colors::{PictureColors, UnknownProfile};
 use crate::LoadOptions;
+use glam::{DVec2, UVec2, Vec3};
 use image::metadata::Orientation;
 use image::{DynamicImage, ImageDecoder, ImageReader, Limits};
 use std::io::BufReader;
@@ -74,6 +75,23 @@ pub enum PictureError {
     },
 }
 
+impl Photograph {
+    /// The light at a pixel position ((0.5, 0.5) the middle of the upper left pixel), interpolated linearly; beyond the border what lies
+    /// on it.
+    pub fn at(&self, pixel: DVec2) -> Vec3 {
+        let last = UVec2::new(self.width - 1, self.height - 1);
+        let place = (pixel - 0.5).clamp(DVec2::ZERO, last.as_dvec2());
+        let corner = place.floor().as_uvec2();
+        let [right, down] = (place - place.floor()).as_vec2().to_array();
+        let pixel = |step: UVec2| {
+            let at = (corner + step).min(last);
+            Vec3::from(self.pixels[(at.y * self.width + at.x) as usize])
+        };
+        let row = |y: u32| pixel(UVec2::new(0, y)).lerp(pixel(UVec2::new(1, y)), right);
+        row(0).lerp(row(1), down)
+    }
+}
+
 impl View {
     /// Reads the picture: PNG, JPEG, WebP or Radiance HDR, 8 or 16 bits, grey or colour, with its ICC profile or in sRGB; half
     /// transparent pixels count as opaque. Takes 12 bytes a pixel and, while it runs, what the decoded file takes.
@@ -122,4 +140,18 @@ pub(super) fn decoded(
     let mut picture = DynamicImage::from_decoder(decoder).map_err(broken)?;
     picture.apply_orientation(Orientation::from_exif(orientation).unwrap_or(Orientation::NoTransforms));
     Ok((picture, profile))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn light_between_pixels_and_beyond_the_border() {
+        let pixels = [0.0, 1.0, 2.0, 7.0].map(|v| [v; 3]).to_vec();
+        let photograph = Photograph { width: 2, height: 2, pixels };
+        let at = |x: f64, y: f64| photograph.at(DVec2::new(x, y)).x;
+        assert_eq!([at(0.5, 0.5), at(1.5, 1.5), at(1.0, 1.0), at(1.25, 0.5)], [0.0, 7.0, 2.5, 0.75]);
+        assert_eq!([at(-9.0, 0.2), at(1.9, 9.0)], [0.0, 7.0]);
+    }
 }
