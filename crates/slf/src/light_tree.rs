@@ -150,10 +150,17 @@ fn part(lights: &[Light], numbers: &mut [u32], depth: usize) -> usize {
         let slice = &mut slices[slice_of(number)];
         *slice = Some(slice.map_or(bounds, |sum| sum.and(bounds)));
     }
-    let cost = |slices: &[Option<Bounds>]| {
-        slices.iter().flatten().copied().reduce(Bounds::and).map_or(f64::INFINITY, |bounds| bounds.cost())
+    // What the slices up to each, from either end, are joined to.
+    let join = |sum: &mut Option<Bounds>, slice: &Option<Bounds>| {
+        *sum = match (*sum, *slice) {
+            (Some(sum), Some(slice)) => Some(sum.and(slice)),
+            (sum, slice) => sum.or(slice),
+        };
+        Some(sum.map_or(f64::INFINITY, |bounds| bounds.cost()))
     };
-    let cost_at = |end: usize| cost(&slices[..end]) + cost(&slices[end..]);
+    let below: Vec<f64> = slices.iter().scan(None, join).collect();
+    let above: Vec<f64> = slices.iter().rev().scan(None, join).collect();
+    let cost_at = |end: usize| below[end - 1] + above[SLICES - 1 - end];
     let best = (1..SLICES).min_by(|&a, &b| cost_at(a).total_cmp(&cost_at(b))).expect("there are slices");
     // Those of the first slice and those of the last are never on one side.
     numbers.sort_by_key(|&number| slice_of(number) >= best);
@@ -249,7 +256,7 @@ mod tests {
             let low = place(10 * k + 1) * 10.0;
             let normal = (place(10 * k + 4) - 0.5).normalize();
             let power = 0.1 + random(10 * k + 8);
-            Light { low, high: low + place(10 * k + 7) * 0.2, normal, both_sides: k % 3 == 0, power }
+            Light { low, high: low + place(10 * k + 7) * 0.2, normal, both_sides: k.is_multiple_of(3), power }
         };
         (0..count).map(light).collect()
     }

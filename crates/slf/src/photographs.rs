@@ -23,6 +23,7 @@ mod directions;
 mod filling;
 mod gains;
 mod kept_picture;
+mod median;
 mod mirrored;
 mod residuals;
 mod sightings;

@@ -3,7 +3,7 @@
 //! What is not far enough moves against the directions, and photographs disagree about it: there, and where none looks, the light of the
 //! nearest directions that are known stands in; where they agree on next to nothing, their mean, from everywhere alike.
 
-use super::constant::{Sample, robust_mean};
+use super::constant::{Sample, robust_mean, roots};
 use super::gains::Exposure;
 use super::kept_picture::KeptPicture;
 use super::sphere::Sphere;
@@ -71,9 +71,8 @@ struct Cell {
 impl Cell {
     fn of(samples: &[Sample], belonging: &mut Vec<f32>) -> Self {
         let light = robust_mean(samples, belonging);
-        let root = |light: Vec3| light.max(Vec3::ZERO).to_array().map(f32::sqrt);
         let agrees = |sample: &&Sample| {
-            let (a, b) = (Vec3::from_array(root(sample.light)), Vec3::from_array(root(light)));
+            let [a, b] = [sample.light, light].map(|light| roots(light.max(Vec3::ZERO)));
             a.distance(b) <= AGREED * a.length().max(b.length())
         };
         let weight =

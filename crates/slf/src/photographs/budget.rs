@@ -1,5 +1,6 @@
 //! How fine photographs and texels are kept, so that all of it fits the memory that there is.
 
+use super::median::median;
 use atlas::Atlas;
 use glam::DVec3;
 use scene::{Scene, View};
@@ -77,6 +78,5 @@ fn finest_pixel(scene: &Scene, views: &[View]) -> Option<f64> {
         views.iter().filter_map(pixel).min_by(f64::total_cmp)
     };
     let mut pixels: Vec<f64> = (0..scene.triangles.len()).step_by(step).filter_map(pixel_at).collect();
-    let middle = pixels.len() / 2;
-    (!pixels.is_empty()).then(|| *pixels.select_nth_unstable_by(middle, f64::total_cmp).1)
+    median(&mut pixels, f64::total_cmp)
 }

@@ -60,7 +60,8 @@ pub(crate) fn robust_mean(samples: &[Sample], belonging: &mut Vec<f32>) -> Vec3 
     mean
 }
 
-fn roots(light: Vec3) -> Vec3 {
+/// Square roots, negative ones of what is below 0.
+pub(crate) fn roots(light: Vec3) -> Vec3 {
     Vec3::from_array(light.to_array().map(|v| v.abs().sqrt().copysign(v)))
 }
 

@@ -16,6 +16,7 @@
 //! or occlusion differ at are left out by Cauchy's weights, their scale the median of what is left over.
 
 use super::kept_picture::Shown;
+use super::median::median;
 use super::sightings::{Sighting, Sightings};
 use super::sphere::Sphere;
 use super::texels::Texels;
@@ -121,7 +122,7 @@ pub(crate) fn exposures(
                 right.iter_mut().zip(part_right).for_each(|(sum, value)| *sum += trust * value);
                 left_over.extend(errors);
             }
-            if let Some(middle) = median(&mut left_over) {
+            if let Some(middle) = median(&mut left_over, f64::total_cmp) {
                 // Of a normal distribution.
                 *scale = (1.4826 * middle).max(LEAST_SCALE);
             }
@@ -264,7 +265,7 @@ impl System<'_> {
                 if all.len() < 2 {
                     continue;
                 }
-                let middle = median(&mut all).unwrap_or(0.0);
+                let middle = median(&mut all, f64::total_cmp).unwrap_or(0.0);
                 let (mut weights, mut mean) = (0.0, 0.0);
                 let mut touched = Vec::with_capacity(point.len() * 3);
                 for said in point {
@@ -300,12 +301,6 @@ impl System<'_> {
         }
         (matrix, right, errors)
     }
-}
-
-/// The middle value; `None` of nothing.
-fn median(values: &mut [f64]) -> Option<f64> {
-    let middle = values.len() / 2;
-    (!values.is_empty()).then(|| *values.select_nth_unstable_by(middle, f64::total_cmp).1)
 }
 
 /// Solves a symmetric positive definite system in place by Cholesky's decomposition.

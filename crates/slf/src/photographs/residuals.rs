@@ -8,6 +8,7 @@ use super::blocks::Blocks;
 use super::calibrated::Calibrated;
 use super::constant::Sample;
 use super::directions::{Kernel, Known, MOST, Regression, toward};
+use super::median::median;
 use super::mirrored::Mirrored;
 use glam::Vec3;
 use rayon::prelude::*;
@@ -195,13 +196,8 @@ impl Told<'_> {
         for (block, found) in found {
             errors[block].extend(found);
         }
-        let median = |errors: &mut Vec<f32>| {
-            let middle = errors.len() / 2;
-            let median =
-                (!errors.is_empty()).then(|| *errors.select_nth_unstable_by(middle, f32::total_cmp).1);
-            median.unwrap_or(0.0).max(LEAST_ERROR)
-        };
-        errors.iter_mut().map(median).collect()
+        let middle = |errors: &mut Vec<f32>| median(errors, f32::total_cmp).unwrap_or(0.0).max(LEAST_ERROR);
+        errors.iter_mut().map(middle).collect()
     }
 
     /// Products and squares of asked texels, by block.

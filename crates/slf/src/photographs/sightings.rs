@@ -91,8 +91,8 @@ impl Sightings {
                     let picture = KeptPicture::of(&view.photograph(reading.load)?, reading.reduction);
                     let mask = view.mask(reading.load)?;
                     let depth = DepthPicture::of(scene, view, reading.reduction);
-                    let seen = seen(texels, view, &picture, mask.as_ref(), &depth);
-                    let beyond = seen_beyond(reading.sphere, view, &picture, mask.as_ref(), &depth);
+                    let look = Look { view, picture: &picture, mask: mask.as_ref(), depth: &depth };
+                    let (seen, beyond) = (look.at_texels(texels), look.beyond(reading.sphere));
                     let count = done.fetch_add(1, Ordering::Relaxed) + 1;
                     progress.report(0.8 * count as f32 / views.len() as f32);
                     Ok(Some((picture, seen, beyond)))
@@ -150,66 +150,71 @@ fn ramp(value: f32, [from, to]: [f32; 2]) -> f32 {
     share * share * (3.0 - 2.0 * share)
 }
 
-/// How a place in the picture counts by itself: its distance from the border, and the mask.
-fn counts(view: &View, mask: Option<&Mask>, picture: &KeptPicture, pixel: DVec2, place: DVec2) -> f32 {
-    if !view.lens.is_in_picture(pixel) {
-        return 0.0;
-    }
-    let is_masked = mask.is_some_and(|mask| {
-        let (x, y) = (pixel.x as u32, pixel.y as u32);
-        x < mask.width && y < mask.height && !mask.counts[(y * mask.width + x) as usize]
-    });
-    if is_masked {
-        return 0.0;
-    }
-    let size = DVec2::new(f64::from(picture.width), f64::from(picture.height));
-    ramp(place.min(size - place).min_element() as f32, FROM_BORDER)
-}
-
 fn from_edge(pixels: u8) -> f32 {
     if pixels >= FAR_FROM_EDGES { 1.0 } else { ramp(f32::from(pixels), FROM_EDGE) }
 }
 
-/// How well a view sees every texel, by 255ths; 0 not at all.
-fn seen(
-    texels: &Texels,
-    view: &View,
-    picture: &KeptPicture,
-    mask: Option<&Mask>,
-    depth: &DepthPicture,
-) -> Vec<u8> {
-    let eye = view.position();
-    let weight = |texel: usize| {
-        let position = texels.position(texel);
-        let cosine = texels.normal(texel).dot((eye - position).as_vec3().normalize_or_zero()).abs();
-        let of_angle = ramp(cosine, GLANCING);
-        if of_angle == 0.0 {
-            return 0.0;
-        }
-        let Some(pixel) = view.project(position) else { return 0.0 };
-        let place = picture.place(pixel);
-        let Some(edge) = depth.sees(view, position, place) else { return 0.0 };
-        of_angle * from_edge(edge) * counts(view, mask, picture, pixel, place)
-    };
-    (0..texels.count()).into_par_iter().map(|texel| (weight(texel) * 255.0 + 0.5) as u8).collect()
+/// A photograph, and what it can see.
+struct Look<'a> {
+    view: &'a View,
+    picture: &'a KeptPicture,
+    mask: Option<&'a Mask>,
+    depth: &'a DepthPicture,
 }
 
-/// How well a view sees every cell at infinity, by 255ths.
-fn seen_beyond(
-    sphere: &Sphere,
-    view: &View,
-    picture: &KeptPicture,
-    mask: Option<&Mask>,
-    depth: &DepthPicture,
-) -> Vec<u8> {
-    let eye = view.position();
-    let weight = |cell: usize| {
-        let Some(pixel) = view.project(eye + sphere.direction(cell).as_dvec3()) else { return 0.0 };
-        let place = picture.place(pixel);
-        let Some(edge) = depth.sees_nothing(place) else { return 0.0 };
-        from_edge(edge) * counts(view, mask, picture, pixel, place)
-    };
-    (0..sphere.count()).map(|cell| (weight(cell) * 255.0 + 0.5) as u8).collect()
+impl Look<'_> {
+    /// How well it sees every texel, by 255ths; 0 not at all.
+    fn at_texels(&self, texels: &Texels) -> Vec<u8> {
+        let eye = self.view.position();
+        let weight = |texel: usize| {
+            let position = texels.position(texel);
+            let cosine = texels.normal(texel).dot((eye - position).as_vec3().normalize_or_zero()).abs();
+            let of_angle = ramp(cosine, GLANCING);
+            if of_angle == 0.0 {
+                return 0.0;
+            }
+            of_angle * self.at(position, |place| self.depth.sees(self.view, position, place))
+        };
+        (0..texels.count()).into_par_iter().map(|texel| by_255ths(weight(texel))).collect()
+    }
+
+    /// How well it sees every cell at infinity, by 255ths.
+    fn beyond(&self, sphere: &Sphere) -> Vec<u8> {
+        let eye = self.view.position();
+        let weight = |cell: usize| {
+            let position = eye + sphere.direction(cell).as_dvec3();
+            self.at(position, |place| self.depth.sees_nothing(place))
+        };
+        (0..sphere.count()).map(|cell| by_255ths(weight(cell))).collect()
+    }
+
+    /// How a position counts, if the depths see it: so many pixels from an edge.
+    fn at(&self, position: DVec3, seen: impl Fn(DVec2) -> Option<u8>) -> f32 {
+        let Some(pixel) = self.view.project(position) else { return 0.0 };
+        let place = self.picture.place(pixel);
+        let Some(edge) = seen(place) else { return 0.0 };
+        from_edge(edge) * self.counts(pixel, place)
+    }
+
+    /// How a place in the picture counts by itself: its distance from the border, and the mask.
+    fn counts(&self, pixel: DVec2, place: DVec2) -> f32 {
+        if !self.view.lens.is_in_picture(pixel) {
+            return 0.0;
+        }
+        let is_masked = self.mask.is_some_and(|mask| {
+            let (x, y) = (pixel.x as u32, pixel.y as u32);
+            x < mask.width && y < mask.height && !mask.counts[(y * mask.width + x) as usize]
+        });
+        if is_masked {
+            return 0.0;
+        }
+        let size = DVec2::new(f64::from(self.picture.width), f64::from(self.picture.height));
+        ramp(place.min(size - place).min_element() as f32, FROM_BORDER)
+    }
+}
+
+fn by_255ths(share: f32) -> u8 {
+    (share * 255.0 + 0.5) as u8
 }
 
 /// A texel has one light, so of views of its front and its back only those of the side that is seen better count.
@@ -280,7 +285,7 @@ fn gathered(
                 // It was projected before, by the same lens.
                 let pixel = view.project(position).unwrap_or_default();
                 let shown = pictures[number].at(pictures[number].place(pixel));
-                let clipped = (shown.clipped.clamp(0.0, 1.0) * 255.0 + 0.5) as u8;
+                let clipped = by_255ths(shown.clipped.clamp(0.0, 1.0));
                 *slot =
                     Sighting { view: number as u16, weight, clipped, root: root_of(shown.light, brightest) };
             }
