@@ -57,14 +57,11 @@ pub(crate) fn load_capture(
     Ok(CaptureScene { scene: Arc::new(scene), remarks, is_incomplete })
 }
 
-/// The photograph that a camera's name means, if it means one.
-pub(crate) fn photograph<'a>(scene: &'a Scene, camera: &str) -> Option<Result<&'a View, String>> {
-    let name = camera.strip_prefix(PHOTOGRAPH)?;
+/// The photograph of a name, left out or not; else what is wrong with it.
+pub(crate) fn photograph<'a>(scene: &'a Scene, name: &str) -> Result<&'a View, String> {
     let mut views = scene.views.iter().chain(&scene.left_out);
-    Some(views.find(|view| view.name == name).ok_or_else(|| {
-        let there_are = names(&scene.views);
-        format!("no photograph is called \"{name}\" ({there_are})")
-    }))
+    let view = views.find(|view| view.name == name);
+    view.ok_or_else(|| format!("no photograph is called \"{name}\" ({})", names(&scene.views)))
 }
 
 fn names(views: &[View]) -> String {

@@ -1,6 +1,6 @@
 //! What can be opened: a scene, a project or a light field, as the renderers need it.
 
-use super::capture_scene::{CaptureScene, camera_of_photograph, load_capture, photograph};
+use super::capture_scene::{CaptureScene, PHOTOGRAPH, camera_of_photograph, load_capture, photograph};
 use super::scene_camera::camera_of;
 use super::stage::{Stage, atlas_error, load_variant};
 use super::variant_choice::VariantChoice;
@@ -130,32 +130,21 @@ impl Input {
         let CaptureScene { scene, remarks: mut warnings, is_incomplete } = read;
         warnings.extend(named(path, &scene.warnings));
         let camera = camera_of(&scene.cameras[0], &Camera::default());
-        Ok(Self {
-            path: path.into(),
-            scene,
-            camera,
-            project: None,
-            salf: None,
-            capture: Some(choices),
-            warnings,
-            is_incomplete,
-        })
+        let input = Self::new(path, scene, camera, warnings);
+        Ok(Self { capture: Some(choices), is_incomplete, ..input })
+    }
+
+    /// Neither project nor light field nor capture, and complete.
+    fn new(path: &Path, scene: Arc<Scene>, camera: Camera, warnings: Vec<String>) -> Self {
+        let (project, salf, capture) = (None, None, None);
+        Self { path: path.into(), scene, camera, project, salf, capture, warnings, is_incomplete: false }
     }
 
     fn open_scene(path: &Path, variant: &VariantChoice, steps: &dyn Steps) -> Result<Self, SessionError> {
         let scene = load_variant(path, variant.name(None), &*steps.begin("reading"))?;
         let camera = camera_of(&scene.cameras[0], &Camera::default());
         let warnings = named(path, &scene.warnings);
-        Ok(Self {
-            path: path.into(),
-            scene,
-            camera,
-            project: None,
-            salf: None,
-            capture: None,
-            warnings,
-            is_incomplete: false,
-        })
+        Ok(Self::new(path, scene, camera, warnings))
     }
 
     /// Opens what `project` says, which was read from `path`.
@@ -202,16 +191,7 @@ impl Input {
         warnings.extend(named(&project.scene, &scene.warnings));
         let camera = project.cameras[project.active_camera].camera.clone();
         let (back_faces, world) = (project.back_faces, project.world.clone());
-        let mut input = Self {
-            path: path.into(),
-            scene,
-            camera,
-            capture: project.capture.clone(),
-            project: Some(project),
-            salf: None,
-            warnings,
-            is_incomplete: false,
-        };
+        let mut input = Self { project: Some(project), ..Self::new(path, scene, camera, warnings) };
         input.set_back_faces(back_faces);
         match world.map(|world| world.load(&input.scene)).transpose() {
             Ok(world) => input.set_world(world),
@@ -281,9 +261,9 @@ impl Input {
             Some(CameraChoice::Named(name)) => {
                 let saved = self.project.iter().flat_map(|project| &project.cameras);
                 let mut saved = saved.filter(|named| named.name == *name).map(|named| named.camera.clone());
-                let of_photograph = photograph(&self.scene, name).transpose();
-                let of_photograph = of_photograph.map_err(|what| SessionError::bad(&self.path, what))?;
-                if let Some(view) = of_photograph {
+                if let Some(name) = name.strip_prefix(PHOTOGRAPH) {
+                    let view = photograph(&self.scene, name);
+                    let view = view.map_err(|what| SessionError::bad(&self.path, what))?;
                     return Ok(camera_of_photograph(&self.scene, view, &self.camera));
                 }
                 let in_scene = || self.scene.cameras.iter().find(|camera| camera.name == *name);

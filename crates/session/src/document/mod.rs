@@ -27,6 +27,6 @@ pub use undo::HistoryStep;
 pub use variant_choice::VariantChoice;
 
 pub(crate) use adjusted_view::AdjustedView;
-pub(crate) use capture_scene::{PHOTOGRAPH, photograph};
+pub(crate) use capture_scene::photograph;
 pub(crate) use stage::atlas_error;
 pub(crate) use undo::{Undo, Undoable, Undone};

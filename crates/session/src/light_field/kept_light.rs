@@ -4,13 +4,12 @@
 //! pictures that come at once, then well.
 
 use super::light_file;
-use progress::{Cancelled, Progress};
+use super::scene_work::SceneWork;
+use progress::{Cancelled, Progress, Stage};
 use scene::World;
 use slf::{Irradiance, IrradianceOptions, Scattering, Transport, TransportOptions};
 use std::path::PathBuf;
-use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError, Weak};
-use std::time::Duration;
 use trace::Tracer;
 
 /// The irradiance of a scene in a world.
@@ -19,9 +18,7 @@ struct Kept {
     world: World,
     rough: OnceLock<Arc<Irradiance>>,
     irradiance: OnceLock<Arc<Irradiance>>,
-    /// Bits of an f32.
-    done: AtomicU32,
-    has_failed: AtomicBool,
+    work: Arc<SceneWork>,
 }
 
 /// Where light is kept from one run of the program to the next.
@@ -78,18 +75,13 @@ pub(super) fn wait(
     progress: &dyn Progress,
 ) -> Result<Arc<Irradiance>, Cancelled> {
     let kept = begun(tracer, world);
-    loop {
-        if let Some(irradiance) = kept.known(quality) {
-            return Ok(irradiance.clone());
-        }
-        if kept.has_failed.load(Ordering::Acquire) {
-            // Its thread is gone: here it is solved for once more.
+    match kept.work.wait(progress, || kept.known(quality).cloned())? {
+        Some(irradiance) => Ok(irradiance),
+        // Its thread is gone: here it is solved for once more.
+        None => {
             let options = if quality == LightQuality::Rough { ROUGH } else { IrradianceOptions::default() };
-            return Irradiance::solve(&unknown(tracer, world.clone(), 1, 1), options, progress).map(Arc::new);
+            Irradiance::solve(&unknown(tracer, world.clone(), 1, 1), options, progress).map(Arc::new)
         }
-        progress.check()?;
-        progress.report(f32::from_bits(kept.done.load(Ordering::Relaxed)));
-        std::thread::sleep(Duration::from_millis(5));
     }
 }
 
@@ -107,8 +99,7 @@ fn begun(tracer: &Arc<Tracer>, world: &World) -> Arc<Kept> {
         world: world.clone(),
         rough: OnceLock::new(),
         irradiance: OnceLock::new(),
-        done: AtomicU32::new(0),
-        has_failed: AtomicBool::new(false),
+        work: Arc::default(),
     });
     let of_scene = all.iter().filter(|other| Weak::ptr_eq(&other.tracer, &kept.tracer)).count();
     if of_scene >= WORLDS
@@ -118,40 +109,37 @@ fn begun(tracer: &Arc<Tracer>, world: &World) -> Arc<Kept> {
     }
     all.push(kept.clone());
     let work = {
-        let (kept, tracer) = (kept.clone(), tracer.clone());
-        move || solve(&kept, tracer)
+        let kept = kept.clone();
+        move |tracer: &Arc<Tracer>, progress: &dyn Progress| {
+            // Whoever waits learns that it ended without.
+            let _ = solve(&kept, tracer, progress);
+        }
     };
-    if std::thread::Builder::new().name("light".into()).spawn(work).is_err() {
-        kept.has_failed.store(true, Ordering::Release);
-    }
+    kept.work.begin("light", tracer, OWN_REFERENCES, work);
     kept
 }
 
-fn solve(kept: &Kept, tracer: Arc<Tracer>) {
-    let watch = Watch { kept, tracer: tracer.clone() };
-    let work = || {
-        let options = IrradianceOptions::default();
-        let file =
-            FOLDER.get().and_then(|folder| light_file::path(folder, tracer.scene(), &kept.world, options));
-        if let Some(found) =
-            file.as_ref().and_then(|file| light_file::read(file, tracer.scene(), &kept.world, options))
-        {
-            let _ = kept.irradiance.set(Arc::new(found));
-            return Ok(());
-        }
-        let transport = unknown(&tracer, kept.world.clone(), 1, 1);
-        let _ = kept.rough.set(Arc::new(Irradiance::solve(&transport, ROUGH, &watch)?));
-        let fine = Irradiance::solve(&transport, options, &watch)?;
-        if let Some(file) = &file {
-            light_file::write(file, &fine);
-        }
-        let _ = kept.irradiance.set(Arc::new(fine));
-        Ok::<_, Cancelled>(())
-    };
-    let done = std::panic::catch_unwind(std::panic::AssertUnwindSafe(work));
-    if !matches!(done, Ok(Ok(()))) {
-        kept.has_failed.store(true, Ordering::Release);
+/// References to the tracer that solving holds: the transport's.
+const OWN_REFERENCES: usize = 1;
+
+fn solve(kept: &Kept, tracer: &Arc<Tracer>, progress: &dyn Progress) -> Result<(), Cancelled> {
+    let options = IrradianceOptions::default();
+    let file = FOLDER.get().and_then(|folder| light_file::path(folder, tracer.scene(), &kept.world, options));
+    let read = |file: &PathBuf| light_file::read(file, tracer.scene(), &kept.world, options);
+    if let Some(found) = file.as_ref().and_then(read) {
+        let _ = kept.irradiance.set(Arc::new(found));
+        return Ok(());
     }
+    let transport = unknown(tracer, kept.world.clone(), 1, 1);
+    // The rough light comes first and is soon there.
+    let rough = Irradiance::solve(&transport, ROUGH, &Stage::new(progress, 0.0, 0.0))?;
+    let _ = kept.rough.set(Arc::new(rough));
+    let fine = Irradiance::solve(&transport, options, progress)?;
+    if let Some(file) = &file {
+        light_file::write(file, &fine);
+    }
+    let _ = kept.irradiance.set(Arc::new(fine));
+    Ok(())
 }
 
 /// Light of a scene in a world of which nothing is known yet: this many paths and lights a point.
@@ -159,25 +147,4 @@ pub(super) fn unknown(tracer: &Arc<Tracer>, world: World, paths: u32, light_samp
     let single = tracer.scene().single_scattering;
     let scattering = if single { Scattering::Single } else { Scattering::Multiple };
     Transport::new(tracer.clone(), world, TransportOptions { paths, light_samples, scattering })
-}
-
-/// Goes on as long as anybody else has the scene.
-struct Watch<'a> {
-    kept: &'a Kept,
-    tracer: Arc<Tracer>,
-}
-
-/// References to the tracer that the work itself holds: its own, the watch's and the transport's.
-const OWN_REFERENCES: usize = 3;
-
-impl Progress for Watch<'_> {
-    fn report(&self, fraction: f32) {
-        // The rough light comes first and is soon there.
-        let fraction = if self.kept.rough.get().is_some() { fraction } else { 0.0 };
-        self.kept.done.fetch_max(fraction.to_bits(), Ordering::Relaxed);
-    }
-
-    fn cancelled(&self) -> bool {
-        Arc::strong_count(&self.tracer) <= OWN_REFERENCES
-    }
 }

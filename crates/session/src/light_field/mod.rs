@@ -16,6 +16,7 @@ mod reach;
 mod running_sum;
 mod salf_file;
 mod sample_index;
+mod scene_work;
 mod serves;
 mod store;
 

@@ -1,12 +1,11 @@
-//! Light from photographs, by scene: made once on a thread of its own, which goes on whoever stops waiting, as long as the scene is open.
+//! Light from photographs, by scene: made once.
 
+use super::scene_work::SceneWork;
 use crate::error::SessionError;
 use atlas::{Atlas, UnwrapOptions};
 use progress::Progress;
-use slf::{PhotographError, PhotographLight, PhotographOptions};
-use std::sync::atomic::{AtomicU32, Ordering};
+use slf::{PhotographLight, PhotographOptions};
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError, Weak};
-use std::time::Duration;
 use trace::Tracer;
 
 /// The light of a scene; an error as it is shown.
@@ -16,8 +15,7 @@ struct Kept {
     atlas: OnceLock<Arc<Atlas>>,
     has_begun: OnceLock<()>,
     found: OnceLock<Result<Arc<PhotographLight>, String>>,
-    /// Bits of an f32.
-    done: AtomicU32,
+    work: Arc<SceneWork>,
 }
 
 fn all() -> MutexGuard<'static, Vec<Arc<Kept>>> {
@@ -37,7 +35,7 @@ fn of(tracer: &Arc<Tracer>) -> Arc<Kept> {
         atlas: OnceLock::new(),
         has_begun: OnceLock::new(),
         found: OnceLock::new(),
-        done: AtomicU32::new(0),
+        work: Arc::default(),
     });
     all.push(kept.clone());
     kept
@@ -61,68 +59,35 @@ pub(crate) fn wait(
     progress: &dyn Progress,
 ) -> Result<Arc<PhotographLight>, SessionError> {
     let kept = begun(tracer);
-    loop {
-        match kept.found.get() {
-            Some(Ok(light)) => return Ok(light.clone()),
-            Some(Err(what)) => return Err(SessionError::BadInput(what.clone())),
-            None => {}
-        }
-        progress.check()?;
-        progress.report(f32::from_bits(kept.done.load(Ordering::Relaxed)));
-        std::thread::sleep(Duration::from_millis(5));
-    }
+    let failed =
+        || "light from photographs could not be made: a fault of the program (open the capture again)".into();
+    let found = kept.work.wait(progress, || kept.found.get().cloned())?.unwrap_or_else(|| Err(failed()));
+    found.map_err(SessionError::BadInput)
 }
 
 fn begun(tracer: &Arc<Tracer>) -> Arc<Kept> {
     let kept = of(tracer);
     if kept.has_begun.set(()).is_ok() {
         let work = {
-            let (kept, tracer) = (kept.clone(), tracer.clone());
-            move || {
-                let made = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| solve(&kept, tracer)));
-                let _ = kept.found.set(made.unwrap_or_else(|_| Err(failed())));
+            let kept = kept.clone();
+            move |tracer: &Arc<Tracer>, progress: &dyn Progress| {
+                let _ = kept.found.set(solve(&kept, tracer, progress));
             }
         };
-        if std::thread::Builder::new().name("photographs".into()).spawn(work).is_err() {
-            let _ = kept.found.set(Err(failed()));
-        }
+        kept.work.begin("photographs", tracer, 0, work);
     }
     kept
 }
 
-fn failed() -> String {
-    "light from photographs could not be made: a fault of the program (open the capture again)".into()
-}
-
-fn solve(kept: &Kept, tracer: Arc<Tracer>) -> Result<Arc<PhotographLight>, String> {
-    let watch = Watch { kept, tracer: tracer.clone() };
+fn solve(kept: &Kept, tracer: &Arc<Tracer>, progress: &dyn Progress) -> Result<Arc<PhotographLight>, String> {
     let scene = tracer.scene();
     let atlas = match kept.atlas.get() {
         Some(atlas) => atlas.clone(),
         None => {
-            let made = Atlas::unwrap(scene, &UnwrapOptions::default(), &watch);
+            let made = Atlas::unwrap(scene, &UnwrapOptions::default(), progress);
             Arc::new(made.map_err(|error| format!("{}: {error}", scene.path.display()))?)
         }
     };
-    let made = PhotographLight::solve(&tracer, &atlas, &scene.views, &PhotographOptions::default(), &watch);
-    made.map(Arc::new).map_err(|error: PhotographError| error.to_string())
-}
-
-/// Goes on as long as anybody else has the scene.
-struct Watch<'a> {
-    kept: &'a Kept,
-    tracer: Arc<Tracer>,
-}
-
-/// References to the tracer that the work itself holds: its own and the watch's.
-const OWN_REFERENCES: usize = 2;
-
-impl Progress for Watch<'_> {
-    fn report(&self, fraction: f32) {
-        self.kept.done.fetch_max(fraction.to_bits(), Ordering::Relaxed);
-    }
-
-    fn cancelled(&self) -> bool {
-        Arc::strong_count(&self.tracer) <= OWN_REFERENCES
-    }
+    let made = PhotographLight::solve(tracer, &atlas, &scene.views, &PhotographOptions::default(), progress);
+    made.map(Arc::new).map_err(|error| error.to_string())
 }

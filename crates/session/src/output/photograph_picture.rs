@@ -1,11 +1,11 @@
 //! A photograph as pictures are compared with it: without its lens's distortion, in linear light, exposed as all of them together.
 
-use super::render::seen;
-use crate::document::{Input, camera_of_photograph, chief_ray, photograph};
+use super::render::{pixel_ray, seen};
+use crate::document::{Input, camera_of_photograph, photograph};
 use crate::error::SessionError;
 use crate::jobs::Steps;
 use crate::light_field::photograph_light;
-use glam::{DVec2, Vec3};
+use glam::{DVec2, DVec3, Vec3};
 use lens::{Camera, Picture};
 use project::Layer;
 use rayon::prelude::*;
@@ -30,9 +30,7 @@ impl Input {
         steps: &dyn Steps,
     ) -> Result<(Picture, Vec<Layer>), SessionError> {
         let scene = &self.scene;
-        let named = format!("{}{name}", crate::document::PHOTOGRAPH);
-        let view = photograph(scene, &named).expect("the name says so");
-        let view = view.map_err(|what| SessionError::bad(&self.path, what))?;
+        let view = photograph(scene, name).map_err(|what| SessionError::bad(&self.path, what))?;
         let tracer = Arc::new(Tracer::new(scene.clone()));
         self.tell_atlas(&tracer)?;
         let light = photograph_light(&tracer, &*steps.begin("light"))?;
@@ -69,33 +67,11 @@ struct Place<'a> {
 }
 
 impl Place<'_> {
-    fn middle(&self, number: u32) -> DVec2 {
-        DVec2::new(f64::from(number % self.camera.width), f64::from(number / self.camera.width)) + 0.5
-    }
-
-    fn ray(&self, number: u32) -> trace::Ray {
-        let size = DVec2::new(f64::from(self.camera.width), f64::from(self.camera.height));
-        chief_ray(self.camera, self.middle(number) / size)
-    }
-
-    /// What the photograph has for a pixel of the camera, and where; bilinear.
+    /// What the photograph has for a pixel of the camera, and where.
     fn at(&self, number: u32) -> Option<(DVec2, Vec3)> {
-        let ray = self.ray(number);
+        let ray = pixel_ray(self.camera, number);
         let at = self.view.project(ray.origin + ray.direction)?;
-        if !self.view.lens.is_in_picture(at) {
-            return None;
-        }
-        let last = DVec2::new(f64::from(self.shown.width - 1), f64::from(self.shown.height - 1));
-        let place = (at - 0.5).clamp(DVec2::ZERO, last);
-        let corner = place.floor();
-        let [right, down] = (place - corner).as_vec2().to_array();
-        let pixel = |x: u32, y: u32| {
-            let column = (corner.x as u32 + x).min(self.shown.width - 1);
-            let row = (corner.y as u32 + y).min(self.shown.height - 1);
-            Vec3::from(self.shown.pixels[(row * self.shown.width + column) as usize])
-        };
-        let row = |y: u32| pixel(0, y).lerp(pixel(1, y), right);
-        Some((at, row(0).lerp(row(1), down)))
+        self.view.lens.is_in_picture(at).then(|| (at, self.shown.at(at)))
     }
 
     /// Gains with which it shows least squares' best of the light where that is photographed; vignetting as of another photograph of its
@@ -108,7 +84,7 @@ impl Place<'_> {
         let products = |number: u32| {
             let there = seen[number as usize] >= SEEN;
             let (at, shown) = self.at(number).filter(|_| there)?;
-            let ray = self.ray(number);
+            let ray = pixel_ray(self.camera, number);
             let hit = tracer.first_hit(&ray)?;
             let shown = (shown * flat.to_radiance(self.view, at)).as_dvec3();
             let light = light.toward(hit.point, ray.origin).as_dvec3();
@@ -117,7 +93,7 @@ impl Place<'_> {
         // In order, so that the sum is the same for any number of threads.
         let found: Vec<_> =
             (0..self.camera.width * self.camera.height).into_par_iter().filter_map(products).collect();
-        let [both, square] = found.into_iter().fold([glam::DVec3::ZERO; 2], |[a, b], [c, d]| [a + c, b + d]);
+        let [both, square] = found.into_iter().fold([DVec3::ZERO; 2], |[a, b], [c, d]| [a + c, b + d]);
         let gain = |both: f64, square: f64| if both > 0.0 { (square / both).log2() } else { 0.0 };
         let gain_stops = std::array::from_fn(|channel| gain(both[channel], square[channel]));
         Exposure { gain_stops, vignetting_stops }

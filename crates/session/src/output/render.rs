@@ -2,7 +2,7 @@
 
 use super::aov::{Aov, Known};
 use super::renderer::Renderer;
-use crate::document::{Input, chief_ray};
+use crate::document::Input;
 use crate::error::SessionError;
 use crate::jobs::Steps;
 use crate::light_field::{
@@ -19,8 +19,8 @@ use serde::Serialize;
 use splat::{Gpu, Splatter, Tolerance};
 use std::sync::Arc;
 use std::time::Instant;
-use trace::Tracer;
 use trace::truth::{Estimate, TruthOptions};
+use trace::{Ray, Tracer};
 
 impl From<BaselineError> for SessionError {
     fn from(error: BaselineError) -> Self {
@@ -318,17 +318,21 @@ fn finish(
     Ok(Rendered { picture, layers, cost, warnings: Vec::new() })
 }
 
+/// The chief ray of a pixel's middle; pixels are numbered row by row.
+pub(super) fn pixel_ray(camera: &Camera, number: u32) -> Ray {
+    let pixel = DVec2::new(f64::from(number % camera.width), f64::from(number / camera.width));
+    Ray::of_pinhole(camera, DVec2::ZERO, pixel + 0.5)
+}
+
 /// How far the surface along each pixel's chief ray was photographed.
-pub(crate) fn seen(
+pub(super) fn seen(
     tracer: &Arc<Tracer>,
     camera: &Camera,
     steps: &dyn Steps,
 ) -> Result<Vec<f32>, SessionError> {
     let light = photograph_light(tracer, &*steps.begin("light"))?;
     let of_pixel = |number: u32| {
-        let pixel = DVec2::new(f64::from(number % camera.width), f64::from(number / camera.width)) + 0.5;
-        let size = DVec2::new(f64::from(camera.width), f64::from(camera.height));
-        let hit = tracer.first_hit(&chief_ray(camera, pixel / size));
+        let hit = tracer.first_hit(&pixel_ray(camera, number));
         hit.map_or(0.0, |hit| light.seen(hit.point))
     };
     Ok((0..camera.width * camera.height).into_par_iter().map(of_pixel).collect())
