@@ -2,6 +2,7 @@
 
 use project::ProjectError;
 use session::SessionError;
+use std::path::Path;
 
 /// Wrong usage.
 pub const WRONG_USAGE: u8 = 2;
@@ -44,6 +45,11 @@ impl Failure {
     /// Partly done.
     pub fn partly(message: impl Into<String>) -> Self {
         Self::new(PARTLY_DONE, message)
+    }
+
+    /// Something that a capture speaks of is missing: no failure, and nothing to pass over.
+    pub fn incomplete(file: &Path) -> Self {
+        Self::partly(format!("{}: something of it is missing, see above", file.display()))
     }
 
     /// Worth another try.

@@ -24,8 +24,5 @@ pub fn run(arguments: &ImportArguments, console: &Console) -> Result<(), Failure
     console.warn(&document.warnings);
     document.to_project().save(output)?;
     console.note(&format!("wrote {}", output.display()));
-    match is_incomplete {
-        true => Err(Failure::partly(format!("{}: something of it is missing, see above", capture.display()))),
-        false => Ok(()),
-    }
+    if is_incomplete { Err(Failure::incomplete(capture)) } else { Ok(()) }
 }

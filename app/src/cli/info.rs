@@ -75,14 +75,8 @@ pub fn run(arguments: &InfoArguments, console: &Console) -> Result<(), Failure> 
     partly(&input)
 }
 
-/// Something that a capture speaks of and that is missing is no failure, and nothing to pass over.
 fn partly(input: &Input) -> Result<(), Failure> {
-    match input.is_incomplete {
-        true => {
-            Err(Failure::partly(format!("{}: something of it is missing, see above", input.path.display())))
-        }
-        false => Ok(()),
-    }
+    if input.is_incomplete { Err(Failure::incomplete(&input.path)) } else { Ok(()) }
 }
 
 fn capture_json(input: &Input) -> Option<Value> {

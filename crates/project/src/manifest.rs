@@ -4,13 +4,12 @@ use crate::ProjectError;
 use crate::capture_choices::CaptureRow;
 use crate::container::{Container, DAMAGED_CURE};
 use crate::layer_rows::{LayerRow, LayerRows, is_zero};
-use crate::scene_path::ScenePath;
+use crate::scene_path::{ScenePath, hex};
 use focus::Brush;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
-use std::fmt::Write;
 use std::path::Path;
 
 /// The manifest's entry: the first of the container.
@@ -180,8 +179,5 @@ impl Manifest {
 
 /// Hex SHA-256.
 pub(crate) fn sha256_hex(bytes: &[u8]) -> String {
-    Sha256::digest(bytes).iter().fold(String::with_capacity(64), |mut hex, byte| {
-        write!(hex, "{byte:02x}").expect("a String takes all writes");
-        hex
-    })
+    hex(&Sha256::digest(bytes))
 }

@@ -3,6 +3,7 @@
 use crate::ProjectError;
 use crate::disk::read_bytes;
 use crate::manifest::sha256_hex;
+use crate::scene_path::hex;
 use sha2::{Digest, Sha256};
 use std::fs::File;
 use std::io::Read;
@@ -42,7 +43,7 @@ pub(crate) fn scene_checksum(scene: &Path) -> Result<String, ProjectError> {
             }
         }
     }
-    Ok(hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect())
+    Ok(hex(&hash.finalize()))
 }
 
 fn visit(folder: &Path, deeper: usize, files: &mut Vec<std::path::PathBuf>) -> Result<(), ProjectError> {

@@ -70,7 +70,8 @@ fn absolute_path(scene: &Path, project: &Path) -> PathBuf {
     if plain.exists() || !joined.exists() { plain } else { joined }
 }
 
-fn hex(bytes: &[u8]) -> String {
+/// Two digits a byte.
+pub(crate) fn hex(bytes: &[u8]) -> String {
     bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
