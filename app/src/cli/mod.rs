@@ -71,11 +71,11 @@ fn dispatch(command: Subcommand) -> Result<(), Failure> {
         Subcommand::Replay(arguments) => replay::run(&arguments, &console),
         Subcommand::Unwrap(arguments) => unwrap::run(&arguments, &console),
         Subcommand::Bake(arguments) => {
-            keep_light();
+            keep_work();
             bake::run(&arguments, &console)
         }
         Subcommand::Render(arguments) => {
-            keep_light();
+            keep_work();
             render::run(&arguments, &console)
         }
         Subcommand::Compare(arguments) => compare::run(&arguments),
@@ -106,7 +106,7 @@ fn open_window(arguments: Arguments) -> Result<(), Failure> {
     }
     // What is measured does not depend on what the window was like when it was last closed.
     let remember = trace.is_none();
-    keep_light();
+    keep_work();
     let light_fields =
         own_folders().map(|folders| LightFieldStore::new(folders.cache_dir().join("light-fields")));
     let options = window::WindowOptions {
@@ -126,10 +126,10 @@ fn open_window(arguments: Arguments) -> Result<(), Failure> {
     })
 }
 
-/// Has the light of scenes kept from one run to the next. What is measured (`report`) is measured from the start.
-fn keep_light() {
+/// Has what is worked out (light, atlases) kept from one run to the next. What is measured (`report`) is measured from the start.
+fn keep_work() {
     if let Some(folders) = own_folders() {
-        session::keep_light_in(folders.cache_dir().join("light"));
+        session::keep_work_in(folders.cache_dir().into());
     }
 }
 

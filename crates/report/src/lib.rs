@@ -13,7 +13,7 @@
 //! [`run_engine`] measures the splat engine alone, against its own converged picture.
 //!
 //! The road of the data: `subject` opens a scene with its camera and focuses, `plan` lists what to measure, `reference`
-//! makes the ground truth of each picture with its own error, `contender` draws and is timed, `live` watches the preview, `store` keeps every finished
+//! makes the ground truth of each picture with its own error, `contender` draws and is timed, `live` watches the preview, `photographs` leaves some of a capture out, `store` keeps every finished
 //! measurement at once (so that a run that was stopped goes on where it was), `findings` draws conclusions, `page` and
 //! `tables` write them down with `plot`.
 
@@ -32,6 +32,7 @@ mod measure;
 mod memory;
 mod options;
 mod page;
+mod photographs;
 mod plan;
 mod plot;
 mod record;
@@ -52,6 +53,7 @@ pub use engine::{Check, EngineRecord, EngineReport, run_engine};
 pub use live::ShownPicture;
 pub use machine::Machine;
 pub use options::{ReportOptions, SceneRequest};
+pub use photographs::{Photographs, Sparse, ToldPhotograph};
 pub use record::{Record, Series};
 pub use report::Report;
 pub use run::run;

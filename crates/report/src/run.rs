@@ -7,7 +7,9 @@ use crate::fingerprint::{self, Fingerprint};
 use crate::live::{self, ShownPicture};
 use crate::machine::Machine;
 use crate::measure::{Against, Named, measure};
+use crate::memory::PeakMemory;
 use crate::options::{ReportOptions, SceneRequest};
+use crate::photographs::{self, Photographs};
 use crate::plan::{Setting, settings};
 use crate::record::{Record, Series};
 use crate::reference::{conserved, trace_reference};
@@ -96,6 +98,7 @@ impl Runner<'_> {
         let focus_prints: Vec<_> =
             subject.focuses.iter().map(|named| fingerprint::of_focus(&named.focus)).collect();
         let live = self.live(request, &subject, &scene_print)?;
+        let photographs = self.photographs(&subject, &scene_print)?;
         let settings = settings(&subject, self.options);
         let total: usize = settings.iter().map(|setting| setting.contenders.len()).sum();
         let mut done = 0;
@@ -165,6 +168,7 @@ impl Runner<'_> {
             hierarchy_bytes: subject.tracer.bytes(),
             focuses,
             live,
+            photographs,
             modelled,
             warnings: subject.warnings.clone(),
         });
@@ -273,6 +277,27 @@ impl Runner<'_> {
         write_rgb(&self.store.file(&name, "png"), width, height, &picture.rgb)?;
         self.store.put(&name, &about)?;
         Ok((picture, about))
+    }
+
+    /// How the photographs of a capture tell those that are left out.
+    fn photographs(&self, subject: &Subject, scene_print: &str) -> Result<Option<Photographs>, SessionError> {
+        if subject.scene.views.len() <= photographs::COUNT {
+            return Ok(None);
+        }
+        let print = self.print_of(subject, scene_print).name();
+        let name = format!("{}-photographs-{print}", file_part(&subject.name));
+        if let Some(mut kept) = self.store.get::<Photographs>(&name) {
+            kept.find_pictures(&name, self.store);
+            if kept.pictures.iter().flatten().all(|file| file.is_file()) {
+                return Ok(Some(kept));
+            }
+        }
+        let memory = PeakMemory::watch();
+        let left_out =
+            subject.input.leave_photographs_out(photographs::COUNT, &self.options.unwrap, self.steps)?;
+        let found = Photographs::of(&subject.scene, &left_out, memory.taken(), &name, self.store)?;
+        self.store.put(&name, &found)?;
+        Ok(Some(found))
     }
 
     /// What the live preview shows as time goes on. The window has no switch for single scattering: not watched then.

@@ -1,6 +1,7 @@
 //! What is told of each scene beside its measurements.
 
 use crate::live::ShownPicture;
+use crate::photographs::Photographs;
 use crate::reference::ReferenceError;
 use lens::Camera;
 use serde::{Deserialize, Serialize};
@@ -41,6 +42,8 @@ pub struct SceneSummary {
     pub focuses: Vec<FocusSummary>,
     /// What the live preview showed of it; empty where it was not watched.
     pub live: Vec<ShownPicture>,
+    /// How its photographs tell those that are left out; none where there are too few.
+    pub photographs: Option<Photographs>,
     /// What was modelled of it.
     pub modelled: ModelledScene,
     /// What is odd but does no harm.

@@ -2,6 +2,7 @@
 
 use crate::findings::EqualError;
 use crate::live::ShownPicture;
+use crate::photographs::{Photographs, ToldPhotograph};
 use crate::plot::{bytes, seconds, significant, with_minus};
 use crate::record::Record;
 use crate::summary::{ModelledScene, SceneSummary};
@@ -94,6 +95,23 @@ pub fn live(pictures: &[ShownPicture]) -> Table {
     for ShownPicture { after, what, size: [width, height], seconds, psnr } in pictures {
         let size = format!("{width} × {height}");
         table.push([after.clone(), what.clone(), size, significant(*seconds), format!("{psnr:.1}")]);
+    }
+    table
+}
+
+/// How photographs tell those that are left out, and all of them together.
+pub fn photographs(photographs: &Photographs) -> Table {
+    let mut table = Table::new(&["photograph", "told by", "#seen", "#PSNR, dB", "#FLIP"]);
+    for ToldPhotograph { photograph, told_by, seen, psnr, flip } in &photographs.told {
+        let seen = format!("{:.1} %", seen * 100.0);
+        table.push([photograph.clone(), told_by.clone(), seen, format!("{psnr:.2}"), format!("{flip:.4}")]);
+    }
+    let mut ways: Vec<&str> = photographs.told.iter().map(|told| told.told_by.as_str()).collect();
+    ways.dedup();
+    ways.truncate(photographs.told.len() / photographs.pictures.len().max(1));
+    for way in ways {
+        let psnr = format!("{:.2}", photographs.together(way));
+        table.push(["all".into(), way.into(), String::new(), psnr, String::new()]);
     }
     table
 }

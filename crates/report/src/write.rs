@@ -86,6 +86,17 @@ fn markdown(report: &Report) -> String {
         );
     }
     for scene in &report.scenes {
+        let Some(photographs) = &scene.photographs else { continue };
+        section(
+            &format!("Photographs that were left out: {}", scene.name),
+            format!(
+                "{}\n{}\n",
+                tables::photographs(photographs).to_markdown(),
+                page::photographs_sentence(photographs)
+            ),
+        );
+    }
+    for scene in &report.scenes {
         let modelled = &scene.modelled;
         section(
             &format!("What was modelled: {}", scene.name),

@@ -19,6 +19,7 @@ mod document;
 mod editing;
 mod error;
 mod jobs;
+mod kept_files;
 mod light_field;
 mod output;
 mod preview;
@@ -37,13 +38,15 @@ pub use document::{
 pub use editing::{FillRegion, StrokePoint, StrokeTarget, rectangle, replay};
 pub use error::SessionError;
 pub use jobs::{JobId, JobProgress, JobStatus, Steps, Waker, guarded};
+pub use kept_files::keep_work_in;
 pub use light_field::{
     ApertureCell, ApertureImage, DENSE_SAMPLE_BYTES, KeptVisibility, LightFieldStore, Modelled, ModelledRow,
-    TexelStatistics, bake, bake_unpacked, keep_light_in, write_salf,
+    TexelStatistics, bake, bake_unpacked, write_salf,
 };
 pub use output::{
-    Aov, BlurHistogram, MOST_CELLS_A_SIDE, Reference, ReferenceKind, RenderCost, RenderOptions, Rendered,
-    Renderer, Verification, VerifiedError, render, render_input, write_unwrapped,
+    Aov, BlurHistogram, LeftOut, LeftOutPicture, MOST_CELLS_A_SIDE, Reference, ReferenceKind, RenderCost,
+    RenderOptions, Rendered, Renderer, ToldBy, Verification, VerifiedError, render, render_input,
+    write_unwrapped,
 };
 pub use preview::{DrawingCosts, PictureTimes, Preview, PreviewActivity, PreviewKind, Quality};
 pub use session::{FullSize, Session, SessionOptions};

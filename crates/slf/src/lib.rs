@@ -22,6 +22,6 @@ mod transport;
 
 pub use irradiance::Irradiance;
 pub use material::Scattering;
-pub use photographs::{Exposure, PhotographError, PhotographLight, PhotographOptions};
+pub use photographs::{Exposure, PhotographError, PhotographLight, PhotographModel, PhotographOptions};
 pub use solving::IrradianceOptions;
 pub use transport::{Transport, TransportOptions};

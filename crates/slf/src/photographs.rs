@@ -11,7 +11,7 @@
 //! toward directions near those of its photographs (`residuals`, interpolated by `directions`). Each part is there as far as photographs
 //! that are left out are told better with it. Where directions are far from all photographs, only the first two remain.
 //!
-//! `budget` decides how fine all is kept. `blocks` has numbers that change slowly over the atlas, `sphere` those that go with direction.
+//! `budget` decides how fine all is kept, `stored` has it as bytes. `blocks` has numbers that change slowly over the atlas, `sphere` those that go with direction.
 
 mod beyond;
 mod blocks;
@@ -25,9 +25,11 @@ mod gains;
 mod kept_picture;
 mod median;
 mod mirrored;
+mod one_view;
 mod residuals;
 mod sightings;
 mod sphere;
+mod stored;
 mod texels;
 
 pub use gains::Exposure;
@@ -41,12 +43,12 @@ use glam::{DVec3, Vec3};
 use mirrored::Mirrored;
 use progress::{Cancelled, Progress, Stage};
 use rayon::prelude::*;
-use residuals::{Residuals, Told};
+use residuals::{Residuals, Ways};
 use scene::{LoadOptions, PictureError, Scene, SurfacePoint, View};
 use sightings::{Reading, Sightings};
 use sphere::Sphere;
 use std::sync::Arc;
-use texels::Texels;
+use texels::{TexelGrid, Texels};
 use trace::{Leaving, Radiance, Tracer};
 
 /// How light is made from photographs.
@@ -54,6 +56,8 @@ use trace::{Leaving, Radiance, Tracer};
 pub struct PhotographOptions {
     /// Limits for each picture.
     pub load: LoadOptions,
+    /// What is told of a texel.
+    pub model: PhotographModel,
     /// Bytes that the work may hold at once, the scene, its hierarchy and the atlas not counted. Photographs and texels are made coarser
     /// where they would not fit.
     pub max_memory: u64,
@@ -62,8 +66,19 @@ pub struct PhotographOptions {
 impl Default for PhotographOptions {
     /// 1.6 GiB.
     fn default() -> Self {
-        Self { load: LoadOptions::default(), max_memory: 1600 << 20 }
+        Self { load: LoadOptions::default(), model: PhotographModel::default(), max_memory: 1600 << 20 }
     }
+}
+
+/// What light from photographs tells of a texel.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum PhotographModel {
+    /// All that the photographs carry.
+    #[default]
+    Light,
+    /// The colour of the one photograph that sees it finest, toward all directions alike: what texturing tools make of a capture, to
+    /// compare with.
+    OneView,
 }
 
 /// Why there is no light from photographs.
@@ -95,13 +110,15 @@ impl From<Cancelled> for PhotographError {
 /// Radiance of a surface as photographs of it show it, kept at the texels of an atlas.
 pub struct PhotographLight {
     scene: Arc<Scene>,
-    texels: Texels,
+    grid: TexelGrid,
     exposures: Vec<Exposure>,
     eyes: Vec<DVec3>,
     /// By texel: what goes toward all directions alike.
     constant: Vec<Vec3>,
     /// By texel, 1 photographed, 0 filled.
     seen: Vec<f32>,
+    /// By texel, how many photographs see it.
+    seeing: Vec<u16>,
     residuals: Residuals,
     /// Cells at infinity, and the light from them.
     sphere: Sphere,
@@ -129,6 +146,7 @@ impl PhotographLight {
             return Err(PhotographError::TooMany { count: views.len() });
         }
         let scene = tracer.scene();
+        let stage = |from, to| Stage::new(progress, from, to);
         let sphere = Sphere::of_rows(128);
         let budget = Budget::of(scene, atlas, views, options.max_memory);
         let texels = Texels::of(scene, atlas, budget.texel_scale);
@@ -139,45 +157,28 @@ impl PhotographLight {
             at_once: budget.at_once,
             sphere: &sphere,
         };
-        let sightings = Sightings::of(scene, &texels, views, &reading, &Stage::new(progress, 0.0, 0.5))?;
-        progress.check()?;
-        let exposures = gains::exposures(&texels, &sightings, &sphere, views);
-        progress.check()?;
+        let mut sightings = Sightings::of(scene, &texels, views, &reading, &stage(0.0, 0.25))?;
+        let exposures = gains::exposures(&texels, &sightings, &sphere, views, &stage(0.25, 0.33))?;
         let eyes: Vec<DVec3> = views.iter().map(View::position).collect();
-        let radiance = Calibrated { texels: &texels, sightings: &sightings, views, exposures: &exposures };
-        let (mut constant, seen): (Vec<Vec3>, Vec<f32>) = (0..texels.count())
-            .into_par_iter()
-            .map_init(
-                || (Vec::new(), Vec::new()),
-                |(samples, belonging), texel| {
-                    radiance.samples_into(texel, samples);
-                    let evidence: f32 = samples.iter().map(|sample| sample.weight).sum();
-                    (robust_mean(samples, belonging), (evidence / 0.25).min(1.0))
-                },
-            )
-            .unzip();
-        let (mirrored, beside_mirrored) = Mirrored::of(&radiance, &constant);
-        let told = Told {
-            radiance: &radiance,
-            plain: &constant,
-            beside_mirrored: &beside_mirrored,
-            mirrored: &mirrored,
+        sightings.undo(&texels, views, &exposures);
+        let radiance = Calibrated { texels: &texels, sightings: &sightings, eyes: &eyes };
+        let seeing = (0..texels.count()).map(|texel| sightings.range(texel).len() as u16).collect();
+        let Told { constant, seen, mirrored, residuals } = match options.model {
+            PhotographModel::Light => told(&radiance, &stage(0.33, 0.98))?,
+            PhotographModel::OneView => one_view::told(&radiance),
         };
-        let (share, residuals) = told.residuals();
-        for ((constant, beside), share) in constant.iter_mut().zip(beside_mirrored).zip(&share) {
-            *constant = constant.lerp(beside, *share);
-        }
-        let mirrored = mirrored.scaled(&share);
+        let mut constant = constant;
         let beyond = beyond::beyond(&sphere, views, &exposures, &sightings.pictures, &sightings.beyond);
         filling::fill(&texels, &seen, &mut constant);
         progress.report(1.0);
         Ok(Self {
             scene: scene.clone(),
-            texels,
+            grid: texels.grid,
             exposures,
             eyes,
             constant,
             seen,
+            seeing,
             residuals,
             mirrored,
             sphere,
@@ -195,22 +196,67 @@ impl PhotographLight {
         self.interpolated(point, |texel| self.seen[texel])
     }
 
+    /// How many photographs see a point, at least; glancing and blocked ones not counted.
+    pub fn seeing(&self, point: SurfacePoint) -> u16 {
+        let around = self.grid.around(point).into_iter().flatten();
+        around
+            .filter(|(_, share)| *share > 0.0)
+            .map(|(texel, _)| self.seeing[texel as usize])
+            .min()
+            .unwrap_or(0)
+    }
+
     /// What a point sends toward all directions alike.
     pub fn constant(&self, point: SurfacePoint) -> Vec3 {
-        self.texels.around(point).map_or(Vec3::ZERO, |around| {
+        self.grid.around(point).map_or(Vec3::ZERO, |around| {
             around.iter().map(|&(texel, share)| self.constant[texel as usize] * share).sum()
         })
     }
 
     fn interpolated(&self, point: SurfacePoint, of: impl Fn(usize) -> f32) -> f32 {
-        let around = self.texels.around(point);
+        let around = self.grid.around(point);
         around.map_or(0.0, |around| around.iter().map(|&(texel, share)| of(texel as usize) * share).sum())
     }
 }
 
+/// What is told of the texels that photographs see.
+struct Told {
+    constant: Vec<Vec3>,
+    /// 1 photographed, 0 not.
+    seen: Vec<f32>,
+    mirrored: Mirrored,
+    residuals: Residuals,
+}
+
+/// Evidence of a texel (weights of its samples, summed) from which on it counts as photographed.
+const SEEN: f32 = 0.25;
+
+fn told(radiance: &Calibrated<'_>, progress: &dyn Progress) -> Result<Told, Cancelled> {
+    let (mut constant, seen): (Vec<Vec3>, Vec<f32>) = (0..radiance.texels.count())
+        .into_par_iter()
+        .map_init(
+            || (Vec::new(), Vec::new()),
+            |(samples, belonging), texel| {
+                radiance.samples_into(texel, samples);
+                let evidence: f32 = samples.iter().map(|sample| sample.weight).sum();
+                (robust_mean(samples, belonging), (evidence / SEEN).min(1.0))
+            },
+        )
+        .unzip();
+    progress.report(0.15);
+    let (mirrored, beside_mirrored) = Mirrored::of(radiance, &constant, &Stage::new(progress, 0.15, 0.45))?;
+    let ways = Ways { radiance, plain: &constant, beside_mirrored: &beside_mirrored, mirrored: &mirrored };
+    let (share, residuals) = ways.residuals(&Stage::new(progress, 0.45, 1.0))?;
+    for ((constant, beside), share) in constant.iter_mut().zip(beside_mirrored).zip(&share) {
+        *constant = constant.lerp(beside, *share);
+    }
+    let mirrored = mirrored.scaled(&share);
+    Ok(Told { constant, seen, mirrored, residuals })
+}
+
 impl Radiance for PhotographLight {
     fn leaving(&self, point: SurfacePoint, eye: DVec3) -> Leaving {
-        let Some(around) = self.texels.around(point) else { return Leaving::default() };
+        let Some(around) = self.grid.around(point) else { return Leaving::default() };
         let position = point.position(&self.scene);
         let outgoing = toward(position, eye);
         let normal = self.scene.shading_normal(point).as_vec3();

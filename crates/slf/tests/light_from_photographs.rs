@@ -271,3 +271,26 @@ fn nothing_comes_of_no_photographs_and_of_what_is_stopped() {
     assert!(matches!(solve(&[], &Unwatched), Err(PhotographError::None)));
     assert!(matches!(solve(&photographs.views, &Stopped), Err(PhotographError::Cancelled)));
 }
+
+#[test]
+fn light_comes_back_from_its_bytes_and_from_no_others() {
+    let tracer = tracer();
+    let photographs = Photographs::take("stored", &tracer, matte, false);
+    let scene = Arc::new(Scene { views: photographs.views.clone(), ..Scene::clone(tracer.scene()) });
+    let tracer = Tracer::new(scene.clone());
+    let light = solve(&tracer, &photographs.views);
+    let bytes = light.to_bytes();
+    let again = PhotographLight::from_bytes(&bytes, &scene).unwrap();
+    assert_eq!(again.to_bytes(), bytes);
+    assert_eq!(again.exposures(), light.exposures());
+    let eye = DVec3::new(0.3, 2.0, 1.5);
+    for (x, z) in [(0.1, 0.2), (-1.7, 1.1), (1.9, -1.9)] {
+        let [a, b] = [&light, &again].map(|light| light.leaving(floor(x, z), eye));
+        assert_eq!((a.own, a.carried), (b.own, b.carried));
+    }
+    for length in (0..bytes.len()).step_by(bytes.len() / 97) {
+        assert!(PhotographLight::from_bytes(&bytes[..length], &scene).is_none(), "{length}");
+    }
+    let other = Arc::new(Scene { triangles: scene.triangles[1..].to_vec(), ..Scene::clone(&scene) });
+    assert!(PhotographLight::from_bytes(&bytes, &other).is_none());
+}

@@ -6,8 +6,9 @@ pub mod plots;
 use crate::findings::equal_errors;
 use crate::machine::Machine;
 use crate::markup::escaped;
+use crate::photographs::{Photographs, Sparse};
 use crate::plan::cost_note;
-use crate::plot::{Chart, bytes, significant};
+use crate::plot::{Chart, bytes, seconds, significant};
 use crate::record::{Record, Series};
 use crate::report::{Measured, Report};
 use crate::summary::{ModelledScene, SceneSummary};
@@ -136,12 +137,47 @@ fn scene_section(scene: &SceneSummary, measured: &[Measured]) -> Result<String, 
             figure(&plots::live(&scene.live))
         );
     }
+    if let Some(photographs) = &scene.photographs {
+        html += &format!(
+            "<h3>Photographs that were left out</h3>\n{}<p class=\"caption\">{}</p>\n{}",
+            tables::photographs(photographs).to_html(),
+            escaped(&photographs_sentence(photographs)),
+            pictures::left_out(photographs)?
+        );
+    }
     html += &format!(
         "<h3>What was modelled</h3>\n{}<p class=\"caption\">{}</p>\n",
         tables::modelled(&scene.modelled).to_html(),
         escaped(&saving_sentence(&scene.modelled))
     );
     Ok(html)
+}
+
+/// What is told of photographs that were left out.
+pub fn photographs_sentence(photographs: &Photographs) -> String {
+    let Photographs { count, seconds: took, peak_bytes, sparse, .. } = photographs;
+    let mut text = format!(
+        "Of {count} photographs some are left out and told by the others: by their light, by the part of it that goes toward all \
+         directions alike, and by the texture that one photograph a texel makes. Measured where others see the surface, a gain a channel \
+         fitted to the light. The light took {}",
+        seconds(*took)
+    );
+    if let Some(peak) = peak_bytes {
+        text += &format!(" and {}", bytes(*peak as f64));
+    }
+    text += ".";
+    if let Some(Sparse { depth, spacing, ghost_free: [near, far] }) = sparse {
+        let told = |depth: &Option<f64>| depth.map_or_else(|| "infinity".into(), significant);
+        text += &format!(
+            " As a light field of views that are shifted and added up, photographs {} apart would show what lies at {} without \
+             ghosts only if focused between {} and {}. The surface light field has no such bound.",
+            significant(*spacing),
+            significant(*depth),
+            told(near),
+            told(far),
+        );
+    }
+    text
 }
 
 /// A plot, and what has no place in it.

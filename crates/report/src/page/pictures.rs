@@ -2,6 +2,7 @@
 
 use crate::contender::Contender;
 use crate::markup::escaped;
+use crate::photographs::Photographs;
 use crate::plot::{seconds, significant};
 use crate::record::Record;
 use crate::report::Measured;
@@ -97,6 +98,23 @@ fn ghosting(camera: &Camera, record: &Record) -> String {
          unpainted those of depths outside {} to {far}",
         significant(nearest)
     )
+}
+
+/// Photographs that were left out above what light tells of them.
+pub fn left_out(photographs: &Photographs) -> Result<String, SessionError> {
+    let mut html = String::from("<div class=\"pictures\">\n");
+    let light = photographs.told.iter().filter(|told| told.told_by == "light");
+    for (told, [photograph, shown]) in light.zip(&photographs.pictures) {
+        let name = escaped(&told.photograph);
+        html += &format!(
+            "<figure>{}{}<figcaption><b>{name}</b>, and below it the light of the others: {:.1} dB, FLIP {:.4}</figcaption></figure>\n",
+            image(photograph, &told.photograph)?,
+            image(shown, &format!("{} by the light of the others", told.photograph))?,
+            told.psnr,
+            told.flip
+        );
+    }
+    Ok(html + "</div>\n")
 }
 
 /// A picture as an element that needs no other file.

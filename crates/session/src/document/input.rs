@@ -1,6 +1,7 @@
 //! What can be opened: a scene, a project or a light field, as the renderers need it.
 
 use super::capture_scene::{CaptureScene, PHOTOGRAPH, camera_of_photograph, load_capture, photograph};
+use super::kept_atlas::unwrapped;
 use super::scene_camera::camera_of;
 use super::stage::{Stage, atlas_error, load_variant};
 use super::variant_choice::VariantChoice;
@@ -343,7 +344,7 @@ impl Input {
         let stored = self.project.as_ref().and_then(|project| project.atlas.as_ref());
         let atlas = match stored {
             Some(bytes) => Atlas::from_bytes(bytes, &self.scene),
-            None => Atlas::unwrap(&self.scene, unwrap, &*steps.begin("unwrapping")),
+            None => unwrapped(&self.scene, unwrap, &*steps.begin("unwrapping")),
         };
         Ok(Arc::new(atlas.map_err(|error| atlas_error(&self.path, error))?))
     }

@@ -1,7 +1,7 @@
 //! What stays while a document is open: the scene, its atlas and what answers rays and dabs on it.
 
-use super::light_hash::light_hash;
 use super::picking::SurfaceHit;
+use super::scene_hashes::light_hash;
 use crate::error::SessionError;
 use crate::light_field::keep_photographs_at;
 use atlas::{Atlas, AtlasError, TexelMap};

@@ -8,7 +8,6 @@ use super::scene_work::SceneWork;
 use progress::{Cancelled, Progress, Stage};
 use scene::World;
 use slf::{Irradiance, IrradianceOptions, Scattering, Transport, TransportOptions};
-use std::path::PathBuf;
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError, Weak};
 use trace::Tracer;
 
@@ -19,14 +18,6 @@ struct Kept {
     rough: OnceLock<Arc<Irradiance>>,
     irradiance: OnceLock<Arc<Irradiance>>,
     work: Arc<SceneWork>,
-}
-
-/// Where light is kept from one run of the program to the next.
-static FOLDER: OnceLock<PathBuf> = OnceLock::new();
-
-/// Has light kept in a folder from one run of the program to the next; the first one that is named counts.
-pub fn keep_light_in(folder: PathBuf) {
-    let _ = FOLDER.set(folder);
 }
 
 /// Worlds that are kept of one scene: that one looks at, and that one turns back to.
@@ -124,9 +115,10 @@ const OWN_REFERENCES: usize = 1;
 
 fn solve(kept: &Kept, tracer: &Arc<Tracer>, progress: &dyn Progress) -> Result<(), Cancelled> {
     let options = IrradianceOptions::default();
-    let file = FOLDER.get().and_then(|folder| light_file::path(folder, tracer.scene(), &kept.world, options));
-    let read = |file: &PathBuf| light_file::read(file, tracer.scene(), &kept.world, options);
-    if let Some(found) = file.as_ref().and_then(read) {
+    let (scene, world) = (tracer.scene(), &kept.world);
+    let file = light_file::FILES.file(|hash| light_file::add_origin(hash, scene, world, options));
+    let found = file.as_ref().and_then(|file| light_file::FILES.read(file));
+    if let Some(found) = found.and_then(|bytes| light_file::of_bytes(&bytes, scene, world, options)) {
         let _ = kept.irradiance.set(Arc::new(found));
         return Ok(());
     }
@@ -136,7 +128,7 @@ fn solve(kept: &Kept, tracer: &Arc<Tracer>, progress: &dyn Progress) -> Result<(
     let _ = kept.rough.set(Arc::new(rough));
     let fine = Irradiance::solve(&transport, options, progress)?;
     if let Some(file) = &file {
-        light_file::write(file, &fine);
+        light_file::FILES.write(file, &light_file::to_bytes(&fine));
     }
     let _ = kept.irradiance.set(Arc::new(fine));
     Ok(())

@@ -1,9 +1,12 @@
-//! Light from photographs, by scene: made once.
+//! Light from photographs, by scene: made once, and kept from one run of the program to the next.
 
 use super::scene_work::SceneWork;
+use crate::document::{photographs_hash, unwrapped};
 use crate::error::SessionError;
+use crate::kept_files::KeptFiles;
 use atlas::{Atlas, UnwrapOptions};
 use progress::Progress;
+use sha2::Digest;
 use slf::{PhotographLight, PhotographOptions};
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError, Weak};
 use trace::Tracer;
@@ -79,15 +82,31 @@ fn begun(tracer: &Arc<Tracer>) -> Arc<Kept> {
     kept
 }
 
+/// Tens of megabytes each: some four bytes a texel and photograph that sees it.
+const FILES: KeptFiles = KeptFiles { name: "photographs", budget_bytes: 2 << 30 };
+
 fn solve(kept: &Kept, tracer: &Arc<Tracer>, progress: &dyn Progress) -> Result<Arc<PhotographLight>, String> {
     let scene = tracer.scene();
+    let options = PhotographOptions::default();
+    let file = FILES.file(|hash| {
+        hash.update(photographs_hash(scene));
+        hash.update(format!("{options:?} {:?}", kept.atlas.get().map(|atlas| &atlas.hash)));
+    });
+    let found = file.as_ref().and_then(|file| FILES.read(file));
+    if let Some(light) = found.and_then(|bytes| PhotographLight::from_bytes(&bytes, scene)) {
+        return Ok(Arc::new(light));
+    }
     let atlas = match kept.atlas.get() {
         Some(atlas) => atlas.clone(),
         None => {
-            let made = Atlas::unwrap(scene, &UnwrapOptions::default(), progress);
+            let made = unwrapped(scene, &UnwrapOptions::default(), progress);
             Arc::new(made.map_err(|error| format!("{}: {error}", scene.path.display()))?)
         }
     };
-    let made = PhotographLight::solve(tracer, &atlas, &scene.views, &PhotographOptions::default(), progress);
-    made.map(Arc::new).map_err(|error| error.to_string())
+    let made = PhotographLight::solve(tracer, &atlas, &scene.views, &options, progress);
+    let light = made.map_err(|error| error.to_string())?;
+    if let Some(file) = file {
+        FILES.write(&file, &light.to_bytes());
+    }
+    Ok(Arc::new(light))
 }

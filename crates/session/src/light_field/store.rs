@@ -6,12 +6,13 @@
 
 use super::salf_file::write_salf;
 use crate::document::Stage;
+use crate::kept_files::{build, tidy};
 use lens::{Aperture, Camera};
 use salf::{Carried, Salf, SalfFile};
 use sha2::{Digest, Sha256};
 use std::fs::File;
 use std::io::BufReader;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, SystemTime};
 
@@ -91,67 +92,12 @@ impl LightFieldStore {
         let Some(path) = self.file(stage, &salf.camera) else { return };
         let made = std::fs::create_dir_all(&self.folder).is_ok();
         if made && write_salf(&path, &stage.scene.path, &stage.scene, salf).is_ok() {
-            self.tidy(&path);
+            tidy(&self.folder, "salf", self.budget_bytes, &path);
         }
     }
-
-    /// Removes the oldest files beyond the budget, but not the `newest`.
-    fn tidy(&self, newest: &Path) {
-        let Ok(listing) = std::fs::read_dir(&self.folder) else { return };
-        let known = |path: &PathBuf| path.extension().is_some_and(|extension| extension == "salf");
-        let paths = listing.filter_map(|entry| Some(entry.ok()?.path())).filter(known);
-        let mut files: Vec<_> = paths
-            .filter_map(|path| {
-                let data = path.metadata().ok()?;
-                Some((data.modified().ok()?, data.len(), path))
-            })
-            .collect();
-        files.sort();
-        let mut bytes: u64 = files.iter().map(|(_, bytes, _)| bytes).sum();
-        for (_, size, path) in files.iter().filter(|(.., path)| path != newest) {
-            if bytes <= self.budget_bytes {
-                return;
-            }
-            if std::fs::remove_file(path).is_ok() {
-                bytes -= size;
-            }
-        }
-    }
-}
-
-/// Tells this build of the program from others, which may bake otherwise.
-pub(super) fn build() -> Option<String> {
-    let program = std::env::current_exe().and_then(std::fs::metadata).ok()?;
-    let modified = program.modified().ok()?.duration_since(SystemTime::UNIX_EPOCH).ok()?;
-    Some(format!("{} {modified:?}", program.len()))
 }
 
 /// What all cameras have in common that a light field serves, but for smaller apertures.
 fn common(camera: &Camera) -> Camera {
     Camera { focus_distance: f64::INFINITY, aperture: Aperture::default(), ..camera.clone() }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn what_was_not_looked_for_the_longest_goes_first() {
-        let folder = tempfile::tempdir().unwrap();
-        let store = LightFieldStore { budget_bytes: 250, ..LightFieldStore::new(folder.path().into()) };
-        let write = |name: &str, age: u64| {
-            let path = folder.path().join(name);
-            std::fs::write(&path, [0; 100]).unwrap();
-            let file = File::options().write(true).open(&path).unwrap();
-            file.set_modified(SystemTime::now() - Duration::from_secs(age)).unwrap();
-            path
-        };
-        let (old, young) = (write("old.salf", 90), write("young.salf", 20));
-        let other = write("notes.txt", 500);
-        let newest = write("newest.salf", 100);
-        store.tidy(&newest);
-        assert!(!old.exists() && young.exists() && newest.exists() && other.exists());
-        store.tidy(&newest);
-        assert!(young.exists(), "what is left is within the budget");
-    }
 }

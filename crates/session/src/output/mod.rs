@@ -4,6 +4,7 @@
 
 mod aov;
 mod blur_histogram;
+mod left_out;
 mod photograph_picture;
 mod reference;
 mod render;
@@ -13,6 +14,7 @@ mod verification;
 
 pub use aov::Aov;
 pub use blur_histogram::BlurHistogram;
+pub use left_out::{LeftOut, LeftOutPicture, ToldBy};
 pub use reference::{Reference, ReferenceKind};
 pub use render::{MOST_CELLS_A_SIDE, RenderCost, RenderOptions, Rendered, render, render_input};
 pub use renderer::Renderer;

@@ -15,7 +15,7 @@ use std::sync::Arc;
 use trace::{Radiance, Tracer};
 
 /// From here on a point counts as photographed.
-const SEEN: f32 = 0.5;
+pub(super) const SEEN: f32 = 0.5;
 
 impl Input {
     /// The photograph of a capture as its camera ([`camera_of_photograph`]) would show it, and the layer `seen`: 1 where others have
@@ -35,28 +35,38 @@ impl Input {
         self.tell_atlas(&tracer)?;
         let light = photograph_light(&tracer, &*steps.begin("light"))?;
         let camera = camera_of_photograph(scene, view, &self.camera);
-        let shown =
-            view.photograph(&LoadOptions::default()).map_err(|e| SessionError::BadInput(e.to_string()))?;
-        let seen = seen(&tracer, &camera, steps)?;
-        let place = Place { camera: &camera, view, shown: &shown };
-        let exposure = match scene.views.iter().position(|other| other.name == view.name) {
-            Some(index) => light.exposures()[index],
-            None => place.fitted(&tracer, &light, &seen),
-        };
-        let pixels: Vec<_> = (0..camera.width * camera.height).into_par_iter().map(|n| place.at(n)).collect();
-        let radiance = |found: &Option<(DVec2, Vec3)>| {
-            found.map_or([0.0; 3], |(at, value)| (value * exposure.to_radiance(view, at)).to_array())
-        };
-        let seen = pixels.iter().zip(seen).map(|(found, seen)| if found.is_some() { seen } else { 0.0 });
-        let layer = Layer { name: "seen".into(), values: seen.collect() };
-        let picture = Picture {
-            width: camera.width,
-            height: camera.height,
-            radiance: pixels.iter().map(radiance).collect(),
-            coverage: vec![1.0; pixels.len()],
-        };
-        Ok((picture, vec![layer]))
+        photograph_picture(view, &camera, &tracer, &light)
     }
+}
+
+/// The photograph `view` as `camera` ([`camera_of_photograph`] of it) shows it, beside light from others or itself too.
+pub(super) fn photograph_picture(
+    view: &View,
+    camera: &Camera,
+    tracer: &Tracer,
+    light: &PhotographLight,
+) -> Result<(Picture, Vec<Layer>), SessionError> {
+    let shown =
+        view.photograph(&LoadOptions::default()).map_err(|e| SessionError::BadInput(e.to_string()))?;
+    let seen = seen(tracer, camera, light);
+    let place = Place { camera, view, shown: &shown };
+    let exposure = match tracer.scene().views.iter().position(|other| other.name == view.name) {
+        Some(index) => light.exposures()[index],
+        None => place.fitted(tracer, light, &seen),
+    };
+    let pixels: Vec<_> = (0..camera.width * camera.height).into_par_iter().map(|n| place.at(n)).collect();
+    let radiance = |found: &Option<(DVec2, Vec3)>| {
+        found.map_or([0.0; 3], |(at, value)| (value * exposure.to_radiance(view, at)).to_array())
+    };
+    let seen = pixels.iter().zip(seen).map(|(found, seen)| if found.is_some() { seen } else { 0.0 });
+    let layer = Layer { name: "seen".into(), values: seen.collect() };
+    let picture = Picture {
+        width: camera.width,
+        height: camera.height,
+        radiance: pixels.iter().map(radiance).collect(),
+        coverage: vec![1.0; pixels.len()],
+    };
+    Ok((picture, vec![layer]))
 }
 
 /// A photograph, and the camera that it is shown by.

@@ -16,6 +16,7 @@ use project::Layer;
 use rayon::prelude::*;
 use salf::{BakeOptions, Salf, SalfStatistics};
 use serde::Serialize;
+use slf::PhotographLight;
 use splat::{Gpu, Splatter, Tolerance};
 use std::sync::Arc;
 use std::time::Instant;
@@ -311,7 +312,10 @@ fn finish(
     let asks = options.aovs.iter().any(|aov| aov.needs_first_hits());
     let hits = asks.then(|| first_hits(tracer, camera, focus, steps)).transpose()?;
     let is_seen_asked = options.aovs.contains(&Aov::Seen) && is_photographed(tracer);
-    let seen = is_seen_asked.then(|| seen(tracer, camera, steps)).transpose()?;
+    let seen = match is_seen_asked {
+        true => Some(seen(tracer, camera, &*photograph_light(tracer, &*steps.begin("light"))?)),
+        false => None,
+    };
     let (hits, estimate, seen) = (hits.as_ref(), estimate.as_ref(), seen.as_deref());
     let known = Known { picture: &picture, hits, estimate, seen, camera };
     let layers = options.aovs.iter().flat_map(|aov| aov.layers(&known)).collect();
@@ -325,17 +329,12 @@ pub(super) fn pixel_ray(camera: &Camera, number: u32) -> Ray {
 }
 
 /// How far the surface along each pixel's chief ray was photographed.
-pub(super) fn seen(
-    tracer: &Arc<Tracer>,
-    camera: &Camera,
-    steps: &dyn Steps,
-) -> Result<Vec<f32>, SessionError> {
-    let light = photograph_light(tracer, &*steps.begin("light"))?;
+pub(super) fn seen(tracer: &Tracer, camera: &Camera, light: &PhotographLight) -> Vec<f32> {
     let of_pixel = |number: u32| {
         let hit = tracer.first_hit(&pixel_ray(camera, number));
         hit.map_or(0.0, |hit| light.seen(hit.point))
     };
-    Ok((0..camera.width * camera.height).into_par_iter().map(of_pixel).collect())
+    (0..camera.width * camera.height).into_par_iter().map(of_pixel).collect()
 }
 
 fn first_hits(

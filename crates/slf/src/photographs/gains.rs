@@ -21,11 +21,13 @@ use super::sightings::{Sighting, Sightings};
 use super::sphere::Sphere;
 use super::texels::Texels;
 use glam::{DVec2, Vec3};
+use progress::{Cancelled, Progress};
 use rayon::prelude::*;
 use scene::View;
 
 /// How a photograph renders light.
-#[derive(Clone, Copy, Debug, PartialEq, Default)]
+#[derive(Clone, Copy, Debug, PartialEq, Default, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
 pub struct Exposure {
     /// Gain of red, green and blue, stops; the mean over all photographs is 0 in each channel.
     pub gain_stops: [f64; 3],
@@ -38,6 +40,19 @@ impl Exposure {
     pub fn to_radiance(&self, view: &View, pixel: DVec2) -> Vec3 {
         let falloff = self.falloff_stops(view, pixel);
         Vec3::from_array(self.gain_stops.map(|gain| (-(gain + falloff)).exp2() as f32))
+    }
+
+    /// The most that [`Self::to_radiance`] can be in the picture, of any channel.
+    pub(crate) fn most_to_radiance(&self, view: &View) -> f32 {
+        // k₁·r² + k₂·r⁴ over r² in [0, most] is least at an end or where its slope is 0.
+        let [k1, k2] = self.vignetting_stops;
+        let size = DVec2::from(view.lens.size_px().map(f64::from));
+        let corners = [DVec2::ZERO, size, DVec2::new(size.x, 0.0), DVec2::new(0.0, size.y)];
+        let most = corners.map(|corner| radius_squared(view, corner)).into_iter().fold(0.0, f64::max);
+        let turn = if k2 > 0.0 { (-k1 / (2.0 * k2)).clamp(0.0, most) } else { 0.0 };
+        let falloff = [0.0, most, turn].map(|r2| (k1 + k2 * r2) * r2).into_iter().fold(0.0, f64::min);
+        let gain = self.gain_stops.into_iter().fold(f64::INFINITY, f64::min);
+        (-(gain + falloff)).exp2() as f32
     }
 
     fn falloff_stops(&self, view: &View, pixel: DVec2) -> f64 {
@@ -86,7 +101,8 @@ pub(crate) fn exposures(
     sightings: &Sightings,
     sphere: &Sphere,
     views: &[View],
-) -> Vec<Exposure> {
+    progress: &dyn Progress,
+) -> Result<Vec<Exposure>, Cancelled> {
     let lens_of = lenses(views);
     let lens_count = lens_of.iter().max().map_or(0, |most| most + 1);
     let shared: Vec<usize> =
@@ -109,6 +125,8 @@ pub(crate) fn exposures(
     }
     let mut scales = [1.0; 2];
     for round in 0..ROUNDS {
+        progress.check()?;
+        progress.report(round as f32 / ROUNDS as f32);
         let system = System { unknowns, views: views.len(), lens_of: &lens_of };
         let (mut matrix, mut right) = (vec![0.0; unknowns * unknowns], vec![0.0; unknowns]);
         // What agrees better says more: by the square of its scale.
@@ -151,12 +169,12 @@ pub(crate) fn exposures(
         (0..views.len()).map(|view| solution[3 * view + channel]).sum::<f64>() / views.len().max(1) as f64
     };
     let mean = [mean(0), mean(1), mean(2)];
-    (0..views.len())
+    Ok((0..views.len())
         .map(|view| Exposure {
             gain_stops: std::array::from_fn(|channel| solution[3 * view + channel] - mean[channel]),
             vignetting_stops: std::array::from_fn(|k| solution[3 * views.len() + 2 * lens_of[view] + k]),
         })
-        .collect()
+        .collect())
 }
 
 /// Views with the same lens have the same number.

@@ -25,15 +25,17 @@ use super::constant::{Sample, robust_mean};
 use super::directions::toward;
 use super::sphere::Sphere;
 use glam::{DVec3, Vec3};
+use progress::{Cancelled, Progress};
 use rayon::prelude::*;
 
 /// E and s.
+#[derive(Debug, PartialEq)]
 pub(crate) struct Mirrored {
-    sphere: Sphere,
+    pub sphere: Sphere,
     /// E by cell.
-    surroundings: Vec<Vec3>,
+    pub surroundings: Vec<Vec3>,
     /// s by texel.
-    strength: Vec<f32>,
+    pub strength: Vec<f32>,
 }
 
 /// Rows of the sphere: 1.4° each, about the sharpest gloss that a mesh's normals leave sharp.
@@ -48,24 +50,36 @@ const HOLD: f32 = 0.02;
 const MOST: f32 = 25.0;
 
 impl Mirrored {
+    /// Nothing, of so many texels.
+    pub fn none(texels: usize) -> Self {
+        let sphere = Sphere::of_rows(1);
+        Self { sphere, surroundings: vec![Vec3::ZERO; sphere.count()], strength: vec![0.0; texels] }
+    }
+
     /// Finds what is mirrored, given the constant part without it; also returns the constant part beside it.
-    pub fn of(radiance: &Calibrated<'_>, constant: &[Vec3]) -> (Self, Vec<Vec3>) {
+    pub fn of(
+        radiance: &Calibrated<'_>,
+        constant: &[Vec3],
+        progress: &dyn Progress,
+    ) -> Result<(Self, Vec<Vec3>), Cancelled> {
         let texels = radiance.texels;
         let sphere = Sphere::of_rows(ROWS);
         let step = texels.count().div_ceil(ASKED).max(1);
         let asked: Vec<Asked> = (0..texels.count())
             .into_par_iter()
             .step_by(step)
-            .filter_map(|texel| Asked::of(radiance, texel, constant[texel]))
+            .filter_map(|texel| Asked::of(radiance, &sphere, texel, constant[texel]))
             .collect();
         let mut surroundings = vec![Vec3::ZERO; sphere.count()];
         let mut asked = asked;
-        for _ in 0..TURNS {
+        for turn in 0..TURNS {
+            progress.check()?;
+            progress.report(0.8 * turn as f32 / TURNS as f32);
             surroundings = looked_up(&sphere, &asked, &surroundings);
             asked.par_iter_mut().for_each_init(
                 || (Vec::new(), Vec::new()),
                 |(samples, belonging), point| {
-                    point.constant = point.without(&sphere, &surroundings, samples, belonging);
+                    point.constant = point.without(&surroundings, samples, belonging);
                 },
             );
         }
@@ -85,7 +99,7 @@ impl Mirrored {
                 *constant = robust_mean(samples, belonging).max(Vec3::ZERO);
             },
         );
-        (mirrored, constant)
+        Ok((mirrored, constant))
     }
 
     /// The same with less of it: as much of each texel as `share` says, in [0, 1].
@@ -123,8 +137,8 @@ impl Mirrored {
         let sums: Vec<(usize, f32, f32)> = (0..texels.count())
             .into_par_iter()
             .filter_map(|texel| {
-                let point = Asked::of(radiance, texel, constant[texel])?;
-                let (product, square) = point.covariance(&self.sphere, &self.surroundings);
+                let point = Asked::of(radiance, &self.sphere, texel, constant[texel])?;
+                let (product, square) = point.covariance(&self.surroundings);
                 Some((blocks.of_texel(texels, texel), product, square))
             })
             .collect();
@@ -157,16 +171,19 @@ struct Asked {
     seen: Vec<Seen>,
 }
 
-/// A sample and where its mirrored direction points.
+/// A sample and the cells around its mirrored direction.
 struct Seen {
     sample: Sample,
     is_clipped: bool,
-    direction: Vec3,
+    around: Cells,
     share: f32,
 }
 
+/// Four cells and their shares.
+type Cells = [(u32, f32); 4];
+
 impl Asked {
-    fn of(radiance: &Calibrated<'_>, texel: usize, constant: Vec3) -> Option<Self> {
+    fn of(radiance: &Calibrated<'_>, sphere: &Sphere, texel: usize, constant: Vec3) -> Option<Self> {
         let sightings = radiance.sightings.of_texel(texel);
         if sightings.len() < 3 {
             return None;
@@ -177,30 +194,25 @@ impl Asked {
         radiance.samples_into(texel, &mut samples);
         let seen = samples.iter().zip(sightings).map(|(&sample, sighting)| {
             let (direction, share) = reflection(normal, toward(from, radiance.eye(sighting)));
-            Seen { sample, is_clipped: sighting.clipped() > 0.0, direction, share }
+            let around = sphere.around(direction).map(|(cell, weight)| (cell as u32, weight));
+            Seen { sample, is_clipped: sighting.clipped() > 0.0, around, share }
         });
         Some(Self { constant, seen: seen.collect() })
     }
 
     /// The mean of what remains without the surroundings.
-    fn without(
-        &self,
-        sphere: &Sphere,
-        surroundings: &[Vec3],
-        samples: &mut Vec<Sample>,
-        belonging: &mut Vec<f32>,
-    ) -> Vec3 {
+    fn without(&self, surroundings: &[Vec3], samples: &mut Vec<Sample>, belonging: &mut Vec<f32>) -> Vec3 {
         samples.clear();
         samples.extend(self.seen.iter().map(|seen| {
-            let light = seen.sample.light - seen.mirrored(sphere, surroundings);
+            let light = seen.sample.light - seen.mirrored(surroundings);
             Sample { light, weight: seen.sample.weight }
         }));
         robust_mean(samples, belonging).max(Vec3::ZERO)
     }
 
     /// Product and square of `strengths`.
-    fn covariance(&self, sphere: &Sphere, surroundings: &[Vec3]) -> (f32, f32) {
-        let told: Vec<Vec3> = self.seen.iter().map(|seen| seen.mirrored(sphere, surroundings)).collect();
+    fn covariance(&self, surroundings: &[Vec3]) -> (f32, f32) {
+        let told: Vec<Vec3> = self.seen.iter().map(|seen| seen.mirrored(surroundings)).collect();
         let (mut light, mut mirrored, mut weights) = (Vec3::ZERO, Vec3::ZERO, 0.0);
         for (seen, told) in self.seen.iter().zip(&told) {
             light += seen.sample.light * seen.sample.weight;
@@ -217,9 +229,9 @@ impl Asked {
 }
 
 impl Seen {
-    fn mirrored(&self, sphere: &Sphere, surroundings: &[Vec3]) -> Vec3 {
-        let around = sphere.around(self.direction);
-        around.iter().map(|&(cell, weight)| surroundings[cell] * weight).sum::<Vec3>() * self.share
+    fn mirrored(&self, surroundings: &[Vec3]) -> Vec3 {
+        self.around.iter().map(|&(cell, weight)| surroundings[cell as usize] * weight).sum::<Vec3>()
+            * self.share
     }
 }
 
@@ -235,14 +247,15 @@ fn looked_up(sphere: &Sphere, asked: &[Asked], before: &[Vec3]) -> Vec<Vec3> {
             let mut sums = vec![(Vec3::ZERO, 0.0f32); sphere.count()];
             for point in points {
                 for seen in &point.seen {
-                    let known = seen.mirrored(sphere, before);
+                    let known = seen.mirrored(before);
                     let left = seen.sample.light - point.constant;
                     if seen.is_clipped && known.cmpge(left).all() {
                         continue;
                     }
                     let off = (left - known).length() / (SCALE * (0.05 + point.constant.length()).sqrt());
                     let trust = seen.sample.weight * seen.share / (1.0 + off * off);
-                    for (cell, weight) in sphere.around(seen.direction) {
+                    for (cell, weight) in seen.around {
+                        let cell = cell as usize;
                         let sum = &mut sums[cell];
                         // Toward the old value: what the other three cells tell is taken away.
                         sum.0 += (left - known + before[cell] * seen.share) * (trust * weight);

@@ -10,22 +10,26 @@ use super::constant::Sample;
 use super::directions::{Kernel, Known, MOST, Regression, toward};
 use super::median::median;
 use super::mirrored::Mirrored;
+use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
+use progress::{Cancelled, Progress};
 use rayon::prelude::*;
 
 /// α of a photograph and texel.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
+#[repr(C)]
 pub(crate) struct Residual {
     pub view: u16,
     alpha: [i16; 3],
 }
 
-/// The residuals of all texels.
+/// The residuals of all texels, those that are 0 left out.
+#[derive(Debug, PartialEq)]
 pub(crate) struct Residuals {
     pub kernel: Kernel,
     /// `all[start[t]..start[t + 1]]` are of texel t.
-    start: Vec<u32>,
-    all: Vec<Residual>,
+    pub start: Vec<u32>,
+    pub all: Vec<Residual>,
 }
 
 /// α is kept by steps of this; larger ones than 16 do not occur.
@@ -47,6 +51,8 @@ const KERNELS: [Kernel; 6] = [
 const LARGE: f32 = 1.0;
 /// Errors of a photograph so many times those around are thought to be of what does not belong.
 const ODD: f32 = 6.0;
+/// Weights that would change by less stay what they are.
+const NOT_ODD: f32 = 1e-3;
 /// Errors are thought to be no smaller: 8 bits and JPEG.
 const LEAST_ERROR: f32 = 0.006;
 
@@ -57,7 +63,7 @@ impl Residual {
 }
 
 /// Two ways to tell the light of texels: at the surface alone, and with what is mirrored.
-pub(crate) struct Told<'a> {
+pub(crate) struct Ways<'a> {
     pub radiance: &'a Calibrated<'a>,
     /// The constant part where nothing is mirrored.
     pub plain: &'a [Vec3],
@@ -83,7 +89,13 @@ impl Work {
 
     /// Solves for the residuals of `known`, and what each would be by the others.
     fn leave_out(&mut self, kernel: &Kernel) {
-        self.regression.solve(kernel, &self.known, &mut self.alpha);
+        self.regression.decompose(kernel, &self.known);
+        self.leave_out_again();
+    }
+
+    /// The same of other residuals in the same directions.
+    fn leave_out_again(&mut self) {
+        self.regression.solve(&self.known, &mut self.alpha);
         self.regression.left_out(&self.known, &self.alpha, &mut self.told);
     }
 
@@ -97,7 +109,7 @@ fn trust(error: Vec3) -> f32 {
     1.0 / (1.0 + error.length_squared() / (LARGE * LARGE))
 }
 
-impl Told<'_> {
+impl Ways<'_> {
     /// What is known of a texel's residual, `share` of what is mirrored told as such: at most [`MOST`].
     fn know(&self, texel: usize, share: f32, work: &mut Work) {
         let Work { samples, known, .. } = work;
@@ -134,10 +146,14 @@ impl Told<'_> {
             .step_by(ASKED_FOR_KERNEL)
             .map_init(Work::new, |work, texel| {
                 let mut errors = [0.0; KERNELS.len()];
-                for share in [0.0, 1.0] {
-                    self.know(texel, share, work);
-                    for (error, kernel) in errors.iter_mut().zip(&KERNELS) {
-                        work.leave_out(kernel);
+                for (error, kernel) in errors.iter_mut().zip(&KERNELS) {
+                    for (number, share) in [0.0, 1.0].into_iter().enumerate() {
+                        self.know(texel, share, work);
+                        if number == 0 {
+                            work.leave_out(kernel)
+                        } else {
+                            work.leave_out_again()
+                        }
                         *error += work.errors().map(|e| e.length_squared() * trust(e)).sum::<f32>();
                     }
                 }
@@ -156,7 +172,7 @@ impl Told<'_> {
             work.leave_out(kernel);
             let plain: Vec<Vec3> = work.errors().collect();
             self.know(texel, 1.0, work);
-            work.leave_out(kernel);
+            work.leave_out_again();
             work.errors().zip(plain).zip(&work.known).fold(
                 (0.0, 0.0),
                 |(product, square), ((mirrored, plain), known)| {
@@ -169,35 +185,30 @@ impl Told<'_> {
         blocks.quotients(&sums, [0.0, 1.0])
     }
 
-    /// By block, how much of the residuals is believed.
-    fn belief(&self, blocks: &Blocks, kernel: &Kernel, share: &[f32]) -> Vec<f32> {
-        let sums = self.sums(blocks, |work, texel| {
-            self.know(texel, share[texel], work);
-            work.leave_out(kernel);
-            work.known.iter().zip(&work.told).fold((0.0, 0.0), |(product, square), (known, told)| {
-                let trust = known.weight * trust(known.residual - *told);
-                (product + known.residual.dot(*told) * trust, square + told.length_squared() * trust)
-            })
-        });
-        blocks.quotients(&sums, [0.0, 1.0])
-    }
-
-    /// By block, the median of what leaving out finds wrong.
-    fn errors(&self, blocks: &Blocks, kernel: &Kernel, share: &[f32]) -> Vec<f32> {
-        let found: Vec<(usize, Vec<f32>)> = self
+    /// By block, how much of the residuals is believed, and the median of what leaving out finds wrong.
+    fn belief_and_errors(&self, blocks: &Blocks, kernel: &Kernel, share: &[f32]) -> (Vec<f32>, Vec<f32>) {
+        let mut errors = vec![Vec::new(); blocks.count()];
+        let found: Vec<((usize, (f32, f32)), Vec<f32>)> = self
             .asked()
             .map_init(Work::new, |work, texel| {
                 self.know(texel, share[texel], work);
                 work.leave_out(kernel);
-                (blocks.of_texel(self.radiance.texels, texel), work.errors().map(Vec3::length).collect())
+                let sums =
+                    work.known.iter().zip(&work.told).fold((0.0, 0.0), |(product, square), (known, told)| {
+                        let trust = known.weight * trust(known.residual - *told);
+                        (product + known.residual.dot(*told) * trust, square + told.length_squared() * trust)
+                    });
+                let block = blocks.of_texel(self.radiance.texels, texel);
+                ((block, sums), work.errors().map(Vec3::length).collect())
             })
             .collect();
-        let mut errors = vec![Vec::new(); blocks.count()];
-        for (block, found) in found {
+        let sums = found.into_iter().map(|((block, sums), found)| {
             errors[block].extend(found);
-        }
+            (block, sums)
+        });
+        let belief = blocks.quotients(&joined(blocks, sums), [0.0, 1.0]);
         let middle = |errors: &mut Vec<f32>| median(errors, f32::total_cmp).unwrap_or(0.0).max(LEAST_ERROR);
-        errors.iter_mut().map(middle).collect()
+        (belief, errors.iter_mut().map(middle).collect())
     }
 
     /// Products and squares of asked texels, by block.
@@ -208,25 +219,27 @@ impl Told<'_> {
                 (blocks.of_texel(self.radiance.texels, texel), of(work, texel))
             })
             .collect();
-        let mut sums = vec![(0.0, 0.0); blocks.count()];
-        for (block, (product, square)) in found {
-            sums[block].0 += product;
-            sums[block].1 += square;
-        }
-        sums
+        joined(blocks, found.into_iter())
     }
 
     /// How much of what is mirrored is told as such, by texel, and the residuals.
-    pub fn residuals(&self) -> (Vec<f32>, Residuals) {
+    pub fn residuals(&self, progress: &dyn Progress) -> Result<(Vec<f32>, Residuals), Cancelled> {
+        let passed = |done| {
+            progress.report(done);
+            progress.check()
+        };
         let texels = self.radiance.texels;
         let blocks = Blocks::of(texels);
         let kernel = self.kernel();
+        passed(0.1)?;
         let by_texel = |values: Vec<f32>| -> Vec<f32> {
             (0..texels.count()).into_par_iter().map(|texel| blocks.at(texels, texel, &values)).collect()
         };
         let share = by_texel(self.mirrored_share(&blocks, &kernel));
-        let belief = by_texel(self.belief(&blocks, &kernel, &share));
-        let errors = by_texel(self.errors(&blocks, &kernel, &share));
+        passed(0.25)?;
+        let (belief, errors) = self.belief_and_errors(&blocks, &kernel, &share);
+        let (belief, errors) = (by_texel(belief), by_texel(errors));
+        passed(0.4)?;
         let mut all = vec![Residual::default(); self.radiance.sightings.count()];
         let mut rest = all.as_mut_slice();
         let mut slots = Vec::with_capacity(texels.count());
@@ -236,6 +249,9 @@ impl Told<'_> {
             rest = after;
         }
         slots.into_par_iter().enumerate().for_each_init(Work::new, |work, (texel, slots)| {
+            if progress.cancelled() {
+                return;
+            }
             self.know(texel, share[texel], work);
             let sightings = self.radiance.sightings.of_texel(texel);
             for (slot, sighting) in slots.iter_mut().zip(sightings) {
@@ -245,23 +261,55 @@ impl Told<'_> {
                 return;
             }
             work.leave_out(&kernel);
-            let odd: Vec<f32> = work.errors().map(|error| error.length() / (ODD * errors[texel])).collect();
-            for (known, odd) in work.known.iter_mut().zip(odd) {
-                known.weight /= 1.0 + odd.powi(4);
+            let odd = |error: Vec3| (error.length() / (ODD * errors[texel])).powi(4);
+            let odds: Vec<f32> = work.errors().map(odd).collect();
+            if odds.iter().any(|&odd| odd > NOT_ODD) {
+                for (known, odd) in work.known.iter_mut().zip(odds) {
+                    known.weight /= 1.0 + odd;
+                }
+                work.regression.decompose(&kernel, &work.known);
+                work.regression.solve(&work.known, &mut work.alpha);
             }
-            work.regression.solve(&kernel, &work.known, &mut work.alpha);
             for (known, alpha) in work.known.iter().zip(&work.alpha) {
                 let steps = (*alpha * (belief[texel] / STEP)).round();
                 slots[known.place].alpha = steps.to_array().map(|v| v.clamp(-32767.0, 32767.0) as i16);
             }
         });
-        let start = (0..=texels.count())
-            .map(|t| if t == 0 { 0 } else { self.radiance.sightings.range(t - 1).end as u32 });
-        (share, Residuals { kernel, start: start.collect(), all })
+        let mut start = Vec::with_capacity(texels.count() + 1);
+        start.push(0);
+        let mut kept = 0;
+        for texel in 0..texels.count() {
+            for place in self.radiance.sightings.range(texel) {
+                if all[place].alpha != [0; 3] {
+                    all[kept] = all[place];
+                    kept += 1;
+                }
+            }
+            start.push(kept as u32);
+        }
+        all.truncate(kept);
+        all.shrink_to_fit();
+        passed(1.0)?;
+        Ok((share, Residuals { kernel, start, all }))
     }
 }
 
+/// Products and squares, summed by block in their order.
+fn joined(blocks: &Blocks, found: impl Iterator<Item = (usize, (f32, f32))>) -> Vec<(f32, f32)> {
+    let mut sums = vec![(0.0, 0.0); blocks.count()];
+    for (block, (product, square)) in found {
+        sums[block].0 += product;
+        sums[block].1 += square;
+    }
+    sums
+}
+
 impl Residuals {
+    /// Of so many texels, which have none.
+    pub fn none(texels: usize) -> Self {
+        Self { kernel: KERNELS[0], start: vec![0; texels + 1], all: Vec::new() }
+    }
+
     pub fn of_texel(&self, texel: usize) -> &[Residual] {
         &self.all[self.start[texel] as usize..self.start[texel + 1] as usize]
     }

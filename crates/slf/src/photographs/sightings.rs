@@ -3,14 +3,16 @@
 //! A photograph is read once. What it sees is told by its [`DepthPicture`]: a weight in (0, 1] that falls smoothly to 0 toward edges of
 //! depth, the picture's border and glancing angles, so that nothing begins or ends abruptly on the surface.
 
+use super::PhotographError;
 use super::depth_picture::{DepthPicture, FAR_FROM_EDGES};
+use super::gains::Exposure;
 use super::kept_picture::KeptPicture;
 use super::sphere::Sphere;
 use super::texels::Texels;
 use glam::{DVec2, DVec3, Vec3};
 use progress::Progress;
 use rayon::prelude::*;
-use scene::{LoadOptions, Mask, PictureError, Scene, View};
+use scene::{LoadOptions, Mask, Scene, View};
 use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -29,7 +31,7 @@ pub(crate) struct Sighting {
     weight: u8,
     /// The share of clipped pixels, by 255ths.
     clipped: u8,
-    /// Linear light, exposure as it was, as square roots.
+    /// Linear light, exposure as it was until it is undone, as square roots.
     root: [u16; 3],
 }
 
@@ -69,15 +71,14 @@ impl Sightings {
     /// Reads the photographs and looks what they see.
     ///
     /// # Errors
-    /// The first view's, by order, whose picture or mask cannot be had; none if the work was cancelled: then what is returned is
-    /// incomplete, and the caller has to ask `progress`.
+    /// The first view's, by order, whose picture or mask cannot be had; that the work was stopped.
     pub fn of(
         scene: &Scene,
         texels: &Texels,
         views: &[View],
         reading: &Reading<'_>,
         progress: &dyn Progress,
-    ) -> Result<Self, PictureError> {
+    ) -> Result<Self, PhotographError> {
         let done = AtomicUsize::new(0);
         let mut pictures = Vec::with_capacity(views.len());
         let (mut weights, mut beyond) = (Vec::new(), Vec::new());
@@ -85,9 +86,7 @@ impl Sightings {
             let read: Vec<_> = chunk
                 .par_iter()
                 .map(|view| {
-                    if progress.cancelled() {
-                        return Ok(None);
-                    }
+                    progress.check()?;
                     let picture = KeptPicture::of(&view.photograph(reading.load)?, reading.reduction);
                     let mask = view.mask(reading.load)?;
                     let depth = DepthPicture::of(scene, view, reading.reduction);
@@ -95,24 +94,16 @@ impl Sightings {
                     let (seen, beyond) = (look.at_texels(texels), look.beyond(reading.sphere));
                     let count = done.fetch_add(1, Ordering::Relaxed) + 1;
                     progress.report(0.8 * count as f32 / views.len() as f32);
-                    Ok(Some((picture, seen, beyond)))
+                    Ok((picture, seen, beyond))
                 })
-                .collect::<Result<_, PictureError>>()?;
-            for (picture, seen, sky) in read.into_iter().flatten() {
+                .collect::<Result<_, PhotographError>>()?;
+            for (picture, seen, sky) in read {
                 pictures.push(picture);
                 weights.push(seen);
                 beyond.push(sky);
             }
         }
-        if progress.cancelled() {
-            return Ok(Self {
-                pictures,
-                start: vec![0; texels.count() + 1],
-                all: Vec::new(),
-                beyond,
-                brightest: 1.0,
-            });
-        }
+        progress.check()?;
         keep_one_side(texels, views, &mut weights);
         let brightest = pictures.iter().map(KeptPicture::brightest).fold(1.0, f32::max);
         let (start, all) = gathered(texels, views, &pictures, &weights, brightest);
@@ -133,11 +124,53 @@ impl Sightings {
         self.all.len()
     }
 
-    /// The light that a sighting shows, exposure as it was.
-    pub fn light(&self, sighting: &Sighting) -> Vec3 {
-        let root = Vec3::from_array(sighting.root.map(|v| f32::from(v) / 65535.0));
-        root * root * self.brightest
+    /// Undoes the exposures of all views.
+    pub fn undo(&mut self, texels: &Texels, views: &[View], exposures: &[Exposure]) {
+        // The brightest that anything can become.
+        let most = |(view, exposure): (&View, &Exposure)| exposure.most_to_radiance(view);
+        let before = self.brightest;
+        self.brightest *= views.iter().zip(exposures).map(most).fold(1.0, f32::max);
+        let after = self.brightest;
+        let start = &self.start;
+        let mut rest = self.all.as_mut_slice();
+        let mut blocks = Vec::new();
+        for range in blocks_of(texels) {
+            let (block, others) = rest.split_at_mut((start[range.end] - start[range.start]) as usize);
+            blocks.push((range, block));
+            rest = others;
+        }
+        blocks.into_par_iter().for_each(|(range, block)| {
+            let first = start[range.start];
+            for texel in range {
+                let (from, to) = (start[texel] - first, start[texel + 1] - first);
+                for sighting in &mut block[from as usize..to as usize] {
+                    let number = usize::from(sighting.view);
+                    let view = &views[number];
+                    // It was projected before, by the same lens.
+                    let pixel = view.project(texels.position(texel)).unwrap_or_default();
+                    let light = light_of(sighting.root, before);
+                    sighting.root = root_of(light * exposures[number].to_radiance(view, pixel), after);
+                }
+            }
+        });
     }
+
+    /// The light that a sighting shows.
+    pub fn light(&self, sighting: &Sighting) -> Vec3 {
+        light_of(sighting.root, self.brightest)
+    }
+}
+
+/// Texels that are worked on as one, by their numbers.
+fn blocks_of(texels: &Texels) -> impl Iterator<Item = Range<usize>> {
+    const BLOCK: usize = 4096;
+    let count = texels.count();
+    (0..count).step_by(BLOCK).map(move |first| first..(first + BLOCK).min(count))
+}
+
+fn light_of(root: [u16; 3], brightest: f32) -> Vec3 {
+    let root = Vec3::from_array(root.map(|v| f32::from(v) / 65535.0));
+    root * root * brightest
 }
 
 fn root_of(light: Vec3, brightest: f32) -> [u16; 3] {
@@ -263,13 +296,10 @@ fn gathered(
     let nothing = Sighting { view: 0, weight: 0, clipped: 0, root: [0; 3] };
     let mut all = vec![nothing; start[texels.count()] as usize];
     let mut rest = all.as_mut_slice();
-    /// Texels that are worked on as one.
-    const BLOCK: usize = 4096;
     let mut blocks = Vec::new();
-    for first in (0..texels.count()).step_by(BLOCK) {
-        let end = (first + BLOCK).min(texels.count());
-        let (block, after) = rest.split_at_mut((start[end] - start[first]) as usize);
-        blocks.push((first..end, block));
+    for range in blocks_of(texels) {
+        let (block, after) = rest.split_at_mut((start[range.end] - start[range.start]) as usize);
+        blocks.push((range, block));
         rest = after;
     }
     blocks.into_par_iter().for_each(|(range, block)| {

@@ -3,7 +3,7 @@
 use glam::{Vec2, Vec3};
 
 /// An equirectangular grid of directions: rows from +y down to −y, columns from −x eastward.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Sphere {
     pub columns: usize,
     pub rows: usize,

@@ -5,16 +5,22 @@ use glam::{DVec2, DVec3, Vec2, Vec3};
 use rayon::prelude::*;
 use scene::{Scene, SurfacePoint};
 
+/// Where texels lie in the atlas: all that looking one up takes.
+#[derive(Debug, PartialEq)]
+pub(crate) struct TexelGrid {
+    /// The places of the caller's atlas times this are ours.
+    pub scale: f64,
+    pub width: u32,
+    pub height: u32,
+    /// The caller's corners of each triangle.
+    pub corners: Vec<[Vec2; 3]>,
+    /// By row and column, the number of the texel, or [`NO_TEXEL`].
+    pub index: Vec<u32>,
+}
+
 /// Texels of a surface, of the density that its photographs are worth.
 pub(crate) struct Texels {
-    /// The places of the caller's atlas times this are ours.
-    scale: f64,
-    width: u32,
-    height: u32,
-    /// The caller's corners of each triangle.
-    corners: Vec<[Vec2; 3]>,
-    /// By row and column, the number of the texel, or [`NO_TEXEL`].
-    index: Vec<u32>,
+    pub grid: TexelGrid,
     /// Column and row of each.
     places: Vec<[u32; 2]>,
     positions: Vec<DVec3>,
@@ -48,11 +54,7 @@ impl Texels {
         let shading_normals =
             texels.par_iter().map(|texel| scene.shading_normal(texel.centroid).as_vec3()).collect();
         Self {
-            scale,
-            width,
-            height,
-            corners: atlas.corners.clone(),
-            index,
+            grid: TexelGrid { scale, width, height, corners: atlas.corners.clone(), index },
             places: texels.iter().map(|texel| [texel.x, texel.y]).collect(),
             positions,
             normals,
@@ -67,7 +69,7 @@ impl Texels {
 
     /// Columns and rows.
     pub fn size(&self) -> [u32; 2] {
-        [self.width, self.height]
+        [self.grid.width, self.grid.height]
     }
 
     pub fn position(&self, texel: usize) -> DVec3 {
@@ -90,7 +92,9 @@ impl Texels {
     pub fn place(&self, texel: usize) -> [u32; 2] {
         self.places[texel]
     }
+}
 
+impl TexelGrid {
     /// The texel at a column and row.
     pub fn at(&self, x: i64, y: i64) -> Option<usize> {
         let is_inside = x >= 0 && y >= 0 && x < i64::from(self.width) && y < i64::from(self.height);

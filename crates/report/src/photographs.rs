@@ -1,0 +1,200 @@
+//! How well the photographs of a capture tell those that are left out, and what they would be as a sparse light field.
+
+use crate::store::{Store, file_part};
+use baselines::ghosting_bounds;
+use glam::DVec3;
+use project::{LinearPicture, write_rgb};
+use scene::{Scene, View};
+use serde::{Deserialize, Serialize};
+use session::{LeftOut, SessionError};
+use std::path::PathBuf;
+
+/// Photographs that are left out of a capture.
+pub const COUNT: usize = 4;
+
+/// One way to tell a photograph that was left out.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ToldPhotograph {
+    /// The photograph's name.
+    pub photograph: String,
+    /// What tells it: `light`, `constant texture` or `texture of one photograph`.
+    pub told_by: String,
+    /// The share of the frame where the others see the surface.
+    pub seen: f64,
+    /// PSNR there, dB; linear, clipped to [0, 1].
+    pub psnr: f64,
+    /// Mean FLIP there.
+    pub flip: f64,
+}
+
+/// What was measured of a capture.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Photographs {
+    /// How many there are.
+    pub count: usize,
+    /// Seconds that light from all but those left out took.
+    pub seconds: f64,
+    /// How much more memory the process held at most meanwhile, bytes, where that is known.
+    pub peak_bytes: Option<u64>,
+    /// Each photograph and way.
+    pub told: Vec<ToldPhotograph>,
+    /// The photographs as a sparse light field.
+    pub sparse: Option<Sparse>,
+    /// By photograph: it, and what light tells.
+    #[serde(skip)]
+    pub pictures: Vec<[PathBuf; 2]>,
+}
+
+/// Photographs as views of a light field that are shifted and added up.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Sparse {
+    /// From the photographs to the middle of what they see, the median, scene units.
+    pub depth: f64,
+    /// From each to the next one, the median, scene units.
+    pub spacing: f64,
+    /// Depths of focus between which what lies at `depth` does not ghost (equations 5 to 7 of the thesis proposal); none: infinity.
+    pub ghost_free: [Option<f64>; 2],
+}
+
+impl Photographs {
+    /// Of photographs that were left out, their pictures kept in `store`.
+    pub fn of(
+        scene: &Scene,
+        left_out: &LeftOut,
+        peak_bytes: Option<u64>,
+        name: &str,
+        store: &Store,
+    ) -> Result<Self, SessionError> {
+        let mut told = Vec::new();
+        for picture in &left_out.pictures {
+            told.extend(picture.told.iter().map(|by| ToldPhotograph {
+                photograph: picture.name.clone(),
+                told_by: by.what.into(),
+                seen: picture.seen,
+                psnr: by.psnr,
+                flip: by.flip,
+            }));
+            let files = files(store, name, &picture.name);
+            for (file, picture) in files.iter().zip([&picture.photograph, &picture.told[0].picture]) {
+                let small = reduced(picture);
+                write_rgb(file, small.width, small.height, &small.rgb)?;
+            }
+        }
+        let mut photographs = Self {
+            count: scene.views.len(),
+            seconds: left_out.seconds,
+            peak_bytes,
+            told,
+            sparse: Sparse::of(scene),
+            pictures: Vec::new(),
+        };
+        photographs.find_pictures(name, store);
+        Ok(photographs)
+    }
+
+    /// Finds the pictures of an earlier run.
+    pub fn find_pictures(&mut self, name: &str, store: &Store) {
+        let light = self.told.iter().filter(|told| told.told_by == "light");
+        self.pictures = light.map(|told| files(store, name, &told.photograph)).collect();
+    }
+
+    /// PSNR of each way over all photographs: of the mean of their squared errors, dB.
+    pub fn together(&self, told_by: &str) -> f64 {
+        let of_way = || self.told.iter().filter(|told| told.told_by == told_by);
+        let squares: f64 = of_way().map(|told| 10f64.powf(-told.psnr / 10.0)).sum();
+        project::psnr(squares / of_way().count().max(1) as f64)
+    }
+}
+
+fn files(store: &Store, name: &str, photograph: &str) -> [PathBuf; 2] {
+    let part = file_part(photograph);
+    [store.file(&format!("{name}-{part}"), "png"), store.file(&format!("{name}-{part}-light"), "png")]
+}
+
+impl Sparse {
+    /// Of the photographs of a scene; none of fewer than two.
+    pub fn of(scene: &Scene) -> Option<Self> {
+        let views = &scene.views;
+        let (low, high) = scene.bounds();
+        let middle = 0.5 * (low + high);
+        let to_next = |view: &View| {
+            let others = views.iter().filter(|other| other.name != view.name);
+            others.map(|other| other.position().distance(view.position())).min_by(f64::total_cmp)
+        };
+        let depth =
+            median(views.iter().map(|view| along(view, middle)).filter(|depth| *depth > 0.0).collect())?;
+        let spacing = median(views.iter().filter_map(to_next).collect())?;
+        let focal_px = median(views.iter().map(|view| view.lens.intrinsics().focal_px[0]).collect())?;
+        let [nearer, farther] = ghosting_bounds(depth, 1.0, spacing, focal_px);
+        let finite = |depth: f64| depth.is_finite().then_some(depth);
+        Some(Self { depth, spacing, ghost_free: [finite(depth + nearer), finite(depth + farther)] })
+    }
+}
+
+fn along(view: &View, point: DVec3) -> f64 {
+    (point - view.position()).dot(view.forward())
+}
+
+fn median(mut values: Vec<f64>) -> Option<f64> {
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied()
+}
+
+/// At most this wide in the page.
+const WIDEST: u32 = 720;
+
+/// The mean of squares of pixels, so that the page does not grow with the photographs.
+fn reduced(picture: &LinearPicture) -> LinearPicture {
+    let by = picture.width.div_ceil(WIDEST).max(1);
+    let [width, height] = [picture.width, picture.height].map(|side| (side / by).max(1));
+    let mean = |number: u32| {
+        let (x, y) = (number % width * by, number / width * by);
+        let mut sum = [0.0; 3];
+        for row in y..y + by {
+            for column in x..x + by {
+                let pixel = picture.rgb[(row * picture.width + column) as usize];
+                (0..3).for_each(|k| sum[k] += pixel[k] / (by * by) as f32);
+            }
+        }
+        sum
+    };
+    LinearPicture { width, height, rgb: (0..width * height).map(mean).collect(), ..LinearPicture::default() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pictures_become_small_enough_and_keep_their_mean() {
+        let picture = LinearPicture {
+            width: 1000,
+            height: 4,
+            rgb: (0..4000).map(|k| [(k % 2) as f32, 0.25, 1.0]).collect(),
+            ..LinearPicture::default()
+        };
+        let small = reduced(&picture);
+        assert_eq!((small.width, small.height), (500, 2));
+        assert!(small.rgb.iter().all(|&pixel| pixel == [0.5, 0.25, 1.0]));
+    }
+
+    #[test]
+    fn all_photographs_count_by_their_squared_errors() {
+        let told = |psnr: f64| ToldPhotograph {
+            photograph: "a".into(),
+            told_by: "light".into(),
+            seen: 1.0,
+            psnr,
+            flip: 0.0,
+        };
+        let photographs = Photographs {
+            count: 9,
+            seconds: 1.0,
+            peak_bytes: None,
+            told: vec![told(20.0), told(30.0)],
+            sparse: None,
+            pictures: Vec::new(),
+        };
+        assert!((photographs.together("light") - 22.596).abs() < 1e-3);
+    }
+}

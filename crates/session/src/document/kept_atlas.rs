@@ -1,0 +1,39 @@
+//! Atlases kept from one run of the program to the next: a scene of many triangles is not unwrapped anew each time it is opened.
+
+use super::scene_hashes::surface_hash;
+use crate::kept_files::KeptFiles;
+use atlas::{Atlas, AtlasError, UnwrapOptions};
+use progress::Progress;
+use scene::Scene;
+use sha2::Digest;
+use std::time::{Duration, Instant};
+
+/// 28 bytes a triangle each.
+const FILES: KeptFiles = KeptFiles { name: "atlas", budget_bytes: 512 << 20 };
+
+/// What is unwrapped in less time is unwrapped again.
+const SHORTEST: Duration = Duration::from_secs(1);
+
+/// The atlas of a scene: the kept one, or the scene unwrapped.
+pub(crate) fn unwrapped(
+    scene: &Scene,
+    options: &UnwrapOptions,
+    progress: &dyn Progress,
+) -> Result<Atlas, AtlasError> {
+    let file = FILES.file(|hash| {
+        let UnwrapOptions { density, gutter, uv, child, deadline: _ } = options;
+        hash.update(surface_hash(scene));
+        hash.update(format!("{density:?} {gutter} {uv:?} {}", child.is_some()));
+    });
+    let kept = file.as_ref().and_then(|file| FILES.read(file));
+    if let Some(atlas) = kept.and_then(|bytes| Atlas::from_bytes(&bytes, scene).ok()) {
+        return Ok(atlas);
+    }
+    let begun = Instant::now();
+    let atlas = Atlas::unwrap(scene, options, progress)?;
+    // What did not go as asked may go another time, and is not stored.
+    if let Some(file) = file.filter(|_| begun.elapsed() >= SHORTEST && atlas.notes.is_empty()) {
+        FILES.write(&file, &atlas.to_bytes());
+    }
+    Ok(atlas)
+}

@@ -1,0 +1,149 @@
+//! Checksums of parts of a scene: of what an atlas is made from, of what photographs' light is made from, and of all that gives light.
+
+use scene::{Environment, ImageLevel, Scene, View};
+use sha2::{Digest, Sha256};
+use std::path::Path;
+
+/// Lists that do not run into each other.
+struct Lists(Sha256);
+
+impl Lists {
+    fn add(&mut self, bytes: &[u8]) {
+        self.0.update((bytes.len() as u64).to_le_bytes());
+        self.0.update(bytes);
+    }
+
+    fn add_surface(&mut self, scene: &Scene) {
+        self.add(bytemuck::cast_slice(&scene.positions));
+        self.add(bytemuck::cast_slice(&scene.normals));
+        scene.uv.iter().chain(&scene.further_uv).for_each(|uv| self.add(bytemuck::cast_slice(uv)));
+        for triangle in &scene.triangles {
+            self.add(bytemuck::cast_slice(&triangle.vertices));
+        }
+        self.add(format!("{:?}", scene.parts).as_bytes());
+    }
+
+    fn add_views(&mut self, views: &[View]) {
+        // A picture is taken for the same where file, size and time of change are.
+        let of_file =
+            |path: &Path| std::fs::metadata(path).map(|data| (data.len(), data.modified().ok())).ok();
+        for view in views {
+            let mask = view.mask.as_deref().and_then(of_file);
+            self.add(format!("{view:?} {:?} {mask:?}", of_file(&view.picture)).as_bytes());
+        }
+    }
+
+    fn sum(self) -> [u8; 32] {
+        self.0.finalize().into()
+    }
+}
+
+/// A checksum of the triangles of a scene, where they lie and belong.
+pub(crate) fn surface_hash(scene: &Scene) -> [u8; 32] {
+    let mut lists = Lists(Sha256::new());
+    lists.add_surface(scene);
+    lists.sum()
+}
+
+/// A checksum of the triangles of a scene and of the photographs that light it.
+pub(crate) fn photographs_hash(scene: &Scene) -> [u8; 32] {
+    let mut lists = Lists(Sha256::new());
+    lists.add_surface(scene);
+    lists.add_views(&scene.views);
+    lists.sum()
+}
+
+/// A checksum of everything in a scene that gives, blocks or reflects light: two scenes of the same one are lit, block and reflect light
+/// alike.
+pub(crate) fn light_hash(scene: &Scene) -> [u8; 32] {
+    let mut lists = Lists(Sha256::new());
+    lists.add_surface(scene);
+    lists.add(bytemuck::cast_slice(&scene.colors));
+    lists.add(bytemuck::cast_slice(&scene.tangents));
+    for image in &scene.images {
+        lists.add(format!("{} {}", image.width, image.height).as_bytes());
+        match &image.texels {
+            ImageLevel::Bits8(texels) => lists.add(texels),
+            ImageLevel::Bits16(texels) => lists.add(bytemuck::cast_slice(texels)),
+        }
+    }
+    for world in scene.own_world.iter().chain(&scene.world) {
+        let Environment::Map(map) = &world.environment else { continue };
+        lists.add(format!("{} {}", map.width, map.height).as_bytes());
+        lists.add(bytemuck::cast_slice(&map.texels));
+    }
+    lists.add_views(&scene.views);
+    // Written out, numbers are as exact as they are.
+    lists.add(
+        format!(
+            "{:?} {:?} {:?} {:?} {:?} {:?}",
+            scene.materials,
+            scene.lights,
+            scene.back_faces,
+            scene.own_world,
+            scene.world,
+            scene.single_scattering
+        )
+        .as_bytes(),
+    );
+    lists.sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_scene_in_another_light_is_another() {
+        let mut scene = Scene::default();
+        let dark = light_hash(&scene);
+        assert_eq!(light_hash(&scene.clone()), dark);
+        scene.path = "elsewhere.glb".into();
+        assert_eq!(light_hash(&scene), dark, "wherever it lies");
+        scene.positions.push(glam::DVec3::X);
+        let moved = light_hash(&scene);
+        assert_ne!(moved, dark);
+        // Arrays do not run into each other.
+        let uv = Scene { uv: [vec![glam::Vec2::ONE], Vec::new()], ..Scene::default() };
+        let other = Scene { uv: [Vec::new(), vec![glam::Vec2::ONE]], ..Scene::default() };
+        assert_ne!(light_hash(&uv), light_hash(&other));
+        let brings = |light: f32| {
+            let map = scene::EnvironmentMap {
+                name: "light".into(),
+                width: 2,
+                height: 1,
+                texels: vec![[light; 3]; 2],
+            };
+            let environment = Environment::Map(std::sync::Arc::new(map));
+            let own = scene::World { environment, ..scene::World::studio() };
+            light_hash(&Scene { own_world: Some(own), ..Scene::default() })
+        };
+        assert!(brings(1.0) != dark && brings(1.0) != brings(2.0));
+        // Materials that are seen in another variant.
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("varied.glb");
+        std::fs::write(&file, crate::tiny_glb::varied(&crate::tiny_glb::QUADS)).unwrap();
+        let of = |variant: Option<&str>| {
+            light_hash(&super::super::stage::load_variant(&file, variant, &progress::Unwatched).unwrap())
+        };
+        assert!(of(None) != of(Some("Blue")) && of(Some("Blue")) != of(Some("Green")));
+        assert_eq!(of(None), of(Some("As painted")), "what looks alike has the same light");
+        let further = |u: f32| Scene { further_uv: vec![vec![glam::Vec2::splat(u)]], ..Scene::default() };
+        assert_ne!(light_hash(&further(0.0)), light_hash(&further(1.0)));
+    }
+
+    #[test]
+    fn photographs_are_others_where_a_file_or_a_camera_is() {
+        let folder = tempfile::tempdir().unwrap();
+        let picture = folder.path().join("a.jpg");
+        std::fs::write(&picture, "one").unwrap();
+        let scene =
+            Scene { views: vec![View { picture: picture.clone(), ..View::default() }], ..Scene::default() };
+        let before = photographs_hash(&scene);
+        assert_eq!(photographs_hash(&Scene { world: Some(scene::World::studio()), ..scene.clone() }), before);
+        assert_ne!(photographs_hash(&Scene::default()), before);
+        std::fs::write(&picture, "another").unwrap();
+        assert_ne!(photographs_hash(&scene), before);
+        assert_eq!(surface_hash(&scene), surface_hash(&Scene::default()));
+    }
+}
