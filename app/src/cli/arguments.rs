@@ -2,7 +2,7 @@
 
 use clap::builder::{OsStringValueParser, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, ValueEnum};
-use scene::BackFaces;
+use scene::{BackFaces, PhotoLookup};
 use session::{Aov, CameraChoice, Renderer, VariantChoice};
 use std::ffi::{OsStr, OsString};
 use std::path::PathBuf;
@@ -83,6 +83,10 @@ pub struct SceneLook {
     /// Leave out light that meets microfacets more than once, to compare with renderers that do
     #[arg(long)]
     pub single_scattering: bool,
+    /// Where the light of a capture's photographs is looked up: at texels, which they were resampled to, or direct, in the photographs
+    /// themselves for each point (slower; what texels cannot show finely enough)
+    #[arg(long, value_name = "texels|direct", default_value = "texels", value_parser = photos_parser())]
+    pub photos: PhotoLookup,
 }
 
 impl SceneLook {
@@ -478,6 +482,11 @@ fn renderer_parser() -> impl TypedValueParser<Value = Renderer> {
 fn back_faces_parser() -> impl TypedValueParser<Value = BackFaces> {
     let names = PossibleValuesParser::new(BackFaces::ALL.map(|(name, _)| name));
     names.try_map(|name| BackFaces::named(&name).ok_or("neither show nor hide"))
+}
+
+fn photos_parser() -> impl TypedValueParser<Value = PhotoLookup> {
+    let names = PossibleValuesParser::new(PhotoLookup::ALL.map(|(name, _)| name));
+    names.try_map(|name| PhotoLookup::named(&name).ok_or("neither texels nor direct"))
 }
 
 fn aov(name: &str) -> Result<Aov, String> {

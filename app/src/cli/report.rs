@@ -113,6 +113,7 @@ fn requests(arguments: &ReportArguments) -> Result<Vec<SceneRequest>, Failure> {
         variant: shot.scene_look.variant(),
         world: world.clone(),
         single_scattering: shot.scene_look.single_scattering,
+        photo_lookup: shot.scene_look.photos,
     };
     if !arguments.scenes.is_empty() {
         return Ok(arguments.scenes.iter().map(request).collect());

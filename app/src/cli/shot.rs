@@ -39,6 +39,7 @@ pub fn opened(file: &Path, look: &SceneLook, steps: &dyn Steps) -> Result<Input,
         input.set_world(Some(world));
     }
     input.set_single_scattering(look.single_scattering);
+    input.set_photo_lookup(look.photos);
     Ok(input)
 }
 

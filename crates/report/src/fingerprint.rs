@@ -53,6 +53,7 @@ pub fn of_scene(scene: &Scene) -> String {
         .add_debug(&scene.own_world)
         .add_debug(&scene.world)
         .add_debug(&scene.single_scattering)
+        .add_debug(&scene.photo_lookup)
         .add(bytemuck::cast_slice(&scene.tangents));
     for world in scene.own_world.iter().chain(&scene.world) {
         if let Environment::Map(map) = &world.environment {

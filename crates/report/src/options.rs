@@ -22,6 +22,8 @@ pub struct SceneRequest {
     pub world: Option<WorldFile>,
     /// Whether light that meets microfacets more than once is left out.
     pub single_scattering: bool,
+    /// Where light of photographs is looked up.
+    pub photo_lookup: scene::PhotoLookup,
 }
 
 /// How much is measured.

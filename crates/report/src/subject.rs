@@ -67,6 +67,7 @@ impl Subject {
             input.set_world(Some(world));
         }
         input.set_single_scattering(request.single_scattering);
+        input.set_photo_lookup(request.photo_lookup);
         let mut camera = input.camera(request.camera.as_ref())?;
         let [width, height] = options.size.unwrap_or_else(|| {
             let width = (ReportOptions::HEIGHT as f64 * camera.aspect()).round().max(1.0) as u32;

@@ -84,5 +84,5 @@ pub use source::{PartSource, Source, StoredElements};
 pub use surface_mesh::SurfaceMesh;
 pub use surface_point::{SurfaceField, SurfacePoint};
 pub use texture_lookup::linear_from_srgb;
-pub use views::{Mask, Photograph, PictureError, View};
+pub use views::{Mask, PhotoLookup, Photograph, PictureError, View};
 pub use world::{Backdrop, Environment, EnvironmentMap, World};

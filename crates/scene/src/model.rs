@@ -1,6 +1,6 @@
 //! The scene in memory: flat, world space, triangles only.
 
-use crate::{BackFaces, Material, View, World};
+use crate::{BackFaces, Material, PhotoLookup, View, World};
 use glam::{DMat4, DVec3, Vec2, Vec3, Vec4};
 use std::ops::Range;
 use std::path::PathBuf;
@@ -58,6 +58,8 @@ pub struct Scene {
     pub single_scattering: bool,
     /// Photographs of it, where these light it.
     pub views: Vec<View>,
+    /// Where the light of photographs is looked up.
+    pub photo_lookup: PhotoLookup,
     /// Photographs that are only compared with: no light is made of them.
     pub left_out: Vec<View>,
     /// What was wrong with the file but did no harm, a sentence each.

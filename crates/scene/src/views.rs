@@ -13,6 +13,26 @@ use glam::{DMat4, DVec2, DVec3};
 use lens::CalibratedLens;
 use std::path::PathBuf;
 
+/// Where light of photographs is looked up.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum PhotoLookup {
+    /// At the texels of an atlas, which the photographs were resampled to.
+    #[default]
+    Texels,
+    /// In the photographs themselves, for each point that is asked.
+    Direct,
+}
+
+impl PhotoLookup {
+    /// All, with the names they are chosen by.
+    pub const ALL: [(&str, Self); 2] = [("texels", Self::Texels), ("direct", Self::Direct)];
+
+    /// The one with this name.
+    pub fn named(name: &str) -> Option<Self> {
+        Self::ALL.iter().find(|(known, _)| *known == name).map(|(_, lookup)| *lookup)
+    }
+}
+
 /// A photograph and its camera.
 ///
 /// Spaces are those of [`lens::Camera`]: the world's axes are the scene's; the camera's own are glTF's in

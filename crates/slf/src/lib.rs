@@ -22,6 +22,8 @@ mod transport;
 
 pub use irradiance::Irradiance;
 pub use material::Scattering;
-pub use photographs::{Exposure, PhotographError, PhotographLight, PhotographModel, PhotographOptions};
+pub use photographs::{
+    DirectPhotographs, Exposure, PhotographError, PhotographLight, PhotographModel, PhotographOptions,
+};
 pub use solving::IrradianceOptions;
 pub use transport::{Transport, TransportOptions};

@@ -11,7 +11,8 @@
 //! toward directions near those of its photographs (`residuals`, interpolated by `directions`). Each part is there as far as photographs
 //! that are left out are told better with it. Where directions are far from all photographs, only the first two remain.
 //!
-//! `budget` decides how fine all is kept, `stored` has it as bytes. `blocks` has numbers that change slowly over the atlas, `sphere` those that go with direction.
+//! `budget` decides how fine all is kept, `stored` has it as bytes. `direct` looks up points in the
+//! photographs themselves. `blocks` has numbers that change slowly over the atlas, `sphere` those that go with direction.
 
 mod beyond;
 mod blocks;
@@ -19,6 +20,7 @@ mod budget;
 mod calibrated;
 mod constant;
 mod depth_picture;
+mod direct;
 mod directions;
 mod filling;
 mod gains;
@@ -32,6 +34,7 @@ mod sphere;
 mod stored;
 mod texels;
 
+pub use direct::DirectPhotographs;
 pub use gains::Exposure;
 
 use atlas::Atlas;

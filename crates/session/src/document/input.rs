@@ -14,7 +14,7 @@ use focus::{Focus, FocusMap, FocusRecipe, RecipeEntry};
 use lens::{Camera, Exposure, FocusOffset};
 use project::{CaptureChoices, FocusFile, ProjectError, ProjectFile, SceneState, read_camera, read_focus};
 use salf::{Salf, SalfFile};
-use scene::{BackFaces, Fault, Scene, SceneError, World};
+use scene::{BackFaces, Fault, PhotoLookup, Scene, SceneError, World};
 use std::fs::File;
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
@@ -216,6 +216,13 @@ impl Input {
     pub fn set_world(&mut self, world: Option<World>) {
         if world != self.scene.world {
             Arc::make_mut(&mut self.scene).world = world;
+        }
+    }
+
+    /// Has the light of photographs looked up at texels, or in the photographs themselves.
+    pub fn set_photo_lookup(&mut self, lookup: PhotoLookup) {
+        if lookup != self.scene.photo_lookup {
+            Arc::make_mut(&mut self.scene).photo_lookup = lookup;
         }
     }
 

@@ -73,6 +73,7 @@ pub(crate) fn light_hash(scene: &Scene) -> [u8; 32] {
         lists.add(bytemuck::cast_slice(&map.texels));
     }
     lists.add_views(&scene.views);
+    lists.add(format!("{:?}", scene.photo_lookup).as_bytes());
     // Written out, numbers are as exact as they are.
     lists.add(
         format!(
@@ -137,8 +138,21 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let picture = folder.path().join("a.jpg");
         std::fs::write(&picture, "one").unwrap();
-        let scene =
-            Scene { views: vec![View { picture: picture.clone(), ..View::default() }], ..Scene::default() };
+        let intrinsics =
+            lens::Intrinsics { size_px: [4, 3], focal_px: [4.0; 2], principal_px: [2.0, 1.5], skew_px: 0.0 };
+        let lens =
+            lens::CalibratedLens::new(intrinsics, lens::Projection::Perspective, lens::Distortion::default());
+        let view = View {
+            name: "a.jpg".into(),
+            picture: picture.clone(),
+            orientation: 1,
+            exif_orientation: 1,
+            lens: lens.unwrap(),
+            camera_to_world: glam::DMat4::IDENTITY,
+            mask: None,
+            exposure_hint: None,
+        };
+        let scene = Scene { views: vec![view], ..Scene::default() };
         let before = photographs_hash(&scene);
         assert_eq!(photographs_hash(&Scene { world: Some(scene::World::studio()), ..scene.clone() }), before);
         assert_ne!(photographs_hash(&Scene::default()), before);

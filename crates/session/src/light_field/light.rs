@@ -33,7 +33,7 @@ pub(crate) fn light(
     if is_photographed(tracer) {
         match (photographed::known(tracer), quality) {
             (Some(light), _) => return Ok(light),
-            (None, LightQuality::Fine) => return Ok(photographed::wait(tracer, progress)?),
+            (None, LightQuality::Fine) => return photographed::looked_up(tracer, progress),
             (None, LightQuality::Rough) => {}
         }
     }
@@ -68,7 +68,7 @@ pub(crate) fn light_for_many_points(
     progress: &dyn Progress,
 ) -> Result<Light, SessionError> {
     if is_photographed(tracer) {
-        return Ok(photographed::wait(tracer, progress)?);
+        return photographed::looked_up(tracer, progress);
     }
     Ok(Arc::new(transport(tracer, camera, 1, LIGHT_SAMPLES)))
 }

@@ -1,13 +1,15 @@
 //! Light from photographs, by scene: made once, and kept from one run of the program to the next.
 
+use super::light::Light;
 use super::scene_work::SceneWork;
 use crate::document::{photographs_hash, unwrapped};
 use crate::error::SessionError;
 use crate::kept_files::KeptFiles;
 use atlas::{Atlas, UnwrapOptions};
 use progress::Progress;
+use scene::PhotoLookup;
 use sha2::Digest;
-use slf::{PhotographLight, PhotographOptions};
+use slf::{DirectPhotographs, PhotographError, PhotographLight, PhotographOptions};
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError, Weak};
 use trace::Tracer;
 
@@ -18,6 +20,8 @@ struct Kept {
     atlas: OnceLock<Arc<Atlas>>,
     has_begun: OnceLock<()>,
     found: OnceLock<Result<Arc<PhotographLight>, String>>,
+    /// The same, looked up in the photographs, once that was asked for.
+    direct: Mutex<Option<Arc<DirectPhotographs>>>,
     work: Arc<SceneWork>,
 }
 
@@ -38,6 +42,7 @@ fn of(tracer: &Arc<Tracer>) -> Arc<Kept> {
         atlas: OnceLock::new(),
         has_begun: OnceLock::new(),
         found: OnceLock::new(),
+        direct: Mutex::new(None),
         work: Arc::default(),
     });
     all.push(kept.clone());
@@ -51,9 +56,39 @@ pub(crate) fn keep_at(tracer: &Arc<Tracer>, atlas: &Arc<Atlas>) {
     }
 }
 
-/// The light, if it is there; begun, if not.
-pub(super) fn known(tracer: &Arc<Tracer>) -> Option<Arc<PhotographLight>> {
-    begun(tracer).found.get()?.as_ref().ok().cloned()
+/// The light as the scene wants it looked up, if it is there; begun, if not.
+pub(super) fn known(tracer: &Arc<Tracer>) -> Option<Light> {
+    let kept = begun(tracer);
+    let light = kept.found.get()?.as_ref().ok()?.clone();
+    match tracer.scene().photo_lookup {
+        PhotoLookup::Texels => Some(light),
+        PhotoLookup::Direct => Some(kept.direct().clone()?),
+    }
+}
+
+/// The same as soon as it is there.
+pub(super) fn looked_up(tracer: &Arc<Tracer>, progress: &dyn Progress) -> Result<Light, SessionError> {
+    let light = wait(tracer, progress)?;
+    if tracer.scene().photo_lookup == PhotoLookup::Texels {
+        return Ok(light);
+    }
+    let kept = of(tracer);
+    let mut direct = kept.direct();
+    if direct.is_none() {
+        let made = DirectPhotographs::of(light, &PhotographOptions::default(), progress);
+        *direct = Some(Arc::new(made.map_err(|error| match error {
+            PhotographError::Cancelled => SessionError::Cancelled,
+            other => SessionError::BadInput(other.to_string()),
+        })?));
+    }
+    let found: Option<Light> = direct.clone().map(|direct| -> Light { direct });
+    found.ok_or_else(|| SessionError::Internal("photographs were not kept".into()))
+}
+
+impl Kept {
+    fn direct(&self) -> MutexGuard<'_, Option<Arc<DirectPhotographs>>> {
+        self.direct.lock().unwrap_or_else(PoisonError::into_inner)
+    }
 }
 
 /// The light as soon as it is there.

@@ -1,9 +1,11 @@
 //! Numbers that are told by blocks of texels and interpolated between their middles, so that they have no borders.
 
 use super::texels::Texels;
+use glam::DVec2;
+use rayon::prelude::*;
 
 /// A grid of square blocks over the atlas.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Blocks {
     columns: usize,
     rows: usize,
@@ -15,8 +17,9 @@ const SIDE: usize = 12;
 const AROUND: f32 = 0.25;
 
 impl Blocks {
-    pub fn of(texels: &Texels) -> Self {
-        let [columns, rows] = texels.size().map(|side| (side as usize).div_ceil(SIDE).max(1));
+    /// Over an atlas of so many columns and rows of texels.
+    pub fn of(size: [u32; 2]) -> Self {
+        let [columns, rows] = size.map(|side| (side as usize).div_ceil(SIDE).max(1));
         Self { columns, rows }
     }
 
@@ -49,9 +52,15 @@ impl Blocks {
             .collect()
     }
 
-    /// The value at a texel.
-    pub fn at(&self, texels: &Texels, texel: usize, values: &[f32]) -> f32 {
-        let [x, y] = texels.place(texel).map(|at| (at as f32 + 0.5) / SIDE as f32 - 0.5);
+    /// The values at all texels.
+    pub fn by_texel(&self, texels: &Texels, values: &[f32]) -> Vec<f32> {
+        let middle = |texel: usize| DVec2::from(texels.place(texel).map(f64::from)) + 0.5;
+        (0..texels.count()).into_par_iter().map(|texel| self.at(middle(texel), values)).collect()
+    }
+
+    /// The value at a place of the atlas, from the corner of the upper left texel.
+    pub fn at(&self, place: DVec2, values: &[f32]) -> f32 {
+        let [x, y] = (place / SIDE as f64 - 0.5).as_vec2().to_array();
         let [left, top] = [x.floor(), y.floor()];
         let at = |column: f32, row: f32| {
             let column = (column.max(0.0) as usize).min(self.columns - 1);

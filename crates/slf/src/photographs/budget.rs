@@ -16,12 +16,14 @@ pub(crate) struct Budget {
     pub at_once: usize,
 }
 
-/// Of the memory, kept photographs may take this share, and what they show of texels this.
+/// Of the memory, kept photographs may take this share, what they show of texels this, and those that are worked on this.
 const OF_PICTURES: f64 = 0.3;
 const OF_SIGHTINGS: f64 = 0.4;
+const OF_WORK: f64 = 0.3;
 /// A photograph being worked on: decoded and linear, kept, and its depth, bytes a pixel.
 const WORKING_BYTES: f64 = 28.0;
 const KEPT_BYTES: f64 = 4.0;
+const DEPTH_BYTES: f64 = 5.0;
 /// Of a texel and one photograph: its weight; where it is seen, sighting and residual.
 const WEIGHT_BYTES: f64 = 1.0;
 const SIGHTING_BYTES: f64 = 18.0;
@@ -37,15 +39,21 @@ const MOST_AT_ONCE: usize = 16;
 const SCALES: [f64; 2] = [0.125, 4.0];
 
 impl Budget {
+    /// For photographs that are looked up themselves: their reduction, and how many are worked on at once.
+    pub fn of_pictures(views: &[View], memory: u64) -> (u32, usize) {
+        let (all, largest) = pixels(views);
+        let memory = memory as f64;
+        let kept = memory * (1.0 - OF_WORK);
+        let reduction = (all * (KEPT_BYTES + DEPTH_BYTES) / kept).sqrt().ceil().max(1.0);
+        (reduction as u32, at_once(largest, memory * OF_WORK))
+    }
+
     /// For these photographs and `memory` bytes.
     pub fn of(scene: &Scene, atlas: &Atlas, views: &[View], memory: u64) -> Self {
         let memory = memory as f64;
-        let pixels = |view: &View| view.lens.size_px().iter().map(|&side| f64::from(side)).product::<f64>();
-        let all: f64 = views.iter().map(pixels).sum();
+        let (all, largest) = pixels(views);
         let reduction = (all * KEPT_BYTES / (memory * OF_PICTURES)).sqrt().ceil().max(1.0);
-        let largest = views.iter().map(pixels).fold(1.0, f64::max);
-        let rest = memory * (1.0 - OF_PICTURES - OF_SIGHTINGS);
-        let at_once = ((rest / (largest * WORKING_BYTES)) as usize).clamp(1, MOST_AT_ONCE);
+        let at_once = at_once(largest, memory * OF_WORK);
         let area: f64 = (0..scene.triangles.len() as u32)
             .map(|triangle| 0.5 * scene.area_normal(triangle).length())
             .filter(|area| area.is_finite())
@@ -59,6 +67,17 @@ impl Budget {
         let texel_scale = if scale.is_finite() { scale.clamp(SCALES[0], SCALES[1]) } else { 1.0 };
         Self { reduction: reduction as u32, texel_scale, at_once }
     }
+}
+
+/// Pixels of all photographs, and of the largest.
+fn pixels(views: &[View]) -> (f64, f64) {
+    let pixels = |view: &View| view.lens.size_px().iter().map(|&side| f64::from(side)).product::<f64>();
+    (views.iter().map(pixels).sum(), views.iter().map(pixels).fold(1.0, f64::max))
+}
+
+/// Photographs of up to so many pixels that so much memory has room for.
+fn at_once(largest: f64, memory: f64) -> usize {
+    ((memory / (largest * WORKING_BYTES)) as usize).clamp(1, MOST_AT_ONCE)
 }
 
 /// How wide a pixel of the photographs that see a spot best is there, world units: the median over some spots; `None` if nothing is seen.

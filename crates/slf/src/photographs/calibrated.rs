@@ -14,16 +14,12 @@ pub(crate) struct Calibrated<'a> {
     pub eyes: &'a [DVec3],
 }
 
-/// What was at the sensor's limit says that it was at least so bright: it counts this much.
-const CLIPPED_COUNTS: f32 = 0.05;
-
 impl Calibrated<'_> {
     /// What photographs show of a texel, by view, into `samples`.
     pub fn samples_into(&self, texel: usize, samples: &mut Vec<Sample>) {
         samples.clear();
         samples.extend(self.sightings.of_texel(texel).iter().map(|sighting| {
-            let counts = 1.0 - (1.0 - CLIPPED_COUNTS) * sighting.clipped();
-            Sample { light: self.sightings.light(sighting), weight: sighting.weight() * counts }
+            Sample::of_sighting(self.sightings.light(sighting), sighting.weight(), sighting.clipped())
         }));
     }
 

@@ -15,6 +15,16 @@ pub(crate) struct Sample {
     pub weight: f32,
 }
 
+/// What was at the sensor's limit says that it was at least so bright: it counts this much.
+const CLIPPED_COUNTS: f32 = 0.05;
+
+impl Sample {
+    /// What a photograph shows that sees the place so well, a share of its pixels there `clipped`.
+    pub fn of_sighting(light: Vec3, weight: f32, clipped: f32) -> Self {
+        Self { light, weight: weight * (1.0 - (1.0 - CLIPPED_COUNTS) * clipped) }
+    }
+}
+
 /// From so many on, some are left out.
 const ENOUGH_TO_REJECT: usize = 5;
 /// 95 % efficient with normal errors.

@@ -36,6 +36,8 @@ pub(crate) struct Mirrored {
     pub surroundings: Vec<Vec3>,
     /// s by texel.
     pub strength: Vec<f32>,
+    /// s by block, all of it whatever share of it is told.
+    pub strength_of_block: Vec<f32>,
 }
 
 /// Rows of the sphere: 1.4° each, about the sharpest gloss that a mesh's normals leave sharp.
@@ -53,7 +55,12 @@ impl Mirrored {
     /// Nothing, of so many texels.
     pub fn none(texels: usize) -> Self {
         let sphere = Sphere::of_rows(1);
-        Self { sphere, surroundings: vec![Vec3::ZERO; sphere.count()], strength: vec![0.0; texels] }
+        Self {
+            sphere,
+            surroundings: vec![Vec3::ZERO; sphere.count()],
+            strength: vec![0.0; texels],
+            strength_of_block: Vec::new(),
+        }
     }
 
     /// Finds what is mirrored, given the constant part without it; also returns the constant part beside it.
@@ -83,8 +90,11 @@ impl Mirrored {
                 },
             );
         }
-        let mut mirrored = Self { sphere, surroundings, strength: Vec::new() };
-        mirrored.strength = mirrored.strengths(radiance, constant);
+        let (strength, strength_of_block) = Default::default();
+        let mut mirrored = Self { sphere, surroundings, strength, strength_of_block };
+        let blocks = Blocks::of(texels.size());
+        mirrored.strength_of_block = mirrored.strengths(radiance, constant, &blocks);
+        mirrored.strength = blocks.by_texel(texels, &mirrored.strength_of_block);
         let strength = &mirrored.strength;
         let mut constant = constant.to_vec();
         constant.par_iter_mut().enumerate().filter(|(texel, _)| strength[*texel] > 0.0).for_each_init(
@@ -118,21 +128,24 @@ impl Mirrored {
 
     /// How strongly a texel mirrors: the share that a mirror at normal incidence would have, [0, 1].
     pub fn share(&self, texel: usize, normal: Vec3, outgoing: Vec3) -> f32 {
-        let strength = self.strength.get(texel).copied().unwrap_or(0.0);
+        self.share_of(self.strength.get(texel).copied().unwrap_or(0.0), normal, outgoing)
+    }
+
+    /// The same of a strength s.
+    pub fn share_of(&self, strength: f32, normal: Vec3, outgoing: Vec3) -> f32 {
         (strength * fresnel(normal.dot(outgoing).abs())).min(1.0)
     }
 
-    /// F·E.
-    fn sent(&self, normal: Vec3, outgoing: Vec3) -> Vec3 {
+    /// F·E: what a surface of s = 1 mirrors toward a direction with this normal.
+    pub fn sent(&self, normal: Vec3, outgoing: Vec3) -> Vec3 {
         let (direction, share) = reflection(normal, outgoing);
         let around = self.sphere.around(direction);
         around.iter().map(|&(cell, weight)| self.surroundings[cell] * weight).sum::<Vec3>() * share
     }
 
-    /// s of every texel, by blocks between which it is interpolated.
-    fn strengths(&self, radiance: &Calibrated<'_>, constant: &[Vec3]) -> Vec<f32> {
+    /// s by block.
+    fn strengths(&self, radiance: &Calibrated<'_>, constant: &[Vec3], blocks: &Blocks) -> Vec<f32> {
         let texels = radiance.texels;
-        let blocks = Blocks::of(texels);
         // Of what a texel shows and what it should mirror, both less their means: product and square, summed.
         let sums: Vec<(usize, f32, f32)> = (0..texels.count())
             .into_par_iter()
@@ -147,8 +160,7 @@ impl Mirrored {
             joined[block].0 += product;
             joined[block].1 += square;
         }
-        let strengths = blocks.quotients(&joined, [0.0, MOST]);
-        (0..texels.count()).into_par_iter().map(|texel| blocks.at(texels, texel, &strengths)).collect()
+        blocks.quotients(&joined, [0.0, MOST])
     }
 }
 

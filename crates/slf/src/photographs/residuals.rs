@@ -23,10 +23,22 @@ pub(crate) struct Residual {
     alpha: [i16; 3],
 }
 
+/// By block, what leaving out told of the residuals.
+#[derive(Debug, Default, PartialEq)]
+pub(crate) struct Believed {
+    /// How much of what is mirrored is told as such.
+    pub share: Vec<f32>,
+    /// How much of the residuals is believed.
+    pub belief: Vec<f32>,
+    /// What leaving out finds wrong, the median.
+    pub errors: Vec<f32>,
+}
+
 /// The residuals of all texels, those that are 0 left out.
 #[derive(Debug, PartialEq)]
 pub(crate) struct Residuals {
     pub kernel: Kernel,
+    pub believed: Believed,
     /// `all[start[t]..start[t + 1]]` are of texel t.
     pub start: Vec<u32>,
     pub all: Vec<Residual>,
@@ -72,19 +84,30 @@ pub(crate) struct Ways<'a> {
     pub mirrored: &'a Mirrored,
 }
 
-/// What is worked with for one texel after the other.
-struct Work {
+/// What is worked with for one place after the other.
+pub(crate) struct Work {
     regression: Regression,
-    samples: Vec<Sample>,
-    known: Vec<Known>,
-    alpha: Vec<Vec3>,
+    pub samples: Vec<Sample>,
+    pub known: Vec<Known>,
+    pub alpha: Vec<Vec3>,
     told: Vec<Vec3>,
 }
 
 impl Work {
-    fn new() -> Self {
+    pub fn new() -> Self {
         let (samples, known, alpha, told) = Default::default();
         Self { regression: Regression::new(), samples, known, alpha, told }
+    }
+
+    /// Leaves the best seen of what is known, in their order.
+    pub fn keep_best(&mut self) {
+        if self.known.len() > MOST {
+            let mut weights: Vec<f32> = self.known.iter().map(|known| known.weight).collect();
+            weights.sort_unstable_by(|a, b| b.total_cmp(a));
+            let least = weights[MOST];
+            self.known.iter_mut().for_each(|known| known.weight -= least);
+            self.known.retain(|known| known.weight > 0.0);
+        }
     }
 
     /// Solves for the residuals of `known`, and what each would be by the others.
@@ -97,6 +120,20 @@ impl Work {
     fn leave_out_again(&mut self) {
         self.regression.solve(&self.known, &mut self.alpha);
         self.regression.left_out(&self.known, &self.alpha, &mut self.told);
+    }
+
+    /// Solves for the residuals of `known`, into `alpha`, where leaving out usually finds such an `error` wrong: what shows what no other
+    /// leads to expect counts less.
+    pub fn solve_without_odd(&mut self, kernel: &Kernel, error: f32) {
+        self.leave_out(kernel);
+        let odds: Vec<f32> = self.errors().map(|e| (e.length() / (ODD * error)).powi(4)).collect();
+        if odds.iter().any(|&odd| odd > NOT_ODD) {
+            for (known, odd) in self.known.iter_mut().zip(odds) {
+                known.weight /= 1.0 + odd;
+            }
+            self.regression.decompose(kernel, &self.known);
+            self.regression.solve(&self.known, &mut self.alpha);
+        }
     }
 
     /// What leaving out finds wrong.
@@ -125,14 +162,7 @@ impl Ways<'_> {
             let residual = sample.light - constant - mirrored;
             known.push(Known { place, direction, residual, weight: sample.weight });
         }
-        if known.len() > MOST {
-            // The best seen, in their order.
-            let mut weights: Vec<f32> = known.iter().map(|known| known.weight).collect();
-            weights.sort_unstable_by(|a, b| b.total_cmp(a));
-            let least = weights[MOST];
-            known.iter_mut().for_each(|known| known.weight -= least);
-            known.retain(|known| known.weight > 0.0);
-        }
+        work.keep_best();
     }
 
     fn asked(&self) -> impl IndexedParallelIterator<Item = usize> {
@@ -229,16 +259,16 @@ impl Ways<'_> {
             progress.check()
         };
         let texels = self.radiance.texels;
-        let blocks = Blocks::of(texels);
+        let blocks = Blocks::of(texels.size());
         let kernel = self.kernel();
         passed(0.1)?;
-        let by_texel = |values: Vec<f32>| -> Vec<f32> {
-            (0..texels.count()).into_par_iter().map(|texel| blocks.at(texels, texel, &values)).collect()
-        };
-        let share = by_texel(self.mirrored_share(&blocks, &kernel));
+        let share_of_block = self.mirrored_share(&blocks, &kernel);
+        let share = blocks.by_texel(texels, &share_of_block);
         passed(0.25)?;
         let (belief, errors) = self.belief_and_errors(&blocks, &kernel, &share);
-        let (belief, errors) = (by_texel(belief), by_texel(errors));
+        let believed = Believed { share: share_of_block, belief, errors };
+        let belief = blocks.by_texel(texels, &believed.belief);
+        let errors = blocks.by_texel(texels, &believed.errors);
         passed(0.4)?;
         let mut all = vec![Residual::default(); self.radiance.sightings.count()];
         let mut rest = all.as_mut_slice();
@@ -260,16 +290,7 @@ impl Ways<'_> {
             if belief[texel] <= 0.0 {
                 return;
             }
-            work.leave_out(&kernel);
-            let odd = |error: Vec3| (error.length() / (ODD * errors[texel])).powi(4);
-            let odds: Vec<f32> = work.errors().map(odd).collect();
-            if odds.iter().any(|&odd| odd > NOT_ODD) {
-                for (known, odd) in work.known.iter_mut().zip(odds) {
-                    known.weight /= 1.0 + odd;
-                }
-                work.regression.decompose(&kernel, &work.known);
-                work.regression.solve(&work.known, &mut work.alpha);
-            }
+            work.solve_without_odd(&kernel, errors[texel]);
             for (known, alpha) in work.known.iter().zip(&work.alpha) {
                 let steps = (*alpha * (belief[texel] / STEP)).round();
                 slots[known.place].alpha = steps.to_array().map(|v| v.clamp(-32767.0, 32767.0) as i16);
@@ -290,7 +311,7 @@ impl Ways<'_> {
         all.truncate(kept);
         all.shrink_to_fit();
         passed(1.0)?;
-        Ok((share, Residuals { kernel, start, all }))
+        Ok((share, Residuals { kernel, believed, start, all }))
     }
 }
 
@@ -307,7 +328,12 @@ fn joined(blocks: &Blocks, found: impl Iterator<Item = (usize, (f32, f32))>) -> 
 impl Residuals {
     /// Of so many texels, which have none.
     pub fn none(texels: usize) -> Self {
-        Self { kernel: KERNELS[0], start: vec![0; texels + 1], all: Vec::new() }
+        Self {
+            kernel: KERNELS[0],
+            believed: Believed::default(),
+            start: vec![0; texels + 1],
+            all: Vec::new(),
+        }
     }
 
     pub fn of_texel(&self, texel: usize) -> &[Residual] {

@@ -188,27 +188,28 @@ fn from_edge(pixels: u8) -> f32 {
 }
 
 /// A photograph, and what it can see.
-struct Look<'a> {
-    view: &'a View,
-    picture: &'a KeptPicture,
-    mask: Option<&'a Mask>,
-    depth: &'a DepthPicture,
+pub(crate) struct Look<'a> {
+    pub view: &'a View,
+    pub picture: &'a KeptPicture,
+    pub mask: Option<&'a Mask>,
+    pub depth: &'a DepthPicture,
 }
 
 impl Look<'_> {
     /// How well it sees every texel, by 255ths; 0 not at all.
     fn at_texels(&self, texels: &Texels) -> Vec<u8> {
-        let eye = self.view.position();
-        let weight = |texel: usize| {
-            let position = texels.position(texel);
-            let cosine = texels.normal(texel).dot((eye - position).as_vec3().normalize_or_zero()).abs();
-            let of_angle = ramp(cosine, GLANCING);
-            if of_angle == 0.0 {
-                return 0.0;
-            }
-            of_angle * self.at(position, |place| self.depth.sees(self.view, position, place))
-        };
+        let weight = |texel: usize| self.at_surface(texels.position(texel), texels.normal(texel));
         (0..texels.count()).into_par_iter().map(|texel| by_255ths(weight(texel))).collect()
+    }
+
+    /// How well it sees a place of the surface with this normal, in [0, 1]; 0 not at all.
+    pub fn at_surface(&self, position: DVec3, normal: Vec3) -> f32 {
+        let cosine = normal.dot((self.view.position() - position).as_vec3().normalize_or_zero()).abs();
+        let of_angle = ramp(cosine, GLANCING);
+        if of_angle == 0.0 {
+            return 0.0;
+        }
+        of_angle * self.at(position, |place| self.depth.sees(self.view, position, place))
     }
 
     /// How well it sees every cell at infinity, by 255ths.

@@ -1,10 +1,11 @@
 //! Light from photographs as bytes, for the program that made it: lists as they lie in memory, each behind its length (u64).
 
 use super::PhotographLight;
+use super::blocks::Blocks;
 use super::directions::Kernel;
 use super::gains::Exposure;
 use super::mirrored::Mirrored;
-use super::residuals::Residuals;
+use super::residuals::{Believed, Residuals};
 use super::sphere::Sphere;
 use super::texels::TexelGrid;
 use atlas::NO_TEXEL;
@@ -50,10 +51,13 @@ impl PhotographLight {
         add(&mut bytes, &self.constant);
         add(&mut bytes, &self.seen);
         add(&mut bytes, &self.seeing);
+        let Believed { share, belief, errors } = &self.residuals.believed;
+        [share, belief, errors].into_iter().for_each(|list| add(&mut bytes, list));
         add(&mut bytes, &self.residuals.start);
         add(&mut bytes, &self.residuals.all);
         add(&mut bytes, &self.mirrored.surroundings);
         add(&mut bytes, &self.mirrored.strength);
+        add(&mut bytes, &self.mirrored.strength_of_block);
         add(&mut bytes, &self.beyond);
         bytes
     }
@@ -69,8 +73,11 @@ impl PhotographLight {
         let eyes: Vec<DVec3> = list(&mut rest)?;
         let constant: Vec<Vec3> = list(&mut rest)?;
         let (seen, seeing): (Vec<f32>, Vec<u16>) = (list(&mut rest)?, list(&mut rest)?);
+        let (share, belief, errors) = (list(&mut rest)?, list(&mut rest)?, list(&mut rest)?);
+        let believed = Believed { share, belief, errors };
         let (start, all) = (list(&mut rest)?, list(&mut rest)?);
         let (surroundings, strength) = (list(&mut rest)?, list(&mut rest)?);
+        let strength_of_block = list(&mut rest)?;
         let beyond = list(&mut rest)?;
         let kernel = Kernel { reach: head.reach, noise: head.noise };
         let light = Self {
@@ -87,13 +94,14 @@ impl PhotographLight {
             constant,
             seen,
             seeing,
-            residuals: Residuals { kernel, start, all },
+            residuals: Residuals { kernel, believed, start, all },
             sphere: Sphere::of_rows(head.beyond_rows as usize),
             beyond,
             mirrored: Mirrored {
                 sphere: Sphere::of_rows(head.mirrored_rows as usize),
                 surroundings,
                 strength,
+                strength_of_block,
             },
         };
         (rest.is_empty() && light.holds_together()).then_some(light)
@@ -103,11 +111,15 @@ impl PhotographLight {
     fn holds_together(&self) -> bool {
         let (texels, views) = (self.constant.len(), self.scene.views.len());
         let (grid, residuals) = (&self.grid, &self.residuals);
+        let Believed { share, belief, errors } = &residuals.believed;
+        let by_block = [share.len(), belief.len(), errors.len(), self.mirrored.strength_of_block.len()];
+        let blocks = Blocks::of([grid.width, grid.height]).count();
         grid.corners.len() == self.scene.triangles.len()
             && grid.index.len() as u64 == u64::from(grid.width) * u64::from(grid.height)
             && grid.index.iter().all(|&texel| texel == NO_TEXEL || (texel as usize) < texels)
             && [self.exposures.len(), self.eyes.len()] == [views; 2]
             && [self.seen.len(), self.seeing.len(), self.mirrored.strength.len()] == [texels; 3]
+            && (by_block == [blocks; 4] || by_block == [0; 4])
             && residuals.start.len() == texels + 1
             && residuals.start.is_sorted()
             && residuals.start[texels] as usize == residuals.all.len()

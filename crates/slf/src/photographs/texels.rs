@@ -102,14 +102,17 @@ impl TexelGrid {
         (number != NO_TEXEL).then_some(number as usize)
     }
 
-    /// The texels around a point, for linear interpolation.
-    pub fn around(&self, point: SurfacePoint) -> Option<Around> {
+    /// Where a point lies, from the corner of the upper left texel.
+    pub fn place(&self, point: SurfacePoint) -> Option<DVec2> {
         let corners = self.corners.get(point.triangle as usize)?.map(Vec2::as_dvec2);
         let [a, b, c] = point.weights();
-        let at = (corners[0] * a + corners[1] * b + corners[2] * c) * self.scale - 0.5;
-        if !at.is_finite() {
-            return None;
-        }
+        let place = (corners[0] * a + corners[1] * b + corners[2] * c) * self.scale;
+        place.is_finite().then_some(place)
+    }
+
+    /// The texels around a point, for linear interpolation.
+    pub fn around(&self, point: SurfacePoint) -> Option<Around> {
+        let at = self.place(point)? - 0.5;
         let floor = at.floor();
         let share = at - floor;
         let (x, y) = (floor.x as i64, floor.y as i64);

@@ -1,0 +1,157 @@
+//! Light looked up in the photographs themselves (seed §3.3.4): nothing is resampled to texels first.
+//!
+//! What was solved for all photographs together (exposures, what is mirrored, what leaving out told by blocks) is that of
+//! [`PhotographLight`]; constant part and residuals of a point are found anew each time it is asked, as those of a texel are.
+
+use super::blocks::Blocks;
+use super::budget::Budget;
+use super::constant::{Sample, robust_mean};
+use super::depth_picture::DepthPicture;
+use super::directions::{Known, toward};
+use super::kept_picture::KeptPicture;
+use super::residuals::Work;
+use super::sightings::Look;
+use super::{PhotographError, PhotographLight, PhotographOptions, SEEN};
+use glam::{DVec3, Vec3};
+use progress::Progress;
+use rayon::prelude::*;
+use scene::{Mask, SurfacePoint};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use trace::{Leaving, Radiance};
+
+/// A photograph as it is kept.
+struct Kept {
+    picture: KeptPicture,
+    depth: DepthPicture,
+    mask: Option<Mask>,
+}
+
+/// Radiance of a surface, looked up in the photographs that light was made from.
+pub struct DirectPhotographs {
+    light: Arc<PhotographLight>,
+    /// By view of the scene.
+    kept: Vec<Kept>,
+}
+
+impl DirectPhotographs {
+    /// Reads the photographs that the light was made from. Reduced where they would not fit the memory of `options`.
+    ///
+    /// # Errors
+    /// One cannot be read, or `progress` says to stop.
+    pub fn of(
+        light: Arc<PhotographLight>,
+        options: &PhotographOptions,
+        progress: &dyn Progress,
+    ) -> Result<Self, PhotographError> {
+        let scene = &light.scene;
+        let (reduction, at_once) = Budget::of_pictures(&scene.views, options.max_memory);
+        let done = AtomicUsize::new(0);
+        let mut kept = Vec::with_capacity(scene.views.len());
+        for chunk in scene.views.chunks(at_once) {
+            let read: Vec<Kept> = chunk
+                .par_iter()
+                .map(|view| {
+                    progress.check()?;
+                    let picture = KeptPicture::of(&view.photograph(&options.load)?, reduction);
+                    let (depth, mask) = (DepthPicture::of(scene, view, reduction), view.mask(&options.load)?);
+                    let count = done.fetch_add(1, Ordering::Relaxed) + 1;
+                    progress.report(count as f32 / scene.views.len() as f32);
+                    Ok(Kept { picture, depth, mask })
+                })
+                .collect::<Result<_, PhotographError>>()?;
+            kept.extend(read);
+        }
+        Ok(Self { light, kept })
+    }
+
+    /// What photographs show of a place, and from where: those that see the side that is seen better.
+    fn samples(&self, position: DVec3, normal: Vec3) -> Vec<(usize, Sample)> {
+        let views = &self.light.scene.views;
+        let is_front = |number: usize| normal.dot((views[number].position() - position).as_vec3()) >= 0.0;
+        let mut seen: Vec<(usize, f32)> = Vec::new();
+        for (number, (view, kept)) in views.iter().zip(&self.kept).enumerate() {
+            let Kept { picture, depth, mask } = kept;
+            let look = Look { view, picture, mask: mask.as_ref(), depth };
+            let weight = look.at_surface(position, normal);
+            if weight >= LEAST_WEIGHT {
+                seen.push((number, weight));
+            }
+        }
+        let balance: f32 = seen.iter().map(|&(n, weight)| if is_front(n) { weight } else { -weight }).sum();
+        seen.retain(|&(number, _)| is_front(number) == (balance >= 0.0));
+        let sample = |(number, weight): (usize, f32)| {
+            let (view, picture) = (&views[number], &self.kept[number].picture);
+            let pixel = view.project(position)?;
+            let shown = picture.at(picture.place(pixel));
+            let light = shown.light * self.light.exposures[number].to_radiance(view, pixel);
+            Some((number, Sample::of_sighting(light, weight, shown.clipped)))
+        };
+        seen.into_iter().filter_map(sample).collect()
+    }
+}
+
+/// Texels have their weights in 255ths: less is none.
+const LEAST_WEIGHT: f32 = 0.5 / 255.0;
+
+impl Radiance for DirectPhotographs {
+    fn leaving(&self, point: SurfacePoint, eye: DVec3) -> Leaving {
+        let light = &self.light;
+        let (residuals, mirrored) = (&light.residuals, &light.mirrored);
+        let Some(place) = light.grid.place(point) else { return Leaving::default() };
+        let position = point.position(&light.scene);
+        let outgoing = toward(position, eye);
+        let normal = light.scene.shading_normal(point).as_vec3();
+        let blocks = Blocks::of([light.grid.width, light.grid.height]);
+        let believed = |values: &[f32]| blocks.at(place, values);
+        let area_normal = light.scene.area_normal(point.triangle).normalize_or_zero().as_vec3();
+        let samples = self.samples(position, area_normal);
+        let evidence: f32 = samples.iter().map(|(_, sample)| sample.weight).sum();
+        if evidence == 0.0 {
+            return light.leaving(point, eye);
+        }
+        let share = believed(&residuals.believed.share);
+        let strength = believed(&mirrored.strength_of_block);
+        let directions: Vec<Vec3> =
+            samples.iter().map(|&(number, _)| toward(position, light.eyes[number])).collect();
+        let mut work = Work::new();
+        let mut mean = |strength: f32| {
+            work.samples.clear();
+            work.samples.extend(samples.iter().zip(&directions).map(|((_, sample), direction)| {
+                let light = sample.light - mirrored.sent(normal, *direction) * strength;
+                Sample { light, weight: sample.weight }
+            }));
+            robust_mean(&work.samples, &mut Vec::new())
+        };
+        let mut constant = mean(0.0);
+        if share > 0.0 && strength > 0.0 {
+            constant = constant.lerp(mean(strength).max(Vec3::ZERO), share);
+        }
+        let told = strength * share;
+        work.known.clear();
+        for (place, ((_, sample), &direction)) in samples.iter().zip(&directions).enumerate() {
+            let residual = sample.light - constant - mirrored.sent(normal, direction) * told;
+            work.known.push(Known { place, direction, residual, weight: sample.weight });
+        }
+        let mut own = light.constant(point).lerp(constant, (evidence / SEEN).min(1.0));
+        let belief = believed(&residuals.believed.belief);
+        if belief > 0.0 {
+            work.keep_best();
+            work.solve_without_odd(&residuals.kernel, believed(&residuals.believed.errors));
+            for (known, alpha) in work.known.iter().zip(&work.alpha) {
+                own += *alpha * (belief * residuals.kernel.at(known.direction.distance(outgoing)));
+            }
+        }
+        let carried = mirrored.sent(normal, outgoing) * told;
+        Leaving {
+            own: own.max(-carried),
+            carried,
+            carried_share: mirrored.share_of(told, normal, outgoing),
+            ..Leaving::default()
+        }
+    }
+
+    fn from_infinity(&self, direction: DVec3) -> Vec3 {
+        self.light.from_infinity(direction)
+    }
+}
