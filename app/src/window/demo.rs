@@ -29,7 +29,9 @@ mod tests {
         let input = Input::open(&file, &Unwatched).unwrap();
         assert_eq!(input.warnings, Vec::<String>::new(), "made for the scene beside it");
         let atlas = input.atlas(&Default::default(), &Unwatched).unwrap();
-        let stage = Stage::of(input.scene.clone(), atlas, &Unwatched).unwrap();
+        let stage =
+            Stage::of(std::sync::Arc::new(trace::Tracer::new(input.scene.clone())), atlas, &Unwatched)
+                .unwrap();
         let map = input.project.unwrap().focus_map.expect("it is painted");
         let sharp = stage.canvas.texels().iter().filter(|t| map.at(t.x, t.y) == lens::FocusOffset::SHARP);
         let share = sharp.count() as f64 / stage.canvas.texels().len() as f64;

@@ -235,7 +235,14 @@ impl PaintView {
             ui.painter().rect_filled(rect, 0.0, Color32::from_gray(32));
         }
         let Some(document) = session.document() else {
-            hint(ui, rect, "Drop a glTF scene or a project here, or press Ctrl+O.");
+            hint(
+                ui,
+                rect,
+                match session.jobs().is_empty() {
+                    true => "Drop a glTF scene, a project or the folder of a capture here, or press Ctrl+O.",
+                    false => "Opening…",
+                },
+            );
             return;
         };
         self.follow(&document.camera);

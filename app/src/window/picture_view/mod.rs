@@ -150,6 +150,13 @@ impl PictureView {
         controls::named(&response, "Picture");
         let Some(document) = session.document() else {
             ui.painter().rect_filled(rect, 0.0, theme::SURROUNDINGS);
+            // What is seen of a scene that is being opened.
+            let [width, height] = session.screen().size();
+            if width > 0 && height > 0 {
+                self.image = self.place(vec2(width as f32, height as f32));
+                let tone = Tone { display, ..Tone::default() };
+                self.paint_picture(ui, session, tone, Shown::Painted, rect);
+            }
             return;
         };
         let size = vec2(document.camera.width as f32, document.camera.height as f32);

@@ -75,13 +75,12 @@ fn names(views: &[View]) -> String {
 }
 
 /// The camera of a photograph without its lens's distortion: a pinhole, what its axis meets in the middle of the picture. Sensor and
-/// background are those of `like`.
-pub fn camera_of_photograph(scene: &Scene, view: &View, like: &Camera) -> Camera {
+/// background are those of `like`. `bounds` are the scene's, lowest and highest corner.
+pub fn camera_of_photograph(bounds: (DVec3, DVec3), view: &View, like: &Camera) -> Camera {
     let [width, height] = view.lens.size_px();
     let [_, focal_px] = view.lens.intrinsics().focal_px;
-    let (low, high) = scene.bounds();
     let along = |point: DVec3| (point - view.position()).dot(view.forward());
-    let middle = along(0.5 * (low + high));
+    let middle = along(0.5 * (bounds.0 + bounds.1));
     Camera {
         width,
         height,

@@ -272,7 +272,7 @@ impl Input {
                 if let Some(name) = name.strip_prefix(PHOTOGRAPH) {
                     let view = photograph(&self.scene, name);
                     let view = view.map_err(|what| SessionError::bad(&self.path, what))?;
-                    return Ok(camera_of_photograph(&self.scene, view, &self.camera));
+                    return Ok(camera_of_photograph(self.scene.bounds(), view, &self.camera));
                 }
                 let in_scene = || self.scene.cameras.iter().find(|camera| camera.name == *name);
                 saved.next().or_else(|| in_scene().map(|c| camera_of(c, &self.camera))).ok_or_else(|| {
@@ -373,8 +373,13 @@ impl Input {
         unwrap: &UnwrapOptions,
         steps: &dyn Steps,
     ) -> Result<(Stage, FocusMap), SessionError> {
-        let atlas = self.atlas(unwrap, steps)?;
+        let tracer = Arc::new(Tracer::new(self.scene.clone()));
         let project = self.project.as_ref();
+        let takes_a_while = self.scene.triangles.len() >= MANY_TRIANGLES;
+        if takes_a_while && project.is_none_or(|project| project.atlas.is_none()) {
+            steps.seen(&tracer, &self.camera);
+        }
+        let atlas = self.atlas(unwrap, steps)?;
         let map = match project.and_then(|project| project.focus_map.clone()) {
             Some(map) => map,
             None => {
@@ -384,9 +389,12 @@ impl Input {
             }
         };
         self.check_fit(&map, &atlas)?;
-        Ok((Stage::of(self.scene.clone(), atlas, &*steps.begin("preparing"))?, map))
+        Ok((Stage::of(tracer, atlas, &*steps.begin("preparing"))?, map))
     }
 }
+
+/// So many are unwrapped in a second or two.
+const MANY_TRIANGLES: usize = 50_000;
 
 /// Warnings that say whose they are.
 pub(crate) fn named(path: &Path, warnings: &[String]) -> Vec<String> {

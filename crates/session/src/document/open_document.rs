@@ -341,7 +341,7 @@ impl Document {
         let cameras = cameras.map(|camera| (camera.name.as_str(), camera_of(camera, &self.camera)));
         let of_photograph = |view: &'_ View| Camera {
             aperture_radius: self.camera.aperture_radius,
-            ..camera_of_photograph(scene, view, &self.camera)
+            ..camera_of_photograph(self.stage.bounds, view, &self.camera)
         };
         let photographs = scene.views.iter().chain(&scene.left_out);
         cameras.chain(photographs.map(move |view| (view.name.as_str(), of_photograph(view))))

@@ -131,15 +131,13 @@ impl Stage {
         Ok(Self { scene, bounds: self.bounds, atlas, tracer, texels, canvas, light_hash: OnceLock::new() })
     }
 
-    /// Prepares a scene whose atlas is known.
-    pub fn of(scene: Arc<Scene>, atlas: Arc<Atlas>, progress: &dyn Progress) -> Result<Self, SessionError> {
+    /// Prepares the scene of `tracer`, whose atlas is known.
+    pub fn of(tracer: Arc<Tracer>, atlas: Arc<Atlas>, progress: &dyn Progress) -> Result<Self, SessionError> {
         progress.check()?;
-        let tracer = Arc::new(Tracer::new(scene.clone()));
+        let scene = tracer.scene().clone();
         keep_photographs_at(&tracer, &atlas);
-        progress.report(0.3);
-        progress.check()?;
         let texels = Arc::new(atlas.texel_map(&scene));
-        progress.report(0.7);
+        progress.report(0.5);
         progress.check()?;
         let place = |address: u32| [address % atlas.width, address / atlas.width];
         let gutters: Vec<_> = texels.dilations.iter().map(|d| [place(d.texel), place(d.source)]).collect();

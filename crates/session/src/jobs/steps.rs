@@ -1,7 +1,10 @@
 //! Long work in named steps, for whoever watches it.
 
 use super::job_progress::JobProgress;
+use lens::Camera;
 use progress::{Progress, Unwatched};
+use std::sync::Arc;
+use trace::Tracer;
 
 /// Who watches a piece of work that has several steps.
 pub trait Steps: Sync {
@@ -10,6 +13,9 @@ pub trait Steps: Sync {
 
     /// A step found something worth a sentence.
     fn tell(&self, _sentence: &str) {}
+
+    /// The scene can be seen through `camera`, though it takes a while until it can be painted on.
+    fn seen(&self, _tracer: &Arc<Tracer>, _camera: &Camera) {}
 }
 
 /// Nobody watches.

@@ -126,6 +126,10 @@ fn solve(kept: &Kept, tracer: &Arc<Tracer>, progress: &dyn Progress) -> Result<(
     // The rough light comes first and is soon there.
     let rough = Irradiance::solve(&transport, ROUGH, &Stage::new(progress, 0.0, 0.0))?;
     let _ = kept.rough.set(Arc::new(rough));
+    if !scene.views.is_empty() {
+        // Photographs light it as soon as theirs is there: the bare surface is not looked at for long.
+        return Ok(());
+    }
     let fine = Irradiance::solve(&transport, options, progress)?;
     if let Some(file) = &file {
         light_file::FILES.write(file, &light_file::to_bytes(&fine));

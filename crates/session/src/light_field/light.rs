@@ -60,6 +60,11 @@ pub(crate) fn light_at_once(tracer: &Arc<Tracer>, camera: &Camera) -> Light {
     })
 }
 
+/// Light of the bare surface, nothing known and nothing begun: exact and noisy.
+pub(crate) fn bare_light(tracer: &Arc<Tracer>, camera: &Camera) -> Light {
+    Arc::new(transport(tracer, camera, 4 * PATHS, ROUGH_LIGHT_SAMPLES))
+}
+
 /// Light for the ground truth: whole paths, nothing known; of photographs what they show. It shades many points a pixel: a path each is
 /// enough.
 pub(crate) fn light_for_many_points(

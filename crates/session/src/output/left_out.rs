@@ -102,7 +102,7 @@ impl Input {
         light: &PhotographLight,
         one_view: &PhotographLight,
     ) -> Result<LeftOutPicture, SessionError> {
-        let camera = camera_of_photograph(tracer.scene(), view, &self.camera);
+        let camera = camera_of_photograph(tracer.scene().bounds(), view, &self.camera);
         let (photograph, mut layers) = photograph_picture(view, &camera, tracer, light)?;
         let photograph = LinearPicture::of(&photograph, Exposure::Conserve);
         let is_seen: Vec<bool> = layers.remove(0).values.into_iter().map(|seen| seen >= SEEN).collect();

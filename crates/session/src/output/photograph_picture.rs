@@ -34,7 +34,7 @@ impl Input {
         let tracer = Arc::new(Tracer::new(scene.clone()));
         self.tell_atlas(&tracer)?;
         let light = photograph_light(&tracer, &*steps.begin("light"))?;
-        let camera = camera_of_photograph(scene, view, &self.camera);
+        let camera = camera_of_photograph(scene.bounds(), view, &self.camera);
         photograph_picture(view, &camera, &tracer, &light)
     }
 }

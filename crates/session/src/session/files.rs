@@ -24,8 +24,9 @@ impl Session {
     pub(super) fn open(&mut self, path: PathBuf) -> Result<(), SessionError> {
         let unwrap = self.options.unwrap.clone();
         let label = format!("opening {}", file_name(&path));
+        let first_look = self.first_look();
         self.start(label, move |progress| {
-            let document = Document::open(&path, &unwrap, &JobSteps { progress })?;
+            let document = Document::open(&path, &unwrap, &first_look.steps(progress))?;
             Ok(Outcome::Opened(Box::new(document)))
         })?;
         Ok(())
@@ -34,8 +35,9 @@ impl Session {
     pub(super) fn open_template(&mut self, path: PathBuf) -> Result<(), SessionError> {
         let unwrap = self.options.unwrap.clone();
         let label = format!("opening {}", file_name(&path));
+        let first_look = self.first_look();
         self.start(label, move |progress| {
-            let document = Document::open_template(&path, &unwrap, &JobSteps { progress })?;
+            let document = Document::open_template(&path, &unwrap, &first_look.steps(progress))?;
             Ok(Outcome::Opened(Box::new(document)))
         })?;
         Ok(())

@@ -8,6 +8,7 @@ mod asking;
 mod comparing;
 mod exporting;
 mod files;
+mod first_look;
 mod history;
 mod outcome;
 mod painting;

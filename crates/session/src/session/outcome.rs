@@ -3,12 +3,15 @@
 use super::restaged::Restaged;
 use crate::document::Document;
 use crate::output::Reference;
+use lens::Picture;
 use std::path::PathBuf;
 use trace::truth::Estimate;
 
 /// What a finished job hands to the session.
 pub(super) enum Outcome {
     Opened(Box<Document>),
+    /// What is seen of a scene before it can be painted on.
+    Seen(Picture),
     /// The stage of the document, seen or lit in another way.
     Restaged(Box<Restaged>),
     /// A project file that holds this revision of this document.

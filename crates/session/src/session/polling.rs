@@ -20,8 +20,15 @@ impl Session {
                 // It was done before it could be stopped; a newer one has its place.
                 Ok(Outcome::Restaged(_)) if is_given_up => {}
                 Ok(outcome) => self.take(outcome),
-                Err(SessionError::Cancelled) => {}
-                Err(error) => self.events.push(Event::Failed(error.to_string())),
+                Err(error) => {
+                    if self.document.is_none() {
+                        // What was seen of a scene that does not open.
+                        self.screen.clear();
+                    }
+                    if !matches!(error, SessionError::Cancelled) {
+                        self.events.push(Event::Failed(error.to_string()));
+                    }
+                }
             }
         }
         let (newer, news) = self.preview_thread.take(self.seen_preview);
@@ -72,7 +79,9 @@ impl Session {
                 self.preview_camera = Some(camera.clone());
                 let stage = (document.stage.clone(), self.generation);
                 self.preview_thread.set_stage(stage, (document.map.clone(), self.map_serial), camera);
-                self.screen.clear();
+                if self.document.is_some() {
+                    self.screen.clear();
+                }
                 self.events.push(Event::Opened);
                 self.events.extend(document.selection.is_some().then_some(Event::SelectionChanged));
                 self.events.extend(document.warnings.iter().cloned().map(Event::Notice));
@@ -85,6 +94,7 @@ impl Session {
                 self.document = Some(*document);
                 self.show_tone();
             }
+            Outcome::Seen(picture) => self.take_seen(&picture),
             Outcome::Restaged(restaged) => {
                 if let Err(error) = self.take_restaged(*restaged) {
                     self.events.push(Event::Failed(error.to_string()));
