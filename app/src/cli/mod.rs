@@ -67,7 +67,10 @@ fn dispatch(command: Subcommand) -> Result<(), Failure> {
     match command {
         Subcommand::Info(arguments) => info::run(&arguments, &console),
         Subcommand::New(arguments) => new::run(&arguments, &console),
-        Subcommand::Import(arguments) => import::run(&arguments, &console),
+        Subcommand::Import(arguments) => {
+            keep_work();
+            import::run(&arguments, &console)
+        }
         Subcommand::Replay(arguments) => replay::run(&arguments, &console),
         Subcommand::Unwrap(arguments) => unwrap::run(&arguments, &console),
         Subcommand::Bake(arguments) => {

@@ -83,7 +83,7 @@ impl ViewHeader<'_> {
             Docked::Tab | Docked::Floats => false,
         };
         match self.pane {
-            Pane::Paint => paint_header(ui, self.settings),
+            Pane::Paint => paint_header(ui, self.session, self.settings),
             Pane::Picture => picture_header(ui, self.session, self.picture, actions),
             _ => {}
         }
@@ -117,7 +117,7 @@ pub fn panel_menu(ui: &mut Ui, pane: Pane, docked: Docked, actions: &mut Vec<Act
     response.response.on_hover_text("What can be done with this panel.");
 }
 
-fn paint_header(ui: &mut Ui, settings: &mut ViewSettings) {
+fn paint_header(ui: &mut Ui, session: &Session, settings: &mut ViewSettings) {
     ui.label("Surface").on_hover_text("The scene's own colours.");
     let mix = egui::Slider::new(&mut settings.focus_share, 0.0..=1.0).show_value(false);
     let tip =
@@ -127,14 +127,20 @@ fn paint_header(ui: &mut Ui, settings: &mut ViewSettings) {
     ui.label("Blur").on_hover_text("The false colour of blur.");
     ui.checkbox(&mut settings.contours, "Contours")
         .on_hover_text("Lines where the blur is 1, 4 and 16 px wide.");
+    if session.document().is_some_and(|document| !document.stage.scene.views.is_empty()) {
+        ui.checkbox(&mut settings.seeing, "Photographs").on_hover_text(
+            "How many photographs see the surface: none magenta (its light is filled in from around), one dark blue, ten green, 32 and more \
+             yellow. Drag the slider to Surface to see it alone.",
+        );
+    }
 }
 
 /// A menu of the pictures that can be shown.
-fn choose_picture(ui: &mut Ui, name: &str, shown: &mut Shown) {
+fn choose_picture(ui: &mut Ui, session: &Session, name: &str, shown: &mut Shown) {
     let combo = egui::ComboBox::from_id_salt(name).selected_text(shown.name()).width(104.0);
     let combo = combo.wrap_mode(egui::TextWrapMode::Truncate);
     let response = combo.show_ui(ui, |ui| {
-        for choice in Shown::ALL {
+        for choice in Shown::ALL.into_iter().filter(|choice| choice.is_of(session.document())) {
             ui.selectable_value(shown, choice, choice.name()).on_hover_text(choice.tip());
         }
     });
@@ -143,13 +149,15 @@ fn choose_picture(ui: &mut Ui, name: &str, shown: &mut Shown) {
 }
 
 fn picture_header(ui: &mut Ui, session: &Session, picture: &mut PictureView, actions: &mut Vec<Action>) {
-    choose_picture(ui, "Shown picture", &mut picture.shown);
+    choose_picture(ui, session, "Shown picture", &mut picture.shown);
     let mut wiping = picture.wipe.is_on;
     let tip = keys::tip(ui.ctx(), CommandId::Wipe);
     if ui.checkbox(&mut wiping, "Compare").on_hover_text(tip).changed() {
         actions.push(CommandId::Wipe.into());
     }
-    ui.add_enabled_ui(wiping, |ui| choose_picture(ui, "Compared picture", &mut picture.wipe.against));
+    ui.add_enabled_ui(wiping, |ui| {
+        choose_picture(ui, session, "Compared picture", &mut picture.wipe.against)
+    });
     let response = ui.add(Button::selectable(picture.verify.is_selecting(), "Verify"));
     if response.on_hover_text(keys::tip(ui.ctx(), CommandId::Verify)).clicked() {
         actions.push(CommandId::Verify.into());

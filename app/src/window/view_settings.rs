@@ -24,6 +24,8 @@ pub struct ViewSettings {
     pub focus_share: f32,
     /// Contour lines of blur.
     pub contours: bool,
+    /// How many photographs see the surface of a capture.
+    pub seeing: bool,
     /// The longest side that the preview is drawn at, px.
     pub preview_size: u32,
     /// Sides of what the live picture draws as one where the circle of confusion is 16 px wide, px; 0: every sample.
@@ -54,6 +56,7 @@ impl Default for ViewSettings {
         Self {
             focus_share: look.focus_share,
             contours: look.contours,
+            seeing: look.seeing,
             preview_size: 960,
             tolerance_px: TOLERANCE_PX,
             display_stops: 0.0,
@@ -72,7 +75,7 @@ impl Default for ViewSettings {
 impl ViewSettings {
     /// The paint view's look.
     pub fn look(&self) -> SurfaceLook {
-        SurfaceLook { focus_share: self.focus_share, contours: self.contours }
+        SurfaceLook { focus_share: self.focus_share, contours: self.contours, seeing: self.seeing }
     }
 
     /// How pictures are put on screen.

@@ -50,4 +50,5 @@ pub use output::{
 };
 pub use preview::{DrawingCosts, PictureTimes, Preview, PreviewActivity, PreviewKind, Quality};
 pub use session::{FullSize, Session, SessionOptions};
+pub use slf::PhotographLight;
 pub use trace::truth::Region;

@@ -7,6 +7,7 @@
 //! ```
 
 mod changed_pixels;
+mod coat;
 mod focus_texture;
 mod graphics;
 mod orbit_camera;

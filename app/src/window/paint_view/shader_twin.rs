@@ -48,10 +48,10 @@ fn atlas() -> Atlas {
 /// The pixel in the middle of what the renderer draws.
 fn drawn(renderer: &mut SurfaceRenderer, z: f64, focus: FocusOffset, shot: &Camera, share: f32) -> [f32; 3] {
     let (device, queue) = renderer.device();
-    let mesh = SurfaceMesh::upload(device, queue, &square(z), &atlas()).unwrap();
+    let mesh = SurfaceMesh::upload(device, queue, &square(z), &atlas(), None).unwrap();
     let texture = FocusTexture::new(device, queue, &FocusMap::new(8, 8, focus)).unwrap();
     let view = OrbitCamera::from_shot(shot, z);
-    let look = SurfaceLook { focus_share: share, contours: false };
+    let look = SurfaceLook { focus_share: share, contours: false, seeing: false };
     let shown = SurfaceFrame { view: &view, shot, look, size: [SIDE, SIDE] };
     renderer.draw(&mesh, &texture, shown, Stale::Everything).unwrap();
     let pixels = read(renderer);

@@ -2,6 +2,7 @@
 //!
 //! Built on a worker thread ([`SurfaceMesh::upload`]), because textures of a big scene take a while.
 
+use super::coat::Coat;
 use super::graphics::{GraphicsError, guarded};
 use atlas::Atlas;
 use bytemuck::{Pod, Zeroable};
@@ -102,12 +103,13 @@ impl SurfaceMesh {
         }
     }
 
-    /// Copies a scene to the graphics card. Takes seconds for a big scene: call it on a worker thread.
+    /// Copies a scene to the graphics card, under a coat if there is one. Takes seconds for a big scene: call it on a worker thread.
     pub fn upload(
         device: &wgpu::Device,
         queue: &wgpu::Queue,
         scene: &Scene,
         atlas: &Atlas,
+        coat: Option<&Coat>,
     ) -> Result<Self, GraphicsError> {
         guarded(device, || {
             let (low, high) = scene.bounds();
@@ -124,7 +126,7 @@ impl SurfaceMesh {
                 let mut corners = Vec::with_capacity(range.len() * 3);
                 for triangle in range {
                     let material = scene.parts[scene.triangles[triangle].part as usize].material;
-                    push_corners(&mut corners, scene, atlas, triangle as u32, origin);
+                    push_corners(&mut corners, scene, atlas, triangle as u32, origin, coat.is_some());
                     let end = corners.len() as u32;
                     match draws.last_mut() {
                         Some(draw) if draw.material == material && draw.buffer == buffers.len() => {
@@ -139,7 +141,11 @@ impl SurfaceMesh {
                     usage: wgpu::BufferUsages::VERTEX,
                 }));
             }
-            let materials = MaterialUpload::new(device, queue, scene).bind_groups();
+            let upload = MaterialUpload::new(device, queue, scene);
+            let materials = match coat {
+                Some(coat) => vec![upload.bind_group_of(coat); scene.materials.len()],
+                None => upload.bind_groups(),
+            };
             Self { buffers, draws, materials, origin, extent }
         })
     }
@@ -154,15 +160,26 @@ impl SurfaceMesh {
     }
 }
 
-fn push_corners(corners: &mut Vec<Corner>, scene: &Scene, atlas: &Atlas, triangle: u32, origin: DVec3) {
+fn push_corners(
+    corners: &mut Vec<Corner>,
+    scene: &Scene,
+    atlas: &Atlas,
+    triangle: u32,
+    origin: DVec3,
+    is_coated: bool,
+) {
     let material = scene.material_of(triangle);
-    let base_uv = texture_uv(scene, triangle, material.base_color_texture.as_ref());
-    let emissive_uv = texture_uv(scene, triangle, material.emissive_texture.as_ref());
     let atlas_corners = atlas.corners.get(triangle as usize).copied().unwrap_or_default();
+    let base_uv = match is_coated {
+        true => atlas_corners.map(|corner| corner / Vec2::new(atlas.width as f32, atlas.height as f32)),
+        false => texture_uv(scene, triangle, material.base_color_texture.as_ref()),
+    };
+    let emissive_uv = texture_uv(scene, triangle, material.emissive_texture.as_ref());
     let positions = scene.corners(triangle);
     let vertices = scene.triangles[triangle as usize].vertices;
     for (k, vertex) in vertices.into_iter().enumerate() {
-        let color = scene.colors.get(vertex as usize).copied().unwrap_or(glam::Vec4::ONE);
+        let color = scene.colors.get(vertex as usize).copied().filter(|_| !is_coated);
+        let color = color.unwrap_or(glam::Vec4::ONE);
         corners.push(Corner {
             position: (positions[k] - origin).as_vec3().to_array(),
             normal: scene.normals.get(vertex as usize).copied().unwrap_or(Vec3::ZERO).to_array(),
@@ -200,6 +217,22 @@ impl<'a> MaterialUpload<'a> {
 
     fn bind_groups(mut self) -> Vec<wgpu::BindGroup> {
         self.scene.materials.iter().map(|material| self.bind_group(material)).collect()
+    }
+
+    /// Everything under one coat, lit by itself.
+    fn bind_group_of(mut self, coat: &Coat) -> wgpu::BindGroup {
+        let image = 0;
+        let level = Level { width: coat.width, height: coat.height, rgba: coat.rgba.clone() };
+        self.views.insert(image, create_texture(self.device, self.queue, "coat", &level.fitting()));
+        let texture = TextureRef {
+            image,
+            is_color: true,
+            uv_set: 0,
+            transform: glam::Mat3::IDENTITY,
+            wrap: [Wrap::Clamp; 2],
+            nearest: false,
+        };
+        self.bind_group(&Material { base_color_texture: Some(texture), ..Material::of_unlit() })
     }
 
     fn bind_group(&mut self, material: &Material) -> wgpu::BindGroup {
@@ -244,14 +277,16 @@ impl<'a> MaterialUpload<'a> {
     }
 
     fn view(&mut self, texture: Option<&TextureRef>) -> wgpu::TextureView {
+        if let Some(known) = texture.and_then(|t| self.views.get(&t.image)) {
+            return known.clone();
+        }
         let image =
             texture.and_then(|t| self.scene.images.get(t.image as usize).map(|image| (t.image, image)));
         let Some((index, image)) = image else { return self.white.clone() };
         let (device, queue) = (self.device, self.queue);
-        self.views
-            .entry(index)
-            .or_insert_with(|| create_texture(device, queue, &image.name, &Level::of(image)))
-            .clone()
+        let view = create_texture(device, queue, &image.name, &Level::of(image));
+        self.views.insert(index, view.clone());
+        view
     }
 
     fn sampler(&self, texture: Option<&TextureRef>) -> wgpu::Sampler {
@@ -288,7 +323,11 @@ impl Level {
             ImageLevel::Bits8(texels) => texels.clone(),
             ImageLevel::Bits16(texels) => texels.iter().map(|t| (t >> 8) as u8).collect(),
         };
-        let mut level = Self { width: image.width, height: image.height, rgba };
+        Self { width: image.width, height: image.height, rgba }.fitting()
+    }
+
+    fn fitting(self) -> Self {
+        let mut level = self;
         while level.width.max(level.height) > LARGEST_TEXTURE_PX {
             level = level.half();
         }

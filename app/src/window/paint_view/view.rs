@@ -1,6 +1,7 @@
 //! The paint view as a panel: the drawn surface, its pointer, the brush ring, the shot camera's frame.
 
 use super::changed_pixels::changed_pixels;
+use super::coat::{Coat, Coating};
 use super::{
     FocusTexture, GraphicsError, OrbitCamera, Stale, SurfaceFrame, SurfaceLook, SurfaceMesh, SurfaceRenderer,
 };
@@ -16,9 +17,9 @@ use egui::{Color32, Pos2, Rect, Response, Sense, Stroke, Ui, pos2, vec2};
 use focus::ViewFrame;
 use glam::{DVec2, DVec3};
 use lens::Camera;
-use session::{Document, Session, SurfaceHit};
+use session::{Document, PhotographLight, Session, SurfaceHit};
 use std::ops::Range;
-use std::sync::mpsc;
+use std::sync::{Arc, mpsc};
 
 /// Points of the wheel that make one step.
 const POINTS_PER_STEP: f64 = 40.0;
@@ -37,6 +38,8 @@ pub struct PaintView {
     renderer: Option<SurfaceRenderer>,
     mesh: Option<SurfaceMesh>,
     upload: Option<mpsc::Receiver<Result<SurfaceMesh, GraphicsError>>>,
+    /// What the surface is shown in, or is going to be.
+    coating: Coating,
     focus: Option<FocusTexture>,
     /// What of the drawn surface no longer holds.
     stale: Stale,
@@ -75,6 +78,7 @@ impl PaintView {
             renderer,
             mesh: None,
             upload: None,
+            coating: Coating::default(),
             focus: None,
             stale: Stale::Everything,
             drawn: None,
@@ -105,20 +109,51 @@ impl PaintView {
             Ok(focus) => self.focus = Some(focus),
             Err(error) => self.problem = Some(error.to_string()),
         }
-        self.upload_surface(document, context);
+        self.upload_surface(document, None, context);
     }
 
-    /// Copies the surface to the graphics card in the background; what was there is drawn until then.
-    pub fn upload_surface(&mut self, document: &Document, context: &egui::Context) {
+    /// Has the surface shown as photographs show it, as soon as their light is there, or by how many see it.
+    fn follow_photographs(
+        &mut self,
+        session: &Session,
+        document: &Document,
+        look: SurfaceLook,
+        context: &egui::Context,
+    ) {
+        if self.upload.is_some() {
+            return;
+        }
+        let light = session.photograph_light();
+        let wanted = match (&light, look.seeing) {
+            (None, _) => Coating::Materials,
+            (Some(_), false) => Coating::Photographs,
+            (Some(_), true) => Coating::Seeing,
+        };
+        if wanted != self.coating {
+            self.upload_surface(document, light.map(|light| (light, wanted)), context);
+        }
+    }
+
+    /// Copies the surface to the graphics card in the background, under a coat if photographs light it; what was there is drawn until
+    /// then.
+    pub fn upload_surface(
+        &mut self,
+        document: &Document,
+        coating: Option<(Arc<PhotographLight>, Coating)>,
+        context: &egui::Context,
+    ) {
         let Some(renderer) = &self.renderer else { return };
         let (device, queue) = renderer.device();
         let (sender, receiver) = mpsc::channel();
         self.upload = Some(receiver);
         let (device, queue, context) = (device.clone(), queue.clone(), context.clone());
         let (scene, atlas) = (document.stage.scene.clone(), document.stage.atlas.clone());
+        self.coating = coating.as_ref().map_or(Coating::Materials, |(_, coating)| *coating);
+        let texels = document.stage.texels.clone();
         let upload = move || {
+            let coat = coating.map(|(light, coating)| Coat::of(&texels, &light, coating));
             // The view may be gone, or show another scene by now.
-            let _ = sender.send(SurfaceMesh::upload(&device, &queue, &scene, &atlas));
+            let _ = sender.send(SurfaceMesh::upload(&device, &queue, &scene, &atlas, coat.as_ref()));
             context.request_repaint();
         };
         let thread = std::thread::Builder::new().name("surface upload".into());
@@ -247,6 +282,7 @@ impl PaintView {
         };
         self.follow(&document.camera);
         self.receive_mesh(actions);
+        self.follow_photographs(session, document, look, ui.ctx());
         self.navigate(ui, &response);
         self.draw(ui, document, look, actions);
         let frame =

@@ -212,7 +212,9 @@ impl PictureView {
     /// Draws what of a picture lies in `part` of the view.
     fn paint_picture(&mut self, ui: &Ui, session: &Session, tone: Tone, shown: Shown, part: Rect) {
         let painter = ui.painter_at(part);
-        let drawn = self.blitter.as_ref().and_then(|blitter| {
+        // Another photograph is no picture of this camera.
+        let is_other = shown == Shown::Photograph && !session.is_reference_current(ReferenceKind::Photograph);
+        let drawn = self.blitter.as_ref().filter(|_| !is_other).and_then(|blitter| {
             let drawn = self.textures.of(blitter, session, shown, tone)?;
             let squares = self.image.width() > SQUARES_FROM * drawn.size()[0] as f32;
             let filter = if squares { Filter::Nearest } else { Filter::Linear };
@@ -228,6 +230,10 @@ impl PictureView {
                     Shown::Standard => "Drawing the ordinary lens…",
                     Shown::Pinhole => "Drawing the pinhole…",
                     Shown::Truth => "Tracing rays…",
+                    Shown::Photograph if session.document().is_some_and(|d| d.photograph().is_none()) => {
+                        "Choose a photograph as the camera (Lens, Camera)."
+                    }
+                    Shown::Photograph => "Reading the photograph…",
                 };
                 hint(ui, part.intersect(self.image), text);
             }
@@ -241,6 +247,10 @@ impl PictureView {
         for kind in [Some(self.shown), against].into_iter().flatten().filter_map(Shown::kind) {
             let wanted = match kind {
                 ReferenceKind::Truth => session.reference(kind).is_none(),
+                ReferenceKind::Photograph => {
+                    let is_there = session.document().is_some_and(|document| document.photograph().is_some());
+                    is_there && !session.is_reference_current(kind)
+                }
                 _ => !session.is_reference_current(kind),
             };
             if wanted && !session.is_making_reference(kind) && session.is_idle() {

@@ -3,7 +3,7 @@
 use crate::window::blit::{Blitter, Drawable};
 use crate::window::picture_view::develop::Developer;
 use lens::Picture;
-use session::{ReferenceKind, Screen, Session, Tone, to_screen};
+use session::{Document, ReferenceKind, Screen, Session, Tone, to_screen};
 use splat::PictureOnCard;
 use std::sync::Arc;
 
@@ -19,11 +19,13 @@ pub enum Shown {
     Pinhole,
     /// The ray-traced picture.
     Truth,
+    /// The photograph that the camera looks through.
+    Photograph,
 }
 
 impl Shown {
     /// All, as a menu offers them.
-    pub const ALL: [Self; 4] = [Self::Painted, Self::Standard, Self::Pinhole, Self::Truth];
+    pub const ALL: [Self; 5] = [Self::Painted, Self::Standard, Self::Pinhole, Self::Truth, Self::Photograph];
 
     /// What it is called.
     pub fn name(self) -> &'static str {
@@ -32,6 +34,7 @@ impl Shown {
             Self::Standard => "Ordinary lens",
             Self::Pinhole => "Pinhole",
             Self::Truth => "Ray traced",
+            Self::Photograph => "Photograph",
         }
     }
 
@@ -42,7 +45,15 @@ impl Shown {
             Self::Standard => "The same lens without any paint.",
             Self::Pinhole => "Everything sharp.",
             Self::Truth => "The picture as painted, by rays: slow and sure (F12 traces it anew).",
+            Self::Photograph => {
+                "The photograph that the camera looks through, exposed as all of them together."
+            }
         }
+    }
+
+    /// Whether there is such a picture of what is open.
+    pub fn is_of(self, document: Option<&Document>) -> bool {
+        self != Self::Photograph || document.is_some_and(|document| !document.stage.scene.views.is_empty())
     }
 
     /// The session's picture of it.
@@ -52,6 +63,7 @@ impl Shown {
             Self::Standard => Some(ReferenceKind::Standard),
             Self::Pinhole => Some(ReferenceKind::Pinhole),
             Self::Truth => Some(ReferenceKind::Truth),
+            Self::Photograph => Some(ReferenceKind::Photograph),
         }
     }
 }

@@ -76,6 +76,27 @@ pub enum PictureError {
 }
 
 impl Photograph {
+    /// The same with each pixel the mean of `by` × `by` of its own (fewer at the right and lower border).
+    pub fn reduced(self, by: u32) -> Self {
+        if by <= 1 {
+            return self;
+        }
+        let [width, height] = [self.width, self.height].map(|side| side.div_ceil(by));
+        let mut pixels = Vec::with_capacity(width as usize * height as usize);
+        for (y, x) in (0..height).flat_map(|y| (0..width).map(move |x| (y, x))) {
+            let (mut sum, mut count) = ([0.0; 3], 0.0);
+            for row in y * by..((y + 1) * by).min(self.height) {
+                for column in x * by..((x + 1) * by).min(self.width) {
+                    let pixel = self.pixels[(row * self.width + column) as usize];
+                    (0..3).for_each(|channel| sum[channel] += pixel[channel]);
+                    count += 1.0;
+                }
+            }
+            pixels.push(sum.map(|sum: f32| sum / count));
+        }
+        Self { width, height, pixels }
+    }
+
     /// The light at a pixel position ((0.5, 0.5) the middle of the upper left pixel), interpolated linearly; beyond the border what lies
     /// on it.
     pub fn at(&self, pixel: DVec2) -> Vec3 {
@@ -153,5 +174,8 @@ mod tests {
         let at = |x: f64, y: f64| photograph.at(DVec2::new(x, y)).x;
         assert_eq!([at(0.5, 0.5), at(1.5, 1.5), at(1.0, 1.0), at(1.25, 0.5)], [0.0, 7.0, 2.5, 0.75]);
         assert_eq!([at(-9.0, 0.2), at(1.9, 9.0)], [0.0, 7.0]);
+        let pixels = (0..6).map(|v| [v as f32; 3]).collect();
+        let small = Photograph { width: 3, height: 2, pixels }.reduced(2);
+        assert_eq!((small.width, small.height, small.pixels), (2, 1, vec![[2.0; 3], [3.5; 3]]));
     }
 }

@@ -346,6 +346,13 @@ impl Document {
         let photographs = scene.views.iter().chain(&scene.left_out);
         cameras.chain(photographs.map(move |view| (view.name.as_str(), of_photograph(view))))
     }
+
+    /// The photograph that the camera looks through, if it is that of one.
+    pub fn photograph(&self) -> Option<&View> {
+        let scene = &self.stage.scene;
+        let mut views = scene.views.iter().chain(&scene.left_out);
+        views.find(|view| view.camera_to_world == self.camera.camera_to_world)
+    }
 }
 
 /// The selection that a project kept; none where it chose nothing, or everything.

@@ -30,7 +30,9 @@ pub(crate) use changes::Changes;
 pub(crate) use field_watch::{FieldWatch, Standing};
 pub(crate) use kept_light::LightQuality;
 pub(crate) use light::{bare_light, is_photographed, light, light_for_many_points};
-pub(crate) use photographed::{keep_at as keep_photographs_at, wait as photograph_light};
+pub(crate) use photographed::{
+    if_known as photograph_light_if_known, keep_at as keep_photographs_at, wait as photograph_light,
+};
 pub(crate) use reach::Reach;
 pub(crate) use running_sum::{BakedField, Brought, FieldOptions, LightField, Plan};
 pub(crate) use serves::serves;

@@ -56,6 +56,14 @@ pub(crate) fn keep_at(tracer: &Arc<Tracer>, atlas: &Arc<Atlas>) {
     }
 }
 
+/// The light, if the scene has photographs and it is there; nothing is begun.
+pub(crate) fn if_known(tracer: &Arc<Tracer>) -> Option<Arc<PhotographLight>> {
+    if tracer.scene().views.is_empty() {
+        return None;
+    }
+    of(tracer).found.get()?.as_ref().ok().cloned()
+}
+
 /// The light as the scene wants it looked up, if it is there; begun, if not.
 pub(super) fn known(tracer: &Arc<Tracer>) -> Option<Light> {
     let kept = begun(tracer);

@@ -21,4 +21,5 @@ pub use renderer::Renderer;
 pub use unwrapped::write_unwrapped;
 pub use verification::{Verification, VerifiedError};
 
+pub(crate) use photograph_picture::photograph_picture;
 pub(crate) use render::sum_light_field;

@@ -40,7 +40,7 @@ impl Input {
 }
 
 /// The photograph `view` as `camera` ([`camera_of_photograph`] of it) shows it, beside light from others or itself too.
-pub(super) fn photograph_picture(
+pub(crate) fn photograph_picture(
     view: &View,
     camera: &Camera,
     tracer: &Tracer,
@@ -48,8 +48,10 @@ pub(super) fn photograph_picture(
 ) -> Result<(Picture, Vec<Layer>), SessionError> {
     let shown =
         view.photograph(&LoadOptions::default()).map_err(|e| SessionError::BadInput(e.to_string()))?;
+    let reduction = (shown.width / camera.width.max(1)).max(1);
+    let shown = shown.reduced(reduction);
     let seen = seen(tracer, camera, light);
-    let place = Place { camera, view, shown: &shown };
+    let place = Place { camera, view, shown: &shown, reduction: f64::from(reduction) };
     let exposure = match tracer.scene().views.iter().position(|other| other.name == view.name) {
         Some(index) => light.exposures()[index],
         None => place.fitted(tracer, light, &seen),
@@ -73,7 +75,9 @@ pub(super) fn photograph_picture(
 struct Place<'a> {
     camera: &'a Camera,
     view: &'a View,
+    /// Each pixel of it the mean of `reduction`² of the photograph's own.
     shown: &'a Photograph,
+    reduction: f64,
 }
 
 impl Place<'_> {
@@ -81,7 +85,7 @@ impl Place<'_> {
     fn at(&self, number: u32) -> Option<(DVec2, Vec3)> {
         let ray = pixel_ray(self.camera, number);
         let at = self.view.project(ray.origin + ray.direction)?;
-        self.view.lens.is_in_picture(at).then(|| (at, self.shown.at(at)))
+        self.view.lens.is_in_picture(at).then(|| (at, self.shown.at(at / self.reduction)))
     }
 
     /// Gains with which it shows least squares' best of the light where that is photographed; vignetting as of another photograph of its

@@ -12,6 +12,8 @@ pub enum ReferenceKind {
     Standard,
     /// The document as it is, ray traced.
     Truth,
+    /// The photograph that the camera looks through.
+    Photograph,
 }
 
 /// A picture of the document to compare the live one with, at the preview's size.
@@ -37,7 +39,9 @@ impl Reference {
     /// Whether it would still be the same if it were made for this camera and revision.
     pub(crate) fn shows(&self, camera: &Camera, revision: u64) -> bool {
         match self.kind {
-            ReferenceKind::Pinhole => without_lens(&self.camera) == without_lens(camera),
+            ReferenceKind::Pinhole | ReferenceKind::Photograph => {
+                without_lens(&self.camera) == without_lens(camera)
+            }
             ReferenceKind::Standard => self.camera == *camera,
             ReferenceKind::Truth => self.camera == *camera && self.revision == revision,
         }
@@ -75,5 +79,6 @@ mod tests {
         assert_eq!(shows(ReferenceKind::Pinhole), [true, true, true, false]);
         assert_eq!(shows(ReferenceKind::Standard), [true, true, false, false]);
         assert_eq!(shows(ReferenceKind::Truth), [true, false, false, false]);
+        assert_eq!(shows(ReferenceKind::Photograph), [true, true, true, false]);
     }
 }

@@ -5,8 +5,8 @@ use super::state::Session;
 use crate::commands::Event;
 use crate::error::SessionError;
 use crate::jobs::{JobSteps, Steps};
-use crate::light_field::{LightQuality, light};
-use crate::output::{Reference, ReferenceKind, RenderOptions, Renderer, render};
+use crate::light_field::{LightQuality, light, photograph_light};
+use crate::output::{Reference, ReferenceKind, RenderOptions, Renderer, photograph_picture, render};
 use crate::preview::PreviewActivity;
 use baselines::FirstHits;
 use focus::Focus;
@@ -63,7 +63,9 @@ impl Session {
             ReferenceKind::Pinhole => "drawing the pinhole picture",
             ReferenceKind::Standard => "drawing the ordinary lens",
             ReferenceKind::Truth => "tracing the ground truth",
+            ReferenceKind::Photograph => "reading the photograph",
         };
+        let photograph = self.document.as_ref().and_then(|document| document.photograph().cloned());
         let at_hand = self.at_hand(stage.clone());
         let id = self.start(label.into(), move |progress| {
             let start = Instant::now();
@@ -82,6 +84,12 @@ impl Session {
                     let options =
                         RenderOptions { renderer: Renderer::Truth, truth, ..RenderOptions::default() };
                     render(&stage.tracer, &camera, &focus, &options, &steps)?.picture
+                }
+                ReferenceKind::Photograph => {
+                    let what = "the camera is that of no photograph (choose one of them as the camera)";
+                    let view = photograph.ok_or_else(|| SessionError::bad(&stage.scene.path, what))?;
+                    let light = photograph_light(&stage.tracer, &*steps.begin("light"))?;
+                    photograph_picture(&view, &camera, &stage.tracer, &light)?.0
                 }
             };
             let samples_per_pixel = if kind == ReferenceKind::Truth { samples_per_pixel } else { 0 };

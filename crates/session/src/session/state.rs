@@ -8,13 +8,14 @@ use crate::document::Document;
 use crate::editing::Underway;
 use crate::error::SessionError;
 use crate::jobs::{Job, JobId, JobProgress, JobStatus, Waker};
-use crate::light_field::{BakedField, LightFieldStore};
+use crate::light_field::{BakedField, LightFieldStore, photograph_light_if_known};
 use crate::output::{Reference, ReferenceKind, Verification};
 use crate::preview::{PictureTimes, Preview, PreviewActivity, PreviewThread};
 
 use atlas::UnwrapOptions;
 use glam::DVec2;
 use lens::Camera;
+use slf::PhotographLight;
 use splat::{Gpu, Tolerance};
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -173,6 +174,11 @@ impl Session {
     /// The aperture point that the live picture shows the scene through, in [−1, 1]²; none: all of the aperture.
     pub fn looked_through(&self) -> Option<DVec2> {
         self.looked_through
+    }
+
+    /// The light of the photographs of what is open, once it is there.
+    pub fn photograph_light(&self) -> Option<Arc<PhotographLight>> {
+        photograph_light_if_known(&self.document.as_ref()?.stage.tracer)
     }
 
     /// The live picture as the screen shows it.
