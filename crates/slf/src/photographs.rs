@@ -129,6 +129,9 @@ pub struct PhotographLight {
     mirrored: Mirrored,
 }
 
+/// Rows of the cells at infinity, 0.35° each: some pixels of a photograph.
+const SPHERE_ROWS: usize = 512;
+
 impl PhotographLight {
     /// Makes the light of the scene in `tracer` from views of it, kept at the texels of an atlas of it. Deterministic: the same bits for
     /// any number of threads.
@@ -150,7 +153,7 @@ impl PhotographLight {
         }
         let scene = tracer.scene();
         let stage = |from, to| Stage::new(progress, from, to);
-        let sphere = Sphere::of_rows(128);
+        let sphere = Sphere::of_rows(SPHERE_ROWS);
         let budget = Budget::of(scene, atlas, views, options.max_memory);
         let texels = Texels::of(scene, atlas, budget.texel_scale);
         progress.check()?;
