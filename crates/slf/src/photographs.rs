@@ -27,6 +27,7 @@ mod gains;
 mod kept_picture;
 mod median;
 mod mirrored;
+mod odd;
 mod one_view;
 mod residuals;
 mod sightings;
@@ -44,6 +45,7 @@ use constant::robust_mean;
 use directions::toward;
 use glam::{DVec3, Vec3};
 use mirrored::Mirrored;
+use odd::Belonging;
 use progress::{Cancelled, Progress, Stage};
 use rayon::prelude::*;
 use residuals::{Residuals, Ways};
@@ -116,6 +118,8 @@ pub struct PhotographLight {
     grid: TexelGrid,
     exposures: Vec<Exposure>,
     eyes: Vec<DVec3>,
+    /// By view, what of it belongs.
+    belonging: Vec<Belonging>,
     /// By texel: what goes toward all directions alike.
     constant: Vec<Vec3>,
     /// By texel, 1 photographed, 0 filled.
@@ -167,6 +171,15 @@ impl PhotographLight {
         let exposures = gains::exposures(&texels, &sightings, &sphere, views, &stage(0.25, 0.33))?;
         let eyes: Vec<DVec3> = views.iter().map(View::position).collect();
         sightings.undo(&texels, views, &exposures);
+        let belonging = match options.model {
+            PhotographModel::Light => {
+                let radiance = Calibrated { texels: &texels, sightings: &sightings, eyes: &eyes };
+                odd::belonging(&radiance, views, &means(&radiance))
+            }
+            PhotographModel::OneView => views.iter().map(Belonging::whole).collect(),
+        };
+        progress.check()?;
+        sightings.weigh(&texels, views, &belonging);
         let radiance = Calibrated { texels: &texels, sightings: &sightings, eyes: &eyes };
         let seeing = (0..texels.count()).map(|texel| sightings.range(texel).len() as u16).collect();
         let Told { constant, seen, mirrored, residuals } = match options.model {
@@ -182,6 +195,7 @@ impl PhotographLight {
             grid: texels.grid,
             exposures,
             eyes,
+            belonging,
             constant,
             seen,
             seeing,
@@ -234,21 +248,28 @@ struct Told {
     residuals: Residuals,
 }
 
+/// How far each texel was photographed, in [0, 1].
+fn seen(radiance: &Calibrated<'_>) -> Vec<f32> {
+    let evidence =
+        |texel| radiance.sightings.of_texel(texel).iter().map(|sighting| sighting.weight()).sum::<f32>();
+    (0..radiance.texels.count()).into_par_iter().map(|texel| (evidence(texel) / SEEN).min(1.0)).collect()
+}
+
 /// Evidence of a texel (weights of its samples, summed) from which on it counts as photographed.
 const SEEN: f32 = 0.25;
 
+/// The robust means of what photographs show of each texel.
+fn means(radiance: &Calibrated<'_>) -> Vec<Vec3> {
+    let mean = |(samples, belonging): &mut (Vec<_>, Vec<_>), texel| {
+        radiance.samples_into(texel, samples);
+        robust_mean(samples, belonging)
+    };
+    (0..radiance.texels.count()).into_par_iter().map_init(Default::default, mean).collect()
+}
+
 fn told(radiance: &Calibrated<'_>, progress: &dyn Progress) -> Result<Told, Cancelled> {
-    let (mut constant, seen): (Vec<Vec3>, Vec<f32>) = (0..radiance.texels.count())
-        .into_par_iter()
-        .map_init(
-            || (Vec::new(), Vec::new()),
-            |(samples, belonging), texel| {
-                radiance.samples_into(texel, samples);
-                let evidence: f32 = samples.iter().map(|sample| sample.weight).sum();
-                (robust_mean(samples, belonging), (evidence / SEEN).min(1.0))
-            },
-        )
-        .unzip();
+    let mut constant = means(radiance);
+    let seen = seen(radiance);
     progress.report(0.15);
     let (mirrored, beside_mirrored) = Mirrored::of(radiance, &constant, &Stage::new(progress, 0.15, 0.45))?;
     let ways = Ways { radiance, plain: &constant, beside_mirrored: &beside_mirrored, mirrored: &mirrored };

@@ -85,6 +85,7 @@ impl DirectPhotographs {
             let pixel = view.project(position)?;
             let shown = picture.at(picture.place(pixel));
             let light = shown.light * self.light.exposures[number].to_radiance(view, pixel);
+            let weight = (weight * self.light.belonging[number].at(pixel)).max(LEAST_WEIGHT);
             Some((number, Sample::of_sighting(light, weight, shown.clipped)))
         };
         seen.into_iter().filter_map(sample).collect()

@@ -3,14 +3,14 @@
 use super::calibrated::Calibrated;
 use super::mirrored::Mirrored;
 use super::residuals::Residuals;
-use super::{SEEN, Told};
+use super::{Told, seen};
 use glam::Vec3;
 use rayon::prelude::*;
 
 /// The colours of the photographs that see each texel finest: most pixels over its area, as far as they see it at all.
 pub(crate) fn told(radiance: &Calibrated<'_>) -> Told {
     let texels = radiance.texels;
-    let (constant, seen) = (0..texels.count())
+    let constant = (0..texels.count())
         .into_par_iter()
         .map_init(Vec::new, |samples, texel| {
             radiance.samples_into(texel, samples);
@@ -21,10 +21,9 @@ pub(crate) fn told(radiance: &Calibrated<'_>) -> Told {
                 samples[number].weight * (normal.dot(away).abs() / away.length().powi(3)) as f32
             };
             let finest = (0..samples.len()).max_by(|&a, &b| fineness(a).total_cmp(&fineness(b)));
-            let evidence: f32 = samples.iter().map(|sample| sample.weight).sum();
-            (finest.map_or(Vec3::ZERO, |finest| samples[finest].light), (evidence / SEEN).min(1.0))
+            finest.map_or(Vec3::ZERO, |finest| samples[finest].light)
         })
-        .unzip();
+        .collect();
     let (mirrored, residuals) = (Mirrored::none(texels.count()), Residuals::none(texels.count()));
-    Told { constant, seen, mirrored, residuals }
+    Told { constant, seen: seen(radiance), mirrored, residuals }
 }

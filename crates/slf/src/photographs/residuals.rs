@@ -66,7 +66,7 @@ const ODD: f32 = 6.0;
 /// Weights that would change by less stay what they are.
 const NOT_ODD: f32 = 1e-3;
 /// Errors are thought to be no smaller: 8 bits and JPEG.
-const LEAST_ERROR: f32 = 0.006;
+pub(crate) const LEAST_ERROR: f32 = 0.006;
 
 impl Residual {
     pub fn alpha(&self) -> Vec3 {

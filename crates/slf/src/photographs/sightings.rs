@@ -7,6 +7,7 @@ use super::PhotographError;
 use super::depth_picture::{DepthPicture, FAR_FROM_EDGES};
 use super::gains::Exposure;
 use super::kept_picture::KeptPicture;
+use super::odd::Belonging;
 use super::sphere::Sphere;
 use super::texels::Texels;
 use glam::{DVec2, DVec3, Vec3};
@@ -131,6 +132,30 @@ impl Sightings {
         let before = self.brightest;
         self.brightest *= views.iter().zip(exposures).map(most).fold(1.0, f32::max);
         let after = self.brightest;
+        self.change(texels, views, |sighting, number, pixel| {
+            let light = light_of(sighting.root, before);
+            sighting.root = root_of(light * exposures[number].to_radiance(&views[number], pixel), after);
+        });
+    }
+
+    /// Weighs the places of all views by how far they belong.
+    pub fn weigh(&mut self, texels: &Texels, views: &[View], belonging: &[Belonging]) {
+        if belonging.iter().all(Belonging::is_whole) {
+            return;
+        }
+        self.change(texels, views, |sighting, number, pixel| {
+            // Next to nothing is left of what does not belong: none would have no place among the others.
+            sighting.weight = by_255ths(sighting.weight() * belonging[number].at(pixel)).max(1);
+        });
+    }
+
+    /// Changes all sightings, each given with its view's number and its pixel position.
+    fn change(
+        &mut self,
+        texels: &Texels,
+        views: &[View],
+        change: impl Fn(&mut Sighting, usize, DVec2) + Sync,
+    ) {
         let start = &self.start;
         let mut rest = self.all.as_mut_slice();
         let mut blocks = Vec::new();
@@ -145,11 +170,9 @@ impl Sightings {
                 let (from, to) = (start[texel] - first, start[texel + 1] - first);
                 for sighting in &mut block[from as usize..to as usize] {
                     let number = usize::from(sighting.view);
-                    let view = &views[number];
                     // It was projected before, by the same lens.
-                    let pixel = view.project(texels.position(texel)).unwrap_or_default();
-                    let light = light_of(sighting.root, before);
-                    sighting.root = root_of(light * exposures[number].to_radiance(view, pixel), after);
+                    let pixel = views[number].project(texels.position(texel)).unwrap_or_default();
+                    change(sighting, number, pixel);
                 }
             }
         });

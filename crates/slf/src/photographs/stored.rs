@@ -5,6 +5,7 @@ use super::blocks::Blocks;
 use super::directions::Kernel;
 use super::gains::Exposure;
 use super::mirrored::Mirrored;
+use super::odd::Belonging;
 use super::residuals::{Believed, Residuals};
 use super::sphere::Sphere;
 use super::texels::TexelGrid;
@@ -48,6 +49,7 @@ impl PhotographLight {
         add(&mut bytes, &grid.index);
         add(&mut bytes, &self.exposures);
         add(&mut bytes, &self.eyes);
+        self.belonging.iter().for_each(|belonging| add(&mut bytes, belonging.tiles()));
         add(&mut bytes, &self.constant);
         add(&mut bytes, &self.seen);
         add(&mut bytes, &self.seeing);
@@ -71,6 +73,8 @@ impl PhotographLight {
         let index = list(&mut rest)?;
         let exposures: Vec<Exposure> = list(&mut rest)?;
         let eyes: Vec<DVec3> = list(&mut rest)?;
+        let mut of_view = |view| Belonging::of_tiles(view, list(&mut rest)?);
+        let belonging = scene.views.iter().map(&mut of_view).collect::<Option<Vec<_>>>()?;
         let constant: Vec<Vec3> = list(&mut rest)?;
         let (seen, seeing): (Vec<f32>, Vec<u16>) = (list(&mut rest)?, list(&mut rest)?);
         let (share, belief, errors) = (list(&mut rest)?, list(&mut rest)?, list(&mut rest)?);
@@ -91,6 +95,7 @@ impl PhotographLight {
             },
             exposures,
             eyes,
+            belonging,
             constant,
             seen,
             seeing,
