@@ -22,6 +22,7 @@ mod constant;
 mod depth_picture;
 mod direct;
 mod directions;
+mod error;
 mod filling;
 mod gains;
 mod kept_picture;
@@ -34,26 +35,27 @@ mod sightings;
 mod sphere;
 mod stored;
 mod texels;
+mod told;
 
 pub use direct::DirectPhotographs;
+pub use error::PhotographError;
 pub use gains::Exposure;
 
 use atlas::Atlas;
 use budget::Budget;
 use calibrated::Calibrated;
-use constant::robust_mean;
 use directions::toward;
 use glam::{DVec3, Vec3};
 use mirrored::Mirrored;
 use odd::Belonging;
-use progress::{Cancelled, Progress, Stage};
-use rayon::prelude::*;
-use residuals::{Residuals, Ways};
-use scene::{LoadOptions, PictureError, Scene, SurfacePoint, View};
+use progress::{Progress, Stage};
+use residuals::Residuals;
+use scene::{LoadOptions, Scene, SurfacePoint, View};
 use sightings::{Reading, Sightings};
 use sphere::Sphere;
 use std::sync::Arc;
 use texels::{TexelGrid, Texels};
+use told::{Told, means, told};
 use trace::{Leaving, Radiance, Tracer};
 
 /// How light is made from photographs.
@@ -84,32 +86,6 @@ pub enum PhotographModel {
     /// The colour of the one photograph that sees it finest, toward all directions alike: what texturing tools make of a capture, to
     /// compare with.
     OneView,
-}
-
-/// Why there is no light from photographs.
-#[derive(Debug, thiserror::Error)]
-pub enum PhotographError {
-    /// A photograph or its mask cannot be had.
-    #[error(transparent)]
-    Picture(#[from] PictureError),
-    /// There are none.
-    #[error("there are no photographs (give a capture with at least one)")]
-    None,
-    /// More than can be told apart.
-    #[error("there are {count} photographs, at most {} can be used (leave some out)", u16::MAX)]
-    TooMany {
-        /// How many.
-        count: usize,
-    },
-    /// It was stopped.
-    #[error("cancelled")]
-    Cancelled,
-}
-
-impl From<Cancelled> for PhotographError {
-    fn from(_: Cancelled) -> Self {
-        Self::Cancelled
-    }
 }
 
 /// Radiance of a surface as photographs of it show it, kept at the texels of an atlas.
@@ -170,7 +146,9 @@ impl PhotographLight {
         let mut sightings = Sightings::of(scene, &texels, views, &reading, &stage(0.0, 0.25))?;
         let exposures = gains::exposures(&texels, &sightings, &sphere, views, &stage(0.25, 0.33))?;
         let eyes: Vec<DVec3> = views.iter().map(View::position).collect();
-        sightings.undo(&texels, views, &exposures);
+        let most = views.iter().zip(&exposures).map(|(view, exposure)| exposure.most_to_radiance(view));
+        let undone = |number: usize, pixel| exposures[number].to_radiance(&views[number], pixel);
+        sightings.scale(&texels, views, most.fold(1.0, f32::max), undone);
         let belonging = match options.model {
             PhotographModel::Light => {
                 let radiance = Calibrated { texels: &texels, sightings: &sightings, eyes: &eyes };
@@ -179,7 +157,9 @@ impl PhotographLight {
             PhotographModel::OneView => views.iter().map(Belonging::whole).collect(),
         };
         progress.check()?;
-        sightings.weigh(&texels, views, &belonging);
+        if !belonging.iter().all(Belonging::is_whole) {
+            sightings.weigh(&texels, views, |number, pixel| belonging[number].at(pixel));
+        }
         let radiance = Calibrated { texels: &texels, sightings: &sightings, eyes: &eyes };
         let seeing = (0..texels.count()).map(|texel| sightings.range(texel).len() as u16).collect();
         let Told { constant, seen, mirrored, residuals } = match options.model {
@@ -237,48 +217,6 @@ impl PhotographLight {
         let around = self.grid.around(point);
         around.map_or(0.0, |around| around.iter().map(|&(texel, share)| of(texel as usize) * share).sum())
     }
-}
-
-/// What is told of the texels that photographs see.
-struct Told {
-    constant: Vec<Vec3>,
-    /// 1 photographed, 0 not.
-    seen: Vec<f32>,
-    mirrored: Mirrored,
-    residuals: Residuals,
-}
-
-/// How far each texel was photographed, in [0, 1].
-fn seen(radiance: &Calibrated<'_>) -> Vec<f32> {
-    let evidence =
-        |texel| radiance.sightings.of_texel(texel).iter().map(|sighting| sighting.weight()).sum::<f32>();
-    (0..radiance.texels.count()).into_par_iter().map(|texel| (evidence(texel) / SEEN).min(1.0)).collect()
-}
-
-/// Evidence of a texel (weights of its samples, summed) from which on it counts as photographed.
-const SEEN: f32 = 0.25;
-
-/// The robust means of what photographs show of each texel.
-fn means(radiance: &Calibrated<'_>) -> Vec<Vec3> {
-    let mean = |(samples, belonging): &mut (Vec<_>, Vec<_>), texel| {
-        radiance.samples_into(texel, samples);
-        robust_mean(samples, belonging)
-    };
-    (0..radiance.texels.count()).into_par_iter().map_init(Default::default, mean).collect()
-}
-
-fn told(radiance: &Calibrated<'_>, progress: &dyn Progress) -> Result<Told, Cancelled> {
-    let mut constant = means(radiance);
-    let seen = seen(radiance);
-    progress.report(0.15);
-    let (mirrored, beside_mirrored) = Mirrored::of(radiance, &constant, &Stage::new(progress, 0.15, 0.45))?;
-    let ways = Ways { radiance, plain: &constant, beside_mirrored: &beside_mirrored, mirrored: &mirrored };
-    let (share, residuals) = ways.residuals(&Stage::new(progress, 0.45, 1.0))?;
-    for ((constant, beside), share) in constant.iter_mut().zip(beside_mirrored).zip(&share) {
-        *constant = constant.lerp(beside, *share);
-    }
-    let mirrored = mirrored.scaled(&share);
-    Ok(Told { constant, seen, mirrored, residuals })
 }
 
 impl Radiance for PhotographLight {

@@ -1,6 +1,5 @@
 //! Light from photographs, by scene: made once, and kept from one run of the program to the next.
 
-use super::light::Light;
 use super::scene_work::SceneWork;
 use crate::document::{photographs_hash, unwrapped};
 use crate::error::SessionError;
@@ -11,7 +10,10 @@ use scene::PhotoLookup;
 use sha2::Digest;
 use slf::{DirectPhotographs, PhotographError, PhotographLight, PhotographOptions};
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError, Weak};
-use trace::Tracer;
+use trace::{Radiance, Tracer};
+
+/// Light as it is looked up.
+type LookedUp = Arc<dyn Radiance + Send + Sync>;
 
 /// The light of a scene; an error as it is shown.
 struct Kept {
@@ -65,7 +67,7 @@ pub(crate) fn if_known(tracer: &Arc<Tracer>) -> Option<Arc<PhotographLight>> {
 }
 
 /// The light as the scene wants it looked up, if it is there; begun, if not.
-pub(super) fn known(tracer: &Arc<Tracer>) -> Option<Light> {
+pub(super) fn known(tracer: &Arc<Tracer>) -> Option<LookedUp> {
     let kept = begun(tracer);
     let light = kept.found.get()?.as_ref().ok()?.clone();
     match tracer.scene().photo_lookup {
@@ -75,7 +77,7 @@ pub(super) fn known(tracer: &Arc<Tracer>) -> Option<Light> {
 }
 
 /// The same as soon as it is there.
-pub(super) fn looked_up(tracer: &Arc<Tracer>, progress: &dyn Progress) -> Result<Light, SessionError> {
+pub(super) fn looked_up(tracer: &Arc<Tracer>, progress: &dyn Progress) -> Result<LookedUp, SessionError> {
     let light = wait(tracer, progress)?;
     if tracer.scene().photo_lookup == PhotoLookup::Texels {
         return Ok(light);
@@ -89,7 +91,7 @@ pub(super) fn looked_up(tracer: &Arc<Tracer>, progress: &dyn Progress) -> Result
             other => SessionError::BadInput(other.to_string()),
         })?));
     }
-    let found: Option<Light> = direct.clone().map(|direct| -> Light { direct });
+    let found: Option<LookedUp> = direct.clone().map(|direct| -> LookedUp { direct });
     found.ok_or_else(|| SessionError::Internal("photographs were not kept".into()))
 }
 

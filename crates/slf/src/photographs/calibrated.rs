@@ -8,7 +8,7 @@ use glam::DVec3;
 /// Sightings with their exposures undone.
 pub(crate) struct Calibrated<'a> {
     pub texels: &'a Texels,
-    /// After [`Sightings::undo`].
+    /// Their exposures undone.
     pub sightings: &'a Sightings,
     /// Where the cameras stood, by view.
     pub eyes: &'a [DVec3],

@@ -3,7 +3,7 @@
 use super::calibrated::Calibrated;
 use super::mirrored::Mirrored;
 use super::residuals::Residuals;
-use super::{Told, seen};
+use super::told::{Told, seen};
 use glam::Vec3;
 use rayon::prelude::*;
 

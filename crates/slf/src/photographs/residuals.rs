@@ -218,7 +218,7 @@ impl Ways<'_> {
     /// By block, how much of the residuals is believed, and the median of what leaving out finds wrong.
     fn belief_and_errors(&self, blocks: &Blocks, kernel: &Kernel, share: &[f32]) -> (Vec<f32>, Vec<f32>) {
         let mut errors = vec![Vec::new(); blocks.count()];
-        let found: Vec<((usize, (f32, f32)), Vec<f32>)> = self
+        let found: Vec<(OfBlock, Vec<f32>)> = self
             .asked()
             .map_init(Work::new, |work, texel| {
                 self.know(texel, share[texel], work);
@@ -315,8 +315,11 @@ impl Ways<'_> {
     }
 }
 
+/// A block, and a product and a square that are summed over it.
+type OfBlock = (usize, (f32, f32));
+
 /// Products and squares, summed by block in their order.
-fn joined(blocks: &Blocks, found: impl Iterator<Item = (usize, (f32, f32))>) -> Vec<(f32, f32)> {
+fn joined(blocks: &Blocks, found: impl Iterator<Item = OfBlock>) -> Vec<(f32, f32)> {
     let mut sums = vec![(0.0, 0.0); blocks.count()];
     for (block, (product, square)) in found {
         sums[block].0 += product;

@@ -3,11 +3,9 @@
 //! A photograph is read once. What it sees is told by its [`DepthPicture`]: a weight in (0, 1] that falls smoothly to 0 toward edges of
 //! depth, the picture's border and glancing angles, so that nothing begins or ends abruptly on the surface.
 
-use super::PhotographError;
 use super::depth_picture::{DepthPicture, FAR_FROM_EDGES};
-use super::gains::Exposure;
+use super::error::PhotographError;
 use super::kept_picture::KeptPicture;
-use super::odd::Belonging;
 use super::sphere::Sphere;
 use super::texels::Texels;
 use glam::{DVec2, DVec3, Vec3};
@@ -32,7 +30,7 @@ pub(crate) struct Sighting {
     weight: u8,
     /// The share of clipped pixels, by 255ths.
     clipped: u8,
-    /// Linear light, exposure as it was until it is undone, as square roots.
+    /// Linear light, as the photograph has it until that is scaled, as square roots.
     root: [u16; 3],
 }
 
@@ -125,27 +123,27 @@ impl Sightings {
         self.all.len()
     }
 
-    /// Undoes the exposures of all views.
-    pub fn undo(&mut self, texels: &Texels, views: &[View], exposures: &[Exposure]) {
-        // The brightest that anything can become.
-        let most = |(view, exposure): (&View, &Exposure)| exposure.most_to_radiance(view);
+    /// Multiplies what views show, each at a pixel position, with factors of at most `most`.
+    pub fn scale(
+        &mut self,
+        texels: &Texels,
+        views: &[View],
+        most: f32,
+        factor: impl Fn(usize, DVec2) -> Vec3 + Sync,
+    ) {
         let before = self.brightest;
-        self.brightest *= views.iter().zip(exposures).map(most).fold(1.0, f32::max);
+        self.brightest *= most.max(1.0);
         let after = self.brightest;
         self.change(texels, views, |sighting, number, pixel| {
-            let light = light_of(sighting.root, before);
-            sighting.root = root_of(light * exposures[number].to_radiance(&views[number], pixel), after);
+            sighting.root = root_of(light_of(sighting.root, before) * factor(number, pixel), after);
         });
     }
 
-    /// Weighs the places of all views by how far they belong.
-    pub fn weigh(&mut self, texels: &Texels, views: &[View], belonging: &[Belonging]) {
-        if belonging.iter().all(Belonging::is_whole) {
-            return;
-        }
+    /// Has views count by shares in [0, 1], each at a pixel position.
+    pub fn weigh(&mut self, texels: &Texels, views: &[View], share: impl Fn(usize, DVec2) -> f32 + Sync) {
         self.change(texels, views, |sighting, number, pixel| {
-            // Next to nothing is left of what does not belong: none would have no place among the others.
-            sighting.weight = by_255ths(sighting.weight() * belonging[number].at(pixel)).max(1);
+            // Next to nothing is left of what does not count: none would have no place among the others.
+            sighting.weight = by_255ths(sighting.weight() * share(number, pixel)).max(1);
         });
     }
 
