@@ -83,7 +83,10 @@ fn dispatch(command: Subcommand) -> Result<(), Failure> {
         }
         Subcommand::Compare(arguments) => compare::run(&arguments),
         Subcommand::Report(arguments) => report::run(&arguments, &console),
-        Subcommand::Export(arguments) => export::run(&arguments, &console),
+        Subcommand::Export(arguments) => {
+            keep_work();
+            export::run(&arguments, &console)
+        }
         Subcommand::Presets(arguments) => presets::run(&arguments),
         Subcommand::Doctor(arguments) => doctor::run(&arguments),
     }

@@ -1,10 +1,11 @@
 //! How well the photographs of a capture tell those that are left out, and what they would be as a sparse light field.
 
+use crate::default_lens::quantile;
 use crate::store::{Store, file_part};
 use baselines::ghosting_bounds;
 use glam::DVec3;
 use project::{LinearPicture, write_rgb};
-use scene::{Scene, View};
+use scene::{Photograph, Scene, View};
 use serde::{Deserialize, Serialize};
 use session::{LeftOut, SessionError};
 use std::path::PathBuf;
@@ -77,7 +78,7 @@ impl Photographs {
             let files = files(store, name, &picture.name);
             for (file, picture) in files.iter().zip([&picture.photograph, &picture.told[0].picture]) {
                 let small = reduced(picture);
-                write_rgb(file, small.width, small.height, &small.rgb)?;
+                write_rgb(file, small.width, small.height, &small.pixels)?;
             }
         }
         let mut photographs = Self {
@@ -135,30 +136,18 @@ fn along(view: &View, point: DVec3) -> f64 {
     (point - view.position()).dot(view.forward())
 }
 
+/// None of no values.
 fn median(mut values: Vec<f64>) -> Option<f64> {
-    values.sort_by(f64::total_cmp);
-    values.get(values.len() / 2).copied()
+    Some(quantile(&mut values, 0.5)).filter(|median| !median.is_nan())
 }
 
 /// At most this wide in the page.
 const WIDEST: u32 = 720;
 
-/// The mean of squares of pixels, so that the page does not grow with the photographs.
-fn reduced(picture: &LinearPicture) -> LinearPicture {
-    let by = picture.width.div_ceil(WIDEST).max(1);
-    let [width, height] = [picture.width, picture.height].map(|side| (side / by).max(1));
-    let mean = |number: u32| {
-        let (x, y) = (number % width * by, number / width * by);
-        let mut sum = [0.0; 3];
-        for row in y..y + by {
-            for column in x..x + by {
-                let pixel = picture.rgb[(row * picture.width + column) as usize];
-                (0..3).for_each(|k| sum[k] += pixel[k] / (by * by) as f32);
-            }
-        }
-        sum
-    };
-    LinearPicture { width, height, rgb: (0..width * height).map(mean).collect(), ..LinearPicture::default() }
+/// The picture made smaller by a whole number, so that the page does not grow with the photographs.
+fn reduced(picture: &LinearPicture) -> Photograph {
+    let whole = Photograph { width: picture.width, height: picture.height, pixels: picture.rgb.clone() };
+    whole.reduced(picture.width.div_ceil(WIDEST))
 }
 
 #[cfg(test)]
@@ -175,7 +164,7 @@ mod tests {
         };
         let small = reduced(&picture);
         assert_eq!((small.width, small.height), (500, 2));
-        assert!(small.rgb.iter().all(|&pixel| pixel == [0.5, 0.25, 1.0]));
+        assert!(small.pixels.iter().all(|&pixel| pixel == [0.5, 0.25, 1.0]));
     }
 
     #[test]

@@ -12,7 +12,7 @@
 //! that are left out are told better with it. Where directions are far from all photographs, only the first two remain.
 //!
 //! `budget` decides how fine all is kept, `stored` has it as bytes. `direct` looks up points in the
-//! photographs themselves. `blocks` has numbers that change slowly over the atlas, `sphere` those that go with direction.
+//! photographs themselves; `reading` reads these, `odd` tells what does not belong in them. `blocks` has numbers that change slowly over the atlas, `sphere` those that go with direction.
 
 mod beyond;
 mod blocks;
@@ -30,6 +30,7 @@ mod median;
 mod mirrored;
 mod odd;
 mod one_view;
+mod reading;
 mod residuals;
 mod sightings;
 mod sphere;
@@ -49,13 +50,14 @@ use glam::{DVec3, Vec3};
 use mirrored::Mirrored;
 use odd::Belonging;
 use progress::{Progress, Stage};
+use reading::Reading;
 use residuals::Residuals;
 use scene::{LoadOptions, Scene, SurfacePoint, View};
-use sightings::{Reading, Sightings};
+use sightings::Sightings;
 use sphere::Sphere;
 use std::sync::Arc;
 use texels::{TexelGrid, Texels};
-use told::{Told, means, told};
+use told::{Told, told};
 use trace::{Leaving, Radiance, Tracer};
 
 /// How light is made from photographs.
@@ -137,13 +139,8 @@ impl PhotographLight {
         let budget = Budget::of(scene, atlas, views, options.max_memory);
         let texels = Texels::of(scene, atlas, budget.texel_scale);
         progress.check()?;
-        let reading = Reading {
-            load: &options.load,
-            reduction: budget.reduction,
-            at_once: budget.at_once,
-            sphere: &sphere,
-        };
-        let mut sightings = Sightings::of(scene, &texels, views, &reading, &stage(0.0, 0.25))?;
+        let reading = Reading { load: &options.load, reduction: budget.reduction, at_once: budget.at_once };
+        let mut sightings = Sightings::of(scene, &texels, &sphere, views, &reading, &stage(0.0, 0.25))?;
         let exposures = gains::exposures(&texels, &sightings, &sphere, views, &stage(0.25, 0.33))?;
         let eyes: Vec<DVec3> = views.iter().map(View::position).collect();
         let most = views.iter().zip(&exposures).map(|(view, exposure)| exposure.most_to_radiance(view));
@@ -152,7 +149,7 @@ impl PhotographLight {
         let belonging = match options.model {
             PhotographModel::Light => {
                 let radiance = Calibrated { texels: &texels, sightings: &sightings, eyes: &eyes };
-                odd::belonging(&radiance, views, &means(&radiance))
+                odd::belonging(&radiance, views)
             }
             PhotographModel::OneView => views.iter().map(Belonging::whole).collect(),
         };
@@ -162,11 +159,10 @@ impl PhotographLight {
         }
         let radiance = Calibrated { texels: &texels, sightings: &sightings, eyes: &eyes };
         let seeing = (0..texels.count()).map(|texel| sightings.range(texel).len() as u16).collect();
-        let Told { constant, seen, mirrored, residuals } = match options.model {
+        let Told { mut constant, seen, mirrored, residuals } = match options.model {
             PhotographModel::Light => told(&radiance, &stage(0.33, 0.98))?,
             PhotographModel::OneView => one_view::told(&radiance),
         };
-        let mut constant = constant;
         let beyond = beyond::beyond(&sphere, views, &exposures, &sightings.pictures, &sightings.beyond);
         filling::fill(&texels, &seen, &mut constant);
         progress.report(1.0);

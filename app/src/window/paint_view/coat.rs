@@ -1,6 +1,7 @@
 //! A picture over the whole atlas that the surface is shown in instead of its materials: what photographs show of it, or how many do.
 
 use atlas::TexelMap;
+use egui::ecolor::gamma_u8_from_linear_f32;
 use rayon::prelude::*;
 use scene::SurfacePoint;
 use session::PhotographLight;
@@ -41,7 +42,7 @@ impl Coat {
         let color = |point: SurfacePoint| match coating {
             Coating::Seeing if light.seen(point) < 0.5 => UNSEEN,
             Coating::Seeing => color_of_count(light.seeing(point)),
-            _ => encoded(light.constant(point)),
+            _ => light.constant(point).to_array().map(gamma_u8_from_linear_f32),
         };
         let colors: Vec<[u8; 3]> = map.texels.par_iter().map(|texel| color(texel.centroid)).collect();
         let mut rgba = vec![255; 4 * map.width as usize * map.height as usize];
@@ -57,14 +58,6 @@ impl Coat {
         }
         Self { width: map.width, height: map.height, rgba }
     }
-}
-
-fn encoded(light: glam::Vec3) -> [u8; 3] {
-    light.to_array().map(|light| {
-        let light = light.clamp(0.0, 1.0);
-        let value = if light <= 0.003_130_8 { 12.92 * light } else { 1.055 * light.powf(1.0 / 2.4) - 0.055 };
-        (value * 255.0 + 0.5) as u8
-    })
 }
 
 /// By the logarithm of the count: the first photographs matter most.

@@ -1,6 +1,7 @@
 //! What is seen of a scene that takes a while to unwrap, before it can be painted on: a small picture without blur.
 
 use super::outcome::Outcome;
+use super::showing::scaled_within;
 use super::state::Session;
 use crate::display::{Content, Patch, to_screen};
 use crate::error::SessionError;
@@ -41,10 +42,7 @@ impl Steps for OpeningSteps<'_> {
     }
 
     fn seen(&self, tracer: &Arc<Tracer>, camera: &Camera) {
-        let share = (f64::from(SIDE_PX) / f64::from(camera.width.max(camera.height))).min(1.0);
-        let [width, height] =
-            [camera.width, camera.height].map(|side| ((f64::from(side) * share).round() as u32).max(1));
-        let camera = Camera { width, height, ..camera.clone() };
+        let camera = scaled_within(camera, SIDE_PX);
         let focus = Focus::constant(tracer.scene().clone(), FocusOffset::STANDARD);
         let light = bare_light(tracer, &camera);
         let progress = self.begin("first look");

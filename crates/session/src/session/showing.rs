@@ -104,9 +104,14 @@ impl Session {
 
     /// A camera scaled to the preview's size.
     pub(super) fn scaled_camera(&self, camera: &Camera) -> Camera {
-        let longest = camera.width.max(camera.height);
-        let scale = (self.options.preview_size as f64 / longest as f64).min(1.0);
-        let scaled = |side: u32| ((side as f64 * scale).round() as u32).max(1);
-        Camera { width: scaled(camera.width), height: scaled(camera.height), ..camera.clone() }
+        scaled_within(camera, self.options.preview_size)
     }
+}
+
+/// A camera scaled so that no side of its picture is longer.
+pub(super) fn scaled_within(camera: &Camera, longest_px: u32) -> Camera {
+    let longest = camera.width.max(camera.height);
+    let scale = (longest_px as f64 / longest as f64).min(1.0);
+    let scaled = |side: u32| ((side as f64 * scale).round() as u32).max(1);
+    Camera { width: scaled(camera.width), height: scaled(camera.height), ..camera.clone() }
 }

@@ -6,34 +6,24 @@
 use super::blocks::Blocks;
 use super::budget::Budget;
 use super::constant::{Sample, robust_mean};
-use super::depth_picture::DepthPicture;
 use super::directions::{Known, toward};
 use super::error::PhotographError;
-use super::kept_picture::KeptPicture;
+use super::reading::{ReadView, Reading};
 use super::residuals::Work;
 use super::sightings::Look;
 use super::told::SEEN;
 use super::{PhotographLight, PhotographOptions};
 use glam::{DVec3, Vec3};
 use progress::Progress;
-use rayon::prelude::*;
-use scene::{Mask, SurfacePoint};
+use scene::SurfacePoint;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicUsize, Ordering};
 use trace::{Leaving, Radiance};
-
-/// A photograph as it is kept.
-struct Kept {
-    picture: KeptPicture,
-    depth: DepthPicture,
-    mask: Option<Mask>,
-}
 
 /// Radiance of a surface, looked up in the photographs that light was made from.
 pub struct DirectPhotographs {
     light: Arc<PhotographLight>,
     /// By view of the scene.
-    kept: Vec<Kept>,
+    read: Vec<ReadView>,
 }
 
 impl DirectPhotographs {
@@ -48,23 +38,9 @@ impl DirectPhotographs {
     ) -> Result<Self, PhotographError> {
         let scene = &light.scene;
         let (reduction, at_once) = Budget::of_pictures(&scene.views, options.max_memory);
-        let done = AtomicUsize::new(0);
-        let mut kept = Vec::with_capacity(scene.views.len());
-        for chunk in scene.views.chunks(at_once) {
-            let read: Vec<Kept> = chunk
-                .par_iter()
-                .map(|view| {
-                    progress.check()?;
-                    let picture = KeptPicture::of(&view.photograph(&options.load)?, reduction);
-                    let (depth, mask) = (DepthPicture::of(scene, view, reduction), view.mask(&options.load)?);
-                    let count = done.fetch_add(1, Ordering::Relaxed) + 1;
-                    progress.report(count as f32 / scene.views.len() as f32);
-                    Ok(Kept { picture, depth, mask })
-                })
-                .collect::<Result<_, PhotographError>>()?;
-            kept.extend(read);
-        }
-        Ok(Self { light, kept })
+        let reading = Reading { load: &options.load, reduction, at_once };
+        let read = reading.each(scene, &scene.views, progress, |_, read| read)?;
+        Ok(Self { light, read })
     }
 
     /// What photographs show of a place, and from where: those that see the side that is seen better.
@@ -72,10 +48,8 @@ impl DirectPhotographs {
         let views = &self.light.scene.views;
         let is_front = |number: usize| normal.dot((views[number].position() - position).as_vec3()) >= 0.0;
         let mut seen: Vec<(usize, f32)> = Vec::new();
-        for (number, (view, kept)) in views.iter().zip(&self.kept).enumerate() {
-            let Kept { picture, depth, mask } = kept;
-            let look = Look { view, picture, mask: mask.as_ref(), depth };
-            let weight = look.at_surface(position, normal);
+        for (number, (view, read)) in views.iter().zip(&self.read).enumerate() {
+            let weight = Look { view, read }.at_surface(position, normal);
             if weight >= LEAST_WEIGHT {
                 seen.push((number, weight));
             }
@@ -83,7 +57,7 @@ impl DirectPhotographs {
         let balance: f32 = seen.iter().map(|&(n, weight)| if is_front(n) { weight } else { -weight }).sum();
         seen.retain(|&(number, _)| is_front(number) == (balance >= 0.0));
         let sample = |(number, weight): (usize, f32)| {
-            let (view, picture) = (&views[number], &self.kept[number].picture);
+            let (view, picture) = (&views[number], &self.read[number].picture);
             let pixel = view.project(position)?;
             let shown = picture.at(picture.place(pixel));
             let light = shown.light * self.light.exposures[number].to_radiance(view, pixel);

@@ -10,17 +10,18 @@
 //! | symbol | meaning | unit |
 //! | --- | --- | --- |
 //! | r | what a sighting shows less the texel's constant part | radiance |
-//! | r̂ | the same as the texel's other photographs tell it ([`Regression::left_out`]) | radiance |
+//! | r̂ | the same as the texel's other photographs tell it ([`Work::leave_out`]) | radiance |
 //! | σ, σ̂ | the medians of \|r\| and \|r − r̂\| around the texel | radiance |
 //! | s̄ | the mean of s over a tile | 1 |
 //! | b | how far the tile belongs | 1 |
 
 use super::blocks::Blocks;
 use super::calibrated::Calibrated;
-use super::directions::{Kernel, Known, Regression, toward};
+use super::constant::robust_mean;
+use super::directions::{Kernel, Known, toward};
 use super::median::median;
-use super::residuals::LEAST_ERROR;
-use glam::{DVec2, Vec3};
+use super::residuals::{LEAST_ERROR, Work};
+use glam::DVec2;
 use rayon::prelude::*;
 use scene::View;
 
@@ -67,7 +68,6 @@ const MOST: f32 = 8.0;
 const GONE: f32 = 0.5;
 
 /// What a sighting says of its tile.
-#[derive(Clone, Copy)]
 struct Said {
     view: u16,
     weight: f32,
@@ -114,17 +114,15 @@ impl Belonging {
     }
 }
 
-/// How far the places of each view belong, given the constant part of all texels.
-pub(crate) fn belonging(radiance: &Calibrated<'_>, views: &[View], constant: &[Vec3]) -> Vec<Belonging> {
+/// How far the places of each view belong.
+pub(crate) fn belonging(radiance: &Calibrated<'_>, views: &[View]) -> Vec<Belonging> {
     let texels = radiance.texels;
     let blocks = Blocks::of(texels.size());
     let said: Vec<(usize, Vec<Said>)> = (0..texels.count())
         .into_par_iter()
         .step_by(ASKED)
         .filter(|&texel| radiance.sightings.range(texel).len() >= FEWEST_VIEWS)
-        .map_init(Regression::new, |regression, texel| {
-            (texel, said(radiance, texel, constant[texel], regression))
-        })
+        .map_init(Work::new, |work, texel| (texel, said(radiance, texel, work)))
         .collect();
     let scale = |off: fn(&Said) -> f32| -> Vec<f32> {
         let mut all = vec![Vec::new(); blocks.count()];
@@ -148,24 +146,24 @@ pub(crate) fn belonging(radiance: &Calibrated<'_>, views: &[View], constant: &[V
     sums.into_par_iter().map(Sums::belonging).collect()
 }
 
-fn said(radiance: &Calibrated<'_>, texel: usize, constant: Vec3, regression: &mut Regression) -> Vec<Said> {
-    let (mut samples, mut alpha, mut told) = (Vec::new(), Vec::new(), Vec::new());
-    radiance.samples_into(texel, &mut samples);
+fn said(radiance: &Calibrated<'_>, texel: usize, work: &mut Work) -> Vec<Said> {
+    radiance.samples_into(texel, &mut work.samples);
+    let constant = robust_mean(&work.samples, &mut Vec::new());
     let sightings = radiance.sightings.of_texel(texel);
     let from = radiance.texels.position(texel);
-    let known = samples.iter().zip(sightings).enumerate().map(|(place, (sample, sighting))| {
+    work.known.clear();
+    for (place, (sample, sighting)) in work.samples.iter().zip(sightings).enumerate() {
         let direction = toward(from, radiance.eye(sighting));
-        Known { place, direction, residual: sample.light - constant, weight: sample.weight }
-    });
-    let known: Vec<Known> = known.take(super::directions::MOST).collect();
-    regression.decompose(&KERNEL, &known);
-    regression.solve(&known, &mut alpha);
-    regression.left_out(&known, &alpha, &mut told);
-    let said = known.iter().zip(&told).map(|(known, told)| Said {
+        let residual = sample.light - constant;
+        work.known.push(Known { place, direction, residual, weight: sample.weight });
+    }
+    work.keep_best();
+    work.leave_out(&KERNEL);
+    let said = work.known.iter().zip(work.errors()).map(|(known, error)| Said {
         view: sightings[known.place].view,
         weight: known.weight,
         off_constant: known.residual.length(),
-        off_others: (known.residual - *told).length(),
+        off_others: error.length(),
     });
     said.collect()
 }

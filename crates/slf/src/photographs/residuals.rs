@@ -111,7 +111,7 @@ impl Work {
     }
 
     /// Solves for the residuals of `known`, and what each would be by the others.
-    fn leave_out(&mut self, kernel: &Kernel) {
+    pub fn leave_out(&mut self, kernel: &Kernel) {
         self.regression.decompose(kernel, &self.known);
         self.leave_out_again();
     }
@@ -137,7 +137,7 @@ impl Work {
     }
 
     /// What leaving out finds wrong.
-    fn errors(&self) -> impl Iterator<Item = Vec3> {
+    pub fn errors(&self) -> impl Iterator<Item = Vec3> {
         self.known.iter().zip(&self.told).map(|(known, told)| known.residual - *told)
     }
 }

@@ -3,17 +3,17 @@
 //! A photograph is read once. What it sees is told by its [`DepthPicture`]: a weight in (0, 1] that falls smoothly to 0 toward edges of
 //! depth, the picture's border and glancing angles, so that nothing begins or ends abruptly on the surface.
 
-use super::depth_picture::{DepthPicture, FAR_FROM_EDGES};
+use super::depth_picture::FAR_FROM_EDGES;
 use super::error::PhotographError;
 use super::kept_picture::KeptPicture;
+use super::reading::{ReadView, Reading};
 use super::sphere::Sphere;
 use super::texels::Texels;
 use glam::{DVec2, DVec3, Vec3};
-use progress::Progress;
+use progress::{Progress, Stage};
 use rayon::prelude::*;
-use scene::{LoadOptions, Mask, Scene, View};
+use scene::{Scene, View};
 use std::ops::Range;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Glancing views (cosine) see nothing that can be told from its neighbours; from the second value on they count in full.
 const GLANCING: [f32; 2] = [0.08, 0.35];
@@ -45,17 +45,6 @@ pub(crate) struct Sightings {
     brightest: f32,
 }
 
-/// How much is read and kept.
-pub(crate) struct Reading<'a> {
-    pub load: &'a LoadOptions,
-    /// Pixels of a photograph that are joined to one, each way.
-    pub reduction: u32,
-    /// Photographs that are worked on at once.
-    pub at_once: usize,
-    /// The cells at infinity.
-    pub sphere: &'a Sphere,
-}
-
 impl Sighting {
     pub fn weight(&self) -> f32 {
         f32::from(self.weight) / 255.0
@@ -67,42 +56,25 @@ impl Sighting {
 }
 
 impl Sightings {
-    /// Reads the photographs and looks what they see.
+    /// Reads the photographs and looks what they see of texels and of cells at infinity.
     ///
     /// # Errors
     /// The first view's, by order, whose picture or mask cannot be had; that the work was stopped.
     pub fn of(
         scene: &Scene,
         texels: &Texels,
+        sphere: &Sphere,
         views: &[View],
         reading: &Reading<'_>,
         progress: &dyn Progress,
     ) -> Result<Self, PhotographError> {
-        let done = AtomicUsize::new(0);
-        let mut pictures = Vec::with_capacity(views.len());
-        let (mut weights, mut beyond) = (Vec::new(), Vec::new());
-        for chunk in views.chunks(reading.at_once.max(1)) {
-            let read: Vec<_> = chunk
-                .par_iter()
-                .map(|view| {
-                    progress.check()?;
-                    let picture = KeptPicture::of(&view.photograph(reading.load)?, reading.reduction);
-                    let mask = view.mask(reading.load)?;
-                    let depth = DepthPicture::of(scene, view, reading.reduction);
-                    let look = Look { view, picture: &picture, mask: mask.as_ref(), depth: &depth };
-                    let (seen, beyond) = (look.at_texels(texels), look.beyond(reading.sphere));
-                    let count = done.fetch_add(1, Ordering::Relaxed) + 1;
-                    progress.report(0.8 * count as f32 / views.len() as f32);
-                    Ok((picture, seen, beyond))
-                })
-                .collect::<Result<_, PhotographError>>()?;
-            for (picture, seen, sky) in read {
-                pictures.push(picture);
-                weights.push(seen);
-                beyond.push(sky);
-            }
-        }
-        progress.check()?;
+        let read = reading.each(scene, views, &Stage::new(progress, 0.0, 0.8), |view, read| {
+            let look = Look { view, read: &read };
+            let seen = (look.at_texels(texels), look.beyond(sphere));
+            (read.picture, seen)
+        })?;
+        let (pictures, seen): (Vec<_>, Vec<_>) = read.into_iter().unzip();
+        let (mut weights, beyond): (Vec<_>, Vec<_>) = seen.into_iter().unzip();
         keep_one_side(texels, views, &mut weights);
         let brightest = pictures.iter().map(KeptPicture::brightest).fold(1.0, f32::max);
         let (start, all) = gathered(texels, views, &pictures, &weights, brightest);
@@ -155,14 +127,7 @@ impl Sightings {
         change: impl Fn(&mut Sighting, usize, DVec2) + Sync,
     ) {
         let start = &self.start;
-        let mut rest = self.all.as_mut_slice();
-        let mut blocks = Vec::new();
-        for range in blocks_of(texels) {
-            let (block, others) = rest.split_at_mut((start[range.end] - start[range.start]) as usize);
-            blocks.push((range, block));
-            rest = others;
-        }
-        blocks.into_par_iter().for_each(|(range, block)| {
+        blocks_of(start, &mut self.all).into_par_iter().for_each(|(range, block)| {
             let first = start[range.start];
             for texel in range {
                 let (from, to) = (start[texel] - first, start[texel + 1] - first);
@@ -182,11 +147,19 @@ impl Sightings {
     }
 }
 
-/// Texels that are worked on as one, by their numbers.
-fn blocks_of(texels: &Texels) -> impl Iterator<Item = Range<usize>> {
+/// Texels that are worked on as one, by their numbers, and their sightings, which begin at `start`.
+fn blocks_of<'a>(start: &[u32], all: &'a mut [Sighting]) -> Vec<(Range<usize>, &'a mut [Sighting])> {
     const BLOCK: usize = 4096;
-    let count = texels.count();
-    (0..count).step_by(BLOCK).map(move |first| first..(first + BLOCK).min(count))
+    let texels = start.len() - 1;
+    let mut rest = all;
+    let mut blocks = Vec::new();
+    for first in (0..texels).step_by(BLOCK) {
+        let range = first..(first + BLOCK).min(texels);
+        let (block, after) = rest.split_at_mut((start[range.end] - start[range.start]) as usize);
+        blocks.push((range, block));
+        rest = after;
+    }
+    blocks
 }
 
 fn light_of(root: [u16; 3], brightest: f32) -> Vec3 {
@@ -211,9 +184,7 @@ fn from_edge(pixels: u8) -> f32 {
 /// A photograph, and what it can see.
 pub(crate) struct Look<'a> {
     pub view: &'a View,
-    pub picture: &'a KeptPicture,
-    pub mask: Option<&'a Mask>,
-    pub depth: &'a DepthPicture,
+    pub read: &'a ReadView,
 }
 
 impl Look<'_> {
@@ -230,7 +201,7 @@ impl Look<'_> {
         if of_angle == 0.0 {
             return 0.0;
         }
-        of_angle * self.at(position, |place| self.depth.sees(self.view, position, place))
+        of_angle * self.at(position, |place| self.read.depth.sees(self.view, position, place))
     }
 
     /// How well it sees every cell at infinity, by 255ths.
@@ -238,7 +209,7 @@ impl Look<'_> {
         let eye = self.view.position();
         let weight = |cell: usize| {
             let position = eye + sphere.direction(cell).as_dvec3();
-            self.at(position, |place| self.depth.sees_nothing(place))
+            self.at(position, |place| self.read.depth.sees_nothing(place))
         };
         (0..sphere.count()).map(|cell| by_255ths(weight(cell))).collect()
     }
@@ -246,7 +217,7 @@ impl Look<'_> {
     /// How a position counts, if the depths see it: so many pixels from an edge.
     fn at(&self, position: DVec3, seen: impl Fn(DVec2) -> Option<u8>) -> f32 {
         let Some(pixel) = self.view.project(position) else { return 0.0 };
-        let place = self.picture.place(pixel);
+        let place = self.read.picture.place(pixel);
         let Some(edge) = seen(place) else { return 0.0 };
         from_edge(edge) * self.counts(pixel, place)
     }
@@ -256,14 +227,14 @@ impl Look<'_> {
         if !self.view.lens.is_in_picture(pixel) {
             return 0.0;
         }
-        let is_masked = self.mask.is_some_and(|mask| {
+        let is_masked = self.read.mask.as_ref().is_some_and(|mask| {
             let (x, y) = (pixel.x as u32, pixel.y as u32);
             x < mask.width && y < mask.height && !mask.counts[(y * mask.width + x) as usize]
         });
         if is_masked {
             return 0.0;
         }
-        let size = DVec2::new(f64::from(self.picture.width), f64::from(self.picture.height));
+        let size = DVec2::new(f64::from(self.read.picture.width), f64::from(self.read.picture.height));
         ramp(place.min(size - place).min_element() as f32, FROM_BORDER)
     }
 }
@@ -317,14 +288,7 @@ fn gathered(
     }
     let nothing = Sighting { view: 0, weight: 0, clipped: 0, root: [0; 3] };
     let mut all = vec![nothing; start[texels.count()] as usize];
-    let mut rest = all.as_mut_slice();
-    let mut blocks = Vec::new();
-    for range in blocks_of(texels) {
-        let (block, after) = rest.split_at_mut((start[range.end] - start[range.start]) as usize);
-        blocks.push((range, block));
-        rest = after;
-    }
-    blocks.into_par_iter().for_each(|(range, block)| {
+    blocks_of(&start, &mut all).into_par_iter().for_each(|(range, block)| {
         let mut slots = block.iter_mut();
         for texel in range {
             for (number, view) in views.iter().enumerate() {

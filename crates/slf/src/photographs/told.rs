@@ -28,7 +28,7 @@ pub(crate) fn seen(radiance: &Calibrated<'_>) -> Vec<f32> {
 pub(crate) const SEEN: f32 = 0.25;
 
 /// The robust means of what photographs show of each texel.
-pub(crate) fn means(radiance: &Calibrated<'_>) -> Vec<Vec3> {
+fn means(radiance: &Calibrated<'_>) -> Vec<Vec3> {
     let mean = |(samples, belonging): &mut (Vec<_>, Vec<_>), texel| {
         radiance.samples_into(texel, samples);
         robust_mean(samples, belonging)
