@@ -30,6 +30,7 @@ mod median;
 mod mirrored;
 mod odd;
 mod one_view;
+mod ramp;
 mod reading;
 mod residuals;
 mod sightings;

@@ -6,13 +6,18 @@
 use super::constant::{Sample, robust_mean, roots};
 use super::gains::Exposure;
 use super::kept_picture::KeptPicture;
+use super::ramp::ramp;
 use super::sphere::Sphere;
 use glam::Vec3;
 use rayon::prelude::*;
 use scene::View;
 
-/// Roots of light that differ by more (of the brighter) are no agreement.
+/// Roots of light that differ by more are no agreement: a share of the brighter, or what noise and JPEG leave of the dark (white is 1.7).
 const AGREED: f32 = 0.1;
+const AGREED_IN_THE_DARK: f32 = 0.06;
+/// Shares of agreement from which a cell is believed a little, and in full: what is near and bright, and seen before the dark of a
+/// room, has half of the photographs on its side where it hides that.
+const BELIEVED: [f32; 2] = [0.5, 0.85];
 /// Below this share of agreement, over all cells that several photographs see, there is no picture at infinity.
 const ENOUGH: f32 = 0.5;
 /// A cell is held at those around it as by so much of a photograph.
@@ -52,11 +57,18 @@ pub(crate) fn beyond(
         let neutral = if weights > 0.0 { sum / weights } else { Vec3::ZERO };
         return vec![neutral; sphere.count()];
     }
-    let trusted = |cell: &Cell| {
-        let weight = cell.weight * if cell.views >= 2 { cell.agreement } else { 0.5 };
+    // One photograph alone says nothing of how far away it is: it is believed as much as those around are.
+    let known = |cell: &Cell| {
+        let weight = if cell.views >= 2 { cell.weight } else { 0.0 };
+        (Vec3::splat(cell.agreement * weight), weight)
+    };
+    let around = sphere.smoothed(&cells.iter().map(known).collect::<Vec<_>>(), HOLD);
+    let trusted = |(cell, around): (&Cell, &Vec3)| {
+        let agreement = if cell.views >= 2 { cell.agreement } else { around.x };
+        let weight = cell.weight * ramp(agreement, BELIEVED);
         (cell.light * weight, weight)
     };
-    sphere.smoothed(&cells.iter().map(trusted).collect::<Vec<_>>(), HOLD)
+    sphere.smoothed(&cells.iter().zip(&around).map(trusted).collect::<Vec<_>>(), HOLD)
 }
 
 /// What photographs show in one direction.
@@ -73,7 +85,7 @@ impl Cell {
         let light = robust_mean(samples, belonging);
         let agrees = |sample: &&Sample| {
             let [a, b] = [sample.light, light].map(|light| roots(light.max(Vec3::ZERO)));
-            a.distance(b) <= AGREED * a.length().max(b.length())
+            a.distance(b) <= (AGREED * a.length().max(b.length())).max(AGREED_IN_THE_DARK)
         };
         let weight =
             |samples: &mut dyn Iterator<Item = &Sample>| samples.map(|sample| sample.weight).sum::<f32>();

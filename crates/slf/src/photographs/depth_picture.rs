@@ -18,7 +18,7 @@ pub(crate) struct DepthPicture {
 }
 
 /// Distances from edges are told up to here, pixels.
-pub(crate) const FAR_FROM_EDGES: u8 = 6;
+pub(crate) const FAR_FROM_EDGES: u8 = 64;
 /// Directions so far off the axis (cosine) have their depth told as distance.
 const OFF_AXIS: f64 = 0.2;
 /// What a surface may lie behind the pixel's, as a share of depth, beside what its slope explains.
@@ -50,6 +50,7 @@ impl DepthPicture {
             picture.draw(&positions, corners, &corner, 0);
         }
         picture.from_edge = picture.distances_from_edges();
+        picture.shut_holes();
         picture
     }
 
@@ -169,6 +170,36 @@ impl DepthPicture {
         distance
     }
 
+    /// Has what is surrounded by the surface count as its edge: more often than not a hole of the mesh, not a window to what is behind.
+    fn shut_holes(&mut self) {
+        let (width, height) = (self.width, self.height);
+        let mut is_open = vec![false; width * height];
+        let on_border = |number: &usize| {
+            let (x, y) = (number % width, number / width);
+            x == 0 || y == 0 || x + 1 == width || y + 1 == height
+        };
+        let mut reached: Vec<usize> = (0..width * height).filter(on_border).collect();
+        while let Some(number) = reached.pop() {
+            if is_open[number] || self.inverse[number] > 0.0 {
+                continue;
+            }
+            is_open[number] = true;
+            let (x, y) = (number % width, number / width);
+            let around = [
+                (x > 0).then(|| number - 1),
+                (x + 1 < width).then(|| number + 1),
+                (y > 0).then(|| number - width),
+                (y + 1 < height).then(|| number + width),
+            ];
+            reached.extend(around.into_iter().flatten());
+        }
+        for ((from_edge, inverse), is_open) in self.from_edge.iter_mut().zip(&self.inverse).zip(is_open) {
+            if *inverse == 0.0 && !is_open {
+                *from_edge = 0;
+            }
+        }
+    }
+
     /// Whether depth jumps between a pixel and the next along (dx, dy): by more than either side's slope leads to expect.
     fn jumps(&self, x: usize, y: usize, dx: usize, dy: usize) -> bool {
         let at = |k: isize| {
@@ -218,7 +249,8 @@ impl DepthPicture {
         (inverse >= here - BIAS * here - slopes).then_some(self.from_edge[number])
     }
 
-    /// How many pixels (up to [`FAR_FROM_EDGES`]) the surface is away from a place that shows none; `None` where it shows one.
+    /// How many pixels (up to [`FAR_FROM_EDGES`]) the surface is away from a place that shows none, 0 in a hole of it; `None` where it
+    /// shows one.
     pub fn sees_nothing(&self, place: DVec2) -> Option<u8> {
         let (x, y) = (place.x as usize, place.y as usize);
         if place.x < 0.0 || place.y < 0.0 || x >= self.width || y >= self.height {
@@ -250,4 +282,22 @@ fn may_be_seen(view: &View, positions: &[DVec3; 3]) -> bool {
     let offset = middle - view.position();
     // Small ones are seen as wholes: far corners lie close together in direction.
     offset.dot(view.forward()) + reach > 0.0 && reach > 0.2 * offset.length()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn holes_are_edges_and_bays_are_not() {
+        // A ring with a hole, and a bay that opens to the border.
+        let rows = ["........", ".#####..", ".#...#..", ".#.#.#..", ".#...#..", ".#####..", ".#......", "........"];
+        let inverse: Vec<f32> =
+            rows.iter().flat_map(|row| row.bytes().map(|b| if b == b'#' { 0.5 } else { 0.0 })).collect();
+        let mut picture = DepthPicture { width: 8, height: 8, inverse, from_edge: vec![3; 64] };
+        picture.shut_holes();
+        let at = |x: usize, y: usize| picture.sees_nothing(DVec2::new(x as f64 + 0.5, y as f64 + 0.5));
+        assert_eq!([at(2, 2), at(4, 4), at(1, 1)], [Some(0), Some(0), None]);
+        assert_eq!([at(3, 6), at(7, 0), at(0, 7)], [Some(3); 3]);
+    }
 }

@@ -6,6 +6,7 @@
 use super::depth_picture::FAR_FROM_EDGES;
 use super::error::PhotographError;
 use super::kept_picture::KeptPicture;
+use super::ramp::ramp;
 use super::reading::{ReadView, Reading};
 use super::sphere::Sphere;
 use super::texels::Texels;
@@ -19,6 +20,9 @@ use std::ops::Range;
 const GLANCING: [f32; 2] = [0.08, 0.35];
 /// So many pixels from an edge of depth a photograph begins to count, and counts in full.
 const FROM_EDGE: [f32; 2] = [1.0, 4.0];
+/// The same for what is beyond the surface, in shares of the picture's longer side: meshes end early, and what they left out stands
+/// beside them.
+const BEYOND_FROM_EDGE: [f32; 2] = [0.01, 0.04];
 /// The same from the picture's border.
 const FROM_BORDER: [f32; 2] = [1.0, 8.0];
 
@@ -171,14 +175,10 @@ fn root_of(light: Vec3, brightest: f32) -> [u16; 3] {
     light.to_array().map(|v| ((v / brightest).clamp(0.0, 1.0).sqrt() * 65535.0 + 0.5) as u16)
 }
 
-/// Rises smoothly from 0 at the first value to 1 at the second.
-fn ramp(value: f32, [from, to]: [f32; 2]) -> f32 {
-    let share = ((value - from) / (to - from)).clamp(0.0, 1.0);
-    share * share * (3.0 - 2.0 * share)
-}
-
-fn from_edge(pixels: u8) -> f32 {
-    if pixels >= FAR_FROM_EDGES { 1.0 } else { ramp(f32::from(pixels), FROM_EDGE) }
+/// How a place counts that is so many pixels from an edge of depth.
+fn from_edge(pixels: u8, counting: [f32; 2]) -> f32 {
+    // Edges farther away are told of no more.
+    if pixels >= FAR_FROM_EDGES { 1.0 } else { ramp(f32::from(pixels), counting) }
 }
 
 /// A photograph, and what it can see.
@@ -201,25 +201,27 @@ impl Look<'_> {
         if of_angle == 0.0 {
             return 0.0;
         }
-        of_angle * self.at(position, |place| self.read.depth.sees(self.view, position, place))
+        of_angle * self.at(position, FROM_EDGE, |place| self.read.depth.sees(self.view, position, place))
     }
 
     /// How well it sees every cell at infinity, by 255ths.
     fn beyond(&self, sphere: &Sphere) -> Vec<u8> {
         let eye = self.view.position();
+        let longer = self.read.picture.width.max(self.read.picture.height) as f32;
+        let counting = BEYOND_FROM_EDGE.map(|share| share * longer);
         let weight = |cell: usize| {
             let position = eye + sphere.direction(cell).as_dvec3();
-            self.at(position, |place| self.read.depth.sees_nothing(place))
+            self.at(position, counting, |place| self.read.depth.sees_nothing(place))
         };
         (0..sphere.count()).map(|cell| by_255ths(weight(cell))).collect()
     }
 
     /// How a position counts, if the depths see it: so many pixels from an edge.
-    fn at(&self, position: DVec3, seen: impl Fn(DVec2) -> Option<u8>) -> f32 {
+    fn at(&self, position: DVec3, counting: [f32; 2], seen: impl Fn(DVec2) -> Option<u8>) -> f32 {
         let Some(pixel) = self.view.project(position) else { return 0.0 };
         let place = self.read.picture.place(pixel);
         let Some(edge) = seen(place) else { return 0.0 };
-        from_edge(edge) * self.counts(pixel, place)
+        from_edge(edge, counting) * self.counts(pixel, place)
     }
 
     /// How a place in the picture counts by itself: its distance from the border, and the mask.
