@@ -212,7 +212,8 @@ pub struct BakeArguments {
 /// From where, and how focused.
 #[derive(Debug, Args)]
 pub struct ShotArguments {
-    /// A camera file, or the name of a camera in the scene; photo:NAME is that of a photograph, as a pinhole (default: the
+    /// A camera file, or the name of a camera in the scene; photo:NAME is that of a photograph, as a pinhole,
+    /// photo:A..B@0.5 is halfway between two (default: the
     /// project's, or the scene's first)
     #[arg(long, value_name = "CAM.json|NAME", value_parser = camera_parser())]
     pub camera: Option<CameraChoice>,

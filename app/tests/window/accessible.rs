@@ -50,6 +50,7 @@ fn every_control_has_a_name_whatever_is_open() {
         CommandId::ShowAtlas,
         CommandId::ShowAperture,
         CommandId::ShowHistogram,
+        CommandId::ShowPhotographs,
         CommandId::Wipe,
         CommandId::Palette,
         CommandId::Shortcuts,

@@ -6,12 +6,25 @@ use egui_kittest::kittest::Queryable;
 use focus_brush::window::{Severity, Shell, WindowOptions};
 use lens::Picture;
 use session::Document;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 /// Longer than any of the small scenes needs on a busy machine.
 const PATIENCE: Duration = Duration::from_secs(90);
+
+/// A file as the system drops it.
+#[derive(Debug)]
+struct Dropped(PathBuf);
+
+impl egui::DroppedFile for Dropped {
+    fn path(&self) -> &Path {
+        &self.0
+    }
+    fn bytes(&self) -> Result<Vec<u8>, String> {
+        std::fs::read(&self.0).map_err(|error| error.to_string())
+    }
+}
 
 /// The window with someone in front of it.
 pub struct Person {
@@ -142,6 +155,12 @@ impl Person {
         let found = self.window.get_all_by_label(label).last();
         found.unwrap_or_else(|| panic!("there is no {label}")).scroll_to_me();
         self.window.run_steps(60);
+    }
+
+    /// Drops a file or folder on the window.
+    pub fn drops(&mut self, file: &Path) {
+        self.window.input_mut().dropped_files.push(Arc::new(Dropped(file.to_owned())));
+        self.window.run_steps(3);
     }
 
     pub fn presses(&mut self, modifiers: Modifiers, key: Key) {

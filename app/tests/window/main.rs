@@ -3,6 +3,7 @@
 mod accessible;
 mod acting;
 mod arranging;
+mod captures;
 mod commands;
 mod comparing;
 mod controls;
@@ -20,3 +21,6 @@ mod small_scene;
 #[path = "../../../crates/session/tests/tiny_glb/mod.rs"]
 mod tiny_glb;
 mod variants;
+#[allow(dead_code, reason = "shared by several tests")]
+#[path = "../wall_capture/mod.rs"]
+mod wall_capture;

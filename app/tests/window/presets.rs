@@ -8,28 +8,7 @@ use focus_brush::window::WindowOptions;
 use lens::ApertureShape;
 use project::{PresetKind, PresetShelf};
 use session::CommandId;
-use std::path::{Path, PathBuf};
-use std::sync::Arc;
-
-/// A file as the system drops it.
-#[derive(Debug)]
-struct Dropped(PathBuf);
-
-impl egui::DroppedFile for Dropped {
-    fn path(&self) -> &Path {
-        &self.0
-    }
-    fn bytes(&self) -> Result<Vec<u8>, String> {
-        std::fs::read(&self.0).map_err(|error| error.to_string())
-    }
-}
-
-impl Person {
-    fn drops(&mut self, file: &Path) {
-        self.window.input_mut().dropped_files.push(Arc::new(Dropped(file.to_owned())));
-        self.window.run_steps(3);
-    }
-}
+use std::path::Path;
 
 #[test]
 fn presets_are_chosen_saved_exported_and_imported() {

@@ -28,6 +28,9 @@ pub struct SalfStatistics {
     pub partial: usize,
     /// Samples of the background, which are among the others.
     pub background: usize,
+    /// Samples of what is mirrored or let through, which are among the others.
+    #[serde(default)]
+    pub carried: usize,
     /// Bytes of all samples.
     pub bytes: usize,
     /// Of these, what the open samples take.
@@ -39,8 +42,9 @@ pub struct SalfStatistics {
 impl Salf {
     /// Counts the samples by kind.
     pub fn statistics(&self) -> SalfStatistics {
-        let [open, partial, background] = self.samples.counts();
+        let [open, partial, background, carried] = self.samples.counts();
         let [bytes, partial_bytes] = self.samples.bytes();
-        SalfStatistics { open, partial, background, bytes, open_bytes: bytes - partial_bytes, partial_bytes }
+        let open_bytes = bytes - partial_bytes;
+        SalfStatistics { open, partial, background, carried, bytes, open_bytes, partial_bytes }
     }
 }

@@ -30,10 +30,13 @@ mod tiny_glb;
 
 pub use baselines::{FirstHits, LayeredOptions, ScatterOptions, ViewsOptions};
 pub use commands::{COMMANDS, Command, CommandId, CommandInfo, Event, KeyMap, Menu, Shortcut};
-pub use display::{Display, LivePicture, Screen, ScreenPixel, Tone, ToneCurve, to_screen};
+pub use display::{
+    Display, LivePicture, Screen, ScreenPixel, Thumbnail, ThumbnailResult, Thumbnails, Tone, ToneCurve,
+    to_screen,
+};
 pub use document::{
     Beginning, CameraChoice, CameraEdit, Document, HistoryStep, Input, InputKind, Stage, SurfaceHit,
-    VariantChoice, camera_of, chief_ray, load_scene, pick, view_ray,
+    VariantChoice, camera_between, camera_of, chief_ray, load_scene, pick, view_ray,
 };
 pub use editing::{FillRegion, StrokePoint, StrokeTarget, rectangle, replay};
 pub use error::SessionError;

@@ -1,10 +1,11 @@
 //! The panels that are folded away at first, in tabs beneath the views: the atlas, the aperture as one point sees it, how
-//! blurred the picture is.
+//! blurred the picture is, the photographs of a capture.
 
 mod aperture_pad;
 mod aperture_view;
 mod atlas_view;
 mod histogram_view;
+mod photograph_strip;
 
 use super::Action;
 use super::hand::Hand;
@@ -13,6 +14,7 @@ use aperture_view::ApertureView;
 use atlas_view::AtlasView;
 use egui::Ui;
 use histogram_view::HistogramView;
+use photograph_strip::PhotographStrip;
 use session::{Session, SurfaceHit};
 
 /// The drawer's state between frames.
@@ -21,6 +23,7 @@ pub struct Drawer {
     atlas: AtlasView,
     aperture: ApertureView,
     histogram: HistogramView,
+    photographs: PhotographStrip,
 }
 
 impl Drawer {
@@ -59,6 +62,7 @@ impl Drawer {
             Pane::Atlas => self.atlas.ui(ui, session, hand, actions),
             Pane::Aperture => self.aperture.ui(ui, session, actions),
             Pane::Histogram => self.histogram.ui(ui, session),
+            Pane::Photographs => self.photographs.ui(ui, session, actions),
             Pane::Paint | Pane::Picture | Pane::Inspector => {}
         }
     }

@@ -18,12 +18,21 @@ pub enum Pane {
     Aperture,
     /// The circles of confusion of the picture.
     Histogram,
+    /// The photographs of a capture.
+    Photographs,
 }
 
 impl Pane {
     /// All.
-    pub const ALL: [Self; 6] =
-        [Self::Paint, Self::Picture, Self::Inspector, Self::Atlas, Self::Aperture, Self::Histogram];
+    pub const ALL: [Self; 7] = [
+        Self::Paint,
+        Self::Picture,
+        Self::Inspector,
+        Self::Atlas,
+        Self::Aperture,
+        Self::Histogram,
+        Self::Photographs,
+    ];
 
     /// What it is called.
     pub fn title(self) -> &'static str {
@@ -34,6 +43,7 @@ impl Pane {
             Self::Atlas => "Atlas",
             Self::Aperture => "Aperture view",
             Self::Histogram => "Blur histogram",
+            Self::Photographs => "Photographs",
         }
     }
 
@@ -45,6 +55,7 @@ impl Pane {
             Self::Atlas => Some(CommandId::ShowAtlas),
             Self::Aperture => Some(CommandId::ShowAperture),
             Self::Histogram => Some(CommandId::ShowHistogram),
+            Self::Photographs => Some(CommandId::ShowPhotographs),
         }
     }
 

@@ -76,6 +76,7 @@ impl Shell {
                 }
             }
             CommandId::ShowHistogram => self.layout.toggle(Pane::Histogram),
+            CommandId::ShowPhotographs => self.layout.toggle(Pane::Photographs),
             CommandId::NextToneCurve => self.settings.tone_curve = self.settings.tone_curve.next(),
             CommandId::LightOrDark => self.settings.light_theme = !self.settings.light_theme,
             CommandId::ScaleUp => self.rescale(1),

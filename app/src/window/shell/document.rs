@@ -2,6 +2,7 @@
 
 use super::Shell;
 use crate::window::file_dialog::Purpose;
+use crate::window::layout::Pane;
 use crate::window::unsaved_question::{Answer, Next};
 use crate::window::{Tool, demo};
 use egui::{Context, ViewportCommand};
@@ -152,6 +153,9 @@ impl Shell {
         let opening = self.opening.take();
         if let Some(document) = self.session.document() {
             self.paint.opened(document, context);
+            if document.path.is_none() && !document.scene().views.is_empty() {
+                self.layout.open(Pane::Photographs);
+            }
             if let Some(path) = opening.filter(|_| !self.showing_demo) {
                 self.settings.remember(&path);
             }

@@ -73,8 +73,8 @@ impl Samples {
         [all, shared_partial + partial * Record::BYTES + self.codes.len() + loose_partial]
     }
 
-    /// How many see the whole aperture, how many part of it, and how many of all are of the background.
-    pub(crate) fn counts(&self) -> [usize; 3] {
+    /// How many see the whole aperture, how many part of it, and how many of all are of the background, and carried.
+    pub(crate) fn counts(&self) -> [usize; 4] {
         let partial = self.records.iter().filter(|record| record.is_partial()).count()
             + self.loose.iter().filter(|sample| sample.visibility != Visibility::Open).count();
         let of_chunks = (0..self.chunks.len()).map(|chunk| {
@@ -83,7 +83,9 @@ impl Samples {
         });
         let background =
             of_chunks.sum::<usize>() + self.loose.iter().filter(|sample| sample.surface.is_none()).count();
-        [self.len() - partial, partial, background]
+        let carried = self.records.iter().filter(|record| record.is_carried()).count()
+            + self.loose.iter().filter(|sample| sample.is_carried).count();
+        [self.len() - partial, partial, background, carried]
     }
 
     /// Parts, one after the other; what is not packed comes last.

@@ -6,11 +6,13 @@ mod glare;
 mod live_picture;
 mod picture_ring;
 mod screen;
+mod thumbnails;
 mod tone;
 mod tone_curve;
 
 pub use live_picture::LivePicture;
 pub use screen::Screen;
+pub use thumbnails::{Thumbnail, ThumbnailResult, Thumbnails};
 pub use tone::{Display, ScreenPixel, Tone, to_screen};
 pub use tone_curve::ToneCurve;
 

@@ -1,5 +1,6 @@
 //! A capture as a scene that its photographs light.
 
+use super::camera_path::camera_between;
 use crate::error::SessionError;
 use capture::{Capture, CaptureError, CaptureOptions};
 use glam::DVec3;
@@ -55,6 +56,22 @@ pub(crate) fn load_capture(
     let is_incomplete = remarks.iter().any(|remark| remark.is_incomplete);
     let remarks = remarks.into_iter().map(|remark| remark.text).collect();
     Ok(CaptureScene { scene: Arc::new(scene), remarks, is_incomplete })
+}
+
+/// The camera that a name after [`PHOTOGRAPH`] means, that of a photograph or `A..B@SHARE`, one between two of them; else what is wrong.
+pub(crate) fn photograph_camera(scene: &Scene, name: &str, like: &Camera) -> Result<Camera, String> {
+    let camera =
+        |name: &str| photograph(scene, name).map(|view| camera_of_photograph(scene.bounds(), view, like));
+    let between = || {
+        let (names, share) = name.rsplit_once('@')?;
+        let (from, to) = names.split_once("..")?;
+        let share = share.parse().ok().filter(|share| (0.0..=1.0).contains(share))?;
+        Some((from, to, share))
+    };
+    match (camera(name), between()) {
+        (Err(_), Some((from, to, share))) => Ok(camera_between(&camera(from)?, &camera(to)?, share)),
+        (camera, _) => camera,
+    }
 }
 
 /// The photograph of a name, left out or not; else what is wrong with it.

@@ -1,6 +1,6 @@
 //! What can be opened: a scene, a project or a light field, as the renderers need it.
 
-use super::capture_scene::{CaptureScene, PHOTOGRAPH, camera_of_photograph, load_capture, photograph};
+use super::capture_scene::{CaptureScene, PHOTOGRAPH, load_capture, photograph_camera};
 use super::kept_atlas::unwrapped;
 use super::scene_camera::camera_of;
 use super::stage::{Stage, atlas_error, load_variant};
@@ -171,7 +171,8 @@ impl Input {
         if let Some(choices) = &project.capture {
             let read = load_capture(&project.scene, choices, &*steps.begin("reading"))?;
             warnings.extend(read.remarks);
-            return Ok(Self::of_project(path, project, read.scene, warnings));
+            let is_incomplete = read.is_incomplete;
+            return Ok(Self { is_incomplete, ..Self::of_project(path, project, read.scene, warnings) });
         }
         let load = |variant| load_variant(&project.scene, variant, &*steps.begin("reading"));
         let scene = match load(variant.name(project.variant.as_deref())) {
@@ -270,9 +271,8 @@ impl Input {
                 let saved = self.project.iter().flat_map(|project| &project.cameras);
                 let mut saved = saved.filter(|named| named.name == *name).map(|named| named.camera.clone());
                 if let Some(name) = name.strip_prefix(PHOTOGRAPH) {
-                    let view = photograph(&self.scene, name);
-                    let view = view.map_err(|what| SessionError::bad(&self.path, what))?;
-                    return Ok(camera_of_photograph(self.scene.bounds(), view, &self.camera));
+                    let camera = photograph_camera(&self.scene, name, &self.camera);
+                    return camera.map_err(|what| SessionError::bad(&self.path, what));
                 }
                 let in_scene = || self.scene.cameras.iter().find(|camera| camera.name == *name);
                 saved.next().or_else(|| in_scene().map(|c| camera_of(c, &self.camera))).ok_or_else(|| {

@@ -5,6 +5,7 @@
 
 mod adjusted_view;
 mod camera_edit;
+mod camera_path;
 mod capture_scene;
 mod input;
 mod kept_atlas;
@@ -17,6 +18,7 @@ mod undo;
 mod variant_choice;
 
 pub use camera_edit::CameraEdit;
+pub use camera_path::camera_between;
 pub use capture_scene::camera_of_photograph;
 pub use input::{CameraChoice, Input, InputKind};
 pub use open_document::{Beginning, Document};

@@ -339,12 +339,18 @@ impl Document {
         let scene = &self.stage.scene;
         let cameras = scene.cameras.iter();
         let cameras = cameras.map(|camera| (camera.name.as_str(), camera_of(camera, &self.camera)));
-        let of_photograph = |view: &'_ View| Camera {
+        let names = scene.views.iter().chain(&scene.left_out).map(|view| view.name.as_str());
+        cameras.chain(names.zip(self.photograph_cameras()))
+    }
+
+    /// The cameras of the scene's photographs, first of those that its light is made from, then of those left out, with the current
+    /// aperture.
+    pub fn photograph_cameras(&self) -> impl Iterator<Item = Camera> {
+        let scene = &self.stage.scene;
+        scene.views.iter().chain(&scene.left_out).map(|view| Camera {
             aperture_radius: self.camera.aperture_radius,
             ..camera_of_photograph(self.stage.bounds, view, &self.camera)
-        };
-        let photographs = scene.views.iter().chain(&scene.left_out);
-        cameras.chain(photographs.map(move |view| (view.name.as_str(), of_photograph(view))))
+        })
     }
 
     /// The photograph that the camera looks through, if it is that of one.

@@ -163,11 +163,10 @@ impl Modelled {
                 ..row("partly occluded", "something hides it from part of the aperture: a mask of cells")
             },
             ModelledRow {
-                samples: Some(0),
-                bytes: Some(0),
+                samples: Some(samples.carried),
                 ..row(
-                    "glossy",
-                    "sends different colours across the aperture; surfaces are diffuse in this version",
+                    "of it carried",
+                    "mirrored or let through: focused as by the ordinary lens unless gloss obeys the paint; counted above",
                 )
             },
             ModelledRow {
@@ -194,6 +193,7 @@ mod tests {
             open: 30,
             partial: 10,
             background: 5,
+            carried: 3,
             bytes: 3000,
             open_bytes: 2000,
             partial_bytes: 1000,
@@ -210,6 +210,7 @@ mod tests {
         let (open, partial) = (row("open"), row("partly occluded"));
         assert_eq!(open.bytes.unwrap() + partial.bytes.unwrap(), row("visible").bytes.unwrap());
         assert_eq!(open.texels.unwrap() + partial.texels.unwrap(), row("visible").texels.unwrap());
+        assert_eq!([row("of it background").samples, row("of it carried").samples], [Some(5), Some(3)]);
         assert_eq!(row("dense form").bytes, Some(40 * 384));
         assert_eq!(modelled.bytes_a_sample(), 75.0);
         assert_eq!(Modelled::default().bytes_a_sample(), 0.0);

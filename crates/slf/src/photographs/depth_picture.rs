@@ -291,7 +291,8 @@ mod tests {
     #[test]
     fn holes_are_edges_and_bays_are_not() {
         // A ring with a hole, and a bay that opens to the border.
-        let rows = ["........", ".#####..", ".#...#..", ".#.#.#..", ".#...#..", ".#####..", ".#......", "........"];
+        let rows =
+            ["........", ".#####..", ".#...#..", ".#.#.#..", ".#...#..", ".#####..", ".#......", "........"];
         let inverse: Vec<f32> =
             rows.iter().flat_map(|row| row.bytes().map(|b| if b == b'#' { 0.5 } else { 0.0 })).collect();
         let mut picture = DepthPicture { width: 8, height: 8, inverse, from_edge: vec![3; 64] };

@@ -1,0 +1,213 @@
+//! The photographs of a capture in a row: a click looks through one, a second one with Shift makes a path to it.
+
+use crate::window::{Action, controls};
+use egui::{
+    Color32, ColorImage, CornerRadius, Rect, ScrollArea, Sense, Slider, Stroke, TextureHandle, Ui, pos2, vec2,
+};
+use session::{CameraEdit, Command, Document, Session, Thumbnails, camera_between};
+use std::collections::HashMap;
+
+/// Room beneath a picture for its name.
+const NAME_HEIGHT: f32 = 16.0;
+/// Pictures are not drawn smaller.
+const LEAST_HEIGHT: f32 = 40.0;
+/// Textures that are kept; those not looked at for longest go first.
+const KEPT: usize = 400;
+
+/// The strip's state between frames.
+#[derive(Default)]
+pub struct PhotographStrip {
+    thumbnails: Option<Thumbnails>,
+    textures: HashMap<usize, TextureHandle>,
+    /// The path between two photographs: their numbers, and where on it the camera stands.
+    path: Option<Path>,
+    /// Whether the picture that the camera looks through was brought into view.
+    shown: Option<usize>,
+}
+
+struct Path {
+    from: usize,
+    to: usize,
+    share: f64,
+}
+
+impl PhotographStrip {
+    /// Draws the photographs, and the way between two of them.
+    pub fn ui(&mut self, ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+        let Some(document) = session.document() else { return };
+        let scene = &document.stage.scene;
+        let count = scene.views.len() + scene.left_out.len();
+        if count == 0 {
+            ui.weak("This is no capture: it has no photographs (File, Open a capture…).");
+            return;
+        }
+        if !self.thumbnails.as_ref().is_some_and(|known| known.is_of(scene)) {
+            let context = ui.ctx().clone();
+            let waker = std::sync::Arc::new(move || context.request_repaint());
+            // The same photographs in another world keep their pictures only if they are read again.
+            *self = Self { thumbnails: Some(Thumbnails::of(scene.clone(), waker)), ..Self::default() };
+        }
+        self.path_ui(ui, document, actions);
+        let height = (ui.available_height() - NAME_HEIGHT - 14.0).max(LEAST_HEIGHT);
+        // A wheel turns the only way there is.
+        ui.style_mut().always_scroll_the_only_direction = true;
+        ScrollArea::horizontal().auto_shrink(false).show(ui, |ui| {
+            ui.horizontal(|ui| {
+                for number in 0..count {
+                    self.picture_ui(ui, document, number, height, actions);
+                }
+            });
+        });
+    }
+
+    /// One photograph; only what is in sight is read.
+    fn picture_ui(
+        &mut self,
+        ui: &mut Ui,
+        document: &Document,
+        number: usize,
+        height: f32,
+        actions: &mut Vec<Action>,
+    ) {
+        let scene = &document.stage.scene;
+        let Some(view) = scene.views.iter().chain(&scene.left_out).nth(number) else { return };
+        let [columns, rows] = view.lens.size_px().map(|side| side as f32);
+        let size = vec2(height * columns / rows, height + NAME_HEIGHT);
+        let (rect, response) = ui.allocate_exact_size(size, Sense::click());
+        controls::named(&response, &view.name);
+        let is_current = document.photograph().is_some_and(|current| current.name == view.name);
+        if is_current && self.shown.replace(number) != Some(number) && !ui.is_rect_visible(rect) {
+            response.scroll_to_me(Some(egui::Align::Center));
+        }
+        if !ui.is_rect_visible(rect) {
+            return;
+        }
+        let picture = rect.with_max_y(rect.bottom() - NAME_HEIGHT);
+        let is_left_out = number >= scene.views.len();
+        let why_not = self.paint(ui, picture, number, is_left_out);
+        let is_end = self.path.as_ref().is_some_and(|path| [path.from, path.to].contains(&number));
+        let visuals = ui.visuals();
+        if is_current || is_end || response.hovered() {
+            let color = if is_current { visuals.selection.stroke.color } else { visuals.weak_text_color() };
+            ui.painter().rect_stroke(
+                picture,
+                CornerRadius::same(2),
+                Stroke::new(2.0, color),
+                egui::StrokeKind::Inside,
+            );
+        }
+        let color = if is_current { visuals.strong_text_color() } else { visuals.text_color() };
+        let name = view.name.rsplit('/').next().unwrap_or(&view.name);
+        let galley = ui.painter().layout_no_wrap(name.into(), egui::FontId::proportional(11.0), color);
+        let below = pos2((rect.center().x - galley.size().x / 2.0).max(rect.left()), picture.bottom() + 1.0);
+        ui.painter().with_clip_rect(rect.intersect(ui.clip_rect())).galley(below, galley, color);
+        let left_out = if is_left_out { "\nLeft out: its light is not used." } else { "" };
+        let tip = why_not.unwrap_or_else(|| {
+            format!(
+                "{}, {columns} × {rows} px{left_out}\nClick to look through it; Shift and click for the way to it from where the camera is.",
+                view.name
+            )
+        });
+        let response = response.on_hover_text(tip);
+        if response.clicked() {
+            let from = self.current(document);
+            match from.filter(|&from| from != number && ui.input(|input| input.modifiers.shift)) {
+                Some(from) => self.path = Some(Path { from, to: number, share: 0.0 }),
+                None => {
+                    self.path = None;
+                    look_through(document, number, actions);
+                }
+            }
+        }
+    }
+
+    /// The photograph that the camera looks through, or that its path began at.
+    fn current(&self, document: &Document) -> Option<usize> {
+        let scene = &document.stage.scene;
+        let name = document.photograph().map(|view| &view.name);
+        let mut views = scene.views.iter().chain(&scene.left_out);
+        let current = name.and_then(|name| views.position(|view| view.name == *name));
+        current.or(self.path.as_ref().map(|path| path.from))
+    }
+
+    /// Paints a photograph, if it was read. Returns why it cannot be.
+    fn paint(&mut self, ui: &Ui, rect: Rect, number: usize, is_left_out: bool) -> Option<String> {
+        let painter = ui.painter();
+        if !self.textures.contains_key(&number) {
+            match self.thumbnails.as_ref().and_then(|thumbnails| thumbnails.get(number)) {
+                Some(Ok(small)) => {
+                    if self.textures.len() >= KEPT {
+                        self.textures.clear();
+                    }
+                    let image = ColorImage::from_rgba_unmultiplied(small.size, small.pixels.as_flattened());
+                    let name = format!("photograph {number}");
+                    self.textures
+                        .insert(number, ui.ctx().load_texture(name, image, egui::TextureOptions::LINEAR));
+                }
+                Some(Err(why)) => {
+                    painter.rect_filled(rect, 2.0, ui.visuals().extreme_bg_color);
+                    painter.text(
+                        rect.center(),
+                        egui::Align2::CENTER_CENTER,
+                        "not read",
+                        egui::FontId::proportional(11.0),
+                        ui.visuals().error_fg_color,
+                    );
+                    return Some(why.to_string());
+                }
+                None => {}
+            }
+        }
+        match self.textures.get(&number) {
+            Some(texture) => {
+                let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
+                let tint = if is_left_out { Color32::from_white_alpha(110) } else { Color32::WHITE };
+                painter.image(texture.id(), rect, whole, tint);
+            }
+            None => drop(painter.rect_filled(rect, 2.0, ui.visuals().extreme_bg_color)),
+        }
+        None
+    }
+
+    /// The way between two photographs.
+    fn path_ui(&mut self, ui: &mut Ui, document: &Document, actions: &mut Vec<Action>) {
+        let Some(path) = &mut self.path else { return };
+        let scene = &document.stage.scene;
+        let name = |number: usize| {
+            scene.views.iter().chain(&scene.left_out).nth(number).map_or("", |view| view.name.as_str())
+        };
+        let mut is_over = false;
+        ui.horizontal(|ui| {
+            ui.label(name(path.from));
+            ui.spacing_mut().slider_width = 240.0;
+            let slider = Slider::new(&mut path.share, 0.0..=1.0).show_value(false);
+            let response =
+                ui.add(slider).on_hover_text("The camera on its way from one photograph to the other.");
+            controls::named(&response, "Way between two photographs");
+            ui.label(name(path.to));
+            if response.changed()
+                && let (Some(from), Some(to)) = (camera(document, path.from), camera(document, path.to))
+            {
+                let camera = camera_between(&from, &to, path.share);
+                actions.push(Command::Camera(CameraEdit::Whole(camera)).into());
+            }
+            controls::finish(&response, actions);
+            is_over =
+                ui.button("Done").on_hover_text("Ends the way; the camera stays where it is.").clicked();
+        });
+        if is_over {
+            self.path = None;
+        }
+    }
+}
+
+fn camera(document: &Document, number: usize) -> Option<lens::Camera> {
+    document.photograph_cameras().nth(number)
+}
+
+fn look_through(document: &Document, number: usize, actions: &mut Vec<Action>) {
+    if let Some(camera) = camera(document, number) {
+        actions.push(Command::Camera(CameraEdit::Whole(camera)).into());
+        actions.push(Command::FinishEdit.into());
+    }
+}

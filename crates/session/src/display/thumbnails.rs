@@ -1,0 +1,111 @@
+//! Photographs of a capture as a strip shows them: small, and read one after the other when they are looked at.
+
+use super::tone::{ScreenPixel, Tone, to_screen};
+use crate::error::SessionError;
+use crate::jobs::{Urgency, Waker, among_others, guarded};
+use lens::{Exposure, Picture};
+use scene::{LoadOptions, Scene, View};
+use std::collections::HashMap;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
+
+/// The longer side of a small picture, px, at most.
+const SIDE_PX: u32 = 192;
+
+/// Small pictures of a scene's photographs: first those that its light is made from, then those left out.
+pub struct Thumbnails {
+    shared: Arc<Shared>,
+    waker: Waker,
+}
+
+/// A photograph, small, as the screen has it.
+#[derive(Debug, PartialEq)]
+pub struct Thumbnail {
+    /// Columns and rows.
+    pub size: [usize; 2],
+    /// Row by row.
+    pub pixels: Vec<ScreenPixel>,
+}
+
+/// A small picture, or why there is none.
+pub type ThumbnailResult = Result<Arc<Thumbnail>, Arc<str>>;
+
+struct Shared {
+    scene: Arc<Scene>,
+    asked: Mutex<Asked>,
+}
+
+#[derive(Default)]
+struct Asked {
+    /// The latest last: it is read first.
+    wanted: Vec<usize>,
+    there: HashMap<usize, ThumbnailResult>,
+    is_reading: bool,
+}
+
+impl Thumbnails {
+    /// None is read yet. `waker` is called when one is there.
+    pub fn of(scene: Arc<Scene>, waker: Waker) -> Self {
+        Self { shared: Arc::new(Shared { scene, asked: Mutex::default() }), waker }
+    }
+
+    /// Whether they are of this scene.
+    pub fn is_of(&self, scene: &Arc<Scene>) -> bool {
+        Arc::ptr_eq(&self.shared.scene, scene)
+    }
+
+    /// The photograph of this number, if it was read; else it is read next.
+    pub fn get(&self, number: usize) -> Option<ThumbnailResult> {
+        let mut asked = self.shared.asked();
+        if let Some(there) = asked.there.get(&number) {
+            return Some(there.clone());
+        }
+        asked.wanted.retain(|&wanted| wanted != number);
+        asked.wanted.push(number);
+        if !std::mem::replace(&mut asked.is_reading, true) {
+            let (shared, waker) = (Arc::downgrade(&self.shared), self.waker.clone());
+            if std::thread::Builder::new()
+                .name("photographs".into())
+                .spawn(move || read(&shared, &waker))
+                .is_err()
+            {
+                asked.is_reading = false;
+            }
+        }
+        None
+    }
+}
+
+impl Shared {
+    fn asked(&self) -> MutexGuard<'_, Asked> {
+        self.asked.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// Reads what is wanted until nothing is, or nobody is there who wanted it.
+fn read(shared: &Weak<Shared>, waker: &Waker) {
+    while let Some(shared) = shared.upgrade() {
+        let next = {
+            let mut asked = shared.asked();
+            let next = asked.wanted.pop();
+            asked.is_reading = next.is_some();
+            next
+        };
+        let Some(number) = next else { return };
+        let mut views = shared.scene.views.iter().chain(&shared.scene.left_out);
+        let Some(view) = views.nth(number) else { continue };
+        let result = guarded("reading a photograph", || among_others(Urgency::Later, || thumbnail(view)));
+        shared.asked().there.insert(number, result.map(Arc::new).map_err(|error| error.to_string().into()));
+        waker();
+    }
+}
+
+fn thumbnail(view: &View) -> Result<Thumbnail, SessionError> {
+    let photograph = view.photograph(&LoadOptions::default());
+    let photograph = photograph.map_err(|error| SessionError::BadInput(error.to_string()))?;
+    let by = photograph.width.max(photograph.height).div_ceil(SIDE_PX);
+    let small = photograph.reduced(by);
+    let coverage = vec![1.0; small.pixels.len()];
+    let picture = Picture { width: small.width, height: small.height, radiance: small.pixels, coverage };
+    let pixels = to_screen(&picture, Tone { exposure: Exposure::Conserve, ..Tone::default() });
+    Ok(Thumbnail { size: [small.width as usize, small.height as usize], pixels })
+}
