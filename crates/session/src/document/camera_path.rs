@@ -72,11 +72,19 @@ fn pivot([a, b]: [DVec3; 2], [f, g]: [DVec3; 2]) -> Option<DVec3> {
 mod tests {
     use super::*;
 
+    fn pose(position: DVec3, at: DVec3) -> DMat4 {
+        let back = (position - at).normalize();
+        let right = DVec3::Y.cross(back).normalize();
+        DMat4::from_cols(
+            right.extend(0.0),
+            back.cross(right).extend(0.0),
+            back.extend(0.0),
+            position.extend(1.0),
+        )
+    }
+
     fn looking(position: DVec3, at: DVec3) -> Camera {
-        Camera {
-            camera_to_world: glam::DMat4::look_at_rh(position, at, DVec3::Y).inverse(),
-            ..Camera::default()
-        }
+        Camera { camera_to_world: pose(position, at), ..Camera::default() }
     }
 
     fn position(camera: &Camera) -> DVec3 {

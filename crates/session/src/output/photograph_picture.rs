@@ -71,6 +71,9 @@ pub(crate) fn photograph_picture(
     Ok((picture, vec![layer]))
 }
 
+/// Photographs reach their white here: JPEG and demosaicking leave pixels that were at the sensor's limit a little below 1.
+const AT_LIMIT: f32 = 0.985;
+
 /// A photograph, and the camera that it is shown by.
 struct Place<'a> {
     camera: &'a Camera,
@@ -88,19 +91,23 @@ impl Place<'_> {
         self.view.lens.is_in_picture(at).then(|| (at, self.shown.at(at / self.reduction)))
     }
 
-    /// Gains with which it shows least squares' best of the light where that is photographed; vignetting as of another photograph of its
-    /// lens.
+    /// Gains with which it shows least squares' best of the light where that is photographed and its sensor was not at its limit;
+    /// vignetting as of another photograph of its lens. A channel that was at its limit everywhere has the gain of the others.
     fn fitted(&self, tracer: &Tracer, light: &PhotographLight, seen: &[f32]) -> Exposure {
         let views = &tracer.scene().views;
         let of_lens = views.iter().position(|other| other.lens == self.view.lens);
         let vignetting_stops = of_lens.map_or([0.0; 2], |index| light.exposures()[index].vignetting_stops);
         let flat = Exposure { vignetting_stops, ..Exposure::default() };
+        // What has values above white has no limit there.
+        let brightest = self.shown.pixels.iter().flatten().copied().fold(0.0, f32::max);
+        let limit = if brightest <= 1.0 { AT_LIMIT } else { f32::INFINITY };
         let products = |number: u32| {
             let there = seen[number as usize] >= SEEN;
             let (at, shown) = self.at(number).filter(|_| there)?;
             let ray = pixel_ray(self.camera, number);
             let hit = tracer.first_hit(&ray)?;
-            let shown = (shown * flat.to_radiance(self.view, at)).as_dvec3();
+            let is_told = DVec3::select(shown.cmplt(Vec3::splat(limit)), DVec3::ONE, DVec3::ZERO);
+            let shown = (shown * flat.to_radiance(self.view, at)).as_dvec3() * is_told;
             let light = light.toward(hit.point, ray.origin).as_dvec3();
             Some([shown * light, shown * shown])
         };
@@ -108,8 +115,10 @@ impl Place<'_> {
         let found: Vec<_> =
             (0..self.camera.width * self.camera.height).into_par_iter().filter_map(products).collect();
         let [both, square] = found.into_iter().fold([DVec3::ZERO; 2], |[a, b], [c, d]| [a + c, b + d]);
-        let gain = |both: f64, square: f64| if both > 0.0 { (square / both).log2() } else { 0.0 };
-        let gain_stops = std::array::from_fn(|channel| gain(both[channel], square[channel]));
-        Exposure { gain_stops, vignetting_stops }
+        let gain = |both: f64, square: f64| (both > 0.0 && square > 0.0).then(|| (square / both).log2());
+        let gains: [Option<f64>; 3] = std::array::from_fn(|channel| gain(both[channel], square[channel]));
+        let told = gains.iter().flatten();
+        let mean = told.clone().sum::<f64>() / told.count().max(1) as f64;
+        Exposure { gain_stops: gains.map(|gain| gain.unwrap_or(mean)), vignetting_stops }
     }
 }

@@ -40,9 +40,10 @@ pub(crate) fn beyond(
                 samples.clear();
                 samples.extend((0..views.len()).filter(|&view| seen[view][cell] > 0).filter_map(|view| {
                     let pixel = views[view].project(views[view].position() + direction)?;
-                    let shown = pictures[view].at(pictures[view].place(pixel)).light;
-                    let light = shown * exposures[view].to_radiance(&views[view], pixel);
-                    Some(Sample { light, weight: f32::from(seen[view][cell]) / 255.0 })
+                    let shown = pictures[view].at(pictures[view].place(pixel));
+                    let light = shown.light * exposures[view].to_radiance(&views[view], pixel);
+                    let weight = f32::from(seen[view][cell]) / 255.0;
+                    Some(Sample { light, weight, clipped: shown.clipped.clamp(0.0, 1.0) })
                 }));
                 Cell::of(samples, belonging)
             },
@@ -87,8 +88,9 @@ impl Cell {
             let [a, b] = [sample.light, light].map(|light| roots(light.max(Vec3::ZERO)));
             a.distance(b) <= (AGREED * a.length().max(b.length())).max(AGREED_IN_THE_DARK)
         };
-        let weight =
-            |samples: &mut dyn Iterator<Item = &Sample>| samples.map(|sample| sample.weight).sum::<f32>();
+        let weight = |samples: &mut dyn Iterator<Item = &Sample>| {
+            samples.map(|sample| sample.counts(light)).sum::<f32>()
+        };
         let all = weight(&mut samples.iter());
         let agreeing = weight(&mut samples.iter().filter(agrees));
         let agreement = if all > 0.0 { agreeing / all } else { 0.0 };

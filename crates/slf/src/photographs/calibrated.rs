@@ -19,7 +19,8 @@ impl Calibrated<'_> {
     pub fn samples_into(&self, texel: usize, samples: &mut Vec<Sample>) {
         samples.clear();
         samples.extend(self.sightings.of_texel(texel).iter().map(|sighting| {
-            Sample::of_sighting(self.sightings.light(sighting), sighting.weight(), sighting.clipped())
+            let (light, weight) = (self.sightings.light(sighting), sighting.weight());
+            Sample { light, weight, clipped: sighting.clipped() }
         }));
     }
 

@@ -13,15 +13,37 @@ pub(crate) struct Sample {
     pub light: Vec3,
     /// > 0.
     pub weight: f32,
+    /// The share of its pixels that were at the sensor's limit, in [0, 1].
+    pub clipped: f32,
 }
 
-/// What was at the sensor's limit says that it was at least so bright: it counts this much.
+/// What was at the sensor's limit says that it was at least so bright. Where it is told to be that bright already, it counts this much.
 const CLIPPED_COUNTS: f32 = 0.05;
+/// From told brighter by this share on, which is what noise leaves open.
+const CLIPPED_SURE: f32 = 0.05;
 
 impl Sample {
-    /// What a photograph shows that sees the place so well, a share of its pixels there `clipped`.
-    pub fn of_sighting(light: Vec3, weight: f32, clipped: f32) -> Self {
-        Self { light, weight: weight * (1.0 - (1.0 - CLIPPED_COUNTS) * clipped) }
+    /// The same as another light with it changes it: how well it is seen stays.
+    pub fn with_light(self, light: Vec3) -> Self {
+        Self { light, ..self }
+    }
+
+    /// How it counts whatever it is compared with.
+    pub fn counts_at_least(&self) -> f32 {
+        self.weight * (1.0 - (1.0 - CLIPPED_COUNTS) * self.clipped)
+    }
+
+    /// How it counts against what is told of the place: a limit that is kept says little, one that is not says all that a sample can.
+    pub fn counts(&self, told: Vec3) -> f32 {
+        if self.clipped == 0.0 {
+            return self.weight;
+        }
+        // The brightest channel is the one that was at its limit.
+        let channel = self.light.max_position();
+        let over = told[channel] - self.light[channel];
+        let is_kept =
+            (over / (CLIPPED_SURE * self.light[channel].abs()).max(f32::MIN_POSITIVE)).clamp(0.0, 1.0);
+        self.weight * (1.0 - (1.0 - CLIPPED_COUNTS) * self.clipped * is_kept)
     }
 }
 
@@ -38,20 +60,23 @@ const ROUNDS: usize = 6;
 pub(crate) fn robust_mean(samples: &[Sample], belonging: &mut Vec<f32>) -> Vec3 {
     belonging.clear();
     belonging.resize(samples.len(), 1.0);
-    let Some(mut mean) = weighted_mean(samples, belonging) else { return Vec3::ZERO };
+    let all = samples.iter().map(|sample| sample.weight);
+    let Some(mut mean) = weighted_mean(samples, all) else { return Vec3::ZERO };
     if samples.len() < 3 {
         return mean;
     }
     mean = median(samples);
     let mut differences = vec![0.0f32; samples.len()];
-    let mut sorted = Vec::with_capacity(samples.len());
+    let (mut sorted, mut counts) = (Vec::with_capacity(samples.len()), Vec::with_capacity(samples.len()));
     for _ in 0..ROUNDS {
         let root = roots(mean);
         for (difference, sample) in differences.iter_mut().zip(samples) {
             *difference = roots(sample.light).distance(root);
         }
+        counts.clear();
+        counts.extend(samples.iter().map(|sample| sample.counts(mean)));
         sorted.clear();
-        sorted.extend(differences.iter().zip(samples).map(|(&d, sample)| (d, sample.weight)));
+        sorted.extend(differences.iter().copied().zip(counts.iter().copied()));
         // Three channels: the median length of normal vectors is 1.54 standard deviations of one.
         let scale = (weighted_median(&mut sorted) / 1.54).max(LEAST_SCALE) * 3f32.sqrt();
         for (belongs, &difference) in belonging.iter_mut().zip(&differences) {
@@ -62,7 +87,7 @@ pub(crate) fn robust_mean(samples: &[Sample], belonging: &mut Vec<f32>) -> Vec3 
                 (HUBER / off.max(HUBER)).min(1.0)
             };
         }
-        match weighted_mean(samples, belonging) {
+        match weighted_mean(samples, counts.iter().zip(&*belonging).map(|(count, belongs)| count * belongs)) {
             Some(next) => mean = next,
             None => return mean,
         }
@@ -75,13 +100,13 @@ pub(crate) fn roots(light: Vec3) -> Vec3 {
     Vec3::from_array(light.to_array().map(|v| v.abs().sqrt().copysign(v)))
 }
 
-fn weighted_mean(samples: &[Sample], belonging: &[f32]) -> Option<Vec3> {
-    let (mut sum, mut weights) = (Vec3::ZERO, 0.0);
-    for (sample, belongs) in samples.iter().zip(belonging) {
-        sum += sample.light * (sample.weight * belongs);
-        weights += sample.weight * belongs;
+fn weighted_mean(samples: &[Sample], weights: impl Iterator<Item = f32>) -> Option<Vec3> {
+    let (mut sum, mut all) = (Vec3::ZERO, 0.0);
+    for (sample, weight) in samples.iter().zip(weights) {
+        sum += sample.light * weight;
+        all += weight;
     }
-    (weights > 0.0).then(|| sum / weights)
+    (all > 0.0).then(|| sum / all)
 }
 
 /// By channel.
@@ -112,7 +137,7 @@ mod tests {
     use super::*;
 
     fn samples(lights: &[f32]) -> Vec<Sample> {
-        lights.iter().map(|&v| Sample { light: Vec3::splat(v), weight: 1.0 }).collect()
+        lights.iter().map(|&v| Sample { light: Vec3::splat(v), weight: 1.0, clipped: 0.0 }).collect()
     }
 
     #[test]
@@ -132,6 +157,23 @@ mod tests {
         let mean = robust_mean(&samples(&[0.2, 0.2, 0.8]), &mut belonging).x;
         assert!(belonging[2] > 0.0 && (0.2..0.3).contains(&mean), "{mean} {belonging:?}");
         assert_eq!(robust_mean(&[], &mut belonging), Vec3::ZERO);
+    }
+
+    #[test]
+    fn a_limit_raises_and_does_not_hold_down() {
+        let with = |limit: f32, count: usize| {
+            let mut samples = samples(&[0.5, 0.52, 0.48, 0.51, 0.49]);
+            samples.extend((0..count).map(|_| Sample {
+                light: Vec3::splat(limit),
+                weight: 1.0,
+                clipped: 1.0,
+            }));
+            robust_mean(&samples, &mut Vec::new()).x
+        };
+        // Below what is told: it was brighter than the limit in each of them.
+        assert!((with(0.4, 4) - 0.5).abs() < 0.02, "{}", with(0.4, 4));
+        // Above: it is at least that bright toward most.
+        assert!(with(0.7, 8) > 0.65, "{}", with(0.7, 8));
     }
 
     #[test]

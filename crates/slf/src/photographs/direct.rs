@@ -62,7 +62,7 @@ impl DirectPhotographs {
             let shown = picture.at(picture.place(pixel));
             let light = shown.light * self.light.exposures[number].to_radiance(view, pixel);
             let weight = (weight * self.light.belonging[number].at(pixel)).max(LEAST_WEIGHT);
-            Some((number, Sample::of_sighting(light, weight, shown.clipped)))
+            Some((number, Sample { light, weight, clipped: shown.clipped.clamp(0.0, 1.0) }))
         };
         seen.into_iter().filter_map(sample).collect()
     }
@@ -96,11 +96,12 @@ impl Radiance for DirectPhotographs {
             work.samples.clear();
             work.samples.extend(samples.iter().zip(&directions).map(|((_, sample), direction)| {
                 let light = sample.light - mirrored.sent(normal, *direction) * strength;
-                Sample { light, weight: sample.weight }
+                sample.with_light(light)
             }));
             robust_mean(&work.samples, &mut Vec::new())
         };
-        let mut constant = mean(0.0);
+        let plain = mean(0.0);
+        let mut constant = plain;
         if share > 0.0 && strength > 0.0 {
             constant = constant.lerp(mean(strength).max(Vec3::ZERO), share);
         }
@@ -108,7 +109,7 @@ impl Radiance for DirectPhotographs {
         work.known.clear();
         for (place, ((_, sample), &direction)) in samples.iter().zip(&directions).enumerate() {
             let residual = sample.light - constant - mirrored.sent(normal, direction) * told;
-            work.known.push(Known { place, direction, residual, weight: sample.weight });
+            work.known.push(Known { place, direction, residual, weight: sample.counts(plain) });
         }
         let mut own = light.constant(point).lerp(constant, (evidence / SEEN).min(1.0));
         let belief = believed(&residuals.believed.belief);

@@ -217,7 +217,7 @@ impl Asked {
         samples.clear();
         samples.extend(self.seen.iter().map(|seen| {
             let light = seen.sample.light - seen.mirrored(surroundings);
-            Sample { light, weight: seen.sample.weight }
+            seen.sample.with_light(light)
         }));
         robust_mean(samples, belonging).max(Vec3::ZERO)
     }
@@ -227,14 +227,15 @@ impl Asked {
         let told: Vec<Vec3> = self.seen.iter().map(|seen| seen.mirrored(surroundings)).collect();
         let (mut light, mut mirrored, mut weights) = (Vec3::ZERO, Vec3::ZERO, 0.0);
         for (seen, told) in self.seen.iter().zip(&told) {
-            light += seen.sample.light * seen.sample.weight;
-            mirrored += *told * seen.sample.weight;
-            weights += seen.sample.weight;
+            let weight = seen.sample.counts_at_least();
+            light += seen.sample.light * weight;
+            mirrored += *told * weight;
+            weights += weight;
         }
         let (light, mirrored) = (light / weights, mirrored / weights);
         self.seen.iter().zip(&told).fold((0.0, 0.0), |(product, square), (seen, told)| {
             let told = *told - mirrored;
-            let weight = seen.sample.weight;
+            let weight = seen.sample.counts_at_least();
             (product + told.dot(seen.sample.light - light) * weight, square + told.length_squared() * weight)
         })
     }
@@ -265,7 +266,7 @@ fn looked_up(sphere: &Sphere, asked: &[Asked], before: &[Vec3]) -> Vec<Vec3> {
                         continue;
                     }
                     let off = (left - known).length() / (SCALE * (0.05 + point.constant.length()).sqrt());
-                    let trust = seen.sample.weight * seen.share / (1.0 + off * off);
+                    let trust = seen.sample.counts_at_least() * seen.share / (1.0 + off * off);
                     for (cell, weight) in seen.around {
                         let cell = cell as usize;
                         let sum = &mut sums[cell];

@@ -155,7 +155,7 @@ fn said(radiance: &Calibrated<'_>, texel: usize, work: &mut Work) -> Vec<Said> {
     for (place, (sample, sighting)) in work.samples.iter().zip(sightings).enumerate() {
         let direction = toward(from, radiance.eye(sighting));
         let residual = sample.light - constant;
-        work.known.push(Known { place, direction, residual, weight: sample.weight });
+        work.known.push(Known { place, direction, residual, weight: sample.counts(constant) });
     }
     work.keep_best();
     work.leave_out(&KERNEL);

@@ -160,7 +160,7 @@ impl Ways<'_> {
             let direction = toward(from, self.radiance.eye(sighting));
             let mirrored = self.mirrored.at(texel, texels.shading_normal(texel), direction) * share;
             let residual = sample.light - constant - mirrored;
-            known.push(Known { place, direction, residual, weight: sample.weight });
+            known.push(Known { place, direction, residual, weight: sample.counts(self.plain[texel]) });
         }
         work.keep_best();
     }
