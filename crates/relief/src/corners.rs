@@ -1,0 +1,118 @@
+//! Corners of cells, shared by the cells that hang together around them.
+//!
+//! Around a corner of the grid lie up to four cells a layer. Those that hang together, within a layer or from one to the other, share one
+//! point there; its disparity is the mean of what they lead to expect, each by its own slope.
+
+use crate::cells::{Cells, LAYERS, Side};
+use crate::hidden::number;
+
+/// The cells around a corner of the grid: upper left, upper right, lower left, lower right; first those of the first layer.
+const AROUND: usize = 4 * LAYERS;
+
+/// A corner as one of its cells has it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Corner {
+    /// Column and row in the grid of corners.
+    pub at: [usize; 2],
+    /// Which of the points there: the least of the cells that share it.
+    pub point: u8,
+    pub disparity: f32,
+}
+
+/// What a corner of the grid is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Joint {
+    /// All four cells of the first layer share it, with this disparity.
+    Whole(f32),
+    /// Some are missing or do not.
+    Cut,
+}
+
+impl Cells {
+    /// The corner of a cell: `right` and `below` say which.
+    pub(crate) fn corner(&self, layer: usize, cell: usize, [right, below]: [bool; 2]) -> Corner {
+        let (x, y) = (cell % self.grid.width, cell / self.grid.width);
+        let at = [x + usize::from(right), y + usize::from(below)];
+        let around = self.around(at);
+        // Seen from the corner, the cell lies on the other side.
+        let quadrant = usize::from(!right) + 2 * usize::from(!below);
+        let point = self.shared(&around)[4 * layer + quadrant];
+        Corner { at, point, disparity: self.disparity_at(&around, &self.shared(&around), point) }
+    }
+
+    /// A corner that all cells of the first layer around it share.
+    pub(crate) fn whole_corner(&self, at: [usize; 2]) -> Corner {
+        let around = self.around(at);
+        let shared = self.shared(&around);
+        Corner { at, point: shared[0], disparity: self.disparity_at(&around, &shared, shared[0]) }
+    }
+
+    /// What a corner of the grid is for the first layer.
+    pub(crate) fn joint(&self, at: [usize; 2]) -> Joint {
+        let around = self.around(at);
+        let is_whole = around[..4].iter().all(Option::is_some) && around[4..].iter().all(Option::is_none);
+        if !is_whole {
+            return Joint::Cut;
+        }
+        let shared = self.shared(&around);
+        match shared[..4].iter().all(|&point| point == shared[0]) {
+            true => Joint::Whole(self.disparity_at(&around, &shared, shared[0])),
+            false => Joint::Cut,
+        }
+    }
+
+    fn around(&self, [i, j]: [usize; 2]) -> [Option<usize>; AROUND] {
+        let mut around = [None; AROUND];
+        for (place, found) in around.iter_mut().enumerate() {
+            let (right, below) = (place % 2, place / 2 % 2);
+            let (Some(x), Some(y)) = ((i + right).checked_sub(1), (j + below).checked_sub(1)) else {
+                continue;
+            };
+            if x < self.grid.width && y < self.grid.height {
+                *found = Some(self.grid.at(x, y)).filter(|&cell| self.is_there(place / 4, cell));
+            }
+        }
+        around
+    }
+
+    /// For each cell around a corner, the least of those that it shares the corner with.
+    fn shared(&self, around: &[Option<usize>; AROUND]) -> [u8; AROUND] {
+        let mut shared: [u8; AROUND] = std::array::from_fn(|place| place as u8);
+        let mut join = |a: usize, b: usize| {
+            let (low, high) = (shared[a].min(shared[b]), shared[a].max(shared[b]));
+            shared.iter_mut().filter(|point| **point == high).for_each(|point| *point = low);
+        };
+        for (place, &cell) in around.iter().enumerate() {
+            let Some(cell) = cell else { continue };
+            let layer = place / 4;
+            let sides = [
+                if place % 2 == 0 { (Side::Right, place + 1) } else { (Side::Left, place - 1) },
+                if place / 2 % 2 == 0 { (Side::Below, place + 2) } else { (Side::Above, place - 2) },
+            ];
+            for (side, beside) in sides {
+                if around[beside].is_some() && self.links[layer].has(cell, side) {
+                    join(place, beside);
+                }
+                if layer == 1 && around[beside - 4].is_some() && self.onward[cell][number(side)] {
+                    join(place, beside - 4);
+                }
+            }
+        }
+        shared
+    }
+
+    fn disparity_at(&self, around: &[Option<usize>; AROUND], shared: &[u8; AROUND], point: u8) -> f32 {
+        let (mut sum, mut count) = (0.0, 0.0f32);
+        for (place, &cell) in around.iter().enumerate() {
+            let Some(cell) = cell.filter(|_| shared[place] == point) else { continue };
+            let layer = place / 4;
+            let [across, down] = self.slope(layer, cell);
+            // The corner lies right of the cells on the left.
+            let right = if place % 2 == 0 { 0.5 } else { -0.5 };
+            let below = if place / 2 % 2 == 0 { 0.5 } else { -0.5 };
+            sum += self.disparity[layer][cell] + across * right + down * below;
+            count += 1.0;
+        }
+        sum / count.max(1.0)
+    }
+}

@@ -1,0 +1,28 @@
+//! A picture and its disparities as a surface.
+//!
+//! All is thought in the picture's own space: columns, rows, and disparity, in which a plane of the world is linear and which no scale or
+//! offset of the disparities changes. Lengths are told as *parallax*: by how many pixels a disparity moves what the picture shows between
+//! the middle of the aperture and its rim.
+//!
+//! ```text
+//! disparities ─▶ jumps ─▶ hidden ─▶ corners ─▶ triangulation ─▶ Relief
+//!  (a pixel each)  │        │                                     ▲
+//!                  │        └──────▶ texture (from other views, or ┘
+//!                  │                          invented)
+//!                  └ cut where depth jumps, pixels between put on one side
+//! ```
+//!
+//! A pixel is a cell between four corners; cells beside each other share corners unless depth jumps between them. Behind what stands before
+//! something, a second layer of cells goes on as far as the aperture may look. The first layer's triangles are joined while the surface stays
+//! within a tolerance (`triangulation`). Every layer has the whole picture's place in the texture, one below the other: the texture is an
+//! atlas, and the picture is its upper part.
+
+mod cells;
+mod corners;
+mod hidden;
+mod jumps;
+mod relief;
+mod texture;
+mod triangulation;
+
+pub use relief::{OtherView, Relief, ReliefError, ReliefOptions, ReliefVertex, TEXTURE_LAYERS};

@@ -1,0 +1,176 @@
+//! The surface itself.
+
+use crate::cells::{Cells, Grid};
+use crate::corners::Corner;
+use crate::hidden::{Hidden, hidden};
+use crate::jumps;
+use crate::texture::{Behind, NotFound, behind};
+use crate::triangulation::Triangulation;
+use glam::Vec2;
+use progress::{Cancelled, Progress, Stage};
+use std::collections::HashMap;
+
+/// How a surface is made.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ReliefOptions {
+    /// The radius of the aperture that the surface is for, in steps of the views: what a disparity times it is a parallax, px. > 0.
+    pub reach: f32,
+    /// How far the surface may be off, as a parallax, px.
+    pub tolerance_px: f32,
+    /// Steps of a larger parallax between pixels are where depth jumps, px.
+    pub jump_px: f32,
+}
+
+impl Default for ReliefOptions {
+    /// For one step either way.
+    fn default() -> Self {
+        Self { reach: 1.0, tolerance_px: 0.1, jump_px: 1.0 }
+    }
+}
+
+/// A view beside the one that the surface is of.
+pub struct OtherView<'a, E> {
+    /// How many steps to the right and downward it was taken from: a pixel (x, y) of disparity d is at (x − d·dx, y − d·dy) in it.
+    pub offset: [f32; 2],
+    /// Reads it: linear RGB, as many pixels.
+    pub read: Box<dyn Fn() -> Result<Vec<[f32; 3]>, E> + Sync + 'a>,
+}
+
+/// A point of the surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ReliefVertex {
+    /// Where the picture shows it, pixels from its upper left corner.
+    pub place: Vec2,
+    /// Its disparity.
+    pub disparity: f32,
+    /// Which layer of the texture it has its colour from: 0 the picture, 1 what is behind.
+    pub layer: u8,
+}
+
+/// A surface in a picture's space, and its texture.
+#[derive(Clone, Debug)]
+pub struct Relief {
+    /// Columns and rows of the picture, and of each layer of the texture.
+    pub size: [usize; 2],
+    /// Points; each is of one layer.
+    pub vertices: Vec<ReliefVertex>,
+    /// Corners, counter-clockwise as the picture shows them.
+    pub triangles: Vec<[u32; 3]>,
+    /// Linear RGB of both layers, row by row, the picture first.
+    pub texture: Vec<[f32; 3]>,
+    /// By texel of both layers, whether some picture shows it; what is not was invented.
+    pub is_seen: Vec<bool>,
+}
+
+/// Layers of the texture.
+pub const TEXTURE_LAYERS: usize = crate::cells::LAYERS;
+
+/// Why there is no surface.
+#[derive(Debug)]
+pub enum ReliefError<E> {
+    /// It was cancelled.
+    Cancelled(Cancelled),
+    /// A view cannot be read.
+    View(E),
+}
+
+impl Relief {
+    /// Makes the surface of a picture (linear RGB) by its disparities, larger ones nearer; pixels whose disparity is no number have none.
+    /// Deterministic.
+    ///
+    /// # Errors
+    /// A view cannot be read, or `progress` says to stop.
+    ///
+    /// # Panics
+    /// If picture or disparities are not of the size.
+    pub fn of<E: Send>(
+        size: [usize; 2],
+        disparity: &[f32],
+        picture: &[[f32; 3]],
+        views: &[OtherView<'_, E>],
+        options: &ReliefOptions,
+        progress: &dyn Progress,
+    ) -> Result<Self, ReliefError<E>> {
+        let grid = Grid { width: size[0], height: size[1] };
+        assert!(disparity.len() == grid.count() && picture.len() == grid.count());
+        let jump = options.jump_px / options.reach;
+        let mut front = disparity.to_vec();
+        jumps::snap(grid, &mut front, picture, jump);
+        let links = jumps::links(grid, &front, jump);
+        progress.check().map_err(ReliefError::Cancelled)?;
+        let hidden = hidden(grid, &front, &links, options.reach, jump);
+        let stage = Stage::new(progress, 0.1, 0.8);
+        let Behind { colors, is_seen } = behind(grid, &front, picture, &hidden, views, jump, &stage)
+            .map_err(|error| match error {
+                NotFound::Cancelled(cancelled) => ReliefError::Cancelled(cancelled),
+                NotFound::View(error) => ReliefError::View(error),
+            })?;
+        progress.check().map_err(ReliefError::Cancelled)?;
+        let Hidden { disparity: back, links: back_links, onward, order } = hidden;
+        let cells = Cells { grid, disparity: [front, back], links: [links, back_links], onward };
+        let mut mesh = Mesh::default();
+        mesh.add_first(&cells, options.tolerance_px / options.reach);
+        mesh.add_second(&cells, &order);
+        progress.report(1.0);
+        Ok(Self {
+            size,
+            vertices: mesh.vertices,
+            triangles: mesh.triangles,
+            texture: [picture, &colors].concat(),
+            is_seen: [vec![true; grid.count()], is_seen].concat(),
+        })
+    }
+
+    /// How many of its triangles lie behind others.
+    pub fn hidden_triangles(&self) -> usize {
+        self.triangles.iter().filter(|corners| self.vertices[corners[0] as usize].layer > 0).count()
+    }
+}
+
+/// Triangles as they are found, and the points that they share.
+#[derive(Default)]
+struct Mesh {
+    vertices: Vec<ReliefVertex>,
+    triangles: Vec<[u32; 3]>,
+    known: HashMap<(u8, [usize; 2], u8), u32>,
+}
+
+impl Mesh {
+    fn vertex(&mut self, layer: u8, corner: Corner) -> u32 {
+        *self.known.entry((layer, corner.at, corner.point)).or_insert_with(|| {
+            let place = Vec2::new(corner.at[0] as f32, corner.at[1] as f32);
+            self.vertices.push(ReliefVertex { place, disparity: corner.disparity, layer });
+            self.vertices.len() as u32 - 1
+        })
+    }
+
+    fn add_first(&mut self, cells: &Cells, tolerance: f32) {
+        for triangle in Triangulation::of(cells).triangles(tolerance) {
+            let low = |axis: usize| triangle.corners.iter().map(|at| at[axis]).min().unwrap_or(0);
+            let (x, y) = (low(0), low(1));
+            let cell = cells.grid.at(x, y);
+            let high = |axis: usize| triangle.corners.iter().map(|at| at[axis]).max().unwrap_or(0);
+            let is_one_cell = high(0) - x == 1 && high(1) - y == 1;
+            if is_one_cell && !cells.is_there(0, cell) {
+                continue;
+            }
+            // Corners of what is larger than a cell are whole.
+            let corners = triangle.corners.map(|at| match is_one_cell {
+                true => cells.corner(0, cell, [at[0] > x, at[1] > y]),
+                false => cells.whole_corner(at),
+            });
+            let corners = corners.map(|corner| self.vertex(0, corner));
+            self.triangles.push(corners);
+        }
+    }
+
+    fn add_second(&mut self, cells: &Cells, order: &[usize]) {
+        for &cell in order {
+            let corner = |right, below| cells.corner(1, cell, [right, below]);
+            let [a, b, c, d] =
+                [corner(false, false), corner(true, false), corner(false, true), corner(true, true)]
+                    .map(|corner| self.vertex(1, corner));
+            self.triangles.extend([[a, c, d], [a, d, b]]);
+        }
+    }
+}

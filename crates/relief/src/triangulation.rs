@@ -1,0 +1,150 @@
+//! The first layer's triangles: as few as keep the surface within a tolerance.
+//!
+//! Right triangles are halved where the middle of their longest side is off (Evans, Kirkpatrick and Townsend 2001, right-triangulated
+//! irregular networks; Lindstrom and Pascucci 2002). A corner counts as far off as what is halved beneath it, so that neighbours are halved
+//! alike and nothing gapes. Corners at jumps, and those around them, are always there.
+
+use crate::cells::{Cells, Grid};
+use crate::corners::Joint;
+use rayon::prelude::*;
+
+/// Corners of the picture's cells, in a square whose side is a power of two, and how far off each would be if it were not there.
+pub(crate) struct Triangulation {
+    grid: Grid,
+    /// Cells of the square along a side.
+    side: usize,
+    errors: Vec<f32>,
+}
+
+/// A triangle: corners of the grid, the right angle last, and a cell of the picture within it.
+pub(crate) struct FirstTriangle {
+    pub corners: [[usize; 2]; 3],
+}
+
+impl Triangulation {
+    /// How far off the corners of the first layer's cells are.
+    pub fn of(cells: &Cells) -> Self {
+        let grid = cells.grid;
+        let side = grid.width.max(grid.height).next_power_of_two().max(2);
+        let row = grid.width + 1;
+        let joints: Vec<f32> = (0..row * (grid.height + 1))
+            .into_par_iter()
+            .map(|corner| match cells.joint([corner % row, corner / row]) {
+                Joint::Whole(disparity) => disparity,
+                Joint::Cut => f32::NAN,
+            })
+            .collect();
+        let is_cut = |x: usize, y: usize| x <= grid.width && y <= grid.height && joints[y * row + x].is_nan();
+        let mut triangulation = Self { grid, side, errors: vec![0.0; (side + 1) * (side + 1)] };
+        let mut errors = std::mem::take(&mut triangulation.errors);
+        errors.par_chunks_mut(side + 1).enumerate().for_each(|(y, errors)| {
+            for (x, error) in errors.iter_mut().enumerate() {
+                let near = |at: usize, last: usize| at.saturating_sub(1)..=(at + 1).min(last);
+                let is_near_cut = near(y, side).any(|y| near(x, side).any(|x| is_cut(x, y)));
+                *error = if is_near_cut { f32::INFINITY } else { 0.0 };
+            }
+        });
+        let at = |x: usize, y: usize| match x <= grid.width && y <= grid.height {
+            true => joints[y * row + x],
+            false => 0.0,
+        };
+        let mut step = 2;
+        while step <= side {
+            let half = step / 2;
+            // Middles of sides of squares: what is beneath are the four squares of half the side around.
+            let beneath = |errors: &[f32], x: usize, y: usize| {
+                let quarter = half / 2;
+                if quarter == 0 {
+                    return 0.0;
+                }
+                let mut most = 0.0f32;
+                for (dx, dy) in [(-1, -1), (1, -1), (-1, 1), (1, 1)] {
+                    let (x, y) = (x as isize + dx * quarter as isize, y as isize + dy * quarter as isize);
+                    if (0..=side as isize).contains(&x) && (0..=side as isize).contains(&y) {
+                        most = most.max(errors[y as usize * (side + 1) + x as usize]);
+                    }
+                }
+                most
+            };
+            let before = &errors;
+            let sides: Vec<Vec<(usize, f32)>> = (0..=side / half)
+                .into_par_iter()
+                .map(|line| {
+                    let y = line * half;
+                    let first = if line % 2 == 0 { half } else { 0 };
+                    let mut found = Vec::new();
+                    for x in (first..=side).step_by(step) {
+                        let ends = if line % 2 == 0 {
+                            [at(x - half, y), at(x + half, y)]
+                        } else {
+                            [at(x, y - half), at(x, y + half)]
+                        };
+                        found.push((y * (side + 1) + x, off(at(x, y), ends).max(beneath(before, x, y))));
+                    }
+                    found
+                })
+                .collect();
+            raise(&mut errors, sides);
+            // Middles of squares: what is beneath are the middles of their four sides.
+            let before = &errors;
+            let middles: Vec<Vec<(usize, f32)>> = (0..side / step)
+                .into_par_iter()
+                .map(|line| {
+                    let y = line * step + half;
+                    let mut found = Vec::new();
+                    for column in 0..side / step {
+                        let x = column * step + half;
+                        let ends = match (column + line) % 2 {
+                            0 => [at(x - half, y - half), at(x + half, y + half)],
+                            _ => [at(x + half, y - half), at(x - half, y + half)],
+                        };
+                        let sides = [(x - half, y), (x + half, y), (x, y - half), (x, y + half)];
+                        let most =
+                            sides.iter().fold(0.0f32, |most, &(x, y)| most.max(before[y * (side + 1) + x]));
+                        found.push((y * (side + 1) + x, off(at(x, y), ends).max(most)));
+                    }
+                    found
+                })
+                .collect();
+            raise(&mut errors, middles);
+            step *= 2;
+        }
+        Self { errors, ..triangulation }
+    }
+
+    /// The triangles that stay within a tolerance, in the picture.
+    pub fn triangles(&self, tolerance: f32) -> Vec<FirstTriangle> {
+        let side = self.side;
+        let mut triangles = Vec::new();
+        let mut open = vec![([0, 0], [side, side], [side, 0]), ([side, side], [0, 0], [0, side])];
+        while let Some((a, b, apex)) = open.pop() {
+            let least =
+                [a, b, apex].into_iter().fold([usize::MAX; 2], |low, p| [low[0].min(p[0]), low[1].min(p[1])]);
+            if least[0] >= self.grid.width || least[1] >= self.grid.height {
+                continue;
+            }
+            let is_smallest = a[0].abs_diff(b[0]).max(a[1].abs_diff(b[1])) == 1;
+            let middle = [(a[0] + b[0]) / 2, (a[1] + b[1]) / 2];
+            let error = || self.errors[middle[1] * (side + 1) + middle[0]];
+            if !is_smallest && error() > tolerance {
+                open.push((apex, a, middle));
+                open.push((b, apex, middle));
+            } else {
+                triangles.push(FirstTriangle { corners: [a, b, apex] });
+            }
+        }
+        triangles
+    }
+}
+
+/// How far a middle is from what its ends lead to expect; nothing where one of them is cut, which is seen to elsewhere.
+fn off(middle: f32, [a, b]: [f32; 2]) -> f32 {
+    let off = (0.5 * (a + b) - middle).abs();
+    if off.is_nan() { 0.0 } else { off }
+}
+
+fn raise(errors: &mut [f32], found: Vec<Vec<(usize, f32)>>) {
+    for (number, error) in found.into_iter().flatten() {
+        errors[number] = errors[number].max(error);
+    }
+}

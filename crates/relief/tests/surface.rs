@@ -1,0 +1,180 @@
+//! Surfaces of made-up disparities: whole, within tolerance, without skins.
+
+use glam::Vec2;
+use progress::Unwatched;
+use relief::{OtherView, Relief, ReliefOptions};
+use std::collections::HashMap;
+use std::convert::Infallible;
+
+const SIZE: [usize; 2] = [70, 45];
+
+fn disparities(of: impl Fn(f32, f32) -> f32) -> Vec<f32> {
+    let at = |cell: usize| of((cell % SIZE[0]) as f32 + 0.5, (cell / SIZE[0]) as f32 + 0.5);
+    (0..SIZE[0] * SIZE[1]).map(at).collect()
+}
+
+fn surface(disparity: &[f32], options: &ReliefOptions) -> Relief {
+    let picture = vec![[0.5; 3]; disparity.len()];
+    Relief::of::<Infallible>(SIZE, disparity, &picture, &[], options, &Unwatched).unwrap()
+}
+
+/// A hill on a slope.
+fn hill(x: f32, y: f32) -> f32 {
+    0.01 * x + (-((x - 30.0).powi(2) + (y - 20.0).powi(2)) / 120.0).exp()
+}
+
+/// A card before a wall.
+fn card(x: f32, y: f32) -> f32 {
+    if (20.0..50.0).contains(&x) && (12.0..33.0).contains(&y) { 2.0 } else { 0.3 + 0.004 * y }
+}
+
+/// The disparity of the first layer at a place, and how many triangles are there.
+fn first_layer(relief: &Relief, at: Vec2) -> (f32, usize) {
+    let mut found = (f32::NAN, 0);
+    for corners in &relief.triangles {
+        let [a, b, c] = corners.map(|v| relief.vertices[v as usize]);
+        if a.layer > 0 {
+            continue;
+        }
+        let area = (b.place - a.place).perp_dot(c.place - a.place);
+        let of_a = (b.place - at).perp_dot(c.place - at) / area;
+        let of_b = (c.place - at).perp_dot(a.place - at) / area;
+        let of_c = 1.0 - of_a - of_b;
+        if of_a >= 0.0 && of_b >= 0.0 && of_c >= 0.0 {
+            found = (of_a * a.disparity + of_b * b.disparity + of_c * c.disparity, found.1 + 1);
+        }
+    }
+    found
+}
+
+#[test]
+fn it_stays_within_its_tolerance_with_few_triangles() {
+    let options = ReliefOptions { reach: 4.0, ..ReliefOptions::default() };
+    let relief = surface(&disparities(hill), &options);
+    // A place of a cell's middle that lies on no diagonal.
+    for y in 0..SIZE[1] {
+        for x in 0..SIZE[0] {
+            let (found, count) = first_layer(&relief, Vec2::new(x as f32 + 0.47, y as f32 + 0.56));
+            assert_eq!(count, 1, "at {x} {y}");
+            let off = (found - hill(x as f32 + 0.47, y as f32 + 0.56)).abs() * options.reach;
+            // The tolerance, and what the mean of four cells is off a corner.
+            assert!(off < options.tolerance_px + 0.03, "{off} px at {x} {y}");
+        }
+    }
+    let cells = 2 * SIZE[0] * SIZE[1];
+    assert!(relief.triangles.len() < cells / 3, "{} of {cells}", relief.triangles.len());
+    assert_eq!(relief.hidden_triangles(), 0);
+    let coarse = surface(&disparities(hill), &ReliefOptions { tolerance_px: 10.0, ..options });
+    assert!(coarse.triangles.len() < relief.triangles.len());
+}
+
+#[test]
+fn nothing_gapes_where_nothing_jumps() {
+    let relief = surface(&disparities(hill), &ReliefOptions { reach: 4.0, ..ReliefOptions::default() });
+    let mut sides: HashMap<[u32; 2], usize> = HashMap::new();
+    for &[a, b, c] in &relief.triangles {
+        for [from, to] in [[a, b], [b, c], [c, a]] {
+            *sides.entry([from.min(to), from.max(to)]).or_default() += 1;
+        }
+    }
+    let on_border = |v: u32| {
+        let place = relief.vertices[v as usize].place;
+        [place.x == 0.0, place.y == 0.0, place.x == SIZE[0] as f32, place.y == SIZE[1] as f32]
+    };
+    for (&[a, b], &count) in &sides {
+        let is_border = on_border(a).into_iter().zip(on_border(b)).any(|(a, b)| a && b);
+        assert_eq!(count, if is_border { 1 } else { 2 }, "{a} {b}");
+    }
+}
+
+#[test]
+fn no_skin_spans_a_jump_and_the_wall_goes_on_behind_the_card() {
+    let options = ReliefOptions { reach: 2.0, ..ReliefOptions::default() };
+    let relief = surface(&disparities(card), &options);
+    for corners in &relief.triangles {
+        let all = corners.map(|v| relief.vertices[v as usize].disparity);
+        let (low, high) = all.iter().fold((f32::MAX, f32::MIN), |(l, h), &d| (l.min(d), h.max(d)));
+        assert!(high - low < 0.1, "{all:?}");
+    }
+    for (x, y) in [(19.2, 20.3), (20.8, 20.3), (49.7, 32.6), (50.3, 33.4)] {
+        let (found, count) = first_layer(&relief, Vec2::new(x, y));
+        assert_eq!(count, 1);
+        assert!((found - card(x, y)).abs() < 0.02, "{found} at {x} {y}");
+    }
+    assert!(relief.hidden_triangles() > 100);
+    // What is behind begins where the wall ends: at the same points.
+    let points = |layer: u8| {
+        let of_layer = relief.vertices.iter().filter(move |vertex| vertex.layer == layer);
+        of_layer.map(|vertex| [vertex.place.x, vertex.place.y, vertex.disparity].map(f32::to_bits))
+    };
+    let first: Vec<_> = points(0).collect();
+    let shared = points(1).filter(|point| first.contains(point)).count();
+    assert!(shared >= 2 * (30 + 21), "{shared}");
+    // Nothing shows what is behind: it is invented, of the wall's colour.
+    let second = SIZE[0] * SIZE[1];
+    assert!(relief.is_seen[..second].iter().all(|seen| *seen) && !relief.is_seen[second..].contains(&true));
+    assert_eq!(relief.texture[second + 20 * SIZE[0] + 20], [0.5; 3]);
+}
+
+#[test]
+fn what_is_behind_has_the_colours_of_the_views_that_see_it() {
+    // A striped wall; the view from the right sees behind the card's right side.
+    let disparity = disparities(card);
+    let wall = |x: f32| [0.5 + 0.4 * (0.7 * x).sin(); 3];
+    let shown = |offset: f32| -> Vec<[f32; 3]> {
+        let at = |cell: usize| {
+            let (x, y) = ((cell % SIZE[0]) as f32 + 0.5, (cell / SIZE[0]) as f32 + 0.5);
+            if card(x + 2.0 * offset, y) == 2.0 { [0.9; 3] } else { wall(x + (0.3 + 0.004 * y) * offset) }
+        };
+        (0..SIZE[0] * SIZE[1]).map(at).collect()
+    };
+    let picture = shown(0.0);
+    let view = |offset: f32| OtherView::<Infallible> {
+        offset: [offset, 0.0],
+        read: Box::new(move || Ok(shown(offset))),
+    };
+    let options = ReliefOptions { reach: 2.0, ..ReliefOptions::default() };
+    let relief =
+        Relief::of(SIZE, &disparity, &picture, &[view(2.0), view(-2.0)], &options, &Unwatched).unwrap();
+    let second = SIZE[0] * SIZE[1];
+    for (x, y) in [(49, 20), (48, 24), (20, 20), (21, 15)] {
+        let texel = second + y * SIZE[0] + x;
+        assert!(relief.is_seen[texel], "{x} {y}");
+        let off = relief.texture[texel][0] - wall(x as f32 + 0.5)[0];
+        assert!(off.abs() < 0.03, "{off} at {x} {y}");
+    }
+    // Negative control: with the views exchanged it is something else.
+    let wrong = |offset: f32| OtherView::<Infallible> { offset: [-offset, 0.0], ..view(offset) };
+    let relief =
+        Relief::of(SIZE, &disparity, &picture, &[wrong(2.0), wrong(-2.0)], &options, &Unwatched).unwrap();
+    let off = |x: usize| (relief.texture[second + 20 * SIZE[0] + x][0] - wall(x as f32 + 0.5)[0]).abs();
+    assert!((44..50).map(off).fold(0.0, f32::max) > 0.2);
+}
+
+#[test]
+fn scale_and_offset_of_disparities_change_no_triangle() {
+    let of = |scale: f32, offset: f32| {
+        let moved: Vec<f32> = disparities(card).iter().map(|d| scale * d + offset).collect();
+        surface(&moved, &ReliefOptions { reach: 2.0 / scale, ..ReliefOptions::default() })
+    };
+    let plain = of(1.0, 0.0);
+    for (scale, offset) in [(0.1, 3.0), (10.0, -3.0)] {
+        let moved = of(scale, offset);
+        assert_eq!(moved.triangles.len(), plain.triangles.len());
+        let pairs = plain.vertices.iter().zip(&moved.vertices);
+        let off =
+            pairs.map(|(a, b)| ((b.disparity - offset) / scale - a.disparity).abs()).fold(0.0, f32::max);
+        assert!(off < 1e-4, "{off}");
+    }
+}
+
+#[test]
+fn where_there_is_no_disparity_there_is_no_surface() {
+    let disparity = disparities(|x, y| if x < 30.0 { f32::NAN } else { hill(x, y) });
+    let relief = surface(&disparity, &ReliefOptions { reach: 4.0, ..ReliefOptions::default() });
+    assert_eq!(first_layer(&relief, Vec2::new(20.3, 20.6)).1, 0);
+    assert_eq!(first_layer(&relief, Vec2::new(30.3, 20.6)).1, 1);
+    assert!(relief.vertices.iter().all(|vertex| vertex.disparity.is_finite()));
+    let nothing = surface(&vec![f32::NAN; SIZE[0] * SIZE[1]], &ReliefOptions::default());
+    assert!(nothing.triangles.is_empty());
+}
