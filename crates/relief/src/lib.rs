@@ -21,8 +21,10 @@ mod cells;
 mod corners;
 mod hidden;
 mod jumps;
+mod other_view;
 mod relief;
 mod texture;
 mod triangulation;
 
-pub use relief::{OtherView, Relief, ReliefError, ReliefOptions, ReliefVertex, TEXTURE_LAYERS};
+pub use other_view::OtherView;
+pub use relief::{Relief, ReliefError, ReliefOptions, ReliefVertex, TEXTURE_LAYERS};

@@ -4,6 +4,7 @@ use crate::cells::{Cells, Grid};
 use crate::corners::Corner;
 use crate::hidden::{Hidden, hidden};
 use crate::jumps;
+use crate::other_view::OtherView;
 use crate::texture::{Behind, NotFound, behind};
 use crate::triangulation::Triangulation;
 use glam::Vec2;
@@ -26,14 +27,6 @@ impl Default for ReliefOptions {
     fn default() -> Self {
         Self { reach: 1.0, tolerance_px: 0.1, jump_px: 1.0 }
     }
-}
-
-/// A view beside the one that the surface is of.
-pub struct OtherView<'a, E> {
-    /// How many steps to the right and downward it was taken from: a pixel (x, y) of disparity d is at (x − d·dx, y − d·dy) in it.
-    pub offset: [f32; 2],
-    /// Reads it: linear RGB, as many pixels.
-    pub read: Box<dyn Fn() -> Result<Vec<[f32; 3]>, E> + Sync + 'a>,
 }
 
 /// A point of the surface.

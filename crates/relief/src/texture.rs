@@ -2,7 +2,7 @@
 
 use crate::cells::Grid;
 use crate::hidden::{Hidden, number};
-use crate::relief::OtherView;
+use crate::other_view::OtherView;
 use progress::Progress;
 use rayon::prelude::*;
 
