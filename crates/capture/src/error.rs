@@ -1,7 +1,7 @@
 //! What can be wrong with a capture.
 
 use progress::Cancelled;
-use scene::SceneError;
+use scene::{PictureError, SceneError};
 use std::path::{Path, PathBuf};
 
 /// Why a capture did not open. Displays as `FILE: what is wrong (what to do)`.
@@ -74,6 +74,70 @@ pub enum CaptureError {
         /// What is too big, and the limit.
         what: String,
     },
+    /// It is a capture of no kind.
+    #[error(
+        "{}: is neither photographs with cameras nor a light field nor a picture with depth{found} (give a folder of COLMAP's, nerfstudio's, \
+         Bundler's, VisualSFM's or Metashape's; a folder of views named by row and column; a mosaic of micro-images; or a picture whose \
+         depth is in it or beside it, as NAME_depth.png)",
+        path.display()
+    )]
+    NoCapture {
+        /// What was looked at.
+        path: PathBuf,
+        /// What there is instead, as a continuation of the sentence.
+        found: String,
+    },
+    /// There are no views of a light field.
+    #[error("{}: no views of a light field{found} (name them by row and column, as 03_04.png, or tell of them in views.json)", path.display())]
+    NoViews {
+        /// The folder or picture.
+        path: PathBuf,
+        /// What is odd, as a continuation of the sentence.
+        found: String,
+    },
+    /// There is no depth of a picture.
+    #[error(
+        "{}: no depth{found} (put it beside as NAME_depth.png, .pfm or .exr, or name its file)",
+        path.display()
+    )]
+    NoDepth {
+        /// The picture.
+        path: PathBuf,
+        /// What is odd, as a continuation of the sentence.
+        found: String,
+    },
+    /// Several files could be meant.
+    #[error("{}: has {what}: {names} (give one of them)", path.display())]
+    Ambiguous {
+        /// The folder.
+        path: PathBuf,
+        /// What there are several of.
+        what: &'static str,
+        /// Which.
+        names: String,
+    },
+    /// A depth map is relative, and does not say which end is near.
+    #[error(
+        "{}: does not say which end is near (say --near white or --near black, or the distances of black and of white in metres, as --near 0.5,20)",
+        file.display()
+    )]
+    NearUnknown {
+        /// The depth map.
+        file: PathBuf,
+    },
+    /// Another program has to be asked first.
+    #[error("{}: is {what} ({cure})", file.display())]
+    Foreign {
+        /// The file.
+        file: PathBuf,
+        /// What it is.
+        what: String,
+        /// Which program makes what of it.
+        cure: &'static str,
+    },
+    /// Something is wrong with a picture.
+    #[error(transparent)]
+    Picture(#[from] PictureError),
     /// Something is wrong with the mesh as a scene.
     #[error(transparent)]
     Scene(#[from] SceneError),
@@ -85,6 +149,12 @@ pub enum CaptureError {
 impl CaptureError {
     pub(crate) fn unreadable(file: &Path, source: std::io::Error) -> Self {
         Self::Unreadable { file: file.into(), source }
+    }
+
+    /// Beyond a limit of bytes.
+    pub(crate) fn too_big(file: &Path, what: impl std::fmt::Display, bytes: u64, limit: u64) -> Self {
+        let what = format!("{what} {} MiB, the limit is {} MiB", bytes >> 20, limit >> 20);
+        Self::TooBig { file: file.into(), what }
     }
 
     pub(crate) fn malformed(file: &Path, place: impl ToString, what: impl ToString) -> Self {

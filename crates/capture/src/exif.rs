@@ -1,4 +1,4 @@
-//! What the EXIF data of a picture say: which way up, and how bright it was exposed.
+//! What the EXIF data of a picture say: which way up, how bright it was exposed, and through how long a lens.
 
 use ::exif::{In, Reader, Tag, Value};
 
@@ -9,11 +9,13 @@ pub(crate) struct Exif {
     pub orientation: u8,
     /// log₂(t·S/N²): exposure time in s, ISO speed, f-number.
     pub exposure: Option<f64>,
+    /// The focal length of a lens of the same angle of view on a film of 36 × 24 mm, mm.
+    pub focal_length_35mm: Option<f64>,
 }
 
 impl Default for Exif {
     fn default() -> Self {
-        Self { orientation: 1, exposure: None }
+        Self { orientation: 1, exposure: None, focal_length_35mm: None }
     }
 }
 
@@ -37,7 +39,7 @@ impl Exif {
             (Some(time), Some(speed), Some(f_number)) => Some((time * speed / (f_number * f_number)).log2()),
             _ => None,
         };
-        Self { orientation, exposure }
+        Self { orientation, exposure, focal_length_35mm: number(Tag::FocalLengthIn35mmFilm) }
     }
 }
 

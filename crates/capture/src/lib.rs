@@ -14,15 +14,22 @@
 
 mod binary;
 mod bundler;
+mod capture_kind;
 mod colmap;
+mod depth_map;
+mod depth_picture;
 mod error;
 mod exif;
+mod exr_channels;
 mod fan;
 mod folder;
+mod foreign;
 mod kind;
 mod layout;
+mod light_field;
 mod mesh_file;
 mod metashape;
+mod mosaic;
 mod nerfstudio;
 mod nvm;
 mod obj;
@@ -30,6 +37,7 @@ mod open;
 mod picture_header;
 mod picture_names;
 mod picture_place;
+mod picture_source;
 mod pictures;
 mod ply;
 mod pose;
@@ -37,9 +45,19 @@ mod remark;
 mod shot;
 mod text;
 mod upright;
+mod whole_file;
 
+pub use capture_kind::{CaptureKind, capture_kind};
+pub use depth_map::{DepthAs, DepthMap, DepthMeaning, NearEnd, read_depth_map};
+pub use depth_picture::{DepthContainer, DepthPicture, DepthPictureOptions, open_depth_picture};
 pub use error::CaptureError;
 pub use kind::Kind;
 pub use layout::recognise;
+pub use light_field::{
+    GivenDisparity, GridTurn, GridTurnFound, LightField, LightFieldOptions, Optics, SubAperture, ViewLayout,
+    grid_turn, open_light_field,
+};
+pub use mosaic::{Mosaic, micro_images};
 pub use open::{Capture, CaptureOptions, open};
+pub use picture_source::PictureSource;
 pub use remark::Remark;

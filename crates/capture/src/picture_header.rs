@@ -27,6 +27,11 @@ pub(crate) fn header(file: &Path) -> Result<([u32; 2], Exif), String> {
     header_of(&bytes).map_err(|error| format!("cannot be decoded: {error}").replace('\n', " "))
 }
 
+/// The same of the bytes of a picture.
+pub(crate) fn header_of_bytes(bytes: &[u8]) -> Result<([u32; 2], Exif), String> {
+    header_of(bytes).map_err(|error| format!("cannot be decoded: {error}").replace('\n', " "))
+}
+
 fn header_of(bytes: &[u8]) -> Result<([u32; 2], Exif), image::ImageError> {
     let reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format()?;
     let mut decoder = reader.into_decoder()?;

@@ -6,7 +6,7 @@ use crate::LoadOptions;
 use glam::{DVec2, UVec2, Vec3};
 use image::metadata::Orientation;
 use image::{DynamicImage, ImageDecoder, ImageReader, Limits};
-use std::io::BufReader;
+use std::io::{BufRead, BufReader, Cursor, Seek};
 use std::path::{Path, PathBuf};
 
 /// The pixels of a photograph.
@@ -76,6 +76,40 @@ pub enum PictureError {
 }
 
 impl Photograph {
+    /// Reads a picture file as [`View::photograph`] does, of any size, turned by an EXIF orientation (1: as it is stored).
+    ///
+    /// # Errors
+    /// The file cannot be read or decoded, or is beyond the limits of `options`.
+    pub fn read(file: &Path, orientation: u8, options: &LoadOptions) -> Result<Self, PictureError> {
+        let (picture, profile) = decoded(file, orientation, options)?;
+        Self::of(picture, profile.as_deref(), file)
+    }
+
+    /// The same of the bytes of a picture that lies within a `file`.
+    ///
+    /// # Errors
+    /// As of [`Self::read`].
+    pub fn decode(
+        bytes: &[u8],
+        file: &Path,
+        orientation: u8,
+        options: &LoadOptions,
+    ) -> Result<Self, PictureError> {
+        let (picture, profile) = decoded_from(Cursor::new(bytes), file, orientation, options)?;
+        Self::of(picture, profile.as_deref(), file)
+    }
+
+    /// The light of pixels that were decoded from a `file`, by its ICC profile or in sRGB; floats are linear.
+    ///
+    /// # Errors
+    /// The profile is none that can be followed.
+    pub fn of(picture: DynamicImage, profile: Option<&[u8]>, file: &Path) -> Result<Self, PictureError> {
+        let colors = PictureColors::of(profile, &picture)
+            .map_err(|UnknownProfile(why)| PictureError::Profile { file: file.into(), why })?;
+        let (width, height) = (picture.width(), picture.height());
+        Ok(Self { width, height, pixels: colors.linear(picture) })
+    }
+
     /// The same with each pixel the mean of `by` × `by` of its own (fewer at the right and lower border).
     pub fn reduced(self, by: u32) -> Self {
         if by <= 1 {
@@ -126,9 +160,7 @@ impl View {
             let (found, wanted) = ([width, height], self.lens.size_px());
             return Err(PictureError::OtherSize { file: self.picture.clone(), found, wanted });
         }
-        let colors = PictureColors::of(profile.as_deref(), &picture)
-            .map_err(|UnknownProfile(why)| PictureError::Profile { file: self.picture.clone(), why })?;
-        Ok(Photograph { width, height, pixels: colors.linear(picture) })
+        Photograph::of(picture, profile.as_deref(), &self.picture)
     }
 }
 
@@ -139,11 +171,21 @@ pub(super) fn decoded(
     options: &LoadOptions,
 ) -> Result<(DynamicImage, Option<Vec<u8>>), PictureError> {
     let unreadable = |source| PictureError::Unreadable { file: file.into(), source };
+    decoded_from(BufReader::new(std::fs::File::open(file).map_err(unreadable)?), file, orientation, options)
+}
+
+/// The same of the bytes of a picture, which are in `file`.
+fn decoded_from(
+    input: impl BufRead + Seek,
+    file: &Path,
+    orientation: u8,
+    options: &LoadOptions,
+) -> Result<(DynamicImage, Option<Vec<u8>>), PictureError> {
+    let unreadable = |source| PictureError::Unreadable { file: file.into(), source };
     let broken = |error: image::ImageError| PictureError::Undecodable {
         file: file.into(),
         why: error.to_string().replace('\n', " "),
     };
-    let input = BufReader::new(std::fs::File::open(file).map_err(unreadable)?);
     let mut reader = ImageReader::new(input).with_guessed_format().map_err(unreadable)?;
     let mut limits = Limits::default();
     limits.max_alloc = Some(options.max_memory);

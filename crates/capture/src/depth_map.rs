@@ -1,0 +1,22 @@
+//! Depth and disparity maps: how far what a picture shows is, a number a pixel.
+//!
+//! The road of a map: `pfm`, `exr_depth`, `levels`, `raw_floats` (the numbers as they are stored) → `meaning` (what they mean, by who gives
+//! them, by the file's name, by [`NearEnd`]; never by guessing) → [`DepthMap`].
+
+mod depth_file;
+mod exr_depth;
+mod levels;
+mod map;
+mod meaning;
+mod near_end;
+mod pfm;
+mod raw_floats;
+mod stored;
+
+pub use depth_file::read_depth_map;
+pub(crate) use levels::levels_of;
+pub use map::{DepthMap, DepthMeaning};
+pub use meaning::DepthAs;
+pub(crate) use meaning::said_by_name;
+pub use near_end::NearEnd;
+pub(crate) use raw_floats::raw_floats;

@@ -1,0 +1,49 @@
+//! A depth map's file, whichever form it has.
+
+use super::exr_depth::read_exr_depth;
+use super::levels::levels_of;
+use super::map::DepthMap;
+use super::meaning::{DepthAs, Said};
+use super::near_end::NearEnd;
+use super::pfm::read_pfm;
+use crate::CaptureError;
+use crate::whole_file::whole_file;
+use scene::LoadOptions;
+use std::path::Path;
+
+/// Reads a depth or disparity map: PFM, EXR, or a grey picture (PNG of 8 or 16 bits, JPEG, WebP).
+///
+/// What its numbers are is told by `as_what`, else by its name (`…disp…`, `…depth…`) or its channel's. Levels of grey are relative, and so
+/// are floats where `near` is given: then the end is told by `near`, or by their being disparities.
+/// Distances that are 0, negative or NaN are unknown, infinite ones and those from 10¹⁰ on the background; disparities that are not finite are
+/// unknown.
+///
+/// # Errors
+/// The file cannot be read, is malformed or beyond the limits, or is relative and nobody says which end is near.
+pub fn read_depth_map(
+    file: &Path,
+    as_what: Option<DepthAs>,
+    near: Option<NearEnd>,
+    options: &LoadOptions,
+) -> Result<DepthMap, CaptureError> {
+    let extension = file.extension().map(|extension| extension.to_string_lossy().to_lowercase());
+    let mut said = Said { as_what, near };
+    let stored = match extension.as_deref() {
+        Some("exr") => {
+            let (stored, is_named) = read_exr_depth(file, options)?;
+            if is_named {
+                said.as_what = as_what.or(Some(DepthAs::Depth));
+            }
+            stored
+        }
+        Some("pfm") => {
+            let bytes = whole_file(file, options.max_memory / 2)?;
+            read_pfm(file, &bytes, options.max_texels.min(options.max_memory / 16))?
+        }
+        _ => {
+            let bytes = whole_file(file, options.max_memory / 4)?;
+            levels_of(&bytes, options).map_err(|why| CaptureError::malformed(file, "picture", why))?
+        }
+    };
+    stored.map(file, said)
+}

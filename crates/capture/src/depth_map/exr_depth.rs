@@ -1,0 +1,30 @@
+//! Depth in an EXR: the channel of depth, or the only one that there is.
+
+use super::stored::{Numbers, Stored};
+use crate::CaptureError;
+use crate::exr_channels::{depth_channel, exr_names, read_exr};
+use scene::LoadOptions;
+use std::path::Path;
+
+/// The numbers of an EXR that is a depth map, and whether its channel is named as one.
+pub(crate) fn read_exr_depth(file: &Path, options: &LoadOptions) -> Result<(Stored, bool), CaptureError> {
+    let names = exr_names(file, options)?;
+    let named = depth_channel(&names);
+    let is_named = named.is_some();
+    let only = || {
+        // One channel, or three that are the same.
+        let first = ["R", "Y", "V"].into_iter().find(|known| names.iter().any(|name| name == known));
+        if names.len() == 1 { names.first().cloned() } else { first.map(String::from) }
+    };
+    let Some(name) = named.or_else(only) else {
+        let what = format!(
+            "has no channel of depth (Z, depth.Z, ViewLayer.Depth.Z, Depth.V), but {}",
+            names.join(", ")
+        );
+        return Err(CaptureError::malformed(file, "EXR", what.chars().take(300).collect::<String>()));
+    };
+    let read = read_exr(file, &[&name], options)?;
+    let [width, height] = read.size;
+    let values = read.channels.into_iter().next().unwrap_or_default();
+    Ok((Stored { width, height, values, numbers: Numbers::Floats }, is_named))
+}

@@ -1,0 +1,168 @@
+//! From stored numbers to a depth map: who says what they mean.
+//!
+//! Programs do not agree on which end is near: MiDaS and its kin write relative *inverse* depth (white is near), Marigold relative depth
+//! (black is near), renderers distances. So it is taken from who gives the file, from a name that says *disparity* or *depth*, or asked for.
+
+use super::map::{DepthMap, DepthMeaning};
+use super::near_end::NearEnd;
+use super::stored::{Numbers, Stored};
+use crate::CaptureError;
+use std::path::Path;
+
+/// What a file is given as.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum DepthAs {
+    /// Distances, or relative depth of which [`NearEnd`] tells the end.
+    Depth,
+    /// Disparities: what is greater, or white, is near.
+    Disparity,
+}
+
+/// What is known about a file.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Said {
+    /// What it is given as.
+    pub as_what: Option<DepthAs>,
+    /// Which end is near.
+    pub near: Option<NearEnd>,
+}
+
+/// What the name of a file says it is.
+pub(crate) fn said_by_name(file: &Path) -> Option<DepthAs> {
+    let name = file.file_stem().unwrap_or_default().to_string_lossy().to_lowercase();
+    match () {
+        () if name.contains("disp") => Some(DepthAs::Disparity),
+        () if name.contains("depth") || name.contains("dist") => Some(DepthAs::Depth),
+        () => None,
+    }
+}
+
+/// Distances from here on are the background: Blender writes 10¹⁰ where there is nothing.
+const BACKGROUND: f32 = 1e10;
+
+impl Stored {
+    /// The map that these numbers are.
+    pub fn map(self, file: &Path, said: Said) -> Result<DepthMap, CaptureError> {
+        let as_what = said.as_what.or_else(|| said_by_name(file));
+        let known = |value: f32| if value.is_finite() { value } else { f32::NAN };
+        let Self { width, height, mut values, numbers } = self;
+        let meaning = match (said.near, numbers, as_what) {
+            (Some(near), ..) => {
+                let [low, high] = match numbers {
+                    Numbers::Levels => [0.0, 1.0],
+                    Numbers::Floats => finite_range(&values),
+                };
+                let share = |value: f32| (known(value) - low) / (high - low);
+                match near {
+                    NearEnd::White => values.iter_mut().for_each(|value| *value = share(*value)),
+                    NearEnd::Black => values.iter_mut().for_each(|value| *value = 1.0 - share(*value)),
+                    NearEnd::Distances { black, white } => values.iter_mut().for_each(|value| {
+                        let share = f64::from(share(*value));
+                        *value = ((1.0 - share) / black + share / white).recip() as f32;
+                    }),
+                }
+                match near {
+                    NearEnd::Distances { .. } => DepthMeaning::Distance,
+                    _ => DepthMeaning::Relative,
+                }
+            }
+            (None, Numbers::Levels, Some(DepthAs::Disparity)) => DepthMeaning::Relative,
+            (None, Numbers::Levels, _) | (None, Numbers::Floats, None) => {
+                return Err(CaptureError::NearUnknown { file: file.into() });
+            }
+            (None, Numbers::Floats, Some(DepthAs::Disparity)) => {
+                values.iter_mut().for_each(|value| *value = known(*value));
+                DepthMeaning::Disparity
+            }
+            (None, Numbers::Floats, Some(DepthAs::Depth)) => {
+                values.iter_mut().for_each(|value| *value = distance(*value));
+                DepthMeaning::Distance
+            }
+        };
+        let map = DepthMap { width, height, values, meaning };
+        if map.range().is_none() {
+            return Err(CaptureError::malformed(
+                file,
+                "all pixels",
+                "nothing is known of any (0, NaN or infinite)",
+            ));
+        }
+        Ok(map)
+    }
+}
+
+/// A distance as it is stored: infinite where there is nothing, NaN where none is known.
+fn distance(value: f32) -> f32 {
+    match value {
+        value if value >= BACKGROUND => f32::INFINITY,
+        value if value > 0.0 => value,
+        _ => f32::NAN,
+    }
+}
+
+/// The range of what is finite, of some width.
+fn finite_range(values: &[f32]) -> [f32; 2] {
+    let finite = values.iter().copied().filter(|value| value.is_finite());
+    let [low, high] = finite
+        .fold([f32::INFINITY, f32::NEG_INFINITY], |[low, high], value| [low.min(value), high.max(value)]);
+    if high > low && (high - low).is_finite() { [low, high] } else { [low, low + low.abs().max(1.0)] }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read(numbers: Numbers, values: &[f32], name: &str, said: Said) -> Result<DepthMap, CaptureError> {
+        let stored = Stored { width: values.len() as u32, height: 1, values: values.to_vec(), numbers };
+        stored.map(Path::new(name), said)
+    }
+
+    const LEVELS: [f32; 3] = [0.0, 0.25, 1.0];
+
+    #[test]
+    fn nobody_guesses_which_end_is_near() {
+        for (numbers, name) in
+            [(Numbers::Levels, "a_depth.png"), (Numbers::Levels, "a.png"), (Numbers::Floats, "a.pfm")]
+        {
+            let error = read(numbers, &LEVELS, name, Said::default()).unwrap_err().to_string();
+            assert!(error.contains("does not say which end is near (say --near white"), "{error}");
+        }
+        let near = |near| Said { near: Some(near), ..Said::default() };
+        assert_eq!(read(Numbers::Levels, &LEVELS, "a.png", near(NearEnd::White)).unwrap().values, LEVELS);
+        assert_eq!(
+            read(Numbers::Levels, &LEVELS, "a.png", near(NearEnd::Black)).unwrap().values,
+            [1.0, 0.75, 0.0]
+        );
+        let distances = NearEnd::Distances { black: 0.5, white: f64::INFINITY };
+        let map = read(Numbers::Levels, &LEVELS, "a.png", near(distances)).unwrap();
+        assert_eq!(
+            (map.meaning, &map.values[..]),
+            (DepthMeaning::Distance, &[0.5, 2.0 / 3.0, f32::INFINITY][..])
+        );
+        // MiDaS's floats, which are of no scale.
+        let map = read(Numbers::Floats, &[100.0, 200.0, 500.0], "a.pfm", near(NearEnd::White)).unwrap();
+        assert_eq!((map.meaning, &map.values[..]), (DepthMeaning::Relative, &LEVELS[..]));
+    }
+
+    #[test]
+    fn names_and_callers_tell_what_floats_are() {
+        let values = [f32::NAN, f32::INFINITY, 0.0, -1.0, 2.5, 1e10];
+        let depth = read(Numbers::Floats, &values, "x_depth.pfm", Said::default()).unwrap();
+        let infinite = |map: &DepthMap| map.values.iter().filter(|value| value.is_infinite()).count();
+        let unknown = |map: &DepthMap| map.values.iter().filter(|value| value.is_nan()).count();
+        assert_eq!((depth.meaning, infinite(&depth), unknown(&depth)), (DepthMeaning::Distance, 2, 3));
+        let disparity = read(Numbers::Floats, &values, "gt_disp_lowres.pfm", Said::default()).unwrap();
+        assert_eq!(
+            (disparity.meaning, infinite(&disparity), unknown(&disparity)),
+            (DepthMeaning::Disparity, 0, 2)
+        );
+        let said = Said { as_what: Some(DepthAs::Depth), near: None };
+        assert_eq!(read(Numbers::Floats, &values, "disp.pfm", said).unwrap().meaning, DepthMeaning::Distance);
+        assert_eq!(
+            read(Numbers::Levels, &LEVELS, "disp_rel.png", Said::default()).unwrap().meaning,
+            DepthMeaning::Relative
+        );
+        let nothing = read(Numbers::Floats, &[0.0, f32::NAN], "depth.pfm", Said::default()).unwrap_err();
+        assert!(nothing.to_string().contains("nothing is known of any"), "{nothing}");
+    }
+}

@@ -1,0 +1,144 @@
+//! Dynamic Depth: a directory in the XMP of a JPEG, and the things that it lists behind the picture, one after the other.
+//! (Dynamic Depth 1.0, Google 2019: <https://developer.android.com/training/camera2/Dynamic-depth-v1.0.pdf>.)
+//!
+//! Things lie where the lengths say, counted from the end of the picture; some writers put more between, or behind, or nest
+//! trailers in trailers. So what lies there must begin as a picture does; else it is counted from the end of the file, and else the
+//! pictures behind the first are gone through in order.
+
+use super::depth_range::{DepthRange, Unit};
+use super::embedded::Embedded;
+use super::jpeg::{end_of_jpeg, end_of_png, is_picture};
+use super::xmp::{property, property_of};
+use roxmltree::{Document, Node};
+use scene::LoadOptions;
+
+/// A thing of the directory.
+#[derive(Debug)]
+struct Item<'a> {
+    /// Bytes; 0 of the picture itself, and of things that share another's.
+    length: usize,
+    /// Bytes that follow it and are nobody's.
+    padding: usize,
+    uri: Option<&'a str>,
+    semantic: Option<&'a str>,
+}
+
+/// More are no directory.
+const MOST_ITEMS: usize = 1000;
+
+/// What a JPEG holds as Dynamic Depth; none if it has none. `bytes` are those of the file.
+pub(super) fn read_dynamic_depth(
+    documents: &[Document<'_>],
+    bytes: &[u8],
+    options: &LoadOptions,
+) -> Option<Result<Embedded, String>> {
+    let nodes = || documents.iter().flat_map(|document| document.descendants());
+    let items: Vec<Item> = nodes().filter_map(item).take(MOST_ITEMS).collect();
+    let depth = nodes().find(|node| property(*node, "DepthURI").is_some());
+    let uri = depth.and_then(|node| property(node, "DepthURI"));
+    let is_depth = |item: &Item| match uri {
+        Some(uri) => item.uri == Some(uri),
+        None => item
+            .semantic
+            .is_some_and(|semantic| ["depth", "depthmap"].contains(&semantic.to_lowercase().as_str())),
+    };
+    let Some(index) = items.iter().position(is_depth) else {
+        let uri = crate::text::quoted(uri?);
+        return Some(Err(format!("its depth map {uri} is not in its directory of {} things", items.len())));
+    };
+    let read = || {
+        let said = |name: &str| match depth {
+            Some(node) => property(node, name),
+            None => property_of(documents, "depthmap", name),
+        };
+        let unit = Unit::named(said("Units"));
+        let range = DepthRange::of(said("Format"), said("Near"), said("Far"), unit)?;
+        let found = located(&items, index, bytes).ok_or_else(|| {
+            let behind = bytes.len() - end_of_jpeg(bytes).unwrap_or(bytes.len());
+            format!("its depth map is not there: {behind} bytes follow the picture (the file was shortened, or saved by a program that drops them)")
+        })?;
+        let mut embedded = Embedded::of(found, range, options)?;
+        if unit == Unit::Dioptres
+            && range.is_some()
+            && said("Near").and_then(number) < said("Far").and_then(number)
+        {
+            embedded
+                .notes
+                .push("calls its distances dioptres, which they are not: they are of no scale".into());
+        }
+        if said("MeasureType").is_some_and(|kind| kind.trim() == "OpticRay") {
+            embedded.notes.push("measures depth along rays, which is taken as along the axis".into());
+        }
+        // The picture before the camera blurred it.
+        let original = nodes().find_map(|node| {
+            let is_original = property(node, "ItemSemantic")
+                .is_some_and(|semantic| semantic.eq_ignore_ascii_case("original"));
+            let uri = property(node, "ItemURI").filter(|_| is_original)?;
+            items.iter().position(|item| item.uri == Some(uri) && item.length > 0)
+        });
+        embedded.original = original.and_then(|index| located(&items, index, bytes)).map(<[u8]>::to_vec);
+        embedded.focal_share = nodes().find_map(|node| {
+            let focal = property(node, "FocalLengthX").and_then(number)?;
+            let width = property(node, "ImageWidth").and_then(number)?;
+            Some(focal / width).filter(|share| share.is_finite() && *share > 0.0)
+        });
+        Ok(embedded)
+    };
+    Some(read().map_err(|why: String| format!("Dynamic Depth: {why}")))
+}
+
+fn number(text: &str) -> Option<f64> {
+    text.trim().parse().ok().filter(|number: &f64| number.is_finite())
+}
+
+/// The thing that a node tells of: it has a kind, and a length or a name.
+fn item<'a>(node: Node<'a, '_>) -> Option<Item<'a>> {
+    property(node, "Mime")?;
+    let [length, uri, semantic] = ["Length", "DataURI", "Semantic"].map(|name| property(node, name));
+    if length.is_none() && uri.is_none() && semantic.is_none() {
+        return None;
+    }
+    let count = |text: Option<&str>| text.and_then(|text| text.trim().parse().ok()).unwrap_or(0);
+    Some(Item { length: count(length), padding: count(property(node, "Padding")), uri, semantic })
+}
+
+/// The bytes of a thing of the directory, whose first is the picture.
+fn located<'a>(items: &[Item<'_>], index: usize, bytes: &'a [u8]) -> Option<&'a [u8]> {
+    let Item { length, .. } = items[index];
+    let between = |items: &[Item<'_>]| {
+        items.iter().try_fold(0usize, |sum, item| sum.checked_add(item.length)?.checked_add(item.padding))
+    };
+    let picture_end = end_of_jpeg(bytes);
+    let at = |start: Option<usize>| {
+        let start = start?;
+        let found = bytes.get(start..start.checked_add(length)?)?;
+        (length > 0 && is_picture(found)).then_some(found)
+    };
+    let from_picture = || {
+        let padding = items.first().map_or(0, |first| first.padding);
+        picture_end?.checked_add(padding)?.checked_add(between(items.get(1..index)?)?)
+    };
+    let from_end = || bytes.len().checked_sub(between(&items[index..])?);
+    // Pictures behind the first, in order.
+    let in_order = || {
+        let rank = items[1..=index].iter().filter(|item| item.length > 0).count();
+        let mut rest = &bytes[picture_end?..];
+        for _ in 1..rank {
+            let start = first_picture(rest)?;
+            rest = &rest[end_of_picture(&rest[start..])? + start..];
+        }
+        let found = &rest[first_picture(rest)?..];
+        Some(&found[..end_of_picture(found).unwrap_or(found.len())])
+    };
+    at(from_picture()).or_else(|| at(from_end())).or_else(|| if index > 0 { in_order() } else { None })
+}
+
+/// Where the first picture begins.
+fn first_picture(bytes: &[u8]) -> Option<usize> {
+    let starts = |at: &usize| is_picture(&bytes[*at..]) && bytes.get(at + 2) != Some(&0);
+    (0..bytes.len()).find(starts)
+}
+
+fn end_of_picture(bytes: &[u8]) -> Option<usize> {
+    end_of_jpeg(bytes).or_else(|| end_of_png(bytes))
+}

@@ -1,0 +1,421 @@
+//! Opening a picture with depth.
+
+use super::beside::{depth_files, pictures};
+use super::dynamic_depth::read_dynamic_depth;
+use super::embedded::Embedded;
+use super::gdepth::read_gdepth;
+use super::jpeg::{Segments, is_jpeg};
+use super::xmp::XmpTexts;
+use crate::depth_map::{DepthAs, DepthMap, DepthMeaning, NearEnd, read_depth_map, said_by_name};
+use crate::exif::Exif;
+use crate::exr_channels::{color_channels, depth_channel, exr_names};
+use crate::folder::extension;
+use crate::foreign::foreign;
+use crate::picture_header::header;
+use crate::picture_source::PictureSource;
+use crate::whole_file::{head, whole_file};
+use crate::{CaptureError, Remark};
+use scene::LoadOptions;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// How a picture with depth is read.
+#[derive(Clone, Debug, Default)]
+pub struct DepthPictureOptions {
+    /// The file of its depth, wherever that is, and what it is given as; none: looked for in the picture and beside it.
+    pub depth: Option<(PathBuf, DepthAs)>,
+    /// Which end of a relative map is near.
+    pub near: Option<NearEnd>,
+    /// What reading may use of the machine.
+    pub load: LoadOptions,
+}
+
+/// Where the depth of a picture was.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum DepthContainer {
+    /// In a channel of the picture's EXR.
+    Exr,
+    /// In a file of its own.
+    Beside,
+    /// In the XMP of the picture's JPEG.
+    GDepth,
+    /// Behind the picture in its JPEG.
+    DynamicDepth,
+}
+
+/// One picture, and how far what it shows is.
+#[derive(Clone, Debug)]
+pub struct DepthPicture {
+    /// What it is called: its file's name.
+    pub name: String,
+    /// The picture, the sharp one where the file has it beside a blurred one.
+    pub picture: PictureSource,
+    /// Columns and rows of the picture as it wants to be seen.
+    pub size: [u32; 2],
+    /// Its depth, turned as the picture is; it may be coarser, and covers the whole picture.
+    pub depth: DepthMap,
+    /// The file of the depth.
+    pub depth_file: PathBuf,
+    /// Where the depth was.
+    pub container: DepthContainer,
+    /// The distances of the least and the greatest level that the file itself says, m.
+    pub near_far_m: Option<[f64; 2]>,
+    /// The focal length, in pixels of the picture, if the file says it.
+    pub focal_px: Option<f64>,
+    /// What is good to know.
+    pub remarks: Vec<Remark>,
+}
+
+/// Opens a picture with its depth: a file that holds both, a picture with a file beside it, or a folder of one such picture.
+///
+/// # Errors
+/// There is no depth, or the picture or the depth cannot be read, are malformed or beyond the limits; or the depth is relative and nobody
+/// says which end is near.
+pub fn open_depth_picture(path: &Path, options: &DepthPictureOptions) -> Result<DepthPicture, CaptureError> {
+    if path.is_dir() {
+        return match in_folder(path) {
+            InFolder::One(picture) => open_depth_picture(&picture, options),
+            InFolder::Several(names) => {
+                Err(CaptureError::Ambiguous { path: path.into(), what: "several pictures with depth", names })
+            }
+            InFolder::None if options.depth.is_some() && pictures(path).len() == 1 => {
+                open_depth_picture(&pictures(path)[0], options)
+            }
+            InFolder::None => {
+                Err(CaptureError::NoDepth { path: path.into(), found: " of a picture in it".into() })
+            }
+        };
+    }
+    if let Some(error) = foreign(path) {
+        return Err(error);
+    }
+    let opening = Opening { file: path, options };
+    if let Some((depth, as_what)) = &options.depth {
+        return opening.with_file(depth, Some(*as_what), Vec::new());
+    }
+    if extension(path) == "exr" {
+        return opening.exr();
+    }
+    if let Some(found) = opening.embedded()? {
+        return Ok(found);
+    }
+    let found = depth_files(path);
+    let Some(depth) = found.first() else {
+        // A file that cannot be read is told as such.
+        header(path).map_err(|why| CaptureError::malformed(path, "picture", why))?;
+        return Err(CaptureError::NoDepth { path: path.into(), found: " in it or beside it".into() });
+    };
+    let others = found[1..].iter().map(|file| file.display().to_string()).collect();
+    let remark = Remark::about(others, false, |names| {
+        format!(
+            "{}: is taken for the depth; there are also {names} (name a file if one of those is meant)",
+            depth.display()
+        )
+    });
+    opening.with_file(depth, None, remark.into_iter().collect())
+}
+
+/// Whether a file is a picture with depth, by its name, its neighbours' and its header.
+pub(crate) fn has_depth(file: &Path, options: &LoadOptions) -> bool {
+    if extension(file) == "exr" {
+        let names = exr_names(file, options).unwrap_or_default();
+        return color_channels(&names).is_some()
+            && (depth_channel(&names).is_some() || !depth_files(file).is_empty());
+    }
+    if !depth_files(file).is_empty() {
+        return true;
+    }
+    let bytes = head(file, 2);
+    is_jpeg(&bytes) && whole_file(file, options.max_memory / 4).is_ok_and(|bytes| speaks_of_depth(&bytes))
+}
+
+/// Whether a JPEG's XMP has depth of a kind that is known; of a broken one, whether it seems so.
+fn speaks_of_depth(bytes: &[u8]) -> bool {
+    let Ok(segments) = Segments::of(bytes) else { return false };
+    let Some(xmp) = segments.xmp else { return false };
+    let text = String::from_utf8_lossy(xmp);
+    ["DepthURI", "photos/1.0/depthmap"].iter().any(|word| text.contains(word)) || says_depth_semantic(&text)
+}
+
+fn says_depth_semantic(text: &str) -> bool {
+    text.contains("Semantic=\"Depth\"") || text.contains("Semantic>Depth<")
+}
+
+/// The pictures with depth of a folder.
+pub(crate) enum InFolder {
+    None,
+    One(PathBuf),
+    /// Some of their names.
+    Several(String),
+}
+
+/// Looks for pictures with depth in a folder; by names alone, but for JPEGs of a few.
+pub(crate) fn in_folder(folder: &Path) -> InFolder {
+    /// A folder of more pictures is one of something else.
+    const MOST: usize = 50;
+    let mut all = pictures(folder);
+    if let Ok(entries) = std::fs::read_dir(folder) {
+        let is_exr = |path: &PathBuf| extension(path) == "exr" && path.is_file();
+        let mut exrs: Vec<PathBuf> =
+            entries.take(MOST).flatten().map(|entry| entry.path()).filter(is_exr).collect();
+        exrs.sort();
+        all.extend(exrs);
+    }
+    if all.len() > MOST {
+        return InFolder::None;
+    }
+    let options = LoadOptions::default();
+    let found: Vec<PathBuf> = all.into_iter().filter(|file| has_depth(file, &options)).collect();
+    match &found[..] {
+        [] => InFolder::None,
+        [one] => InFolder::One(one.clone()),
+        several => {
+            let names =
+                several.iter().take(4).map(|file| file.file_name().unwrap_or_default().to_string_lossy());
+            let dots = if several.len() > 4 { ", …" } else { "" };
+            InFolder::Several(names.collect::<Vec<_>>().join(", ") + dots)
+        }
+    }
+}
+
+struct Opening<'a> {
+    file: &'a Path,
+    options: &'a DepthPictureOptions,
+}
+
+/// What a picture's header says.
+struct Shown {
+    stored: [u32; 2],
+    exif: Exif,
+}
+
+impl Opening<'_> {
+    fn malformed(&self, place: &str, what: impl ToString) -> CaptureError {
+        CaptureError::malformed(self.file, place, what)
+    }
+
+    fn name(&self) -> String {
+        self.file.file_name().unwrap_or_default().to_string_lossy().into_owned()
+    }
+
+    fn header(&self) -> Result<Shown, CaptureError> {
+        let (stored, exif) = header(self.file).map_err(|why| self.malformed("picture", why))?;
+        Ok(Shown { stored, exif })
+    }
+
+    /// An EXR with a channel of depth, or with a file of it beside.
+    fn exr(&self) -> Result<DepthPicture, CaptureError> {
+        let load = &self.options.load;
+        let names = exr_names(self.file, load)?;
+        if depth_channel(&names).is_none() {
+            return match depth_files(self.file).first() {
+                Some(depth) => self.with_file(depth, None, Vec::new()),
+                None => Err(CaptureError::NoDepth {
+                    path: self.file.into(),
+                    found: " among its channels (Z, depth.Z, ViewLayer.Depth.Z, Depth.V) or beside it".into(),
+                }),
+            };
+        }
+        // Depth in the picture's own file means distances, unless an end is said to be near.
+        let depth = read_depth_map(self.file, Some(DepthAs::Depth), self.options.near, load)?;
+        let Some(channels) = color_channels(&names) else {
+            return Err(self.malformed(
+                "EXR",
+                "has a channel of depth, but no picture (R, G, B; ViewLayer.Combined.R …)",
+            ));
+        };
+        Ok(DepthPicture {
+            name: self.name(),
+            picture: PictureSource::Exr { file: self.file.into(), channels },
+            size: [depth.width, depth.height],
+            depth,
+            depth_file: self.file.into(),
+            container: DepthContainer::Exr,
+            near_far_m: None,
+            focal_px: None,
+            remarks: Vec::new(),
+        })
+    }
+
+    /// A picture whose depth is in a file.
+    fn with_file(
+        &self,
+        depth_file: &Path,
+        as_what: Option<DepthAs>,
+        mut remarks: Vec<Remark>,
+    ) -> Result<DepthPicture, CaptureError> {
+        let Self { file, options } = *self;
+        let depth = read_depth_map(depth_file, as_what, options.near, &options.load)?;
+        if options.near.is_none()
+            && as_what.is_none()
+            && depth.meaning == DepthMeaning::Relative
+            && said_by_name(depth_file) == Some(DepthAs::Disparity)
+        {
+            remarks.push(Remark::note(format!(
+                "{}: is called a disparity, so white is near (else say --near black)",
+                depth_file.display()
+            )));
+        }
+        let (picture, size, depth, focal_px) = if extension(file) == "exr" {
+            let names = exr_names(file, &options.load)?;
+            let channels = color_channels(&names)
+                .ok_or_else(|| self.malformed("EXR", "has no picture (R, G, B; ViewLayer.Combined.R …)"))?;
+            let size = crate::exr_channels::read_exr(file, &[&channels[0]], &options.load)?.size;
+            (PictureSource::Exr { file: file.into(), channels }, size, depth, None)
+        } else {
+            let shown = self.header()?;
+            let orientation = shown.exif.orientation;
+            let is_turned = is_turned_already(shown.stored, orientation, [depth.width, depth.height]);
+            let depth = if is_turned { depth } else { depth.turned(orientation) };
+            let picture = PictureSource::File { file: file.into(), orientation };
+            (picture, seen(shown.stored, orientation), depth, focal_px(&shown))
+        };
+        remarks.extend(other_shape(depth_file, size, &depth));
+        Ok(DepthPicture {
+            name: self.name(),
+            picture,
+            size,
+            depth,
+            depth_file: depth_file.into(),
+            container: DepthContainer::Beside,
+            near_far_m: None,
+            focal_px,
+            remarks,
+        })
+    }
+
+    /// A JPEG that holds its depth; none if it does not.
+    fn embedded(&self) -> Result<Option<DepthPicture>, CaptureError> {
+        let Self { file, options } = *self;
+        if !is_jpeg(&head(file, 2)) {
+            return Ok(None);
+        }
+        let bytes = whole_file(file, options.load.max_memory / 4)?;
+        if !speaks_of_depth(&bytes) {
+            return Ok(None);
+        }
+        let at = |(byte, what): (usize, String)| self.malformed(&format!("byte {byte}"), what);
+        let segments = Segments::of(&bytes).map_err(at)?;
+        let texts = XmpTexts::of(&segments).map_err(at)?;
+        let documents = texts.documents().map_err(|why| self.malformed("XMP", why))?;
+        let gdepth = || read_gdepth(&documents, &options.load).map(|found| (found, DepthContainer::GDepth));
+        let dynamic = || {
+            let found = read_dynamic_depth(&documents, &bytes, &options.load);
+            found.map(|found| (found, DepthContainer::DynamicDepth))
+        };
+        let Some((found, container)) = gdepth().or_else(dynamic) else {
+            if texts.mention("GDepth:Near") || texts.mention("GDepth:Format") {
+                return Err(self.malformed(
+                    "XMP",
+                    "tells of a depth map (GDepth) that is not there (GDepth:Data is missing)",
+                ));
+            }
+            return Ok(None);
+        };
+        let found = found.map_err(|why| self.malformed("XMP", why))?;
+        self.of_embedded(found, container).map(Some)
+    }
+
+    fn of_embedded(&self, found: Embedded, container: DepthContainer) -> Result<DepthPicture, CaptureError> {
+        let file = self.file;
+        let shown = self.header()?;
+        let orientation = shown.exif.orientation;
+        let Embedded { map, near_far, original, focal_share, notes } = found;
+        let note = |note: String| Remark::note(format!("{}: {note}", file.display()));
+        let mut remarks: Vec<Remark> = notes.into_iter().map(note).collect();
+        let (picture, stored, picture_orientation) = match original {
+            Some(bytes) => {
+                let (stored, own) = crate::picture_header::header_of_bytes(&bytes)
+                    .map_err(|why| self.malformed("original picture", why))?;
+                remarks.push(note("holds the picture before it was blurred, which is taken".into()));
+                // It is stored as the picture is, or upright.
+                let is_alike = (stored[0] > stored[1]) == (shown.stored[0] > shown.stored[1]);
+                let orientation =
+                    if own.orientation != 1 || !is_alike { own.orientation } else { orientation };
+                (
+                    PictureSource::Within { file: file.into(), bytes: Arc::from(bytes), orientation },
+                    stored,
+                    orientation,
+                )
+            }
+            None => (PictureSource::File { file: file.into(), orientation }, shown.stored, orientation),
+        };
+        let size = seen(stored, picture_orientation);
+        let is_turned = is_turned_already(shown.stored, orientation, [map.width, map.height]);
+        let depth = if is_turned { map } else { map.turned(orientation) };
+        remarks.extend(other_shape(file, size, &depth));
+        let focal_px = focal_share
+            .map(|share| share * f64::from(size[0].max(size[1])))
+            .or_else(|| focal_px(&Shown { stored: size, exif: shown.exif }));
+        Ok(DepthPicture {
+            name: self.name(),
+            picture,
+            size,
+            depth,
+            depth_file: file.into(),
+            container,
+            near_far_m: near_far,
+            focal_px,
+            remarks,
+        })
+    }
+}
+
+/// The size of a picture once it is turned.
+fn seen([width, height]: [u32; 2], orientation: u8) -> [u32; 2] {
+    if orientation >= 5 { [height, width] } else { [width, height] }
+}
+
+/// Whether a depth map is turned as the picture wants to be seen, though the picture is stored otherwise: by which of the two shapes it has.
+fn is_turned_already(stored: [u32; 2], orientation: u8, depth: [u32; 2]) -> bool {
+    orientation >= 5 && mismatch(seen(stored, orientation), depth) < mismatch(stored, depth)
+}
+
+/// How far two shapes differ: the logarithm of the ratio of their ratios of width to height.
+fn mismatch(a: [u32; 2], b: [u32; 2]) -> f64 {
+    let ratio = |[width, height]: [u32; 2]| f64::from(width) / f64::from(height);
+    (ratio(a) / ratio(b)).ln().abs()
+}
+
+/// A remark if a depth map is of another shape than its picture, by more than rounding.
+fn other_shape(file: &Path, size: [u32; 2], depth: &DepthMap) -> Option<Remark> {
+    let rounding = 1.0 / f64::from(depth.width.min(depth.height).max(1));
+    let differs = mismatch(size, [depth.width, depth.height]) > 0.02 + 2.0 * rounding;
+    differs.then(|| {
+        let (width, height) = (depth.width, depth.height);
+        Remark::note(format!(
+            "{}: the depth map of {width} × {height} px is of another shape than the picture of {} × {} px, and is stretched over it",
+            file.display(),
+            size[0],
+            size[1]
+        ))
+    })
+}
+
+/// The focal length in pixels, by that of a film of 36 × 24 mm with the same diagonal (CIPA DCG-001).
+fn focal_px(shown: &Shown) -> Option<f64> {
+    let film = f64::hypot(36.0, 24.0);
+    let [width, height] = shown.stored.map(f64::from);
+    shown.exif.focal_length_35mm.map(|focal| focal * f64::hypot(width, height) / film)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn depth_maps_lie_as_their_shape_says() {
+        assert!(!is_turned_already([40, 30], 6, [20, 15]));
+        assert!(is_turned_already([40, 30], 6, [15, 20]));
+        assert!(!is_turned_already([40, 30], 3, [15, 20]));
+        // A square one is stored as the picture is.
+        assert!(!is_turned_already([30, 30], 6, [10, 10]));
+    }
+
+    #[test]
+    fn a_lens_of_43_mm_is_as_long_as_the_diagonal() {
+        let exif = Exif { focal_length_35mm: Some(f64::hypot(36.0, 24.0)), ..Exif::default() };
+        assert!((focal_px(&Shown { stored: [300, 400], exif }).unwrap() - 500.0).abs() < 1e-9);
+        assert_eq!(focal_px(&Shown { stored: [300, 400], exif: Exif::default() }), None);
+    }
+}

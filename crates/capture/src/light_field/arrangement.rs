@@ -1,0 +1,67 @@
+//! Which files are views, and where in the aperture each is.
+
+use glam::DVec2;
+use std::path::PathBuf;
+
+/// How the views of a light field are arranged, and how their files say so.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ViewLayout {
+    /// A grid, numbered row by row: `input_Cam000.png` … of the 4D Light Field Benchmark.
+    Numbered,
+    /// A grid, row and column in the names: PlenoptiCam, old HCI, many others.
+    RowColumn,
+    /// A grid, whose names have positions, too: `out_RR_CC_Y_X.png` of the Stanford archive.
+    Positions,
+    /// A middle and six about it.
+    Hexagon,
+    /// Wherever `views.json` says.
+    Listed,
+    /// The pixels of micro-images in one picture.
+    MicroImages,
+}
+
+/// A view, before its file was looked into.
+#[derive(Clone, Debug)]
+pub(crate) struct Placed {
+    pub file: PathBuf,
+    pub name: String,
+    /// Column and row as it is named, of a grid.
+    pub cell: Option<[u32; 2]>,
+    /// x right, y down; a step between neighbours is 1.
+    pub position: DVec2,
+}
+
+/// The views of a folder.
+#[derive(Clone, Debug)]
+pub(crate) struct Arrangement {
+    pub layout: ViewLayout,
+    /// Where they lie.
+    pub folder: PathBuf,
+    pub views: Vec<Placed>,
+    /// Columns and rows of the grid.
+    pub grid: Option<[u32; 2]>,
+    /// The view that a list says is the middle one.
+    pub reference: Option<usize>,
+    /// The disparity map that a list names.
+    pub disparity: Option<PathBuf>,
+    /// Whether other pictures hardly ever have such names.
+    pub is_certain: bool,
+    /// Sentences about what is odd, without the folder, and the names they are about.
+    pub notes: Vec<(String, Vec<String>)>,
+}
+
+impl Arrangement {
+    /// The middle of the aperture, in positions.
+    pub fn middle(&self) -> DVec2 {
+        match (self.grid, self.layout) {
+            (Some([columns, rows]), ViewLayout::Numbered | ViewLayout::RowColumn) => {
+                DVec2::new(f64::from(columns - 1), f64::from(rows - 1)) * 0.5
+            }
+            _ => {
+                let low = self.views.iter().fold(DVec2::INFINITY, |low, view| low.min(view.position));
+                let high = self.views.iter().fold(DVec2::NEG_INFINITY, |high, view| high.max(view.position));
+                (low + high) * 0.5
+            }
+        }
+    }
+}

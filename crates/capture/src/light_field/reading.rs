@@ -1,0 +1,435 @@
+//! Opening a light field: the story from top to bottom.
+
+use super::arrangement::{Arrangement, Placed, ViewLayout};
+use super::attributes::read_attributes;
+use super::disparity::{Wanted, find_disparity};
+use super::finding::find_views;
+use super::light_field_type::{GivenDisparity, LightField, SubAperture};
+use super::optics::{Optics, read_parameters};
+use super::parallax::{GridTurn, GridTurnFound, grid_turn};
+use crate::depth_map::{DepthAs, DepthMap, DepthMeaning, NearEnd, read_depth_map};
+use crate::folder::Folder;
+use crate::foreign::foreign;
+use crate::mosaic::{Mosaic, pitch_of};
+use crate::picture_header::header;
+use crate::picture_source::PictureSource;
+use crate::{CaptureError, Remark};
+use glam::DVec2;
+use progress::{Progress, Stage};
+use scene::{LoadOptions, Photograph};
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
+
+/// How a light field is read.
+#[derive(Clone, Debug, Default)]
+pub struct LightFieldOptions {
+    /// Columns and rows of pixels of a mosaic's micro-images; none: found out from its pixels.
+    pub pitch: Option<[u32; 2]>,
+    /// The disparity map of the middle view, wherever that is; none: looked for beside the views.
+    pub disparity: Option<PathBuf>,
+    /// Which end of a relative map is near.
+    pub near: Option<NearEnd>,
+    /// What reading may use of the machine.
+    pub load: LoadOptions,
+}
+
+/// Opens a light field: a folder of views, or a mosaic of micro-images.
+///
+/// Pixels are read of the middle view and of its neighbours only, to see which way rows and columns run.
+///
+/// # Errors
+/// There are no views, or a file that tells of them is malformed or beyond the limits. [`CaptureError::Cancelled`] if `progress`
+/// says so.
+pub fn open_light_field(
+    path: &Path,
+    options: &LightFieldOptions,
+    progress: &dyn Progress,
+) -> Result<LightField, CaptureError> {
+    let mut field = if path.is_dir() {
+        of_folder(path, options, &Stage::new(progress, 0.0, 0.6))?
+    } else {
+        of_mosaic(path, options)?
+    };
+    progress.check()?;
+    look_at_parallax(&mut field, options, &Stage::new(progress, 0.6, 1.0))?;
+    progress.report(1.0);
+    Ok(field)
+}
+
+fn name_of(path: &Path) -> String {
+    let whole = path.canonicalize().unwrap_or_else(|_| path.into());
+    whole.file_name().unwrap_or_default().to_string_lossy().into_owned()
+}
+
+/// The light field in a folder, positions as they are named.
+fn of_folder(
+    path: &Path,
+    options: &LightFieldOptions,
+    progress: &dyn Progress,
+) -> Result<LightField, CaptureError> {
+    let folder = Folder::open(path)?;
+    let none = |found: &str| CaptureError::NoViews { path: path.into(), found: found.into() };
+    let Some((arrangement, others)) = find_views(&folder)? else {
+        // Lytro's files alone get their sentence.
+        let entries = folder.entries(&folder.shown);
+        return Err(entries.iter().find_map(|(file, _)| foreign(file)).unwrap_or_else(|| none("")));
+    };
+    let mut remarks = Vec::new();
+    let base = arrangement.folder.clone();
+    let shown = base.display();
+    remarks.extend(Remark::about(
+        others.iter().map(|other| other.display().to_string()).collect(),
+        false,
+        |names| {
+            format!(
+                "{shown}: is taken for the views; there are also {names} (give that folder if it is meant)"
+            )
+        },
+    ));
+    for (what, names) in &arrangement.notes {
+        let is_incomplete = what.contains("missing");
+        remarks
+            .extend(Remark::about(names.clone(), is_incomplete, |names| format!("{shown}: {what}: {names}")));
+    }
+    let (placed, size) = of_one_size(&arrangement, &mut remarks, progress)?;
+    if placed.len() < 2 {
+        return Err(none(": less than two pictures of one size can be read"));
+    }
+    remarks.extend(missing(&arrangement, &placed));
+    // What lies with the views, or above them.
+    let places: Vec<&Path> = if base == folder.shown { vec![&base] } else { vec![&base, &folder.shown] };
+    let optics = optics(&folder, &places)?;
+    let reference = reference(&arrangement, &placed);
+    let middle = placed[reference].position;
+    let views = placed.iter().map(|placed| SubAperture {
+        name: placed.name.clone(),
+        cell: placed.cell,
+        position: placed.position - middle,
+        picture: PictureSource::stored(&placed.file),
+    });
+    let mut field = LightField {
+        name: name_of(path),
+        path: path.into(),
+        layout: arrangement.layout,
+        views: views.collect(),
+        size,
+        grid: arrangement.grid,
+        reference,
+        disparity: None,
+        optics,
+        remarks,
+    };
+    let found = match options.disparity.as_ref().or(arrangement.disparity.as_ref()) {
+        Some(file) => {
+            Some((read_depth_map(file, Some(DepthAs::Disparity), options.near, &options.load)?, file.clone()))
+        }
+        None => {
+            let wanted = Wanted {
+                folder: &folder,
+                places: &places,
+                size,
+                optics: &field.optics,
+                near: options.near,
+                load: &options.load,
+            };
+            find_disparity(&wanted)?
+        }
+    };
+    if let Some((map, file)) = found {
+        take_disparity(&mut field, map, file);
+    }
+    Ok(field)
+}
+
+/// The light field that a picture is a mosaic of.
+fn of_mosaic(path: &Path, options: &LightFieldOptions) -> Result<LightField, CaptureError> {
+    if let Some(error) = foreign(path) {
+        return Err(error);
+    }
+    header(path).map_err(|why| CaptureError::malformed(path, "picture", why))?;
+    let pitch = options.pitch.or_else(|| pitch_of(path, &options.load));
+    let Some(pitch) = pitch else {
+        let found =
+            ": it is no mosaic of micro-images, or one whose pitch cannot be seen and has to be said".into();
+        return Err(CaptureError::NoViews { path: path.into(), found });
+    };
+    let mosaic = Mosaic::open(path, pitch)?;
+    let [columns, rows] = pitch;
+    let mut remarks = Vec::new();
+    let size = mosaic.view_size();
+    let shown = path.display();
+    remarks.push(Remark::note(format!(
+        "{shown}: micro-images of {columns} × {rows} px, so as many views of {} × {} px{}",
+        size[0],
+        size[1],
+        if options.pitch.is_none() { ", as its pixels say" } else { "" }
+    )));
+    if mosaic.left_over() != [0, 0] {
+        let [right, bottom] = mosaic.left_over();
+        remarks.push(Remark::note(format!("{shown}: {right} columns at the right and {bottom} rows at the bottom are no whole micro-image, and are left out")));
+    }
+    let middle = [(columns - 1) / 2, (rows - 1) / 2];
+    let views =
+        (0..rows).flat_map(|row| (0..columns).map(move |column| [column, row])).map(|cell| SubAperture {
+            name: format!("{:02}_{:02}", cell[1], cell[0]),
+            cell: Some(cell),
+            position: DVec2::new(
+                f64::from(cell[0]) - f64::from(middle[0]),
+                f64::from(cell[1]) - f64::from(middle[1]),
+            ),
+            picture: PictureSource::MicroImages { mosaic: mosaic.clone(), cell },
+        });
+    let mut field = LightField {
+        name: name_of(path),
+        path: path.into(),
+        layout: ViewLayout::MicroImages,
+        views: views.collect(),
+        size,
+        grid: Some(pitch),
+        reference: (middle[1] * columns + middle[0]) as usize,
+        disparity: None,
+        optics: Optics::default(),
+        remarks,
+    };
+    if let Some(file) = &options.disparity {
+        let map = read_depth_map(file, Some(DepthAs::Disparity), options.near, &options.load)?;
+        take_disparity(&mut field, map, file.clone());
+    }
+    Ok(field)
+}
+
+/// The views that can be read and are of the size that most are of.
+fn of_one_size(
+    arrangement: &Arrangement,
+    remarks: &mut Vec<Remark>,
+    progress: &dyn Progress,
+) -> Result<(Vec<Placed>, [u32; 2]), CaptureError> {
+    let shown = arrangement.folder.display();
+    let (mut read, mut wrong) = (Vec::new(), Vec::new());
+    let mut sizes: HashMap<[u32; 2], usize> = HashMap::new();
+    for (index, placed) in arrangement.views.iter().enumerate() {
+        progress.check()?;
+        progress.report(index as f32 / arrangement.views.len() as f32);
+        match header(&placed.file) {
+            Ok((size, _)) => {
+                *sizes.entry(size).or_default() += 1;
+                read.push((placed.clone(), size));
+            }
+            Err(why) => wrong.push(format!("{} ({why})", placed.name)),
+        }
+    }
+    let size = sizes.into_iter().max_by_key(|(size, count)| (*count, *size)).map_or([0; 2], |(size, _)| size);
+    let (fit, other): (Vec<_>, Vec<_>) = read.into_iter().partition(|(_, of)| *of == size);
+    let other =
+        other.iter().map(|(placed, [width, height])| format!("{} ({width} × {height} px)", placed.name));
+    remarks
+        .extend(Remark::about(wrong, true, |names| format!("{shown}: views that cannot be used: {names}")));
+    remarks.extend(Remark::about(other.collect(), true, |names| {
+        format!(
+            "{shown}: views that are not of {} × {} px as the others, and are left out: {names}",
+            size[0], size[1]
+        )
+    }));
+    Ok((fit.into_iter().map(|(placed, _)| placed).collect(), size))
+}
+
+/// A remark on what of the grid is not there.
+fn missing(arrangement: &Arrangement, placed: &[Placed]) -> Option<Remark> {
+    let [columns, rows] = arrangement.grid?;
+    let shown = arrangement.folder.display();
+    let there: std::collections::HashSet<[u32; 2]> = placed.iter().filter_map(|placed| placed.cell).collect();
+    let all = (0..rows).flat_map(|row| (0..columns).map(move |column| [column, row]));
+    let missing: Vec<[u32; 2]> = all.filter(|cell| !there.contains(cell)).collect();
+    let is_on_cross = |cell: &[u32; 2]| 2 * cell[0] + 1 == columns || 2 * cell[1] + 1 == rows;
+    if columns > 1
+        && rows > 1
+        && !missing.is_empty()
+        && missing.iter().all(|cell| !is_on_cross(cell))
+        && there.iter().all(is_on_cross)
+    {
+        return Some(Remark::note(format!("{shown}: a cross of {columns} and {rows} views")));
+    }
+    let names = missing.iter().map(|[column, row]| match arrangement.layout {
+        ViewLayout::Numbered => format!("number {}", row * columns + column),
+        _ => format!("row {row} column {column}"),
+    });
+    let count = missing.len();
+    Remark::about(names.collect(), true, |names| {
+        format!("{shown}: {count} of {columns} × {rows} views are missing: {names} (the others are used)")
+    })
+}
+
+/// What the files beside the views say of the camera.
+fn optics(folder: &Folder, places: &[&Path]) -> Result<Optics, CaptureError> {
+    let file = |name: &str| places.iter().map(|place| place.join(name)).find(|file| folder.has_file(file));
+    if let Some(file) = file("parameters.cfg") {
+        return read_parameters(&file);
+    }
+    let disparity_range = match file("attributes.dat") {
+        Some(file) => read_attributes(&file)?.range,
+        None => None,
+    };
+    Ok(Optics { disparity_range, ..Optics::default() })
+}
+
+/// The view that is the list's middle one, or the one nearest the middle of the aperture.
+fn reference(arrangement: &Arrangement, placed: &[Placed]) -> usize {
+    let said = arrangement.reference.map(|index| &arrangement.views[index].file);
+    if let Some(index) = placed.iter().position(|placed| Some(&placed.file) == said) {
+        return index;
+    }
+    let middle = arrangement.middle();
+    let distance = |index: &usize| placed[*index].position.distance(middle);
+    // Of equals the first.
+    (0..placed.len()).min_by(|a, b| distance(a).total_cmp(&distance(b)).then(a.cmp(b))).unwrap_or(0)
+}
+
+/// Keeps a disparity map: of the view that its file is named after, else of the middle one.
+fn take_disparity(field: &mut LightField, map: DepthMap, file: PathBuf) {
+    let stem = file.file_stem().unwrap_or_default().to_string_lossy().to_lowercase();
+    let is_named = |view: &SubAperture| view.name.len() >= 3 && stem.contains(&view.name.to_lowercase());
+    let view = field.views.iter().position(is_named).unwrap_or(field.reference);
+    if [map.width, map.height] != field.size {
+        field.remarks.push(Remark::note(format!(
+            "{}: of {} × {} px, the views are of {} × {} px; it is stretched over them",
+            file.display(),
+            map.width,
+            map.height,
+            field.size[0],
+            field.size[1]
+        )));
+    }
+    if map.meaning == DepthMeaning::Relative {
+        field.remarks.push(Remark::note(format!(
+            "{}: levels of grey, which are disparities up to scale and offset",
+            file.display()
+        )));
+    }
+    field.disparity = Some(GivenDisparity { map, view, file });
+}
+
+/// The views about the reference that tell which way rows and columns run: two on each axis, else the nearest.
+fn neighbours(field: &LightField) -> Vec<usize> {
+    let position = |index: usize| field.views[index].position;
+    let mut nearest: Vec<usize> =
+        (0..field.views.len()).filter(|index| position(*index).length() > 0.0).collect();
+    nearest.sort_by(|a, b| position(*a).length().total_cmp(&position(*b).length()));
+    let sides = [DVec2::X, DVec2::NEG_X, DVec2::Y, DVec2::NEG_Y];
+    // Within 20° of the axis: places of gantries are not exact.
+    let on_side = |side: DVec2| {
+        nearest.iter().copied().find(|index| position(*index).normalize_or_zero().dot(side) > 0.94)
+    };
+    let mut chosen: Vec<usize> = sides.into_iter().filter_map(on_side).collect();
+    let is_new = |chosen: &[usize], index: usize| !chosen.contains(&index);
+    for index in nearest {
+        if chosen.len() < 4 && is_new(&chosen, index) {
+            chosen.push(index);
+        }
+    }
+    chosen
+}
+
+/// Turns the positions as the pictures say, and says so.
+fn look_at_parallax(
+    field: &mut LightField,
+    options: &LightFieldOptions,
+    progress: &dyn Progress,
+) -> Result<(), CaptureError> {
+    let mut indices = vec![field.reference];
+    indices.extend(neighbours(field));
+    let Some(pictures) = small_pictures(field, &indices, options, progress)? else { return Ok(()) };
+    let [reference, others @ ..] = &pictures[..] else { return Ok(()) };
+    let (reference, scale) = (&reference.0, reference.1);
+    let at = |index: &usize| field.views[*index].position;
+    let others: Vec<(DVec2, &Photograph)> =
+        indices[1..].iter().map(at).zip(others.iter().map(|other| &other.0)).collect();
+    // In pixels of the reduced pictures.
+    let map = field
+        .disparity
+        .as_ref()
+        .filter(|given| given.view == field.reference && given.map.meaning == DepthMeaning::Disparity);
+    let map = map.map(|given| {
+        let values = given.map.values.iter().map(|value| value / scale as f32).collect();
+        DepthMap { values, ..given.map.clone() }
+    });
+    let shown = field.path.display();
+    let found = grid_turn(reference, &others, map.as_ref());
+    // A map that fits nothing, or is of another sign, still leaves what the pictures alone say.
+    let found = match found {
+        GridTurnFound::Unclear if map.is_some() => grid_turn(reference, &others, None),
+        found => found,
+    };
+    let remark = match found {
+        GridTurnFound::Told(turn) if turn == GridTurn::default() => return Ok(()),
+        GridTurnFound::Told(turn) => {
+            for view in &mut field.views {
+                view.position = turn.apply(view.position);
+            }
+            format!("{shown}: {}, as parallax shows; views are placed as the pictures say", said(turn))
+        }
+        GridTurnFound::OneLine => {
+            format!("{shown}: all views stand in one line; which way other rows would run cannot be told")
+        }
+        GridTurnFound::Unclear => format!(
+            "{shown}: parallax does not show which way rows and columns run; they are taken as they are named"
+        ),
+    };
+    field.remarks.push(Remark::note(remark));
+    Ok(())
+}
+
+/// What is otherwise than named.
+fn said(turn: GridTurn) -> &'static str {
+    match (turn.is_transposed, turn.columns_reversed, turn.rows_reversed) {
+        (false, false, _) => "rows run from the bottom up",
+        (false, true, false) => "columns run from right to left",
+        (false, true, true) => "columns run from right to left and rows from the bottom up",
+        (true, false, false) => "the column is named before the row",
+        (true, false, true) => "the column is named before the row, and rows run from the bottom up",
+        (true, true, false) => "the column is named before the row, and columns run from right to left",
+        (true, true, true) => {
+            "the column is named before the row, columns run from right to left and rows from the bottom up"
+        }
+    }
+}
+
+/// Pictures of some views, no wider than is needed, with how much they are reduced by; none if one cannot be read, which is told.
+fn small_pictures(
+    field: &mut LightField,
+    indices: &[usize],
+    options: &LightFieldOptions,
+    progress: &dyn Progress,
+) -> Result<Option<Vec<(Photograph, u32)>>, CaptureError> {
+    /// px
+    const WIDEST: u32 = 1024;
+    let by = field.size[0].max(field.size[1]).div_ceil(WIDEST).max(1);
+    let mosaic = field.views.iter().find_map(|view| match &view.picture {
+        PictureSource::MicroImages { mosaic, .. } => Some(mosaic.clone()),
+        _ => None,
+    });
+    let read = || -> Result<Vec<(Photograph, u32)>, CaptureError> {
+        if let Some(mosaic) = &mosaic {
+            let cells: Vec<[u32; 2]> = indices.iter().filter_map(|index| field.views[*index].cell).collect();
+            let views = mosaic.views(&cells, &options.load)?;
+            return Ok(views.into_iter().map(|view| (view.reduced(by), by)).collect());
+        }
+        let mut pictures = Vec::new();
+        for (done, index) in indices.iter().enumerate() {
+            progress.check()?;
+            progress.report(done as f32 / indices.len() as f32);
+            pictures.push((field.views[*index].picture.photograph(&options.load)?.reduced(by), by));
+        }
+        Ok(pictures)
+    };
+    match read() {
+        Ok(pictures) => Ok(Some(pictures)),
+        Err(error @ CaptureError::Cancelled(_)) => Err(error),
+        // A picture that breaks off behind its header: who reads it will be told again.
+        Err(error) => {
+            let names = vec![error.to_string()];
+            let text = format!("{error}; which way rows and columns run was not looked at");
+            field.remarks.push(Remark { text, names, is_incomplete: true });
+            Ok(None)
+        }
+    }
+}

@@ -1,0 +1,65 @@
+//! A PNG row by row: of a mosaic of forty megapixels no more than a row is kept.
+
+use png::{BitDepth, ColorType, Decoder, Limits, Transformations};
+use std::fs::File;
+use std::io::BufReader;
+use std::path::Path;
+
+/// What a PNG's header says.
+pub(super) struct PngRows {
+    reader: png::Reader<BufReader<File>>,
+    pub size: [u32; 2],
+    /// Of a pixel: 1 grey, 2 with alpha, 3 colours, 4 with alpha.
+    pub channels: usize,
+    /// Whether channels have two bytes.
+    pub is_deep: bool,
+    pub profile: Option<Vec<u8>>,
+}
+
+impl PngRows {
+    /// The rows of a file; `None` if it is no PNG whose rows follow each other.
+    pub fn open(file: &Path, max_memory: u64) -> Option<Result<Self, String>> {
+        let input = BufReader::new(File::open(file).ok()?);
+        let limits = Limits { bytes: usize::try_from(max_memory / 4).unwrap_or(usize::MAX) };
+        let mut decoder = Decoder::new_with_limits(input, limits);
+        decoder.set_transformations(Transformations::EXPAND);
+        let reader = match decoder.read_info() {
+            Ok(reader) => reader,
+            Err(png::DecodingError::Format(error))
+                if !crate::whole_file::head(file, 8).starts_with(b"\x89PNG\r\n\x1a\n") =>
+            {
+                drop(error);
+                return None;
+            }
+            Err(error) => return Some(Err(error.to_string())),
+        };
+        let info = reader.info();
+        if info.interlaced {
+            return None;
+        }
+        let size = [info.width, info.height];
+        let profile = info.icc_profile.as_ref().map(|profile| profile.to_vec());
+        let (color, depth) = reader.output_color_type();
+        let channels = match color {
+            ColorType::Grayscale => 1,
+            ColorType::GrayscaleAlpha => 2,
+            ColorType::Rgb | ColorType::Indexed => 3,
+            ColorType::Rgba => 4,
+        };
+        Some(Ok(Self { reader, size, channels, is_deep: depth == BitDepth::Sixteen, profile }))
+    }
+
+    /// The bytes of the next row, big endian.
+    pub fn next(&mut self) -> Result<&[u8], String> {
+        match self.reader.next_row() {
+            Ok(Some(row)) => Ok(row.data()),
+            Ok(None) => Err("it ends before its last row".into()),
+            Err(error) => Err(error.to_string()),
+        }
+    }
+
+    /// Bytes a pixel.
+    pub fn pixel_bytes(&self) -> usize {
+        self.channels * if self.is_deep { 2 } else { 1 }
+    }
+}
