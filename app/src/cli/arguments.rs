@@ -136,7 +136,8 @@ pub struct NewArguments {
 /// `import`.
 #[derive(Debug, Args)]
 pub struct ImportArguments {
-    /// The folder of the capture: COLMAP's, nerfstudio's, Bundler's, VisualSFM's or Metashape's cameras, pictures and a mesh
+    /// The folder of the capture (COLMAP's, nerfstudio's, Bundler's, VisualSFM's or Metashape's cameras, pictures and a mesh; the views
+    /// of a light field), or a picture that holds its depth or has it beside it
     pub capture: PathBuf,
     /// Where to write the project
     #[arg(short, long, value_name = "PROJECT.fbrush")]
@@ -147,6 +148,40 @@ pub struct ImportArguments {
     /// Photographs that are only compared with, by name: no light is made of them
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     pub leave_out: Vec<String>,
+    /// What it is taken for (default: what it is found to be)
+    #[arg(long, value_enum, value_name = "KIND")]
+    pub kind: Option<KindName>,
+    /// The disparity map of a light field's middle view, or of a picture (.pfm, .exr, .png) (default: the one that lies beside it)
+    #[arg(long, value_name = "FILE", conflicts_with = "depth")]
+    pub disparity: Option<PathBuf>,
+    /// The depth map of a picture (.pfm, .exr, .png) (default: the one in it or beside it)
+    #[arg(long, value_name = "FILE")]
+    pub depth: Option<PathBuf>,
+    /// Which end of a relative depth map is near, or the distances of black and of white in metres
+    #[arg(long, value_name = "white|black|LOW,HIGH")]
+    pub near: Option<String>,
+}
+
+/// Kinds of captures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum KindName {
+    /// Photographs with cameras, and a mesh
+    Photographs,
+    /// Views of one place from points of an aperture
+    Lightfield,
+    /// A picture and its depth
+    Depth,
+}
+
+impl KindName {
+    /// As projects have it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Photographs => "photographs",
+            Self::Lightfield => "lightfield",
+            Self::Depth => "depth",
+        }
+    }
 }
 
 /// `replay`.

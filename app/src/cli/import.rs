@@ -10,14 +10,21 @@ use session::{Beginning, Document, Input, InputKind};
 
 /// Makes a project of a capture. What is missing of it is told, and what was found is imported: then the work is partly done.
 pub fn run(arguments: &ImportArguments, console: &Console) -> Result<(), Failure> {
-    let ImportArguments { capture, output, mesh, leave_out } = arguments;
+    let ImportArguments { capture, output, mesh, leave_out, kind, disparity, depth, near } = arguments;
     check_project_name(output)?;
     check_folder(output)?;
     if InputKind::of(capture)? != InputKind::Capture {
         let what = "is no capture (give the folder of one; `focus-brush new` makes projects of scenes)";
         return Err(Failure::bad(format!("{}: {what}", capture.display())));
     }
-    let choices = CaptureChoices { mesh: mesh.clone(), leave_out: leave_out.clone() };
+    let choices = CaptureChoices {
+        mesh: mesh.clone(),
+        leave_out: leave_out.clone(),
+        kind: kind.map(|kind| kind.name().into()),
+        disparity: disparity.clone(),
+        depth: depth.clone(),
+        near: near.clone(),
+    };
     let input = Input::open_capture(capture, choices, console)?;
     let is_incomplete = input.is_incomplete;
     let document = Document::begin_with(input, &Beginning::default(), &unwrap_options(None), console)?;

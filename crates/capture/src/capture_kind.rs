@@ -6,6 +6,7 @@ use crate::foreign::foreign;
 use crate::light_field::find_views;
 use crate::mosaic::pitch_of;
 use crate::picture_header::header;
+use crate::picture_names::EXTENSIONS;
 use crate::{CaptureError, layout};
 use scene::LoadOptions;
 use std::path::Path;
@@ -30,6 +31,13 @@ impl CaptureKind {
     pub fn named(name: &str) -> Option<Self> {
         Self::ALL.iter().find(|(known, _)| *known == name).map(|(_, kind)| *kind)
     }
+}
+
+/// Whether a file's name says that it is a picture, or holds some: one that [`capture_kind`] can say something about.
+pub fn may_be_picture(path: &Path) -> bool {
+    const OTHERS: [&str; 5] = ["heif", "avif", "lfp", "lfr", "lfx"];
+    let extension = extension(path);
+    EXTENSIONS.contains(&extension.as_str()) || OTHERS.contains(&extension.as_str())
 }
 
 /// The kind of capture that a folder or file is.

@@ -47,7 +47,7 @@ mod text;
 mod upright;
 mod whole_file;
 
-pub use capture_kind::{CaptureKind, capture_kind};
+pub use capture_kind::{CaptureKind, capture_kind, may_be_picture};
 pub use depth_map::{DepthAs, DepthMap, DepthMeaning, NearEnd, read_depth_map};
 pub use depth_picture::{DepthContainer, DepthPicture, DepthPictureOptions, open_depth_picture};
 pub use error::CaptureError;

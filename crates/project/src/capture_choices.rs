@@ -1,4 +1,4 @@
-//! What was chosen of a capture: which mesh, and which photographs no light is made of.
+//! What was chosen of a capture: what it is, which mesh or depth, and which photographs no light is made of.
 
 use crate::scene_path::ScenePath;
 use serde::{Deserialize, Serialize};
@@ -11,6 +11,14 @@ pub struct CaptureChoices {
     pub mesh: Option<PathBuf>,
     /// Photographs that are only compared with, by name.
     pub leave_out: Vec<String>,
+    /// What it is taken for, `photographs`, `lightfield` or `depth`; none: what it is found to be.
+    pub kind: Option<String>,
+    /// The disparity map of a light field's middle view, or of a picture; none: the one that is found.
+    pub disparity: Option<PathBuf>,
+    /// The depth map of a picture; none: the one that is found.
+    pub depth: Option<PathBuf>,
+    /// Which end of a relative depth map is near: `white`, `black`, or the distances of both.
+    pub near: Option<String>,
 }
 
 /// The same in a manifest.
@@ -20,21 +28,43 @@ pub(crate) struct CaptureRow {
     mesh: Option<ScenePath>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     leave_out: Vec<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    kind: Option<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    disparity: Option<ScenePath>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    depth: Option<ScenePath>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    near: Option<String>,
 }
 
 impl CaptureRow {
     /// Of a project that lies in `project`.
     pub fn new(choices: &CaptureChoices, project: &Path) -> Self {
-        let mesh = choices.mesh.as_ref().map(|mesh| ScenePath::new(mesh, project));
-        Self { mesh, leave_out: choices.leave_out.clone() }
+        let path = |path: &Option<PathBuf>| path.as_ref().map(|path| ScenePath::new(path, project));
+        Self {
+            mesh: path(&choices.mesh),
+            leave_out: choices.leave_out.clone(),
+            kind: choices.kind.clone(),
+            disparity: path(&choices.disparity),
+            depth: path(&choices.depth),
+            near: choices.near.clone(),
+        }
     }
 
     /// What is meant, from where the project lies; `None` if what stands there is no path.
     pub fn choices(&self, project: &Path) -> Option<CaptureChoices> {
-        let mesh = match &self.mesh {
-            Some(mesh) => Some(mesh.from(project)?),
-            None => None,
+        let path = |path: &Option<ScenePath>| match path {
+            Some(path) => path.from(project).map(Some),
+            None => Some(None),
         };
-        Some(CaptureChoices { mesh, leave_out: self.leave_out.clone() })
+        Some(CaptureChoices {
+            mesh: path(&self.mesh)?,
+            leave_out: self.leave_out.clone(),
+            kind: self.kind.clone(),
+            disparity: path(&self.disparity)?,
+            depth: path(&self.depth)?,
+            near: self.near.clone(),
+        })
     }
 }

@@ -19,12 +19,17 @@
 
 mod cells;
 mod corners;
+mod filling;
+mod frame;
 mod hidden;
 mod jumps;
 mod other_view;
 mod relief;
 mod texture;
 mod triangulation;
+mod upsampling;
 
+pub use filling::filled;
 pub use other_view::OtherView;
 pub use relief::{Relief, ReliefError, ReliefOptions, ReliefVertex, TEXTURE_LAYERS};
+pub use upsampling::upsampled;

@@ -1,11 +1,12 @@
 //! The surface itself.
 
-use crate::cells::{Cells, Grid};
+use crate::cells::Cells;
 use crate::corners::Corner;
+use crate::frame::Frame;
 use crate::hidden::{Hidden, hidden};
 use crate::jumps;
 use crate::other_view::OtherView;
-use crate::texture::{Behind, NotFound, behind};
+use crate::texture::{Behind, NotFound, Surface};
 use crate::triangulation::Triangulation;
 use glam::Vec2;
 use progress::{Cancelled, Progress, Stage};
@@ -20,12 +21,14 @@ pub struct ReliefOptions {
     pub tolerance_px: f32,
     /// Steps of a larger parallax between pixels are where depth jumps, px.
     pub jump_px: f32,
+    /// How far the surface goes on around the picture, px: what the aperture sees from beside it.
+    pub margin_px: usize,
 }
 
 impl Default for ReliefOptions {
     /// For one step either way.
     fn default() -> Self {
-        Self { reach: 1.0, tolerance_px: 0.1, jump_px: 1.0 }
+        Self { reach: 1.0, tolerance_px: 0.1, jump_px: 1.0, margin_px: 0 }
     }
 }
 
@@ -43,8 +46,10 @@ pub struct ReliefVertex {
 /// A surface in a picture's space, and its texture.
 #[derive(Clone, Debug)]
 pub struct Relief {
-    /// Columns and rows of the picture, and of each layer of the texture.
+    /// Columns and rows of each layer of the texture: of the picture and the margin around it.
     pub size: [usize; 2],
+    /// How far the surface goes on around the picture, px.
+    pub margin: usize,
     /// Points; each is of one layer.
     pub vertices: Vec<ReliefVertex>,
     /// Corners, counter-clockwise as the picture shows them.
@@ -84,17 +89,19 @@ impl Relief {
         options: &ReliefOptions,
         progress: &dyn Progress,
     ) -> Result<Self, ReliefError<E>> {
-        let grid = Grid { width: size[0], height: size[1] };
-        assert!(disparity.len() == grid.count() && picture.len() == grid.count());
+        assert!(disparity.len() == size[0] * size[1] && picture.len() == disparity.len());
+        let frame = Frame::of(size, options.margin_px);
+        let grid = frame.grid;
         let jump = options.jump_px / options.reach;
-        let mut front = disparity.to_vec();
-        jumps::snap(grid, &mut front, picture, jump);
+        let (mut front, mut shown) = (frame.continued(disparity), frame.continued(picture));
+        jumps::snap(grid, &mut front, &shown, jump);
         let links = jumps::links(grid, &front, jump);
         progress.check().map_err(ReliefError::Cancelled)?;
         let hidden = hidden(grid, &front, &links, options.reach, jump);
         let stage = Stage::new(progress, 0.1, 0.8);
-        let Behind { colors, is_seen } = behind(grid, &front, picture, &hidden, views, jump, &stage)
-            .map_err(|error| match error {
+        let surface = Surface { frame: &frame, front: &front, hidden: &hidden, jump };
+        let Behind { colors, is_seen } =
+            surface.complete(&mut shown, views, &stage).map_err(|error| match error {
                 NotFound::Cancelled(cancelled) => ReliefError::Cancelled(cancelled),
                 NotFound::View(error) => ReliefError::View(error),
             })?;
@@ -105,12 +112,15 @@ impl Relief {
         mesh.add_first(&cells, options.tolerance_px / options.reach);
         mesh.add_second(&cells, &order);
         progress.report(1.0);
+        let corner = Vec2::splat(frame.margin as f32);
+        mesh.vertices.iter_mut().for_each(|vertex| vertex.place -= corner);
         Ok(Self {
-            size,
+            size: [grid.width, grid.height],
+            margin: frame.margin,
             vertices: mesh.vertices,
             triangles: mesh.triangles,
-            texture: [picture, &colors].concat(),
-            is_seen: [vec![true; grid.count()], is_seen].concat(),
+            texture: [shown, colors].concat(),
+            is_seen,
         })
     }
 

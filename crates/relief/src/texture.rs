@@ -1,6 +1,7 @@
-//! The colours of what goes on behind: from views that see it; where none does, from around, known as invented.
+//! The colours of what goes on behind and beside the picture: from views that see it; where none does, from around, known as invented.
 
 use crate::cells::Grid;
+use crate::frame::Frame;
 use crate::hidden::{Hidden, number};
 use crate::other_view::OtherView;
 use progress::Progress;
@@ -13,7 +14,7 @@ const RIM_SHARE: f32 = 0.25;
 /// Rounds in which what was invented is evened out.
 const ROUNDS: usize = 32;
 
-/// The second layer's colours, and which of them some view shows.
+/// The second layer's colours, and, by layer and cell, which some view shows.
 pub(crate) struct Behind {
     pub colors: Vec<[f32; 3]>,
     pub is_seen: Vec<bool>,
@@ -25,46 +26,86 @@ pub(crate) enum NotFound<E> {
     View(E),
 }
 
-/// Finds the colours of the second layer.
-pub(crate) fn behind<E: Send>(
-    grid: Grid,
-    front: &[f32],
-    picture: &[[f32; 3]],
-    hidden: &Hidden,
-    views: &[OtherView<'_, E>],
-    jump: f32,
-    progress: &dyn Progress,
-) -> Result<Behind, NotFound<E>> {
-    let mut sums = vec![[0.0f32; 4]; hidden.order.len()];
-    if !hidden.order.is_empty() {
+/// Cells of the first layer and of what goes on behind it, whose colours are looked for.
+pub(crate) struct Surface<'a> {
+    pub frame: &'a Frame,
+    pub front: &'a [f32],
+    pub hidden: &'a Hidden,
+    /// The least step of disparity that is a jump.
+    pub jump: f32,
+}
+
+/// A cell that the picture does not show.
+#[derive(Clone, Copy)]
+struct Asked {
+    cell: usize,
+    disparity: f32,
+    layer: usize,
+}
+
+impl Surface<'_> {
+    /// Finds the colours of the second layer, and those of the margin, into `shown`.
+    pub fn complete<E: Send>(
+        &self,
+        shown: &mut [[f32; 3]],
+        views: &[OtherView<'_, E>],
+        progress: &dyn Progress,
+    ) -> Result<Behind, NotFound<E>> {
+        let grid = self.frame.grid;
+        let beside = (0..grid.count()).filter(|&cell| !self.frame.is_in_picture(cell));
+        let beside = beside.map(|cell| Asked { cell, disparity: self.front[cell], layer: 0 });
+        let behind = self.hidden.order.iter();
+        let behind = behind.map(|&cell| Asked { cell, disparity: self.hidden.disparity[cell], layer: 1 });
+        let asked: Vec<Asked> = beside.chain(behind).filter(|asked| !asked.disparity.is_nan()).collect();
+        let sums = self.seen_by_others(&asked, views, progress)?;
+
+        let mut colors = vec![[f32::NAN; 3]; grid.count()];
+        let mut is_seen = [vec![true; grid.count()], vec![false; grid.count()]].concat();
+        for (asked, sum) in asked.iter().zip(&sums) {
+            let is_told = sum[3] > 0.0;
+            is_seen[asked.layer * grid.count() + asked.cell] = is_told;
+            if is_told {
+                let color = [sum[0] / sum[3], sum[1] / sum[3], sum[2] / sum[3]];
+                let layer = if asked.layer == 0 { &mut *shown } else { &mut colors };
+                layer[asked.cell] = color;
+            }
+        }
+        invent(grid, shown, self.hidden, &is_seen[grid.count()..], &mut colors);
+        fill_rim(grid, &self.hidden.order, &mut colors);
+        Ok(Behind { colors, is_seen })
+    }
+
+    /// What other views show of cells, summed, and how many do.
+    fn seen_by_others<E: Send>(
+        &self,
+        asked: &[Asked],
+        views: &[OtherView<'_, E>],
+        progress: &dyn Progress,
+    ) -> Result<Vec<[f32; 4]>, NotFound<E>> {
+        let mut sums = vec![[0.0f32; 4]; asked.len()];
+        if asked.is_empty() {
+            return Ok(sums);
+        }
+        let (grid, margin) = (self.frame.grid, self.frame.margin as f32);
+        let [width, height] = self.frame.picture();
+        let picture = Grid { width, height };
         for (done, view) in views.iter().enumerate() {
             progress.check().map_err(NotFound::Cancelled)?;
             progress.report(done as f32 / views.len() as f32);
             let shown = (view.read)().map_err(NotFound::View)?;
-            let nearest = nearest(grid, front, view.offset);
-            sums.par_iter_mut().zip(&hidden.order).for_each(|(sum, &cell)| {
-                let behind = hidden.disparity[cell];
-                let place = place(grid, cell, behind, view.offset);
-                if is_open(grid, &nearest, place, behind + jump)
-                    && let Some(color) = interpolated(grid, &shown, place)
+            let nearest = nearest(grid, self.front, view.offset);
+            sums.par_iter_mut().zip(asked).for_each(|(sum, asked)| {
+                let place = place(grid, asked.cell, asked.disparity, view.offset);
+                if is_open(grid, &nearest, place, asked.disparity + self.jump)
+                    && let Some(color) = interpolated(picture, &shown, place.map(|at| at - margin))
                 {
                     (0..3).for_each(|c| sum[c] += color[c]);
                     sum[3] += 1.0;
                 }
             });
         }
+        Ok(sums)
     }
-    let mut colors = vec![[f32::NAN; 3]; grid.count()];
-    let mut is_seen = vec![false; grid.count()];
-    for (&cell, sum) in hidden.order.iter().zip(&sums) {
-        if sum[3] > 0.0 {
-            is_seen[cell] = true;
-            colors[cell] = [sum[0] / sum[3], sum[1] / sum[3], sum[2] / sum[3]];
-        }
-    }
-    invent(grid, picture, hidden, &is_seen, &mut colors);
-    fill_rim(grid, &hidden.order, &mut colors);
-    Ok(Behind { colors, is_seen })
 }
 
 /// Where a view shows a cell's middle, pixels from its upper left corner.

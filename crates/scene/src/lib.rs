@@ -79,7 +79,9 @@ pub use material::{
     TextureRef, Tint, Volume, Workflow, Wrap,
 };
 pub use mesh_health::MeshHealth;
-pub use model::{Image, ImageLevel, Light, LightKind, Node, Part, Scene, SceneCamera, Triangle};
+pub use model::{
+    Image, ImageLevel, Light, LightKind, Node, Part, PictureTexture, Scene, SceneCamera, Triangle,
+};
 pub use source::{PartSource, Source, StoredElements};
 pub use surface_mesh::SurfaceMesh;
 pub use surface_point::{SurfaceField, SurfacePoint};

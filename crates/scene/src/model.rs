@@ -62,8 +62,23 @@ pub struct Scene {
     pub photo_lookup: PhotoLookup,
     /// Photographs that are only compared with: no light is made of them.
     pub left_out: Vec<View>,
+    /// Of a surface that was made from a picture: the picture as its texture.
+    pub picture: Option<PictureTexture>,
     /// What was wrong with the file but did no harm, a sentence each.
     pub warnings: Vec<String>,
+}
+
+/// The texture of a surface that was made from a picture: the picture, and what goes on behind it below. The first UV set is an atlas.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct PictureTexture {
+    /// Columns and rows.
+    pub size: [u32; 2],
+    /// The first row of what goes on behind: from there on triangles are another chart.
+    pub behind: u32,
+    /// Columns and rows around the picture that it does not show.
+    pub margin: u32,
+    /// By texel, row 0 on top, whether it was photographed; else it was invented.
+    pub is_seen: Vec<bool>,
 }
 
 /// Three corners and the part they belong to.

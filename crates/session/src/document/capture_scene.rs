@@ -1,13 +1,18 @@
 //! A capture as a scene that its photographs light.
 
 use super::camera_path::camera_between;
+use super::depth_scene::load_depth_picture;
+use super::light_field_scene::{OfPicture, load_light_field};
 use crate::error::SessionError;
-use capture::{Capture, CaptureError, CaptureOptions};
+use capture::{
+    Capture, CaptureError, CaptureKind, CaptureOptions, DepthAs, DepthPictureOptions, LightFieldOptions,
+    NearEnd,
+};
 use glam::DVec3;
 use lens::Camera;
 use progress::Progress;
 use project::CaptureChoices;
-use scene::{Scene, View};
+use scene::{LoadOptions, Scene, View};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -26,14 +31,51 @@ impl From<CaptureError> for SessionError {
 /// A capture that was opened.
 pub(crate) struct CaptureScene {
     pub scene: Arc<Scene>,
+    /// The camera to begin with, if not the scene's first.
+    pub camera: Option<Camera>,
     /// What is good to know, or missing, a sentence each.
     pub remarks: Vec<String>,
     /// Whether something is missing that the capture speaks of.
     pub is_incomplete: bool,
 }
 
-/// Reads the capture in a folder.
+/// Reads a capture: a folder of photographs, of views of a light field, or a picture with its depth.
 pub(crate) fn load_capture(
+    path: &Path,
+    choices: &CaptureChoices,
+    progress: &dyn Progress,
+) -> Result<CaptureScene, SessionError> {
+    let kind = match &choices.kind {
+        Some(name) => CaptureKind::named(name).ok_or_else(|| {
+            SessionError::bad(
+                path,
+                format!("cannot be taken for \"{name}\" (photographs, lightfield or depth)"),
+            )
+        })?,
+        None => capture::capture_kind(path)?,
+    };
+    let near = choices.near.as_ref().map(|near| near.parse::<NearEnd>());
+    let near = near.transpose().map_err(|what| SessionError::BadInput(format!("--near {what}")))?;
+    let load = LoadOptions::default();
+    let of_picture = match kind {
+        CaptureKind::Photographs => return load_photographs(path, choices, progress),
+        CaptureKind::LightField => {
+            let options =
+                LightFieldOptions { disparity: choices.disparity.clone(), near, load, ..Default::default() };
+            load_light_field(path, &options, progress)?
+        }
+        CaptureKind::Depth => {
+            let disparity = choices.disparity.clone().map(|file| (file, DepthAs::Disparity));
+            let depth = choices.depth.clone().map(|file| (file, DepthAs::Depth)).or(disparity);
+            load_depth_picture(path, &DepthPictureOptions { depth, near, load }, progress)?
+        }
+    };
+    let OfPicture { scene, camera, remarks, is_incomplete } = of_picture;
+    Ok(CaptureScene { scene: Arc::new(scene), camera: Some(camera), remarks, is_incomplete })
+}
+
+/// Reads the photographs in a folder, and the mesh of what they show.
+fn load_photographs(
     folder: &Path,
     choices: &CaptureChoices,
     progress: &dyn Progress,
@@ -55,7 +97,7 @@ pub(crate) fn load_capture(
     (scene.views, scene.left_out) = (views, left_out);
     let is_incomplete = remarks.iter().any(|remark| remark.is_incomplete);
     let remarks = remarks.into_iter().map(|remark| remark.text).collect();
-    Ok(CaptureScene { scene: Arc::new(scene), remarks, is_incomplete })
+    Ok(CaptureScene { scene: Arc::new(scene), camera: None, remarks, is_incomplete })
 }
 
 /// The camera that a name after [`PHOTOGRAPH`] means, that of a photograph or `A..B@SHARE`, one between two of them; else what is wrong.

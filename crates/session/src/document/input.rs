@@ -9,7 +9,6 @@ use crate::error::SessionError;
 use crate::jobs::Steps;
 use crate::light_field::{is_photographed, keep_photographs_at};
 use atlas::{Atlas, UnwrapOptions};
-use capture::CaptureError;
 use focus::{Focus, FocusMap, FocusRecipe, RecipeEntry};
 use lens::{Camera, Exposure, FocusOffset};
 use project::{CaptureChoices, FocusFile, ProjectError, ProjectFile, SceneState, read_camera, read_focus};
@@ -75,7 +74,7 @@ pub enum InputKind {
     Project,
     /// `.salf`.
     LightField,
-    /// The folder of a capture.
+    /// The folder of a capture, or a picture that is one.
     Capture,
 }
 
@@ -84,15 +83,13 @@ impl InputKind {
     pub fn of(path: &Path) -> Result<Self, SessionError> {
         let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
         if path.is_dir() {
-            return match capture::recognise(path) {
-                Some(_) => Ok(Self::Capture),
-                None => Err(CaptureError::NoCameras { folder: path.into() }.into()),
-            };
+            return Ok(Self::Capture);
         }
         match extension.as_str() {
             "glb" | "gltf" => Ok(Self::Scene),
             ProjectFile::EXTENSION | "recovery" => Ok(Self::Project),
             "salf" => Ok(Self::LightField),
+            _ if capture::may_be_picture(path) => Ok(Self::Capture),
             _ if !path.exists() => Err(SessionError::bad(path, "no such file (check the path)")),
             _ => {
                 let known = format!(".glb, .gltf, .{} or .salf", ProjectFile::EXTENSION);
@@ -128,9 +125,9 @@ impl Input {
         steps: &dyn Steps,
     ) -> Result<Self, SessionError> {
         let read = load_capture(path, &choices, &*steps.begin("reading"))?;
-        let CaptureScene { scene, remarks: mut warnings, is_incomplete } = read;
+        let CaptureScene { scene, camera, remarks: mut warnings, is_incomplete } = read;
         warnings.extend(named(path, &scene.warnings));
-        let camera = camera_of(&scene.cameras[0], &Camera::default());
+        let camera = camera.unwrap_or_else(|| camera_of(&scene.cameras[0], &Camera::default()));
         let input = Self::new(path, scene, camera, warnings);
         Ok(Self { capture: Some(choices), is_incomplete, ..input })
     }

@@ -1,5 +1,6 @@
 //! Atlases kept from one run of the program to the next: a scene of many triangles is not unwrapped anew each time it is opened.
 
+use super::picture_scene::picture_atlas;
 use super::scene_hashes::surface_hash;
 use crate::kept_files::KeptFiles;
 use atlas::{Atlas, AtlasError, UnwrapOptions};
@@ -14,12 +15,15 @@ const FILES: KeptFiles = KeptFiles { name: "atlas", budget_bytes: 512 << 20 };
 /// What is unwrapped in less time is unwrapped again.
 const SHORTEST: Duration = Duration::from_secs(1);
 
-/// The atlas of a scene: the kept one, or the scene unwrapped.
+/// The atlas of a scene: that of its picture, the kept one, or the scene unwrapped.
 pub(crate) fn unwrapped(
     scene: &Scene,
     options: &UnwrapOptions,
     progress: &dyn Progress,
 ) -> Result<Atlas, AtlasError> {
+    if let Some(atlas) = picture_atlas(scene) {
+        return Ok(atlas);
+    }
     let file = FILES.file(|hash| {
         let UnwrapOptions { density, gutter, uv, child, deadline: _ } = options;
         hash.update(surface_hash(scene));

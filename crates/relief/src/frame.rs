@@ -1,0 +1,39 @@
+//! The picture, and a margin around it.
+
+use crate::cells::Grid;
+
+/// A grid with the picture in its middle.
+pub(crate) struct Frame {
+    pub grid: Grid,
+    /// Cells of the margin on each side.
+    pub margin: usize,
+}
+
+impl Frame {
+    pub fn of([width, height]: [usize; 2], margin: usize) -> Self {
+        Self { grid: Grid { width: width + 2 * margin, height: height + 2 * margin }, margin }
+    }
+
+    /// Columns and rows of the picture.
+    pub fn picture(&self) -> [usize; 2] {
+        [self.grid.width - 2 * self.margin, self.grid.height - 2 * self.margin]
+    }
+
+    /// The picture's pixels, and in the margin those at its border.
+    pub fn continued<T: Copy>(&self, values: &[T]) -> Vec<T> {
+        let [width, height] = self.picture();
+        let at = |cell: usize| {
+            let x = (cell % self.grid.width).clamp(self.margin, self.margin + width - 1) - self.margin;
+            let y = (cell / self.grid.width).clamp(self.margin, self.margin + height - 1) - self.margin;
+            values[y * width + x]
+        };
+        (0..self.grid.count()).map(at).collect()
+    }
+
+    /// Whether a cell is one of the picture's pixels.
+    pub fn is_in_picture(&self, cell: usize) -> bool {
+        let [width, height] = self.picture();
+        let (x, y) = (cell % self.grid.width, cell / self.grid.width);
+        (self.margin..self.margin + width).contains(&x) && (self.margin..self.margin + height).contains(&y)
+    }
+}

@@ -1,0 +1,64 @@
+//! A picture and its depth as a scene.
+
+use super::light_field_scene::{OfPicture, margin_px, range, relief_error, usual_focal_px};
+use super::picture_scene::{Named, PictureSpace, picture_camera, picture_scene, uncalibrated};
+use crate::error::SessionError;
+use capture::{CaptureError, DepthMeaning, DepthPictureOptions};
+use lens::Camera;
+use progress::{Progress, Stage};
+use relief::{Relief, ReliefOptions, filled, upsampled};
+use std::path::Path;
+
+/// What is infinitely far, or as good as, is put at so many times the nearest distance.
+const FARTHEST: f32 = 1000.0;
+/// The f-number that the surface is made for: behind what stands before something it goes on as far as this aperture looks.
+const WIDEST: f64 = 1.0;
+
+/// Opens a picture with its depth and makes its surface.
+pub(super) fn load_depth_picture(
+    path: &Path,
+    options: &DepthPictureOptions,
+    progress: &dyn Progress,
+) -> Result<OfPicture, SessionError> {
+    let found = capture::open_depth_picture(path, options)?;
+    let size = found.size.map(|side| side as usize);
+    let picture = found.picture.photograph(&options.load)?.pixels;
+    progress.check()?;
+    let map = [found.depth.width as usize, found.depth.height as usize];
+    let mut disparity = filled(size, upsampled(map, &found.depth.inverse_depth(), size, &picture));
+    if disparity.first().is_none_or(|value| value.is_nan()) {
+        return Err(SessionError::bad(
+            &found.depth_file,
+            "says of no pixel how far it is (give another map)",
+        ));
+    }
+    let focal_px = found.focal_px.unwrap_or_else(|| usual_focal_px(found.size));
+    let space = match found.depth.meaning {
+        DepthMeaning::Distance => {
+            let nearest = disparity.iter().copied().fold(0.0, f32::max);
+            disparity.iter_mut().for_each(|value| *value = value.max(nearest / FARTHEST));
+            PictureSpace { focal_px, offset: 0.0, scale: 1.0 }
+        }
+        DepthMeaning::Disparity | DepthMeaning::Relative => uncalibrated(range(&disparity), focal_px),
+    };
+    let sensor_height = Camera::default().sensor_height;
+    let focal_length = sensor_height * focal_px / f64::from(found.size[1]);
+    let widest = focal_length / (2.0 * WIDEST);
+    let reach = widest / space.baseline();
+    let [low, high] = range(&disparity);
+    let surface = ReliefOptions {
+        reach: reach as f32,
+        margin_px: margin_px(size, reach * (high - low)),
+        ..ReliefOptions::default()
+    };
+    let stage = Stage::new(progress, 0.2, 1.0);
+    let relief = Relief::of::<CaptureError>(size, &disparity, &picture, &[], &surface, &stage)
+        .map_err(relief_error)?;
+    let middle = disparity[size[1] / 2 * size[0] + size[0] / 2];
+    let scene = picture_scene(&relief, &space, &Named { name: &found.name, path }, f64::from(middle));
+    // At first half as wide as it may be.
+    let camera = picture_camera(&scene, found.size, &space, reach / 2.0);
+    let is_incomplete = found.remarks.iter().any(|remark| remark.is_incomplete);
+    let remarks = found.remarks.into_iter().map(|remark| remark.text).collect();
+    Ok(OfPicture { scene, camera, remarks, is_incomplete })
+}

@@ -1,0 +1,250 @@
+//! A surface in a picture's space as a scene: with the picture as its texture, and its atlas.
+//!
+//! ```text
+//! 1/z = (d + o)/s        x = z·(p_x − c_x)/f        y = −z·(p_y − c_y)/f
+//! ```
+//!
+//! | symbol | meaning | unit |
+//! | --- | --- | --- |
+//! | d, o | disparity, and the offset that makes all 1/z > 0 | px a step |
+//! | s | disparity of a distance of 1, without offset: f·b, b the distance between views | px a step |
+//! | p, c | place in the picture, its middle | px |
+//! | f | focal length | px |
+//! | x, y, z | position to the right, upward, ahead of the camera | scene units |
+
+use atlas::Atlas;
+use glam::{DMat4, DVec3, Mat3, Vec2};
+use lens::Camera;
+use relief::{Relief, TEXTURE_LAYERS};
+use scene::{
+    AlphaMode, Image, ImageLevel, Material, Node, Part, PictureTexture, Scene, SceneCamera, TextureRef,
+    Triangle, Wrap,
+};
+use std::path::Path;
+
+/// Rows between the picture and what goes on behind it.
+const GUTTER: usize = 4;
+
+/// How disparities become distances, and pixels directions.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct PictureSpace {
+    /// f.
+    pub focal_px: f64,
+    /// o.
+    pub offset: f64,
+    /// s, > 0.
+    pub scale: f64,
+}
+
+impl PictureSpace {
+    /// 1/z of a disparity.
+    pub fn inverse_depth(&self, disparity: f64) -> f64 {
+        (disparity + self.offset) / self.scale
+    }
+
+    /// b.
+    pub fn baseline(&self) -> f64 {
+        self.scale / self.focal_px
+    }
+}
+
+/// Distances where nothing is known of them: what is nearest is one unit away, what is farthest five.
+pub(super) const NEAREST: f64 = 1.0;
+const FARTHEST: f64 = 5.0;
+
+/// The space of disparities in a range, low to high, of which neither scale nor offset is known.
+pub(super) fn uncalibrated([low, high]: [f64; 2], focal_px: f64) -> PictureSpace {
+    // A picture of one depth is a plane at the nearest distance.
+    let range = if high > low { high - low } else { 1.0 };
+    let scale = range / (1.0 / NEAREST - 1.0 / FARTHEST);
+    PictureSpace { focal_px, scale, offset: scale / NEAREST - high }
+}
+
+/// What a surface is called, and where it is from.
+pub(super) struct Named<'a> {
+    pub name: &'a str,
+    pub path: &'a Path,
+}
+
+/// The scene of a surface. `focus` is the disparity that the camera focuses on.
+pub(super) fn picture_scene(relief: &Relief, space: &PictureSpace, named: &Named<'_>, focus: f64) -> Scene {
+    let [width, height] = relief.size;
+    let behind = height + GUTTER;
+    let rows = height + (TEXTURE_LAYERS - 1) * behind;
+    let margin = relief.margin as f32;
+    let middle = Vec2::new(width as f32, height as f32) / 2.0 - margin;
+    let position = |place: Vec2, disparity: f32| {
+        let z = 1.0 / space.inverse_depth(f64::from(disparity));
+        let aside = ((place - middle).as_dvec2() * z) / space.focal_px;
+        DVec3::new(aside.x, -aside.y, -z)
+    };
+    let uv = |place: Vec2, layer: u8| {
+        let (column, row) = (place.x + margin, place.y + margin + f32::from(layer) * behind as f32);
+        Vec2::new(column / width as f32, row / rows as f32)
+    };
+    let positions = relief.vertices.iter().map(|vertex| position(vertex.place, vertex.disparity)).collect();
+    let (image, brightest) = image(relief, behind, rows);
+    let texture = TextureRef {
+        image: 0,
+        is_color: true,
+        uv_set: 0,
+        transform: Mat3::IDENTITY,
+        wrap: [Wrap::Clamp; 2],
+        nearest: false,
+    };
+    let material = Material {
+        name: named.name.into(),
+        base_color: glam::Vec3::splat(brightest).extend(1.0),
+        base_color_texture: Some(texture),
+        alpha: AlphaMode::Opaque,
+        ..Material::of_unlit()
+    };
+    let triangles: Vec<_> = relief.triangles.iter().map(|&vertices| Triangle { vertices, part: 0 }).collect();
+    let part = Part {
+        node: 0,
+        material: 0,
+        triangles: 0..triangles.len() as u32,
+        has_uv: [true, false],
+        mirrored: false,
+    };
+    let camera = SceneCamera {
+        name: "picture".into(),
+        camera_to_world: DMat4::IDENTITY,
+        yfov: 2.0 * (f64::from(middle.y) / space.focal_px).atan(),
+        aspect: Some(f64::from(middle.x / middle.y)),
+        focus_distance: 1.0 / space.inverse_depth(focus),
+    };
+    Scene {
+        path: named.path.into(),
+        positions,
+        normals: vec![glam::Vec3::ZERO; relief.vertices.len()],
+        uv: [relief.vertices.iter().map(|vertex| uv(vertex.place, vertex.layer)).collect(), Vec::new()],
+        triangles,
+        parts: vec![part],
+        nodes: vec![Node { name: named.name.into(), index: 0, world: DMat4::IDENTITY }],
+        materials: vec![material],
+        images: vec![image],
+        cameras: vec![camera],
+        picture: Some(PictureTexture {
+            size: [width as u32, rows as u32],
+            behind: behind as u32,
+            margin: relief.margin as u32,
+            is_seen: in_rows(&relief.is_seen, relief.size, behind, rows, true),
+        }),
+        ..Scene::default()
+    }
+}
+
+/// The camera of the picture: as many pixels, an aperture of `radius` in steps between views.
+pub(super) fn picture_camera(scene: &Scene, size: [u32; 2], space: &PictureSpace, radius: f64) -> Camera {
+    let SceneCamera { camera_to_world, yfov, focus_distance, .. } = scene.cameras[0];
+    Camera {
+        width: size[0],
+        height: size[1],
+        yfov,
+        focus_distance,
+        camera_to_world,
+        aperture_radius: radius * space.baseline(),
+        ..Camera::default()
+    }
+}
+
+/// The atlas that the texture of a surface from a picture is, if it is one.
+pub(super) fn picture_atlas(scene: &Scene) -> Option<Atlas> {
+    let picture = scene.picture.as_ref()?;
+    let size = Vec2::new(picture.size[0] as f32, picture.size[1] as f32);
+    let corners: Vec<[Vec2; 3]> = scene
+        .triangles
+        .iter()
+        .map(|triangle| triangle.vertices.map(|v| scene.uv[0][v as usize] * size))
+        .collect();
+    let chart_of = corners.iter().map(|corners| u32::from(corners[0].y >= picture.behind as f32)).collect();
+    // Texels a unit of length, where one is at the distance that the camera focuses on.
+    let camera = scene.cameras.first()?;
+    let height = 2.0 * camera.focus_distance * (0.5 * camera.yfov).tan();
+    let rows = picture.behind as usize - GUTTER - 2 * picture.margin as usize;
+    let density = rows as f64 / height;
+    Some(Atlas::new(picture.size, corners, chart_of, &[0, 0], density))
+}
+
+/// What layers say a texel, row by row of the whole texture; rows between them say `between`.
+fn in_rows<T: Copy>(
+    layers: &[T],
+    [width, height]: [usize; 2],
+    behind: usize,
+    rows: usize,
+    between: T,
+) -> Vec<T> {
+    let mut all = vec![between; width * rows];
+    for (layer, values) in layers.chunks_exact(width * height).enumerate() {
+        let first = layer * behind * width;
+        all[first..first + values.len()].copy_from_slice(values);
+    }
+    all
+}
+
+/// The texture in sRGB's encoding, divided by what its brightest value is above white.
+fn image(relief: &Relief, behind: usize, rows: usize) -> (Image, f32) {
+    let [width, height] = relief.size;
+    let brightest = relief.texture.iter().flatten().copied().fold(1.0, f32::max);
+    let mut texture = in_rows(&relief.texture, relief.size, behind, rows, [0.0; 3]);
+    // Interpolation at the picture's lower border finds its last row.
+    for row in height..behind {
+        texture.copy_within((height - 1) * width..height * width, row * width);
+    }
+    let encoded = |linear: f32| {
+        let linear = (linear / brightest).clamp(0.0, 1.0);
+        let encoded =
+            if linear <= 0.0031308 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 };
+        (encoded * 65535.0).round() as u16
+    };
+    let texels =
+        texture.iter().flat_map(|&[r, g, b]| [encoded(r), encoded(g), encoded(b), u16::MAX]).collect();
+    let image = Image {
+        name: "picture".into(),
+        width: width as u32,
+        height: rows as u32,
+        texels: ImageLevel::Bits16(texels),
+    };
+    (image, brightest)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use progress::Unwatched;
+    use relief::ReliefOptions;
+    use std::convert::Infallible;
+
+    #[test]
+    fn a_picture_is_where_its_camera_sees_it() {
+        let size = [24, 16];
+        let disparity: Vec<f32> = (0..size[0] * size[1]).map(|cell| (cell % 24) as f32 * 0.02).collect();
+        let picture: Vec<[f32; 3]> =
+            (0..size[0] * size[1]).map(|cell| [(cell % 7) as f32 * 0.3; 3]).collect();
+        let options = ReliefOptions { reach: 2.0, margin_px: 3, ..ReliefOptions::default() };
+        let relief = Relief::of::<Infallible>(size, &disparity, &picture, &[], &options, &Unwatched).unwrap();
+        let space = uncalibrated([0.0, 0.46], 30.0);
+        assert!((1.0 / space.inverse_depth(0.46) - NEAREST).abs() < 1e-12);
+        assert!((1.0 / space.inverse_depth(0.0) - FARTHEST).abs() < 1e-12);
+        let named = Named { name: "a", path: Path::new("a.png") };
+        let scene = picture_scene(&relief, &space, &named, 0.2);
+        let camera = picture_camera(&scene, [24, 16], &space, 2.0);
+        let optics = camera.optics();
+        for (vertex, position) in relief.vertices.iter().zip(&scene.positions) {
+            let seen = optics.chief(camera.camera_from_world(*position));
+            let half = 8.0;
+            let place = Vec2::new(12.0 + (seen.x * half) as f32, 8.0 - (seen.y * half) as f32);
+            assert!(place.distance(vertex.place) < 1e-4, "{place} {}", vertex.place);
+        }
+        // A step aside moves what has disparity d by d pixels.
+        let near = 1.0 / space.inverse_depth(0.4);
+        let far = 1.0 / space.inverse_depth(0.1);
+        let parallax = |z: f64| space.focal_px * space.baseline() / z;
+        assert!((parallax(near) - parallax(far) - 0.3).abs() < 1e-9);
+        let atlas = picture_atlas(&scene).unwrap();
+        assert_eq!([atlas.width, atlas.height], [30, 48]);
+        // HDR survives.
+        assert_eq!(scene.materials[0].base_color.x, 1.8000001);
+    }
+}
