@@ -7,7 +7,7 @@ use crate::hidden::{Hidden, hidden};
 use crate::jumps;
 use crate::other_view::OtherView;
 use crate::texture::{Behind, NotFound, Surface};
-use crate::triangulation::Triangulation;
+use crate::triangulation::{Metric, Triangulation};
 use glam::Vec2;
 use progress::{Cancelled, Progress, Stage};
 use std::collections::HashMap;
@@ -17,8 +17,11 @@ use std::collections::HashMap;
 pub struct ReliefOptions {
     /// The radius of the aperture that the surface is for, in steps of the views: what a disparity times it is a parallax, px. > 0.
     pub reach: f32,
-    /// How far the surface may be off, as a parallax, px.
+    /// How far the surface may be off, as a parallax, and its texture, px.
     pub tolerance_px: f32,
+    /// What makes disparities proportional to inverse depth when it is added. Where it is infinite, or does not make all of them positive,
+    /// nothing is known of depth, and only parallax counts.
+    pub offset: f32,
     /// Steps of a larger parallax between pixels are where depth jumps, px.
     pub jump_px: f32,
     /// How far the surface goes on around the picture, px: what the aperture sees from beside it.
@@ -28,7 +31,7 @@ pub struct ReliefOptions {
 impl Default for ReliefOptions {
     /// For one step either way.
     fn default() -> Self {
-        Self { reach: 1.0, tolerance_px: 0.1, jump_px: 1.0, margin_px: 0 }
+        Self { reach: 1.0, tolerance_px: 0.1, offset: f32::INFINITY, jump_px: 1.0, margin_px: 0 }
     }
 }
 
@@ -109,7 +112,8 @@ impl Relief {
         let Hidden { disparity: back, links: back_links, onward, order } = hidden;
         let cells = Cells { grid, disparity: [front, back], links: [links, back_links], onward };
         let mut mesh = Mesh::default();
-        mesh.add_first(&cells, options.tolerance_px / options.reach);
+        let metric = Metric { reach: options.reach, offset: options.offset };
+        mesh.add_first(&cells, metric, options.tolerance_px);
         mesh.add_second(&cells, &order);
         progress.report(1.0);
         let corner = Vec2::splat(frame.margin as f32);
@@ -147,8 +151,8 @@ impl Mesh {
         })
     }
 
-    fn add_first(&mut self, cells: &Cells, tolerance: f32) {
-        for triangle in Triangulation::of(cells).triangles(tolerance) {
+    fn add_first(&mut self, cells: &Cells, metric: Metric, tolerance: f32) {
+        for triangle in Triangulation::of(cells, metric).triangles(tolerance) {
             let low = |axis: usize| triangle.corners.iter().map(|at| at[axis]).min().unwrap_or(0);
             let (x, y) = (low(0), low(1));
             let cell = cells.grid.at(x, y);

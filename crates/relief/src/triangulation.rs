@@ -3,6 +3,13 @@
 //! Right triangles are halved where the middle of their longest side is off (Evans, Kirkpatrick and Townsend 2001, right-triangulated
 //! irregular networks; Lindstrom and Pascucci 2002). A corner counts as far off as what is halved beneath it, so that neighbours are halved
 //! alike and nothing gapes. Corners at jumps, and those around them, are always there.
+//!
+//! A texture is laid on a triangle evenly in space, not as the picture shows it. Between ends a and b of inverse depths q the middle in
+//! space is seen beside that in the picture, and that counts as off, too:
+//!
+//! ```text
+//! |a − b|/2 · |q_a − q_b|/(q_a + q_b)
+//! ```
 
 use crate::cells::{Cells, Grid};
 use crate::corners::Joint;
@@ -23,7 +30,7 @@ pub(crate) struct FirstTriangle {
 
 impl Triangulation {
     /// How far off the corners of the first layer's cells are.
-    pub fn of(cells: &Cells) -> Self {
+    pub fn of(cells: &Cells, metric: Metric) -> Self {
         let grid = cells.grid;
         let side = grid.width.max(grid.height).next_power_of_two().max(2);
         let row = grid.width + 1;
@@ -79,7 +86,8 @@ impl Triangulation {
                         } else {
                             [at(x, y - half), at(x, y + half)]
                         };
-                        found.push((y * (side + 1) + x, off(at(x, y), ends).max(beneath(before, x, y))));
+                        let off = metric.off(at(x, y), ends, step as f32);
+                        found.push((y * (side + 1) + x, off.max(beneath(before, x, y))));
                     }
                     found
                 })
@@ -101,7 +109,8 @@ impl Triangulation {
                         let sides = [(x - half, y), (x + half, y), (x, y - half), (x, y + half)];
                         let most =
                             sides.iter().fold(0.0f32, |most, &(x, y)| most.max(before[y * (side + 1) + x]));
-                        found.push((y * (side + 1) + x, off(at(x, y), ends).max(most)));
+                        let off = metric.off(at(x, y), ends, step as f32 * std::f32::consts::SQRT_2);
+                        found.push((y * (side + 1) + x, off.max(most)));
                     }
                     found
                 })
@@ -137,10 +146,25 @@ impl Triangulation {
     }
 }
 
-/// How far a middle is from what its ends lead to expect; nothing where one of them is cut, which is seen to elsewhere.
-fn off(middle: f32, [a, b]: [f32; 2]) -> f32 {
-    let off = (0.5 * (a + b) - middle).abs();
-    if off.is_nan() { 0.0 } else { off }
+/// What counts as off, in pixels.
+#[derive(Clone, Copy)]
+pub(crate) struct Metric {
+    /// Parallax of a disparity of 1, px.
+    pub reach: f32,
+    /// What makes disparities proportional to inverse depth when it is added.
+    pub offset: f32,
+}
+
+impl Metric {
+    /// How far a middle is from what its ends lead to expect, which are so many pixels apart; nothing where one of them is cut, which is
+    /// seen to elsewhere.
+    fn off(self, middle: f32, [a, b]: [f32; 2], length: f32) -> f32 {
+        let depth = (0.5 * (a + b) - middle).abs() * self.reach;
+        let nearness = a + b + 2.0 * self.offset;
+        let beside = if nearness > 0.0 { 0.5 * length * (a - b).abs() / nearness } else { 0.0 };
+        let off = depth.max(beside);
+        if off.is_nan() { 0.0 } else { off }
+    }
 }
 
 fn raise(errors: &mut [f32], found: Vec<Vec<(usize, f32)>>) {

@@ -48,6 +48,7 @@ pub(super) fn load_depth_picture(
     let [low, high] = range(&disparity);
     let surface = ReliefOptions {
         reach: reach as f32,
+        offset: space.offset as f32,
         margin_px: margin_px(size, reach * (high - low)),
         ..ReliefOptions::default()
     };

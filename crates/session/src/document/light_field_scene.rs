@@ -36,8 +36,10 @@ pub(super) fn load_light_field(
     let disparity = disparity(&field, size, &middle, path)?;
     let reach = field.views.iter().map(|view| view.position.length()).fold(0.0, f64::max);
     let range = range(&disparity);
+    let space = space(&field.optics, field.size, range);
     let surface = ReliefOptions {
         reach: reach as f32,
+        offset: space.offset as f32,
         margin_px: margin_px(size, reach * (range[1] - range[0])),
         ..ReliefOptions::default()
     };
@@ -50,7 +52,6 @@ pub(super) fn load_light_field(
         .collect();
     let stage = Stage::new(progress, 0.3, 1.0);
     let relief = Relief::of(size, &disparity, &middle, &others, &surface, &stage).map_err(relief_error)?;
-    let space = space(&field.optics, field.size, range);
     // What has disparity 0 is where the views agree: the camera that took them was focused there.
     let focus = if (range[0]..=range[1]).contains(&0.0) { 0.0 } else { 0.5 * (range[0] + range[1]) };
     let scene = picture_scene(&relief, &space, &Named { name: &field.name, path }, focus);

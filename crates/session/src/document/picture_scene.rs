@@ -90,7 +90,8 @@ pub(super) fn picture_scene(relief: &Relief, space: &PictureSpace, named: &Named
         uv_set: 0,
         transform: Mat3::IDENTITY,
         wrap: [Wrap::Clamp; 2],
-        nearest: false,
+        // A pixel of the picture is what it shows all over: averaged over a pixel it is the picture again.
+        nearest: true,
     };
     let material = Material {
         name: named.name.into(),
