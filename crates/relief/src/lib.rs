@@ -25,6 +25,7 @@ mod hidden;
 mod jumps;
 mod other_view;
 mod relief;
+mod steps;
 mod texture;
 mod triangulation;
 mod upsampling;

@@ -1,0 +1,90 @@
+//! Depth maps of few levels: the stairs that rounding made of slopes, taken away.
+//!
+//! Where most neighbours have the very same number, numbers were rounded. They are then evened out as far as rounding left open, half a level
+//! either way, from far neighbours to near ones, so that wide stairs become slopes, too.
+
+use crate::cells::Grid;
+use rayon::prelude::*;
+
+/// From so many neighbours of the same number on, numbers were rounded.
+const SAME: f64 = 0.4;
+/// How far neighbours are that a number is evened out with, and how often with each.
+const STRIDES: [usize; 6] = [32, 16, 8, 4, 2, 1];
+const ROUNDS: usize = 6;
+
+/// Evens out what rounding left open. Steps of more than `jump` are none of its.
+pub(crate) fn even_out(grid: Grid, disparity: &mut Vec<f32>, jump: f32) {
+    let Some(level) = level(grid, disparity, jump) else { return };
+    let rounded = disparity.clone();
+    for (stride, _) in STRIDES.iter().flat_map(|stride| (0..ROUNDS).map(move |round| (*stride, round))) {
+        // A slope of several levels from neighbour to neighbour is told finely enough; what is more is another thing.
+        let most = jump.min(3.0 * level * stride as f32);
+        let before = &*disparity;
+        let next = (0..grid.count()).into_par_iter().map(|cell| {
+            let (x, y) = (cell % grid.width, cell / grid.width);
+            let own = before[cell];
+            let pair = |fits: bool, by: usize| {
+                let [a, b] = fits.then(|| [before[cell - by], before[cell + by]])?;
+                ((a - own).abs() <= most && (b - own).abs() <= most).then_some(0.5 * (a + b))
+            };
+            let across = pair(x >= stride && x + stride < grid.width, stride);
+            let down = pair(y >= stride && y + stride < grid.height, stride * grid.width);
+            let evened = match (across, down) {
+                (Some(a), Some(b)) => 0.5 * (a + b),
+                (Some(one), None) | (None, Some(one)) => one,
+                (None, None) => own,
+            };
+            let half = 0.5 * level;
+            if own.is_nan() { own } else { evened.clamp(rounded[cell] - half, rounded[cell] + half) }
+        });
+        *disparity = next.collect();
+    }
+}
+
+/// The distance between two levels, if numbers were rounded to some: the median step between neighbours that differ.
+fn level(grid: Grid, disparity: &[f32], jump: f32) -> Option<f32> {
+    let (mut same, mut steps) = (0usize, Vec::new());
+    for cell in 0..grid.count() {
+        if (cell + 1) % grid.width == 0 {
+            continue;
+        }
+        let step = (disparity[cell + 1] - disparity[cell]).abs();
+        if step == 0.0 {
+            same += 1;
+        } else if step <= jump {
+            steps.push(step);
+        }
+    }
+    let all = same + steps.len();
+    if steps.is_empty() || (same as f64) < SAME * all as f64 {
+        return None;
+    }
+    let middle = steps.len() / 2;
+    let (_, median, _) = steps.select_nth_unstable_by(middle, f32::total_cmp);
+    Some(*median)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn stairs_become_the_slope_that_was_rounded_and_jumps_stay() {
+        let grid = Grid { width: 120, height: 40 };
+        let slope = |x: usize, y: usize| if x < 60 { 0.013 * x as f32 + 0.004 * y as f32 } else { 3.0 };
+        let exact: Vec<f32> = (0..grid.count()).map(|cell| slope(cell % 120, cell / 120)).collect();
+        let mut rounded: Vec<f32> = exact.iter().map(|d| (d / 0.2).round() * 0.2).collect();
+        let off = |found: &[f32]| found.iter().zip(&exact).map(|(a, b)| (a - b).powi(2)).sum::<f32>();
+        let before = off(&rounded);
+        even_out(grid, &mut rounded, 1.0);
+        assert!(off(&rounded) < 0.1 * before, "{} of {before}", off(&rounded));
+        assert_eq!(rounded[grid.at(90, 20)], 3.0);
+        // What was not rounded stays as it is.
+        let mut fine = exact.clone();
+        let bent: Vec<f32> =
+            exact.iter().enumerate().map(|(k, d)| d + 0.01 * (k as f32 * 0.7).sin()).collect();
+        fine.copy_from_slice(&bent);
+        even_out(grid, &mut fine, 1.0);
+        assert_eq!(fine[..60], bent[..60]);
+    }
+}
