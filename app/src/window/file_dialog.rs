@@ -65,7 +65,7 @@ impl Purpose {
 
     fn extensions(self) -> &'static [&'static str] {
         match self {
-            Self::Open => &["glb", "gltf", "fbrush"],
+            Self::Open => &["glb", "gltf", "fbrush", "jpg", "jpeg", "png", "webp", "exr"],
             Self::OpenCapture => &[],
             Self::SaveAs => &["fbrush"],
             Self::ExportPicture | Self::ExportShown | Self::ExportFocusMap => &["exr", "png"],

@@ -50,6 +50,8 @@ mod mesh_health;
 mod model;
 mod own_world;
 mod percent_encoding;
+mod photographed;
+mod picture_texture;
 mod primitive;
 mod punctual_light;
 mod resource;
@@ -79,9 +81,8 @@ pub use material::{
     TextureRef, Tint, Volume, Workflow, Wrap,
 };
 pub use mesh_health::MeshHealth;
-pub use model::{
-    Image, ImageLevel, Light, LightKind, Node, Part, PictureTexture, Scene, SceneCamera, Triangle,
-};
+pub use model::{Image, ImageLevel, Light, LightKind, Node, Part, Scene, SceneCamera, Triangle};
+pub use picture_texture::PictureTexture;
 pub use source::{PartSource, Source, StoredElements};
 pub use surface_mesh::SurfaceMesh;
 pub use surface_point::{SurfaceField, SurfacePoint};

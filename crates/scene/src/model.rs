@@ -1,5 +1,6 @@
 //! The scene in memory: flat, world space, triangles only.
 
+use crate::picture_texture::PictureTexture;
 use crate::{BackFaces, Material, PhotoLookup, View, World};
 use glam::{DMat4, DVec3, Vec2, Vec3, Vec4};
 use std::ops::Range;
@@ -66,19 +67,6 @@ pub struct Scene {
     pub picture: Option<PictureTexture>,
     /// What was wrong with the file but did no harm, a sentence each.
     pub warnings: Vec<String>,
-}
-
-/// The texture of a surface that was made from a picture: the picture, and what goes on behind it below. The first UV set is an atlas.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct PictureTexture {
-    /// Columns and rows.
-    pub size: [u32; 2],
-    /// The first row of what goes on behind: from there on triangles are another chart.
-    pub behind: u32,
-    /// Columns and rows around the picture that it does not show.
-    pub margin: u32,
-    /// By texel, row 0 on top, whether it was photographed; else it was invented.
-    pub is_seen: Vec<bool>,
 }
 
 /// Three corners and the part they belong to.

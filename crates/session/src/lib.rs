@@ -36,7 +36,7 @@ pub use display::{
 };
 pub use document::{
     Beginning, CameraChoice, CameraEdit, Document, HistoryStep, Input, InputKind, Stage, SurfaceHit,
-    VariantChoice, camera_between, camera_of, chief_ray, load_scene, pick, view_ray,
+    VariantChoice, camera_between, camera_of, chief_ray, is_capture, load_scene, pick, view_ray,
 };
 pub use editing::{FillRegion, StrokePoint, StrokeTarget, rectangle, replay};
 pub use error::SessionError;

@@ -6,7 +6,7 @@ use crate::window::layout::Pane;
 use crate::window::unsaved_question::{Answer, Next};
 use crate::window::{Tool, demo};
 use egui::{Context, ViewportCommand};
-use session::{Command, FullSize};
+use session::{Command, FullSize, is_capture};
 use std::path::{Path, PathBuf};
 
 impl Shell {
@@ -232,7 +232,9 @@ impl Shell {
             Some(path) if path.extension().is_some_and(|extension| extension == "json") => {
                 self.import_preset(&path);
             }
-            Some(path) if is_environment(&path) && self.session.document().is_some() => {
+            Some(path)
+                if is_environment(&path) && self.session.document().is_some() && !is_capture(&path) =>
+            {
                 self.apply(Command::LoadEnvironment(path));
             }
             Some(path) => self.ask_then(Next::Open(path), context),

@@ -39,6 +39,11 @@ pub(crate) struct CaptureScene {
     pub is_incomplete: bool,
 }
 
+/// Whether a file or folder is a capture that can be opened: of a picture, whether it has depth.
+pub fn is_capture(path: &Path) -> bool {
+    capture::capture_kind(path).is_ok()
+}
+
 /// Reads a capture: a folder of photographs, of views of a light field, or a picture with its depth.
 pub(crate) fn load_capture(
     path: &Path,

@@ -22,7 +22,7 @@ mod variant_choice;
 
 pub use camera_edit::CameraEdit;
 pub use camera_path::camera_between;
-pub use capture_scene::camera_of_photograph;
+pub use capture_scene::{camera_of_photograph, is_capture};
 pub use input::{CameraChoice, Input, InputKind};
 pub use open_document::{Beginning, Document};
 pub use picking::{SurfaceHit, chief_ray, pick, view_ray};

@@ -50,7 +50,7 @@ pub(crate) fn photograph_picture(
         view.photograph(&LoadOptions::default()).map_err(|e| SessionError::BadInput(e.to_string()))?;
     let reduction = (shown.width / camera.width.max(1)).max(1);
     let shown = shown.reduced(reduction);
-    let seen = seen(tracer, camera, light);
+    let seen = seen(tracer, camera, &|point| light.seen(point));
     let place = Place { camera, view, shown: &shown, reduction: f64::from(reduction) };
     let exposure = match tracer.scene().views.iter().position(|other| other.name == view.name) {
         Some(index) => light.exposures()[index],

@@ -15,8 +15,8 @@ use lens::{Camera, Picture};
 use project::Layer;
 use rayon::prelude::*;
 use salf::{BakeOptions, Salf, SalfStatistics};
+use scene::SurfacePoint;
 use serde::Serialize;
-use slf::PhotographLight;
 use splat::{Gpu, Splatter, Tolerance};
 use std::sync::Arc;
 use std::time::Instant;
@@ -311,10 +311,14 @@ fn finish(
 ) -> Result<Rendered, SessionError> {
     let asks = options.aovs.iter().any(|aov| aov.needs_first_hits());
     let hits = asks.then(|| first_hits(tracer, camera, focus, steps)).transpose()?;
-    let is_seen_asked = options.aovs.contains(&Aov::Seen) && is_photographed(tracer);
-    let seen = match is_seen_asked {
-        true => Some(seen(tracer, camera, &*photograph_light(tracer, &*steps.begin("light"))?)),
-        false => None,
+    let is_seen_asked = options.aovs.contains(&Aov::Seen);
+    let seen = if is_seen_asked && is_photographed(tracer) {
+        let light = photograph_light(tracer, &*steps.begin("light"))?;
+        Some(seen(tracer, camera, &|point| light.seen(point)))
+    } else if is_seen_asked && tracer.scene().picture.is_some() {
+        Some(seen(tracer, camera, &|point| tracer.scene().photographed(point).unwrap_or(0.0)))
+    } else {
+        None
     };
     let (hits, estimate, seen) = (hits.as_ref(), estimate.as_ref(), seen.as_deref());
     let known = Known { picture: &picture, hits, estimate, seen, camera };
@@ -328,11 +332,15 @@ pub(super) fn pixel_ray(camera: &Camera, number: u32) -> Ray {
     Ray::of_pinhole(camera, DVec2::ZERO, pixel + 0.5)
 }
 
-/// How far the surface along each pixel's chief ray was photographed.
-pub(super) fn seen(tracer: &Tracer, camera: &Camera, light: &PhotographLight) -> Vec<f32> {
+/// How far the surface along each pixel's chief ray was photographed, as is told by point.
+pub(super) fn seen(
+    tracer: &Tracer,
+    camera: &Camera,
+    told: &(dyn Fn(SurfacePoint) -> f32 + Sync),
+) -> Vec<f32> {
     let of_pixel = |number: u32| {
         let hit = tracer.first_hit(&pixel_ray(camera, number));
-        hit.map_or(0.0, |hit| light.seen(hit.point))
+        hit.map_or(0.0, |hit| told(hit.point))
     };
     (0..camera.width * camera.height).into_par_iter().map(of_pixel).collect()
 }

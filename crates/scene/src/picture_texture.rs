@@ -1,0 +1,23 @@
+//! Surfaces that were made from a picture.
+
+/// The texture of a surface that was made from a picture: the picture, and what goes on behind it below. The first UV set is an atlas.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct PictureTexture {
+    /// Columns and rows.
+    pub size: [u32; 2],
+    /// The first row of what goes on behind: from there on triangles are another chart.
+    pub behind: u32,
+    /// Columns and rows around the picture that it does not show.
+    pub margin: u32,
+    /// By texel, row 0 on top, whether it was photographed; else it was invented.
+    pub is_seen: Vec<bool>,
+}
+
+impl PictureTexture {
+    /// Whether what is at this place of the texture, each coordinate in [0, 1], was photographed.
+    pub fn is_seen_at(&self, [u, v]: [f64; 2]) -> bool {
+        let [width, height] = self.size;
+        let texel = |at: f64, side: u32| ((at * f64::from(side)) as u32).min(side - 1) as usize;
+        self.is_seen[texel(v, height) * width as usize + texel(u, width)]
+    }
+}
