@@ -153,7 +153,8 @@ pub(super) fn end_of_jpeg(bytes: &[u8]) -> Option<usize> {
             }
             Some((.., end)) => at = end,
             None => {
-                return (bytes.get(at..).is_some_and(|rest| rest.len() >= 2)).then_some(end_marker(bytes, at));
+                return (bytes.get(at..).is_some_and(|rest| rest.len() >= 2))
+                    .then_some(end_marker(bytes, at));
             }
         }
     }
