@@ -94,7 +94,7 @@ fn period(values: &[f64]) -> Option<usize> {
     const STRONG: f64 = 1.6;
     let high = without_trend(values);
     let total: f64 = high.iter().map(|value| value * value).sum();
-    if !(total > 0.0) {
+    if total.is_nan() || total <= 0.0 {
         return None;
     }
     let explained = |period: usize| {

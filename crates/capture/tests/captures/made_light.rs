@@ -57,8 +57,11 @@ pub fn disparity_pfm() -> Vec<u8> {
     pfm(SIDE, SIDE, |x, _| disparity(x) as f32)
 }
 
+/// A channel's name, and its value at a column and row.
+type Channel<'a> = (&'a str, &'a dyn Fn(usize, usize) -> f32);
+
 /// An EXR of these channels, row 0 on top.
-pub fn exr(file: &Path, width: usize, height: usize, channels: &[(&str, &dyn Fn(usize, usize) -> f32)]) {
+pub fn exr(file: &Path, width: usize, height: usize, channels: &[Channel<'_>]) {
     let list = channels.iter().map(|(name, value)| {
         let samples =
             (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).map(|(x, y)| value(x, y)).collect();
