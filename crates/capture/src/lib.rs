@@ -1,13 +1,15 @@
-//! Captures: what other programs found out about a place, as views and a surface.
+//! Captures: what other programs found out about a place, as views and a surface or depth.
 //!
 //! A capture is a folder of photographs, of the cameras that a reconstruction program found for them, and a mesh of what they show.
-//! [`open`] finds out whose it is ([`Kind`]), reads it, and says in [`Remark`]s what was incomplete; [`recognise`] only looks.
+//! [`open`] finds out whose it is ([`Kind`]), reads it, and says in [`Remark`]s what was incomplete; [`recognise`] only looks. Two more kinds
+//! ([`capture_kind`]) have roads of their own: light fields ([`open_light_field`], told in `light_field`) and pictures with depth
+//! ([`open_depth_picture`], told in `depth_picture`).
 //!
 //! Files come from anywhere, so the readers trust none. What a file counts is checked against its size before room is made; nothing
 //! recurses by what a file says; names in files are looked up among the files that lie in the capture's folder and never opened as
 //! paths, so that nothing outside is read unless the caller names it.
 //!
-//! The road of a capture: `layout` (whose cameras lie where) → `colmap`, `nerfstudio`, `bundler`, `nvm`, `metashape` (each to
+//! The road of photographs: `layout` (whose cameras lie where) → `colmap`, `nerfstudio`, `bundler`, `nvm`, `metashape` (each to
 //! `shot`s: name, lens, pose) → `picture_place`, `picture_names` (which file is whose) →
 //! `pictures`, `picture_header` (size, EXIF, masks: views) → `mesh_file`,
 //! `ply`, `obj` (the surface) → `open`. What COLMAP's world calls up is guessed from the cameras (`upright`) and told, not applied.

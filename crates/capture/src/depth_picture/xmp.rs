@@ -27,7 +27,12 @@ impl XmpTexts {
             Some(rest.chars().take_while(char::is_ascii_hexdigit).collect::<String>())
         });
         if let Some(guid) = guid {
-            texts.push(text(&segments.extended(&guid)?));
+            match segments.extended(&guid) {
+                Ok(extended) => texts.push(text(&extended)),
+                // What it has may be of no concern: the directory of Dynamic Depth is in the first.
+                Err(_) if texts[0].contains("DepthURI") => {}
+                Err(error) => return Err(error),
+            }
         }
         Ok(Self { texts })
     }

@@ -48,6 +48,10 @@ pub(super) fn find_disparity(wanted: &Wanted<'_>) -> Result<Option<(DepthMap, Pa
         let disparity = wanted.optics.disparity(f64::from(*value), longer_side).map(|value| value as f32);
         *value = disparity.filter(|value| value.is_finite()).unwrap_or(f32::NAN);
     }
+    if map.range().is_none() {
+        let what = "parameters.cfg makes no finite disparity of any distance";
+        return Err(CaptureError::malformed(&file, "all pixels", what));
+    }
     Ok(Some((map, file)))
 }
 

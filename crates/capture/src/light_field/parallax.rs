@@ -65,8 +65,10 @@ pub fn grid_turn(
     disparity: Option<&DepthMap>,
 ) -> GridTurnFound {
     let luma = Luma::of(reference);
-    let others: Vec<(DVec2, Luma)> =
-        others.iter().map(|(position, picture)| (*position, Luma::of(picture).as_bright_as(&luma))).collect();
+    let others: Vec<(DVec2, Luma)> = others
+        .iter()
+        .map(|(position, picture)| (*position, Luma::of(picture).brightened_to(&luma)))
+        .collect();
     let groups = groups(&others, disparity.is_some());
     let mut votes = vec![0usize; groups.len()];
     for by in REDUCTIONS {
@@ -229,7 +231,7 @@ impl Luma {
         self.values.iter().sum::<f32>() / self.values.len().max(1) as f32
     }
 
-    fn as_bright_as(mut self, other: &Self) -> Self {
+    fn brightened_to(mut self, other: &Self) -> Self {
         let gain = other.mean() / self.mean();
         if gain.is_finite() {
             self.values.iter_mut().for_each(|value| *value *= gain);

@@ -152,9 +152,7 @@ fn arranged(
         let [row, column] = named.cell;
         let position = match (named.place, steps) {
             // Rows and columns grow as they are named; whether that is right is seen from the pictures.
-            (Some([y, x]), [Some(down), Some(right)]) => {
-                DVec2::new(x / right.abs() * right.signum(), y / down.abs() * down.signum())
-            }
+            (Some([y, x]), [Some(down), Some(right)]) => DVec2::new(x / right, y / down),
             _ => DVec2::new(f64::from(column), f64::from(row)),
         };
         Placed { name: stem(&named.file), cell: Some([column, row]), position, file: named.file }

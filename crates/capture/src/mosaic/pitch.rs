@@ -33,7 +33,10 @@ pub(crate) fn pitch_of(file: &Path, options: &LoadOptions) -> Option<[u32; 2]> {
     let across = period(&across.collect::<Vec<f64>>())?;
     // The band of rows begins at a multiple of nothing; only the period counts.
     let down = period(&down.collect::<Vec<f64>>())?;
-    Some([across as u32, down as u32])
+    // Blocks of a JPEG that lost much are as strong.
+    let is_blocks = |period: usize| period.is_multiple_of(8);
+    let is_jpeg = crate::whole_file::head(file, 2) == [0xFF, 0xD8];
+    (!(is_jpeg && is_blocks(across) && is_blocks(down))).then_some([across as u32, down as u32])
 }
 
 /// Brightness of rows from the middle of a picture, and its width.
@@ -87,11 +90,11 @@ fn period(values: &[f64]) -> Option<usize> {
     /// Of the variance the period explains at least as much, and a shorter one that explains this share of the best is the true one.
     const EXPLAINED: f64 = 0.35;
     const NEARLY: f64 = 0.85;
-    /// The greatest mean of a class is at least so many times the median one: blocks of JPEG have less than 1.2.
-    const STRONG: f64 = 1.5;
+    /// The greatest mean of a class is at least so many times those that are low: of blocks of JPEG it is less than 1.3.
+    const STRONG: f64 = 1.6;
     let high = without_trend(values);
     let total: f64 = high.iter().map(|value| value * value).sum();
-    if !(total > 0.0) {
+    if total.is_nan() || total <= 0.0 {
         return None;
     }
     let explained = |period: usize| {
@@ -108,7 +111,7 @@ fn period(values: &[f64]) -> Option<usize> {
     let (period, _) = candidates.into_iter().find(|(_, explained)| *explained >= NEARLY * best)?;
     let mut means = class_means(values, period);
     means.sort_by(f64::total_cmp);
-    (best >= EXPLAINED && means[period - 1] >= STRONG * means[period / 2]).then_some(period)
+    (best >= EXPLAINED && means[period - 1] >= STRONG * means[period / 4]).then_some(period)
 }
 
 /// The mean of the values at each place of a period.

@@ -1,5 +1,6 @@
 //! A PNG row by row: of a mosaic of forty megapixels no more than a row is kept.
 
+use crate::whole_file::head;
 use png::{BitDepth, ColorType, Decoder, Limits, Transformations};
 use std::fs::File;
 use std::io::BufReader;
@@ -19,18 +20,15 @@ pub(super) struct PngRows {
 impl PngRows {
     /// The rows of a file; `None` if it is no PNG whose rows follow each other.
     pub fn open(file: &Path, max_memory: u64) -> Option<Result<Self, String>> {
+        if !head(file, 8).starts_with(b"\x89PNG\r\n\x1a\n") {
+            return None;
+        }
         let input = BufReader::new(File::open(file).ok()?);
         let limits = Limits { bytes: usize::try_from(max_memory / 4).unwrap_or(usize::MAX) };
         let mut decoder = Decoder::new_with_limits(input, limits);
         decoder.set_transformations(Transformations::EXPAND);
         let reader = match decoder.read_info() {
             Ok(reader) => reader,
-            Err(png::DecodingError::Format(error))
-                if !crate::whole_file::head(file, 8).starts_with(b"\x89PNG\r\n\x1a\n") =>
-            {
-                drop(error);
-                return None;
-            }
             Err(error) => return Some(Err(error.to_string())),
         };
         let info = reader.info();

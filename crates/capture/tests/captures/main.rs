@@ -1,9 +1,14 @@
 //! Captures as people have them, and as nobody should: opened by what the crate shows of itself.
 
+mod depth_pictures;
 mod formats;
 mod hostile;
+mod light_fields;
+mod light_mutants;
 mod made;
+mod made_light;
 mod meshes;
+mod mosaics;
 mod mutants;
 #[path = "../../../scene/tests/mutation/mod.rs"]
 mod mutation;

@@ -76,7 +76,7 @@ fn survive(seed: impl Fn(&Path, &[Camera], usize) -> Vec<PathBuf>) {
 }
 
 /// The most memory that this process ever had, where the system tells, bytes.
-fn peak_memory() -> Option<u64> {
+pub fn peak_memory() -> Option<u64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
     Some(line.trim().trim_end_matches(" kB").parse::<u64>().ok()? << 10)
@@ -88,7 +88,7 @@ fn pick<'a, T: ?Sized>(random: &mut Random, of: &[&'a T]) -> &'a T {
 }
 
 /// Changes what a file says and leaves its form: a number, a field, a line; of binary files a count.
-fn restructure(bytes: &mut Vec<u8>, random: &mut Random) {
+pub fn restructure(bytes: &mut Vec<u8>, random: &mut Random) {
     const NUMBERS: [&str; 14] = [
         "0",
         "-1",
