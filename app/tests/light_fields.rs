@@ -1,0 +1,181 @@
+//! Light fields and pictures with depth from end to end: a card before a wall that the test photographs itself.
+
+use image::{Rgb, RgbImage};
+use project::read_picture;
+use serde_json::Value;
+use std::path::Path;
+use std::process::{Command, Output};
+
+/// Columns and rows of the views, and steps to the outermost on each side.
+const SIZE: [u32; 2] = [96, 72];
+const STEPS: i32 = 2;
+/// Disparities of the card and of the wall.
+const CARD: f64 = 1.5;
+const WALL: f64 = -0.5;
+
+/// What a view at (u, v) shows at a place, linear, and the disparity of that.
+fn shown(x: f64, y: f64, [u, v]: [f64; 2]) -> ([f64; 3], f64) {
+    let of = |d: f64| (x + d * u, y + d * v);
+    let (cx, cy) = of(CARD);
+    let wave = |x: f64, y: f64, k: f64| 0.4 + 0.3 * (0.45 * k * x).sin() * (0.4 * k * y + k).cos();
+    if (30.0..62.0).contains(&cx) && (20.0..52.0).contains(&cy) {
+        return ([wave(cx, cy, 1.0), 0.5 * wave(cx, cy, 1.4), 0.1], CARD);
+    }
+    let (wx, wy) = of(WALL);
+    ([0.2, 0.7 * wave(wx, wy, 0.8), wave(wx, wy, 1.1)], WALL)
+}
+
+/// A pixel of a view, by 4 × 4 places in it.
+fn pixel(x: u32, y: u32, view: [f64; 2]) -> [f64; 3] {
+    let mut sum = [0.0; 3];
+    for k in 0..16u32 {
+        let at = |at: u32, k: u32| f64::from(at) + (f64::from(k) + 0.5) / 4.0;
+        let (color, _) = shown(at(x, k % 4), at(y, k / 4), view);
+        (0..3).for_each(|c| sum[c] += color[c] / 16.0);
+    }
+    sum
+}
+
+fn encoded(linear: f64) -> u8 {
+    let encoded = if linear <= 0.0031308 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 };
+    (encoded * 255.0).round() as u8
+}
+
+fn view(view: [f64; 2]) -> RgbImage {
+    RgbImage::from_fn(SIZE[0], SIZE[1], |x, y| Rgb(pixel(x, y, view).map(encoded)))
+}
+
+/// The numbers of the middle view's pixels as a PFM, rows from below.
+fn pfm(file: &Path, of: impl Fn(f64) -> f64) {
+    let mut bytes = format!("Pf\n{} {}\n-1.0\n", SIZE[0], SIZE[1]).into_bytes();
+    for y in (0..SIZE[1]).rev() {
+        for x in 0..SIZE[0] {
+            let (_, disparity) = shown(f64::from(x) + 0.5, f64::from(y) + 0.5, [0.0; 2]);
+            bytes.extend((of(disparity) as f32).to_le_bytes());
+        }
+    }
+    std::fs::write(file, bytes).unwrap();
+}
+
+/// Five by five views, by row and column, and the disparities of the middle one.
+fn light_field(folder: &Path) {
+    std::fs::create_dir_all(folder).unwrap();
+    for (row, v) in (-STEPS..=STEPS).enumerate() {
+        for (column, u) in (-STEPS..=STEPS).enumerate() {
+            view([u.into(), v.into()]).save(folder.join(format!("{row:02}_{column:02}.png"))).unwrap();
+        }
+    }
+    pfm(&folder.join("disparity.pfm"), |disparity| disparity);
+}
+
+/// The picture through a disc of radius `reach` steps that is focused on a disparity: the mean of many views.
+fn truth(reach: f64, focus: f64) -> Vec<[f64; 3]> {
+    let side = 15;
+    let at = |k: i32| reach * f64::from(2 * k - side + 1) / f64::from(side);
+    let points = (0..side * side).map(|k| [at(k % side), at(k / side)]);
+    let points: Vec<_> = points.filter(|[u, v]| u * u + v * v <= reach * reach).collect();
+    let places = (0..SIZE[1]).flat_map(|y| (0..SIZE[0]).map(move |x| (x, y)));
+    let mean = |(x, y): (u32, u32)| {
+        let mut sum = [0.0; 3];
+        for &[u, v] in &points {
+            for k in 0..4u32 {
+                let at = |at: u32, k: u32, u: f64| f64::from(at) + (f64::from(k) + 0.5) / 2.0 - focus * u;
+                let (color, _) = shown(at(x, k % 2, u), at(y, k / 2, v), [u, v]);
+                (0..3).for_each(|c| sum[c] += color[c] / (4.0 * points.len() as f64));
+            }
+        }
+        sum
+    };
+    places.map(mean).collect()
+}
+
+fn run(folder: &Path, arguments: &str) -> Output {
+    let program = Command::new(env!("CARGO_BIN_EXE_focus-brush"))
+        .args(arguments.split_whitespace())
+        .current_dir(folder)
+        .env("XDG_CACHE_HOME", folder.join("cache"))
+        .env_remove("XDG_RUNTIME_DIR")
+        .output();
+    program.unwrap()
+}
+
+fn done(folder: &Path, arguments: &str) -> String {
+    let output = run(folder, arguments);
+    assert!(output.status.success(), "{arguments}: {}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout).unwrap()
+}
+
+/// Peak signal-to-noise ratio of a written picture, dB.
+fn psnr(file: &Path, truth: &[[f64; 3]]) -> f64 {
+    let picture = read_picture(file).unwrap();
+    assert_eq!([picture.width, picture.height], SIZE);
+    let off = |(a, b): (&[f32; 3], &[f64; 3])| (0..3).map(|c| (f64::from(a[c]) - b[c]).powi(2)).sum::<f64>();
+    -10.0 * (picture.rgb.iter().zip(truth).map(off).sum::<f64>() / (3 * truth.len()) as f64).log10()
+}
+
+/// The distance at which something has a disparity, as the project's camera and disparities of two known distances tell.
+fn distance(disparity: f64) -> f64 {
+    // The nearest is one unit away, the farthest five.
+    let share = (disparity - WALL) / (CARD - WALL);
+    1.0 / (0.2 + 0.8 * share)
+}
+
+#[test]
+fn a_light_field_is_refocused_as_a_lens_would() {
+    let place = tempfile::tempdir().unwrap();
+    let folder = place.path();
+    light_field(&folder.join("card"));
+    done(folder, "import card -o card.fbrush");
+    let info: Value = serde_json::from_str(&done(folder, "info card.fbrush --json")).unwrap();
+    assert_eq!(info["project"]["scene_state"], "same");
+    // The aperture reaches to the outermost views, in the corners.
+    let reach = f64::from(STEPS) * 2f64.sqrt();
+    for disparity in [CARD, 0.4, WALL] {
+        let camera = format!("{{\"focus_distance\": {}}}", distance(disparity));
+        std::fs::write(folder.join("camera.json"), camera).unwrap();
+        done(folder, "render card.fbrush --camera camera.json -o lens.exr --backend cpu");
+        let found = psnr(&folder.join("lens.exr"), &truth(reach, disparity));
+        assert!(found > 36.0, "focused on {disparity}: {found} dB");
+        // Negative control: focused elsewhere it is something else.
+        let other = psnr(&folder.join("lens.exr"), &truth(reach, disparity + 0.5));
+        assert!(other < found - 3.0, "{other} of {found} dB");
+    }
+    // The middle view is the picture through a pinhole, nothing of it invented.
+    done(folder, "render card.fbrush --aperture-radius 0 -o pinhole.exr --aov seen --backend cpu");
+    let middle: Vec<_> = (0..SIZE[0] * SIZE[1]).map(|n| pixel(n % SIZE[0], n / SIZE[0], [0.0; 2])).collect();
+    let found = psnr(&folder.join("pinhole.exr"), &middle);
+    assert!(found > 45.0, "{found} dB");
+}
+
+#[test]
+fn a_picture_and_its_depth_are_refocused() {
+    let place = tempfile::tempdir().unwrap();
+    let folder = place.path();
+    view([0.0; 2]).save(folder.join("card.png")).unwrap();
+    pfm(&folder.join("card.pfm"), |disparity| distance(disparity));
+    done(folder, "import card.png --depth card.pfm -o card.fbrush");
+    let focal_px = 0.5 * 96.0 / (0.5 * 0.6911f64).tan();
+    // As far as a disparity of one step of this length.
+    let baseline = (CARD - WALL) / (0.8 * focal_px);
+    for disparity in [CARD, WALL] {
+        let radius = 2.0 * baseline;
+        let camera =
+            format!("{{\"focus_distance\": {}, \"aperture_radius\": {radius}}}", distance(disparity));
+        std::fs::write(folder.join("camera.json"), camera).unwrap();
+        done(folder, "render card.fbrush --camera camera.json -o lens.exr --backend cpu");
+        // What is hidden is invented, so it is farther off than with views.
+        let found = psnr(&folder.join("lens.exr"), &truth(2.0, disparity));
+        assert!(found > 30.0, "focused on {disparity}: {found} dB");
+    }
+    // A relative map says nothing of its ends.
+    let gray = image::GrayImage::from_fn(SIZE[0], SIZE[1], |x, y| {
+        let (_, disparity) = shown(f64::from(x) + 0.5, f64::from(y) + 0.5, [0.0; 2]);
+        image::Luma([if disparity == CARD { 255 } else { 30 }])
+    });
+    gray.save(folder.join("gray.png")).unwrap();
+    let output = run(folder, "import card.png --depth gray.png -o gray.fbrush");
+    let errors = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(3), "{errors}");
+    assert!(errors.contains("--near"), "{errors}");
+    done(folder, "import card.png --depth gray.png --near white -o gray.fbrush");
+}
