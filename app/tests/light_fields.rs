@@ -179,3 +179,40 @@ fn a_picture_and_its_depth_are_refocused() {
     assert!(errors.contains("--near"), "{errors}");
     done(folder, "import card.png --depth gray.png --near white -o gray.fbrush");
 }
+
+#[test]
+fn two_eyes_see_what_they_fixate_at_one_place() {
+    let place = tempfile::tempdir().unwrap();
+    let folder = place.path();
+    light_field(&folder.join("card"));
+    done(folder, "import card -o card.fbrush");
+    let reach = f64::from(STEPS) * 2f64.sqrt();
+    let eyes = 0.6;
+    // On the card, and on the wall beside it.
+    for (x, y, fixated) in [(40, 30, CARD), (80, 60, WALL)] {
+        let stereo = format!("--stereo sidebyside --eyes {eyes} --fixate {x},{y}");
+        done(folder, &format!("render card.fbrush {stereo} -o pair.exr --backend cpu"));
+        let pair = read_picture(&folder.join("pair.exr")).unwrap();
+        assert_eq!([pair.width, pair.height], [2 * SIZE[0], SIZE[1]]);
+        // Each eye's picture is the view from its place, moved so that what is fixated stays where it is.
+        for (eye, side) in [(0, -1.0), (1, 1.0)] {
+            let from = side * eyes * reach;
+            let mut squares = 0.0;
+            for row in 0..SIZE[1] {
+                for column in 0..SIZE[0] {
+                    let at = f64::from(column) + 0.5 - fixated * from;
+                    let (color, _) = shown(at, f64::from(row) + 0.5, [from, 0.0]);
+                    let found = pair.rgb[(row * 2 * SIZE[0] + eye * SIZE[0] + column) as usize];
+                    squares += (0..3).map(|c| (f64::from(found[c]) - color[c]).powi(2)).sum::<f64>();
+                }
+            }
+            let psnr = -10.0 * (squares / f64::from(3 * SIZE[0] * SIZE[1])).log10();
+            assert!(psnr > 26.0, "eye {eye} on {fixated}: {psnr} dB");
+        }
+        // Nothing is missing at the sides.
+        assert!(pair.rgb.iter().all(|rgb| rgb[1] > 0.02 || rgb[0] > 0.02));
+    }
+    done(folder, "render card.fbrush --stereo anaglyph -o red-cyan.png --backend cpu");
+    let output = run(folder, "render card.fbrush --stereo sidebyside --eyes 1.2 -o x.png");
+    assert_eq!(output.status.code(), Some(3), "{}", String::from_utf8_lossy(&output.stderr));
+}

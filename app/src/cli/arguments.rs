@@ -330,12 +330,47 @@ pub struct RenderArguments {
     /// normalise)
     #[arg(long, value_enum)]
     pub exposure: Option<ExposureName>,
+    /// Two pictures for two eyes, the lens's through two parts of its aperture: beside each other, or in red and cyan
+    #[arg(long, value_enum, value_name = "FORM", conflicts_with = "aov")]
+    pub stereo: Option<StereoName>,
+    /// How far the eyes are apart, as a share of the aperture's diameter, at most 0.9375
+    #[arg(long, value_name = "SHARE", default_value_t = 0.5, requires = "stereo")]
+    pub eyes: f64,
+    /// The place of the picture that both eyes look at, px: it has no disparity (default: what the camera is focused on)
+    #[arg(long, value_name = "X,Y", requires = "stereo", value_parser = place)]
+    pub fixate: Option<glam::DVec2>,
     /// Seed of the ground truth's rays, and of scattered ones
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub seed: u32,
     /// Write timings and counts as JSON to stdout
     #[arg(long)]
     pub json: bool,
+}
+
+/// A place of a picture.
+fn place(text: &str) -> Result<glam::DVec2, String> {
+    let number = |text: &str| text.trim().parse::<f64>().ok().filter(|number| number.is_finite());
+    let place = text.split_once(',').and_then(|(x, y)| Some(glam::DVec2::new(number(x)?, number(y)?)));
+    place.ok_or_else(|| "X,Y in pixels".into())
+}
+
+/// Forms of stereo pictures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum StereoName {
+    /// The left eye's picture on the left
+    #[value(name = "sidebyside")]
+    SideBySide,
+    /// Red and cyan
+    Anaglyph,
+}
+
+impl From<StereoName> for session::StereoForm {
+    fn from(name: StereoName) -> Self {
+        match name {
+            StereoName::SideBySide => Self::SideBySide,
+            StereoName::Anaglyph => Self::Anaglyph,
+        }
+    }
 }
 
 /// `compare`.

@@ -8,8 +8,8 @@ use lens::Exposure;
 use project::{PictureOptions, write_picture};
 use serde_json::json;
 use session::{
-    Aov, LayeredOptions, RenderOptions, Rendered, Renderer, ScatterOptions, SessionError, ViewsOptions,
-    render_input,
+    Aov, LayeredOptions, RenderOptions, Rendered, Renderer, ScatterOptions, SessionError, Stereo,
+    ViewsOptions, render_input, render_stereo,
 };
 use splat::Gpu;
 use std::time::Instant;
@@ -48,19 +48,25 @@ pub fn run(arguments: &RenderArguments, console: &Console) -> Result<(), Failure
         aovs: arguments.aov.clone(),
         ..usual
     };
-    let Rendered { picture, layers, cost, warnings } =
-        render_input(&input, &camera, &focus, &options, console)?;
+    let exposure = match arguments.exposure {
+        None => input.exposure(),
+        Some(ExposureName::Conserve) => Exposure::Conserve,
+        Some(ExposureName::Normalise) => Exposure::Normalise,
+    };
+    let Rendered { picture, layers, cost, warnings } = match arguments.stereo {
+        None => render_input(&input, &camera, &focus, &options, console)?,
+        Some(form) => {
+            let stereo =
+                Stereo { form: form.into(), eyes: arguments.eyes, fixate: arguments.fixate, exposure };
+            render_stereo(&input, &camera, &focus, &options, &stereo, console)?
+        }
+    };
     console.warn(&warnings);
     let card = card.filter(|_| cost.is_on_gpu);
     if arguments.backend == BackendName::Gpu && card.is_none() {
         console.note("the GPU does not hold this picture, or was lost: it was summed on the processor");
     }
 
-    let exposure = match arguments.exposure {
-        None => input.exposure(),
-        Some(ExposureName::Conserve) => Exposure::Conserve,
-        Some(ExposureName::Normalise) => Exposure::Normalise,
-    };
     let writing = Instant::now();
     let written = PictureOptions { exposure, half: false };
     let files = write_picture(&arguments.output, &picture, &layers, written)?;
@@ -72,8 +78,8 @@ pub fn run(arguments: &RenderArguments, console: &Console) -> Result<(), Failure
             "renderer": renderer.name(),
             "backend": if card.is_some() { "gpu" } else { "cpu" },
             "adapter": card,
-            "width": camera.width,
-            "height": camera.height,
+            "width": picture.width,
+            "height": picture.height,
             "exposure": format!("{exposure:?}").to_lowercase(),
             "threads": rayon::current_num_threads(),
             "triangles": input.scene.triangles.len(),

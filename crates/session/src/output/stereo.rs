@@ -1,0 +1,130 @@
+//! A pair of pictures for two eyes: the same light field through two small parts of the aperture.
+//!
+//! A thin lens shows what it is focused on at one place through every part of its aperture, so that an eye's picture is the lens's through a
+//! small part of it, focused on the point that both eyes fixate: that has no disparity, and nothing is cut off at the frame's sides.
+
+use super::render::{RenderOptions, Rendered, pixel_ray, render_input};
+use crate::document::Input;
+use crate::error::SessionError;
+use crate::jobs::Steps;
+use focus::Focus;
+use glam::DVec2;
+use lens::{Aperture, Camera, Exposure, Picture, SUB_APERTURE_RADIUS};
+use trace::Tracer;
+
+/// How the two pictures become one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum StereoForm {
+    /// The left eye's on the left, the right eye's on the right.
+    SideBySide,
+    /// Red of the left eye's, green and blue of the right eye's, for glasses of red and cyan.
+    Anaglyph,
+}
+
+/// What the eyes do.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stereo {
+    /// How the two pictures become one.
+    pub form: StereoForm,
+    /// How far the eyes are apart, as a share of the aperture's diameter, in (0, 15/16].
+    pub eyes: f64,
+    /// The place of the picture that both look at, px; none: what the camera is focused on.
+    pub fixate: Option<DVec2>,
+    /// How sums become pictures: each eye has its own coverage.
+    pub exposure: Exposure,
+}
+
+impl Stereo {
+    /// The farthest that eyes may be apart: a small part of the aperture is needed around each.
+    pub const WIDEST: f64 = 1.0 - SUB_APERTURE_RADIUS;
+}
+
+/// Renders a pair. AOVs are of one camera and have no place in it.
+///
+/// # Errors
+/// Those of rendering; the camera has no aperture, the eyes no place in it, or the picture does not have the place.
+pub fn render_stereo(
+    input: &Input,
+    camera: &Camera,
+    focus: &Focus,
+    options: &RenderOptions,
+    stereo: &Stereo,
+    steps: &dyn Steps,
+) -> Result<Rendered, SessionError> {
+    let bad = |what: &str| Err(SessionError::bad(&input.path, what));
+    if camera.aperture_radius <= 0.0 {
+        return bad("is seen through a pinhole: two eyes have no place in it (give --aperture-radius)");
+    }
+    if !(stereo.eyes > 0.0 && stereo.eyes <= Stereo::WIDEST) {
+        return bad(
+            "two eyes have no place that far apart (give --eyes between 0 and 0.9375 of the aperture's diameter)",
+        );
+    }
+    let focus_distance = match stereo.fixate {
+        Some(place) => fixated(input, camera, place)?,
+        None => camera.focus_distance,
+    };
+    let eye = |side: f64| Camera {
+        focus_distance,
+        aperture: Aperture::sub_aperture(DVec2::new(side * stereo.eyes, 0.0)),
+        ..camera.clone()
+    };
+    let options = RenderOptions { aovs: Vec::new(), ..options.clone() };
+    let left = render_input(input, &eye(-1.0), focus, &options, steps)?;
+    let right = render_input(input, &eye(1.0), focus, &options, steps)?;
+    let picture = joined(&left.picture, &right.picture, stereo);
+    Ok(Rendered { picture, layers: Vec::new(), ..right })
+}
+
+/// How far ahead is what the picture shows at a place; at infinity where no surface is.
+fn fixated(input: &Input, camera: &Camera, place: DVec2) -> Result<f64, SessionError> {
+    let size = DVec2::new(f64::from(camera.width), f64::from(camera.height));
+    if !(place.cmpge(DVec2::ZERO).all() && place.cmplt(size).all()) {
+        let what = format!(
+            "its picture of {} × {} px has no place {},{} to fixate",
+            camera.width, camera.height, place.x, place.y
+        );
+        return Err(SessionError::bad(&input.path, what));
+    }
+    let number = place.y as u32 * camera.width + place.x as u32;
+    let ray = pixel_ray(camera, number);
+    let hit = Tracer::new(input.scene.clone()).first_hit(&ray);
+    let depth = hit.map(|hit| camera.camera_from_world(hit.point.position(&input.scene)).z);
+    Ok(depth.unwrap_or(f64::INFINITY))
+}
+
+fn joined(left: &Picture, right: &Picture, stereo: &Stereo) -> Picture {
+    let (width, height) = (left.width as usize, left.height as usize);
+    match stereo.form {
+        StereoForm::SideBySide => {
+            let mut picture = Picture::black(2 * left.width, left.height);
+            for row in 0..height {
+                for (eye, from) in [left, right].into_iter().enumerate() {
+                    let to = (2 * row + eye) * width..(2 * row + eye + 1) * width;
+                    let of = row * width..(row + 1) * width;
+                    picture.radiance[to.clone()].copy_from_slice(&from.radiance[of.clone()]);
+                    picture.coverage[to].copy_from_slice(&from.coverage[of]);
+                }
+            }
+            picture
+        }
+        StereoForm::Anaglyph => {
+            let shown = |picture: &Picture, pixel: usize, channel: usize| match stereo.exposure {
+                Exposure::Conserve => picture.radiance[pixel][channel],
+                Exposure::Normalise if picture.coverage[pixel] > 0.0 => {
+                    picture.radiance[pixel][channel] / picture.coverage[pixel]
+                }
+                Exposure::Normalise => 0.0,
+            };
+            let pixels = 0..width * height;
+            let radiance =
+                pixels.map(|pixel| [shown(left, pixel, 0), shown(right, pixel, 1), shown(right, pixel, 2)]);
+            Picture {
+                width: left.width,
+                height: left.height,
+                radiance: radiance.collect(),
+                coverage: vec![1.0; width * height],
+            }
+        }
+    }
+}
