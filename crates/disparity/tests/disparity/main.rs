@@ -1,0 +1,8 @@
+//! Disparities of light fields whose truth is known.
+
+mod captures;
+mod field;
+mod score;
+mod still_life;
+mod still_lives;
+mod unusable;
