@@ -55,6 +55,26 @@ pub enum DisparityError {
         /// What is wrong, and what to do.
         why: String,
     },
+    /// Too few disparities are known to read colours by.
+    #[error("{samples} known disparities are too few to read a map of colours by (give 40 or more)")]
+    TooFewSamples {
+        /// How many there are.
+        samples: usize,
+    },
+    /// A known disparity that is no number or lies outside of the map.
+    #[error("known disparity {sample}: outside of the map or not a finite number (leave it out)")]
+    SampleOutside {
+        /// Which, counted from 0.
+        sample: usize,
+    },
+    /// A picture whose colours are no code of the disparities that are known.
+    #[error("the map of colours cannot be read: {why} (residual {percent:.1} % of the range; give the map that belongs to these views)")]
+    NotColourCoded {
+        /// The median residual, percent of the range that was fitted.
+        percent: f32,
+        /// What is wrong.
+        why: String,
+    },
     /// The watcher stopped it.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),

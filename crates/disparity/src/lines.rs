@@ -42,12 +42,12 @@ impl Bonds {
             let rounds = [(self.width, &self.along_rows), (height, &self.along_columns)];
             for (length, bonds) in rounds {
                 values.par_chunks_mut(length).zip(bonds.par_chunks(length)).for_each(|(values, bonds)| {
-                    let (mut pull, mut ahead) = (vec![0.0; length], vec![0.0; length]);
+                    let mut walk = Walk::new(length);
                     for i in 0..length {
                         let before = if i > 0 { strength * bonds[i - 1] } else { 0.0 };
-                        forward(&mut pull, &mut ahead, i, before, strength * bonds[i], 1.0, values[i]);
+                        walk.step(before, strength * bonds[i], 1.0, values[i]);
                     }
-                    backward(values, &pull, &ahead);
+                    walk.back(values);
                 });
                 *values = transposed(values, length);
             }
@@ -86,7 +86,7 @@ impl Side<'_> {
             let old = values.to_vec();
             let lines = values.par_chunks_mut(n).enumerate().filter(|(line, _)| line % 2 == parity);
             lines.for_each(|(line, values)| {
-                let (mut pull, mut ahead) = (vec![0.0; n], vec![0.0; n]);
+                let mut walk = Walk::new(n);
                 for i in 0..n {
                     let at = line * n + i;
                     let before = if i > 0 { self.along[at - 1] } else { 0.0 };
@@ -99,28 +99,46 @@ impl Side<'_> {
                         own += self.across[at];
                         towards += self.across[at] * old[at + n];
                     }
-                    forward(&mut pull, &mut ahead, i, before, self.along[at], own, towards);
+                    walk.step(before, self.along[at], own, towards);
                 }
-                backward(values, &pull, &ahead);
+                walk.back(values);
             });
         }
     }
 }
 
-/// One step there: eliminates what stands before `i`.
-fn forward(pull: &mut [f32], ahead: &mut [f32], i: usize, before: f32, after: f32, own: f32, towards: f32) {
-    let (pull_before, ahead_before) = if i > 0 { (pull[i - 1], ahead[i - 1]) } else { (0.0, 0.0) };
-    let pivot = 1.0 / (own + before + after - before * pull_before);
-    pull[i] = after * pivot;
-    ahead[i] = (towards + before * ahead_before) * pivot;
+/// What the walk there leaves behind: the value of `i` is `ahead` + `pull` · the value of the next.
+struct Walk {
+    pull: Vec<f32>,
+    ahead: Vec<f32>,
+    /// 1 − pull of the last, kept by itself: where almost nothing is known the difference would be lost.
+    slack: f32,
 }
 
-/// The walk back.
-fn backward(values: &mut [f32], pull: &[f32], ahead: &[f32]) {
-    let mut next = 0.0;
-    for i in (0..values.len()).rev() {
-        next = ahead[i] + pull[i] * next;
-        values[i] = next;
+impl Walk {
+    fn new(length: usize) -> Self {
+        Self { pull: Vec::with_capacity(length), ahead: Vec::with_capacity(length), slack: 0.0 }
+    }
+
+    /// One step: eliminates what stands before.
+    fn step(&mut self, before: f32, after: f32, own: f32, towards: f32) {
+        let last = self.ahead.last().copied().unwrap_or(0.0);
+        let own = own + before * self.slack;
+        let pivot = own + after;
+        // Nothing is known here or before, and nothing hangs together: any value will do.
+        let inverse = if pivot > 0.0 { 1.0 / pivot } else { 0.0 };
+        self.pull.push(after * inverse);
+        self.ahead.push((towards + before * last) * inverse);
+        self.slack = own * inverse;
+    }
+
+    /// The walk back.
+    fn back(&self, values: &mut [f32]) {
+        let mut next = 0.0;
+        for (value, (pull, ahead)) in values.iter_mut().zip(self.pull.iter().zip(&self.ahead)).rev() {
+            next = ahead + pull * next;
+            *value = next;
+        }
     }
 }
 
@@ -150,6 +168,17 @@ mod tests {
         for (i, value) in values.iter().enumerate() {
             assert!((value - (i % width) as f32 / 5.0).abs() < 1e-3, "{i}: {value}");
         }
+    }
+
+    #[test]
+    fn what_is_hardly_known_is_still_a_number() {
+        // One pixel is known, bonds of all sizes: differences of nearly equal numbers would be divided by.
+        let (width, height) = (40, 3);
+        let bonds = Bonds::new(width, height, |a, b| if (a + b) % 3 == 0 { 1e-12 } else { 1e4 });
+        let certainty: Vec<f32> = (0..width * height).map(|i| f32::from(i == 7)).collect();
+        let mut values = vec![2.0; width * height];
+        bonds.relax(&mut values, &certainty, &vec![2.0; width * height], 20);
+        assert!(values.iter().all(|v| (v - 2.0).abs() < 1e-3), "{values:?}");
     }
 
     #[test]

@@ -67,31 +67,29 @@ fn draw(
     let half = [0.5 * (across[0].abs() + down[0].abs()), 0.5 * (across[1].abs() + down[1].abs())];
     // A hair more than half a pixel, so that neighbours leave no seam.
     let edge = 0.5 + 1e-3;
-    let first = [(place[0] - half[0]).ceil().max(0.0), (place[1] - half[1]).ceil().max(0.0)];
-    let last = [
-        (place[0] + half[0]).floor().min(width as f32 - 1.0),
-        (place[1] + half[1]).floor().min(height as f32 - 1.0),
-    ];
-    let mut row = first[1];
-    while row <= last[1] {
-        let mut column = first[0];
-        while column <= last[0] {
-            let (dx, dy) = (column - place[0], row - place[1]);
-            let a = (dx * down[1] - dy * down[0]) / area;
-            let b = (dy * across[0] - dx * across[1]) / area;
-            if a.abs() <= edge && b.abs() <= edge {
-                let d = own + slopes[0] * a + slopes[1] * b;
-                let at = row as usize * width + column as usize;
-                // Not (d <= …): what is NaN is covered by anything.
-                if !(d <= there.disparity[at]) {
-                    there.disparity[at] = d;
-                    there.confidence[at] = confidence;
-                }
+    let columns = pixels(place[0], half[0], width);
+    let rows = pixels(place[1], half[1], height);
+    for (row, column) in rows.flat_map(|row| columns.clone().map(move |column| (row, column))) {
+        let (dx, dy) = (column as f32 - place[0], row as f32 - place[1]);
+        let a = (dx * down[1] - dy * down[0]) / area;
+        let b = (dy * across[0] - dx * across[1]) / area;
+        if a.abs() <= edge && b.abs() <= edge {
+            let d = own + slopes[0] * a + slopes[1] * b;
+            let at = row * width + column;
+            let covered = there.disparity[at];
+            if covered.is_nan() || d > covered {
+                there.disparity[at] = d;
+                there.confidence[at] = confidence;
             }
-            column += 1.0;
         }
-        row += 1.0;
     }
+}
+
+/// The pixels of a line of `length` within `half` of a place.
+fn pixels(place: f32, half: f32, length: usize) -> std::ops::Range<usize> {
+    let first = (place - half).ceil().max(0.0) as usize;
+    let end = (place + half).floor() + 1.0;
+    first..(end.max(0.0) as usize).min(length)
 }
 
 /// Fills what did not move by matching, in the view `picture` with its own `others`; returns the evidence there.

@@ -2,6 +2,7 @@
 
 mod captures;
 mod field;
+mod palettes;
 mod score;
 mod still_life;
 mod still_lives;
