@@ -1,7 +1,7 @@
 //! What a light field has to be, looked at before anything is computed.
 
-use crate::error::DisparityError;
 use crate::asked::Asked;
+use crate::error::DisparityError;
 use crate::view::View;
 
 /// Pixels a side that a view needs.
@@ -52,7 +52,9 @@ fn check_view(index: usize, view: &View<'_>, first: &View<'_>) -> Result<(), Dis
         return size(format!("{width} × {height} pixels are too few"));
     }
     match width.checked_mul(height) {
-        Some(pixels) if pixels > MOST_PIXELS => return size(format!("{width} × {height} pixels are too many")),
+        Some(pixels) if pixels > MOST_PIXELS => {
+            return size(format!("{width} × {height} pixels are too many"));
+        }
         Some(pixels) if pixels == picture.rgb.len() => {}
         _ => return size(format!("{width} × {height} pixels, but {} colours", picture.rgb.len())),
     }

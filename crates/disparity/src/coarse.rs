@@ -21,8 +21,12 @@ const STEP_PX: f32 = 0.5;
 /// How much better than any other a label must be to count for the range, of eight paths' full costs.
 const LEAD: f32 = 0.04;
 
-/// The share of the pixels that count which may lie outside of the range, at each end: stray ones do, a thin rod does not.
-const STRAY: f32 = 0.002;
+/// The share of the pixels that count which disparities of [`BIN`] labels must have to be in the range. Stray ones (gloss, what
+/// repeats) are scattered; even a thin rod is not.
+const POPULATED: f32 = 0.003;
+
+/// Labels that are counted together.
+const BIN: f32 = 2.0;
 
 /// By how much pictures are shrunk for a first look.
 pub fn shrinking(width: usize, height: usize) -> usize {
@@ -34,7 +38,9 @@ pub fn spread(offsets: &[[f32; 2]]) -> Vec<usize> {
     let mut chosen: Vec<usize> = Vec::new();
     let mut clearance: Vec<f32> = offsets.iter().map(|o| o[0].hypot(o[1])).collect();
     while chosen.len() < VIEWS.min(offsets.len()) {
-        let Some(next) = (0..offsets.len()).max_by(|&a, &b| clearance[a].total_cmp(&clearance[b])) else { break };
+        let Some(next) = (0..offsets.len()).max_by(|&a, &b| clearance[a].total_cmp(&clearance[b])) else {
+            break;
+        };
         chosen.push(next);
         for (other, clearance) in clearance.iter_mut().enumerate() {
             let apart = (0..2).map(|k| (offsets[other][k] - offsets[next][k]).powi(2)).sum::<f32>().sqrt();
@@ -65,26 +71,42 @@ pub fn first_look(
     let labels = Labels::covering(low, high, STEP_PX / reach);
     let chosen = matched(reference, others, &labels, progress)?;
     let lead = (LEAD * 8.0 * FULL_COST) as i16;
-    let mut certain: Vec<f32> = chosen.iter().filter(|c| c.lead > lead).map(|c| c.disparity).collect();
-    certain.sort_unstable_by(f32::total_cmp);
-    let range = match certain.as_slice() {
-        // Nothing is certain: what was looked at stays possible.
-        [] => (low, high),
-        [first, .., last] if certain.len() < 100 => (*first, *last),
-        certain => {
-            let stray = (STRAY * certain.len() as f32) as usize;
-            (certain[stray], certain[certain.len() - 1 - stray])
-        }
-    };
+    let certain: Vec<f32> = chosen.iter().filter(|c| c.lead > lead).map(|c| c.disparity).collect();
+    // Nothing is certain: what was looked at stays possible.
+    let range = populated(&certain, &labels).unwrap_or((low, high));
     // Small pictures leave half a pixel open, and the ends of slanted surfaces.
     let margin = STEP_PX / reach + 0.06 * (range.1 - range.0);
     let range = ((range.0 - margin).max(low), (range.1 + margin).min(high));
     Ok(FirstLook { disparity: chosen.iter().map(|c| c.disparity).collect(), range })
 }
 
+/// From the least to the largest disparity that is no stray one.
+fn populated(certain: &[f32], labels: &Labels) -> Option<(f32, f32)> {
+    let width = BIN * labels.step;
+    let bin = |d: &f32| (((d - labels.low) / width).max(0.0) as usize).min(labels.count);
+    let mut counts = vec![0u32; labels.count + 1];
+    certain.iter().for_each(|d| counts[bin(d)] += 1);
+    let enough = (POPULATED * certain.len() as f32).max(2.0);
+    let inside = || certain.iter().copied().filter(|d| counts[bin(d)] as f32 >= enough);
+    let low = inside().reduce(f32::min)?;
+    Some((low, inside().reduce(f32::max)?))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn scattered_disparities_are_not_in_the_range_and_a_small_thing_is() {
+        let labels = Labels { low: -12.0, step: 0.25, count: 97 };
+        let mut certain: Vec<f32> = (0..10_000).map(|i| -1.0 + i as f32 / 10_000.0).collect();
+        certain.extend((0..200).map(|i| -12.0 + i as f32 * 0.05));
+        assert_eq!(populated(&certain, &labels).map(|r| r.1), certain.get(9_999).copied());
+        assert!(populated(&certain, &labels).unwrap().0 > -1.6);
+        certain.extend([3.0; 60]);
+        assert_eq!(populated(&certain, &labels).unwrap().1, 3.0);
+        assert_eq!(populated(&[], &labels), None);
+    }
 
     #[test]
     fn views_of_a_first_look_are_far_apart() {

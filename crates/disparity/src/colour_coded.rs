@@ -66,7 +66,8 @@ pub fn decode(
     progress: &dyn Progress,
 ) -> Result<Decoded, DisparityError> {
     check(map, samples)?;
-    let colours: Vec<([f32; 3], f32)> = samples.iter().map(|s| (steady_colour(map, s), s.disparity)).collect();
+    let colours: Vec<([f32; 3], f32)> =
+        samples.iter().map(|s| (steady_colour(map, s), s.disparity)).collect();
     let refused = |residual: f32, why: &str| {
         Err(DisparityError::NotColourCoded { percent: 100.0 * residual, why: why.to_string() })
     };

@@ -68,7 +68,9 @@ pub enum DisparityError {
         sample: usize,
     },
     /// A picture whose colours are no code of the disparities that are known.
-    #[error("the map of colours cannot be read: {why} (residual {percent:.1} % of the range; give the map that belongs to these views)")]
+    #[error(
+        "the map of colours cannot be read: {why} (residual {percent:.1} % of the range; give the map that belongs to these views)"
+    )]
     NotColourCoded {
         /// The median residual, percent of the range that was fitted.
         percent: f32,

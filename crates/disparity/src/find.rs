@@ -46,11 +46,8 @@ pub fn find(
     for (k, &view) in asked.others.iter().enumerate() {
         let part = |k: usize| share + (1.0 - share) * k as f32 / asked.others.len() as f32;
         let stage = Stage::new(progress, part(k), part(k + 1));
-        let map = if view == reference {
-            maps[0].clone()
-        } else {
-            field.other_map(&maps[0], view, &stage)?
-        };
+        let map =
+            if view == reference { maps[0].clone() } else { field.other_map(&maps[0], view, &stage)? };
         maps.push(map);
     }
     progress.report(1.0);
@@ -159,11 +156,12 @@ impl EvenField {
         let refinement =
             Refinement { reference: picture, others: &chosen, labels: self.labels, noise, reach: self.reach };
         let (disparity, told) = filled(&refinement, &there.disparity, &chosen, progress)?;
-        let confidence = (0..disparity.len())
-            .map(|i| {
-                if there.disparity[i].is_nan() { self.confidence(&told[i]) } else { there.confidence[i] }
-            })
-            .collect();
+        let confidence =
+            (0..disparity.len())
+                .map(|i| {
+                    if there.disparity[i].is_nan() { self.confidence(&told[i]) } else { there.confidence[i] }
+                })
+                .collect();
         Ok(DisparityMap { view, width: picture.width(), height: picture.height(), disparity, confidence })
     }
 

@@ -40,7 +40,14 @@ impl<'a> Hiding<'a> {
         let nearest = largest_around(&rows, across, down, |x, y| {
             (y.saturating_sub(around)..(y + around + 1).min(down)).map(move |y| (x, y))
         });
-        Self { disparity, width, height, nearest, tiles_across: across, margin: 0.5 / reach.max(f32::MIN_POSITIVE) }
+        Self {
+            disparity,
+            width,
+            height,
+            nearest,
+            tiles_across: across,
+            margin: 0.5 / reach.max(f32::MIN_POSITIVE),
+        }
     }
 
     /// The largest disparity that could hide the pixel.
@@ -83,9 +90,7 @@ fn largest_around<I: Iterator<Item = (usize, usize)>>(
 ) -> Vec<f32> {
     (0..across * down)
         .map(|tile| {
-            around(tile % across, tile / across)
-                .map(|(x, y)| tiles[y * across + x])
-                .fold(f32::MIN, f32::max)
+            around(tile % across, tile / across).map(|(x, y)| tiles[y * across + x]).fold(f32::MIN, f32::max)
         })
         .collect()
 }

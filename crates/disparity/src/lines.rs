@@ -57,7 +57,8 @@ impl Bonds {
     /// Goes `rounds` rounds towards the minimum of Σ certainty (value − target)² + Σ bond (value − neighbour)².
     pub fn relax(&self, values: &mut Vec<f32>, certainty: &[f32], target: &[f32], rounds: usize) {
         let (width, height) = (self.width, values.len() / self.width);
-        let rows = Side { length: width, along: &self.along_rows, across: transposed(&self.along_columns, height) };
+        let rows =
+            Side { length: width, along: &self.along_rows, across: transposed(&self.along_columns, height) };
         let columns =
             Side { length: height, along: &self.along_columns, across: transposed(&self.along_rows, width) };
         let turned = [transposed(certainty, width), transposed(target, width)];
@@ -162,7 +163,8 @@ mod tests {
         let bonds = Bonds::new(width, height, |_, _| 1.0);
         let known = |i: usize| i % width == 0 || i % width == width - 1;
         let certainty: Vec<f32> = (0..width * height).map(|i| if known(i) { 1e6 } else { 1e-9 }).collect();
-        let target: Vec<f32> = (0..width * height).map(|i| (i % width) as f32 / 5.0 * f32::from(known(i))).collect();
+        let target: Vec<f32> =
+            (0..width * height).map(|i| (i % width) as f32 / 5.0 * f32::from(known(i))).collect();
         let mut values = vec![0.0; width * height];
         bonds.relax(&mut values, &certainty, &target, 60);
         for (i, value) in values.iter().enumerate() {

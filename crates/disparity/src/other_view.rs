@@ -28,7 +28,8 @@ pub struct Moved {
 /// Moves a map to the view at `offset` from its own.
 pub fn moved(disparity: &[f32], confidence: &[f32], width: usize, offset: [f32; 2]) -> Moved {
     let height = disparity.len() / width;
-    let mut there = Moved { disparity: vec![f32::NAN; disparity.len()], confidence: vec![0.0; disparity.len()] };
+    let mut there =
+        Moved { disparity: vec![f32::NAN; disparity.len()], confidence: vec![0.0; disparity.len()] };
     let reach = offset[0].abs().max(offset[1].abs());
     for y in 0..height {
         for x in 0..width {
@@ -148,7 +149,9 @@ mod tests {
     fn a_near_square_moves_over_a_wall_and_leaves_a_hole_of_its_parallax() {
         let (width, height) = (40, 30);
         let disparity: Vec<f32> = (0..width * height)
-            .map(|i| if (10..20).contains(&(i % width)) && (8..18).contains(&(i / width)) { 3.0 } else { 0.0 })
+            .map(
+                |i| if (10..20).contains(&(i % width)) && (8..18).contains(&(i / width)) { 3.0 } else { 0.0 },
+            )
             .collect();
         let there = moved(&disparity, &vec![1.0; width * height], width, [1.0, 0.0]);
         for (i, d) in there.disparity.iter().enumerate() {

@@ -71,7 +71,8 @@ impl Gain {
             view.scale(|x, y| self.at(x as f32 / width, y as f32 / height));
         }
         let places = (0..81).map(|k| ((k % 9) as f32 / 8.0, (k / 9) as f32 / 8.0));
-        let square: f32 = places.flat_map(|(x, y)| self.at(x, y)).map(|gain| gain * gain).sum::<f32>() / 243.0;
+        let square: f32 =
+            places.flat_map(|(x, y)| self.at(x, y)).map(|gain| gain * gain).sum::<f32>() / 243.0;
         (1.0 / square).min(1.0)
     }
 }
@@ -104,8 +105,8 @@ fn fit_robustly(quotients: &[(f64, [f64; TERMS])]) -> Option<[f64; TERMS]> {
             }
             let weight = (1.0 - share * share).powi(2);
             for (i, row) in system.iter_mut().enumerate() {
-                for j in 0..TERMS {
-                    row[j] += weight * quotient.1[i] * quotient.1[j];
+                for (value, term) in row.iter_mut().zip(quotient.1) {
+                    *value += weight * quotient.1[i] * term;
                 }
                 row[TERMS] += weight * quotient.1[i] * quotient.0;
             }

@@ -26,7 +26,7 @@ impl Palette {
             lengths.push(lengths[lengths.len() - 1] + distance(pair[0], pair[1]));
         }
         let whole = *lengths.last()?;
-        if !(whole > 0.05) {
+        if whole <= 0.05 {
             return None;
         }
         let mut points = Vec::with_capacity(POINTS);
@@ -37,7 +37,8 @@ impl Palette {
                 segment += 1;
             }
             let length = lengths[segment + 1] - lengths[segment];
-            let share = if length > 0.0 { ((along - lengths[segment]) / length).clamp(0.0, 1.0) } else { 0.0 };
+            let share =
+                if length > 0.0 { ((along - lengths[segment]) / length).clamp(0.0, 1.0) } else { 0.0 };
             let (a, b) = (colours[segment], colours[segment + 1]);
             points.push(std::array::from_fn(|c| a[c] + share * (b[c] - a[c])));
         }

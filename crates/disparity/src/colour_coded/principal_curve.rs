@@ -69,9 +69,7 @@ fn frequent(map: &[[f32; 3]]) -> Vec<([f32; 3], f32)> {
     }
     let least = RARE * map.len() as f32;
     let counted = cells.into_values().filter(|(_, count)| *count as f32 >= least);
-    counted
-        .map(|(sum, count)| (sum.map(|v| (v / f64::from(count)) as f32), (count as f32).sqrt()))
-        .collect()
+    counted.map(|(sum, count)| (sum.map(|v| (v / f64::from(count)) as f32), (count as f32).sqrt())).collect()
 }
 
 /// The value at `place` of a line fitted to what is near it; `None` where nothing is.

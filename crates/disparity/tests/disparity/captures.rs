@@ -68,7 +68,12 @@ fn measure(name: &str, field: &Field, others: &[[f64; 2]]) -> Vec<DisparityMap> 
     for (k, map) in maps.iter().enumerate() {
         let mut sorted = map.disparity.clone();
         sorted.sort_unstable_by(f32::total_cmp);
-        eprintln!("{name}: view {}: disparities {:.3} … {:.3}", map.view, sorted[0], sorted[sorted.len() - 1]);
+        eprintln!(
+            "{name}: view {}: disparities {:.3} … {:.3}",
+            map.view,
+            sorted[0],
+            sorted[sorted.len() - 1]
+        );
         show(&format!("{name}_{k}"), map, field);
     }
     maps
@@ -111,7 +116,8 @@ fn kitchen_in_a_row() {
 #[ignore = "prints figures; minutes, most of them for the rays"]
 fn own_still_life_of_512() {
     let life = StillLife { size: 512, parallax: 1.2, noise: 0.008, samples: 2 };
-    let mut field = Field { width: 512, height: 512, pictures: Vec::new(), positions: crate::field::grid(4, 4) };
+    let mut field =
+        Field { width: 512, height: 512, pictures: Vec::new(), positions: crate::field::grid(4, 4) };
     let mut truths = Vec::new();
     for position in field.positions.clone() {
         let photograph = life.photograph(position);

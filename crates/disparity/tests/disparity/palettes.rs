@@ -30,7 +30,8 @@ fn jet(t: f32) -> [f32; 3] {
 }
 
 fn viridis(t: f32) -> [f32; 3] {
-    let stops = [[0.27, 0.0, 0.33], [0.23, 0.32, 0.55], [0.13, 0.57, 0.55], [0.37, 0.79, 0.38], [0.99, 0.91, 0.14]];
+    let stops =
+        [[0.27, 0.0, 0.33], [0.23, 0.32, 0.55], [0.13, 0.57, 0.55], [0.37, 0.79, 0.38], [0.99, 0.91, 0.14]];
     let k = ((t * 4.0) as usize).min(3);
     std::array::from_fn(|c| stops[k][c] + (4.0 * t - k as f32) * (stops[k + 1][c] - stops[k][c]))
 }
@@ -48,7 +49,8 @@ fn compressed(rgb: &[[f32; 3]]) -> Vec<[f32; 3]> {
 
 /// True disparities, and their range.
 fn truth() -> (Vec<f32>, f32, f32) {
-    let disparity = StillLife { size: SIZE, parallax: 1.0, noise: 0.0, samples: 1 }.photograph([0.0, 0.0]).disparity;
+    let disparity =
+        StillLife { size: SIZE, parallax: 1.0, noise: 0.0, samples: 1 }.photograph([0.0, 0.0]).disparity;
     let (low, high) = disparity.iter().fold((f32::MAX, f32::MIN), |(a, b), d| (a.min(*d), b.max(*d)));
     (disparity, low, high)
 }
@@ -110,13 +112,15 @@ fn palettes_of_unknown_order_and_scale_are_read() {
 fn a_photograph_noise_and_another_places_map_are_refused() {
     let (truth, low, high) = truth();
     let samples = samples(&truth, low, high);
-    let photograph = StillLife { size: SIZE, parallax: 1.0, noise: 0.01, samples: 2 }.photograph([0.0, 0.0]).rgb;
+    let photograph =
+        StillLife { size: SIZE, parallax: 1.0, noise: 0.01, samples: 2 }.photograph([0.0, 0.0]).rgb;
     let mut dice = Dice(3);
     let noise: Vec<[f32; 3]> = (0..SIZE * SIZE).map(|_| std::array::from_fn(|_| dice.roll())).collect();
     let other: Vec<[f32; 3]> =
         (0..SIZE * SIZE).map(|i| jet(((i % 47) as f32 / 46.0 + (i / SIZE) as f32 / 320.0).fract())).collect();
     let flat = vec![[0.3, 0.5, 0.7]; SIZE * SIZE];
-    for (name, rgb) in [("photograph", photograph), ("noise", noise), ("another map", other), ("flat", flat)] {
+    for (name, rgb) in [("photograph", photograph), ("noise", noise), ("another map", other), ("flat", flat)]
+    {
         match decode(&picture(&rgb), &samples, &Unwatched) {
             Err(refusal @ DisparityError::NotColourCoded { .. }) => eprintln!("{name}: {refusal}"),
             other => panic!("{name}: {:?}", other.map(|read| read.residual)),

@@ -16,13 +16,17 @@ pub struct Score {
 impl std::fmt::Display for Score {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let Self { bad_007, bad_003, bad_03, mse_100 } = self;
-        write!(f, "BadPix 0.07 {bad_007:.2} %, 0.03 {bad_003:.2} %, 0.3 {bad_03:.2} %, MSE × 100 {mse_100:.3}")
+        write!(
+            f,
+            "BadPix 0.07 {bad_007:.2} %, 0.03 {bad_003:.2} %, 0.3 {bad_03:.2} %, MSE × 100 {mse_100:.3}"
+        )
     }
 }
 
 /// The score of the pixels that are `counted`.
 pub fn score_where(found: &[f32], truth: &[f32], counted: impl Fn(usize) -> bool) -> Score {
-    let errors: Vec<f32> = (0..found.len()).filter(|i| counted(*i)).map(|i| (found[i] - truth[i]).abs()).collect();
+    let errors: Vec<f32> =
+        (0..found.len()).filter(|i| counted(*i)).map(|i| (found[i] - truth[i]).abs()).collect();
     let count = errors.len() as f32;
     let bad = |limit: f32| 100.0 * errors.iter().filter(|e| !(**e <= limit)).count() as f32 / count;
     Score {

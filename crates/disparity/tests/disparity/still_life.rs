@@ -58,11 +58,26 @@ fn scene() -> Vec<(Shape, Paint)> {
         (Shape::Plane { normal: [0.0, 1.0, 0.05], distance: 1.5 }, mottled(9.0, [0.4, 0.3, 0.2], 0.3)),
         (Shape::Ball { middle: [-1.0, 0.55, 4.2], radius: 0.8 }, mottled(10.0, [0.6, 0.3, 0.25], 0.35)),
         // Nearly without texture: found by its outline.
-        (Shape::Card { middle: [1.1, -0.75, 4.8], slope: [0.0, 0.0], half: [0.65, 0.5] }, Paint::Flat([0.55, 0.57, 0.6])),
-        (Shape::Card { middle: [0.85, 0.65, 3.4], slope: [0.9, 0.3], half: [0.5, 0.45] }, Paint::Striped { waves: 4.0 }),
-        (Shape::Rod { from: [-0.9, -1.2], to: [-0.25, 1.2], z: 2.9, half: 0.018 }, Paint::Flat([0.85, 0.75, 0.2])),
-        (Shape::Rod { from: [0.2, -1.2], to: [0.2, 1.2], z: 3.1, half: 0.022 }, mottled(12.0, [0.2, 0.3, 0.55], 0.25)),
-        (Shape::Rod { from: [-1.2, -0.75], to: [1.2, -0.55], z: 3.3, half: 0.015 }, Paint::Flat([0.1, 0.1, 0.12])),
+        (
+            Shape::Card { middle: [1.1, -0.75, 4.8], slope: [0.0, 0.0], half: [0.65, 0.5] },
+            Paint::Flat([0.55, 0.57, 0.6]),
+        ),
+        (
+            Shape::Card { middle: [0.85, 0.65, 3.4], slope: [0.9, 0.3], half: [0.5, 0.45] },
+            Paint::Striped { waves: 4.0 },
+        ),
+        (
+            Shape::Rod { from: [-0.9, -1.2], to: [-0.25, 1.2], z: 2.9, half: 0.018 },
+            Paint::Flat([0.85, 0.75, 0.2]),
+        ),
+        (
+            Shape::Rod { from: [0.2, -1.2], to: [0.2, 1.2], z: 3.1, half: 0.022 },
+            mottled(12.0, [0.2, 0.3, 0.55], 0.25),
+        ),
+        (
+            Shape::Rod { from: [-1.2, -0.75], to: [1.2, -0.55], z: 3.3, half: 0.015 },
+            Paint::Flat([0.1, 0.1, 0.12]),
+        ),
     ]
 }
 
@@ -151,8 +166,7 @@ impl StillLife {
         let shift = focal * baseline / IN_FOCUS;
         let middle = 0.5 * (self.size as f32 - 1.0);
         let look = |x: f32, y: f32| -> (f32, [f32; 3]) {
-            let to =
-                [(x - middle - shift * place[0]) / focal, (y - middle - shift * place[1]) / focal, 1.0];
+            let to = [(x - middle - shift * place[0]) / focal, (y - middle - shift * place[1]) / focal, 1.0];
             // The wall closes the scene wherever the others leave it open.
             let (along, paint) = scene
                 .iter()
