@@ -8,6 +8,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("lens", &[]),
     ("material", &[]),
     ("progress", &[]),
+    ("disparity", &["progress"]),
     ("scene", &["lens", "progress"]),
     ("capture", &["scene", "lens", "progress"]),
     ("relief", &["progress"]),

@@ -1,0 +1,73 @@
+//! What a light field has to be, looked at before anything is computed.
+
+use crate::asked::Asked;
+use crate::error::DisparityError;
+use crate::view::View;
+
+/// Pixels a side that a view needs.
+pub const SMALLEST: usize = 16;
+
+/// Pixels that a view may have: what is computed for them stays below 4 GB.
+const MOST_PIXELS: usize = 64_000_000;
+
+/// # Errors
+/// Whatever is wrong with the views, or with what is asked.
+pub fn check(views: &[View<'_>], asked: &Asked) -> Result<(), DisparityError> {
+    if views.len() < 2 {
+        return Err(DisparityError::TooFewViews { views: views.len() });
+    }
+    for view in std::iter::once(&asked.reference).chain(&asked.others) {
+        if *view >= views.len() {
+            return Err(DisparityError::NoSuchView { view: *view, views: views.len() });
+        }
+    }
+    if let Some((low, high)) = asked.range {
+        let why = if !(low.is_finite() && high.is_finite()) {
+            "not finite numbers (give the least and the largest, or none)"
+        } else if low >= high {
+            "empty (give the least and the largest, in this order)"
+        } else {
+            ""
+        };
+        if !why.is_empty() {
+            return Err(DisparityError::Range { low, high, why: why.to_string() });
+        }
+    }
+    for (index, view) in views.iter().enumerate() {
+        check_view(index, view, &views[0])?;
+        if let Some(other) = views[..index].iter().position(|other| other.position == view.position) {
+            let [column, row] = view.position;
+            let what = format!("it is at column {column}, row {row}, as view {other} is");
+            return Err(DisparityError::Position { view: index, what });
+        }
+    }
+    Ok(())
+}
+
+fn check_view(index: usize, view: &View<'_>, first: &View<'_>) -> Result<(), DisparityError> {
+    let picture = &view.picture;
+    let (width, height) = (picture.width, picture.height);
+    let size = |what: String| Err(DisparityError::Size { view: index, what });
+    if width.min(height) < SMALLEST {
+        return size(format!("{width} × {height} pixels are too few"));
+    }
+    match width.checked_mul(height) {
+        Some(pixels) if pixels > MOST_PIXELS => {
+            return size(format!("{width} × {height} pixels are too many"));
+        }
+        Some(pixels) if pixels == picture.rgb.len() => {}
+        _ => return size(format!("{width} × {height} pixels, but {} colours", picture.rgb.len())),
+    }
+    if (width, height) != (first.picture.width, first.picture.height) {
+        let others = format!("{} × {}", first.picture.width, first.picture.height);
+        return size(format!("{width} × {height} pixels, the first view has {others}"));
+    }
+    if !view.position.iter().all(|p| p.is_finite() && p.abs() < 1e6) {
+        let what = format!("its position is {:?}", view.position);
+        return Err(DisparityError::Position { view: index, what });
+    }
+    if let Some(pixel) = picture.rgb.iter().position(|rgb| !rgb.iter().all(|value| value.is_finite())) {
+        return Err(DisparityError::NotFinite { view: index, x: pixel % width, y: pixel / width });
+    }
+    Ok(())
+}

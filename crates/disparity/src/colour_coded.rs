@@ -1,0 +1,195 @@
+//! A disparity map that is coded by colour, as Lytro Desktop exports it, read back with the help of some disparities that are known.
+//!
+//! Nobody says which colours the program used, in which order, or how they follow the disparity; only that there is one curve
+//! through colour space along which disparity grows. So: known disparities in their order give a first idea of the curve (medians
+//! of their colours); the colours of the whole map draw it in (`principal_curve`); along it the known disparities give a function
+//! that only grows (`monotone`). Every pixel is then put at the nearest place of the curve (`palette`). Colours away from it are
+//! mixtures that compression made where the map jumps: they take the disparity of the nearest pixel that is not.
+//!
+//! What fits nothing is refused: a photograph has no such curve, or its places tell nothing of disparities.
+
+mod monotone;
+mod palette;
+mod principal_curve;
+
+use crate::error::DisparityError;
+use crate::view::Picture;
+use monotone::Growth;
+use palette::Palette;
+use progress::Progress;
+use rayon::prelude::*;
+
+/// A disparity that is known from elsewhere, for instance from features that were matched between views.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sample {
+    /// Column of the map, pixels.
+    pub x: usize,
+    /// Row of the map, pixels.
+    pub y: usize,
+    /// The disparity there. Noise and some wrong ones (less than a third) do no harm.
+    pub disparity: f32,
+}
+
+/// A map that was read.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Decoded {
+    /// Row by row from the top, in the units of the samples.
+    pub disparity: Vec<f32>,
+    /// The median of how far samples are from what was read, as a share of the range that was read.
+    pub residual: f32,
+    /// The share of the samples that are within three times that (a hundredth of the range at least).
+    pub agreeing: f32,
+}
+
+/// Samples that are needed.
+pub const FEWEST_SAMPLES: usize = 40;
+
+/// A median residual above this share of the range is no code. Colours that tell nothing leave 0.12 and more (the median distance
+/// from the median of most distributions), noise of the samples a few hundredths.
+pub const LARGEST_RESIDUAL: f32 = 0.06;
+
+/// Half of the pixels have to be this near to the curve (of white, root of three squared channels). Compression leaves 0.01.
+const NEAR: f32 = 0.05;
+
+/// A pixel this far from the curve is a mixture.
+const MIXTURE: f32 = 0.1;
+
+/// Reads the map.
+///
+/// # Errors
+/// [`DisparityError::TooFewSamples`], [`DisparityError::SampleOutside`], [`DisparityError::Size`] and [`DisparityError::NotFinite`]
+/// (of "view 0") for what cannot be used, [`DisparityError::NotColourCoded`] with the residual for a picture that is no such map,
+/// and when `progress` cancels.
+pub fn decode(
+    map: &Picture<'_>,
+    samples: &[Sample],
+    progress: &dyn Progress,
+) -> Result<Decoded, DisparityError> {
+    check(map, samples)?;
+    let colours: Vec<([f32; 3], f32)> =
+        samples.iter().map(|s| (steady_colour(map, s), s.disparity)).collect();
+    let refused = |residual: f32, why: &str| {
+        Err(DisparityError::NotColourCoded { percent: 100.0 * residual, why: why.to_string() })
+    };
+    let Some(start) = Palette::through(&first_idea(&colours)) else {
+        return refused(1.0, "its colours do not change with the disparity");
+    };
+    let palette = principal_curve::drawn_in(start, map.rgb);
+    progress.check()?;
+    let places: Vec<(f32, f32)> = colours.iter().map(|(c, d)| (palette.nearest(*c).place, *d)).collect();
+    let Some(growth) = Growth::fit(&places) else {
+        return refused(1.0, "its colours tell one disparity only");
+    };
+    let mut residuals: Vec<f32> = places.iter().map(|(place, d)| (growth.at(*place) - d).abs()).collect();
+    let read: Vec<(f32, f32)> = map
+        .rgb
+        .par_iter()
+        .map(|colour| {
+            let nearest = palette.nearest(*colour);
+            (growth.at(nearest.place), nearest.distance)
+        })
+        .collect();
+    progress.report(0.8);
+    progress.check()?;
+    let range = growth.at(1.0) - growth.at(0.0);
+    let residual = median(&mut residuals) / range;
+    if residual.is_nan() || residual > LARGEST_RESIDUAL {
+        return refused(residual, "its colours do not follow the disparities that are known");
+    }
+    if median(&mut read.iter().map(|r| r.1).collect::<Vec<_>>()) > NEAR {
+        return refused(residual, "its colours lie on no curve");
+    }
+    let limit = (3.0 * residual).max(0.01) * range;
+    let agreeing = residuals.iter().filter(|r| **r <= limit).count() as f32 / residuals.len() as f32;
+    let disparity = without_mixtures(&read, map.width);
+    progress.report(1.0);
+    Ok(Decoded { disparity, residual, agreeing })
+}
+
+fn check(map: &Picture<'_>, samples: &[Sample]) -> Result<(), DisparityError> {
+    let (width, height) = (map.width, map.height);
+    if width == 0 || width.checked_mul(height) != Some(map.rgb.len()) {
+        let what = format!("the map has {width} × {height} pixels, but {} colours", map.rgb.len());
+        return Err(DisparityError::Size { view: 0, what });
+    }
+    if let Some(pixel) = map.rgb.iter().position(|rgb| !rgb.iter().all(|value| value.is_finite())) {
+        return Err(DisparityError::NotFinite { view: 0, x: pixel % width, y: pixel / width });
+    }
+    if samples.len() < FEWEST_SAMPLES {
+        return Err(DisparityError::TooFewSamples { samples: samples.len() });
+    }
+    let usable = |s: &Sample| s.x < width && s.y < height && s.disparity.is_finite();
+    match samples.iter().position(|s| !usable(s)) {
+        Some(sample) => Err(DisparityError::SampleOutside { sample }),
+        None => Ok(()),
+    }
+}
+
+/// The colour of a sample: the median of nine pixels, each channel by itself.
+fn steady_colour(map: &Picture<'_>, sample: &Sample) -> [f32; 3] {
+    let rows = sample.y.saturating_sub(1)..(sample.y + 2).min(map.height);
+    let columns = sample.x.saturating_sub(1)..(sample.x + 2).min(map.width);
+    let around: Vec<[f32; 3]> =
+        rows.flat_map(|y| columns.clone().map(move |x| map.rgb[y * map.width + x])).collect();
+    middle_colour(&around)
+}
+
+/// Colours in the order of their disparities: medians of overlapping parts.
+fn first_idea(colours: &[([f32; 3], f32)]) -> Vec<[f32; 3]> {
+    let mut sorted = colours.to_vec();
+    sorted.sort_by(|a, b| a.1.total_cmp(&b.1));
+    let sorted: Vec<[f32; 3]> = sorted.into_iter().map(|(colour, _)| colour).collect();
+    // Parts of eleven samples or more outvote wrong ones.
+    let parts = (sorted.len() / 8).clamp(4, 32);
+    let half = (sorted.len() as f32 / parts as f32).max(5.5);
+    (0..parts)
+        .map(|k| {
+            let middle = (k as f32 + 0.5) / parts as f32 * sorted.len() as f32;
+            let (first, end) = ((middle - half).max(0.0) as usize, (middle + half) as usize);
+            middle_colour(&sorted[first..end.min(sorted.len())])
+        })
+        .collect()
+}
+
+/// The median of each channel.
+fn middle_colour(colours: &[[f32; 3]]) -> [f32; 3] {
+    std::array::from_fn(|c| median(&mut colours.iter().map(|colour| colour[c]).collect::<Vec<_>>()))
+}
+
+/// Disparities, mixtures replaced by the nearest pixel that is none (by two walks over the picture, as distances are spread).
+fn without_mixtures(read: &[(f32, f32)], width: usize) -> Vec<f32> {
+    let mut disparity: Vec<f32> = read.iter().map(|r| r.0).collect();
+    let mut away: Vec<u32> = read.iter().map(|r| if r.1 > MIXTURE { u32::MAX / 2 } else { 0 }).collect();
+    let count = disparity.len();
+    let mut take = |own: usize, other: usize| {
+        if away[other] + 1 < away[own] {
+            away[own] = away[other] + 1;
+            disparity[own] = disparity[other];
+        }
+    };
+    for i in 0..count {
+        if i % width > 0 {
+            take(i, i - 1);
+        }
+        if i >= width {
+            take(i, i - width);
+        }
+    }
+    for i in (0..count).rev() {
+        if i % width + 1 < width {
+            take(i, i + 1);
+        }
+        if i + width < count {
+            take(i, i + width);
+        }
+    }
+    disparity
+}
+
+fn median(values: &mut [f32]) -> f32 {
+    if values.is_empty() {
+        return f32::NAN;
+    }
+    let middle = values.len() / 2;
+    *values.select_nth_unstable_by(middle, f32::total_cmp).1
+}

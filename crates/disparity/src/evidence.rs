@@ -1,0 +1,118 @@
+//! What the views say about the disparity of a pixel beside the one it has: a Gauss–Newton step, and how certain it is.
+//!
+//! With ∇I the reference's gradient, a view at offset b that sees the point shows I(x) + δ ∇I·b at the place that disparity d names
+//! if d + δ is right. So with r the differences there, over all channels and views that the point is not hidden from (`hiding`),
+//!
+//!     δ = Σ w r (∇I·b) / Σ w (∇I·b)²,     1/var δ = Σ w (∇I·b)² / 3σ²
+//!
+//! (Lucas and Kanade, *An Iterative Image Registration Technique*, IJCAI 1981, for one offset; one unknown a pixel, for the offsets
+//! are known). The weights w are those of Geman and McClure. Noise has a gradient, too, that says nothing: it is taken off.
+
+use crate::hiding::Hiding;
+use crate::planes::Planes;
+use crate::sweep::Shifted;
+use progress::{Cancelled, Progress};
+use rayon::prelude::*;
+
+/// What is said about one pixel.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Evidence {
+    /// What has to be added to the disparity.
+    pub step: f32,
+    /// The inverse variance of the disparity, 1 / px².
+    pub certainty: f32,
+    /// The share of the views that see the point and show its colour, in [0, 1].
+    pub agreement: f32,
+}
+
+/// Where a squared residual counts as wrong: so many variances of noise,
+const CUT: f32 = 9.0;
+
+/// and this part of the squared gradient, for interpolation errs more where the picture is steep.
+const STEEP: f32 = 0.02;
+
+/// How often what noise alone would make of the normal equation is taken off: three of its standard deviations or so.
+const NOISE_TAKEN_OFF: f32 = 3.0;
+
+/// The evidence for `asked` pixels of the reference at these disparities; for others none.
+pub fn evidence(
+    reference: &Planes,
+    others: &[Shifted<'_>],
+    disparity: &[f32],
+    noise: f32,
+    asked: &(impl Fn(usize) -> bool + Sync),
+    progress: &dyn Progress,
+) -> Result<Vec<Evidence>, Cancelled> {
+    let width = reference.width();
+    let offsets: Vec<_> = others.iter().map(|view| view.offset).collect();
+    let hiding = Hiding::new(disparity, width, &offsets);
+    let mut told = vec![Evidence::default(); disparity.len()];
+    told.par_chunks_mut(width).enumerate().try_for_each(|(y, told)| {
+        progress.check()?;
+        for (x, told) in told.iter_mut().enumerate().filter(|(x, _)| asked(y * width + x)) {
+            *told = at_pixel(reference, others, (x, y), disparity[y * width + x], noise, &hiding);
+        }
+        Ok(())
+    })?;
+    Ok(told)
+}
+
+fn at_pixel(
+    reference: &Planes,
+    others: &[Shifted<'_>],
+    (x, y): (usize, usize),
+    disparity: f32,
+    noise: f32,
+    hiding: &Hiding<'_>,
+) -> Evidence {
+    let own = reference.pixel(x, y);
+    let gradient = gradient(reference, x, y);
+    let steepness: f32 = gradient.iter().map(|g| g[0] * g[0] + g[1] * g[1]).sum();
+    let cut = CUT * (6.0 * noise * noise + STEEP * steepness);
+    let nearest = hiding.nearest(x, y);
+    let (mut normal, mut right_side, mut agreeing, mut seen, mut lengths) = (0.0, 0.0, 0.0, 0.0, 0.0);
+    for view in others {
+        let [u, v] = view.offset;
+        let place = (x as f32 - disparity * u, y as f32 - disparity * v);
+        let Some(there) = view.planes.between(place.0, place.1) else { continue };
+        if hiding.hides((x, y), disparity, nearest, view.offset) {
+            continue;
+        }
+        let residual: [f32; 3] = std::array::from_fn(|c| there[c] - own[c]);
+        let robust = 1.0 / (1.0 + residual.iter().map(|r| r * r).sum::<f32>() / cut);
+        let weight = robust * robust * view.weight;
+        seen += view.weight;
+        agreeing += weight;
+        lengths += weight * (u * u + v * v);
+        for (gradient, residual) in gradient.iter().zip(residual) {
+            let along = gradient[0] * u + gradient[1] * v;
+            normal += weight * along * along;
+            right_side += weight * along * residual;
+        }
+    }
+    if seen <= 0.0 {
+        return Evidence::default();
+    }
+    let agreement = agreeing / seen;
+    // A central difference of noise has the variance σ²/2; three channels, half of the squared length along each axis.
+    let by_noise = 0.75 * noise * noise * lengths;
+    let signal = normal - NOISE_TAKEN_OFF * by_noise;
+    if signal <= 0.0 {
+        return Evidence { step: 0.0, certainty: 0.0, agreement };
+    }
+    Evidence { step: right_side / normal, certainty: signal / (3.0 * noise * noise), agreement }
+}
+
+/// Central differences of the three channels, a pixel; one-sided at the frame.
+fn gradient(picture: &Planes, x: usize, y: usize) -> [[f32; 2]; 3] {
+    let (left, right) = (x.saturating_sub(1), (x + 1).min(picture.width() - 1));
+    let (above, below) = (y.saturating_sub(1), (y + 1).min(picture.height() - 1));
+    let across = [picture.pixel(left, y), picture.pixel(right, y)];
+    let down = [picture.pixel(x, above), picture.pixel(x, below)];
+    std::array::from_fn(|c| {
+        [
+            (across[1][c] - across[0][c]) / (right - left) as f32,
+            (down[1][c] - down[0][c]) / (below - above) as f32,
+        ]
+    })
+}

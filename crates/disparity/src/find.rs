@@ -1,0 +1,174 @@
+//! The road from views to disparities.
+
+use crate::asked::Asked;
+use crate::checks::check;
+use crate::coarse::{FirstLook, first_look, shrinking, spread};
+use crate::error::DisparityError;
+use crate::evidence::Evidence;
+use crate::labels::Labels;
+use crate::map::DisparityMap;
+use crate::matching::matched;
+use crate::noise::noise;
+use crate::other_view::{filled, moved};
+use crate::planes::Planes;
+use crate::refinement::Refinement;
+use crate::sweep::Shifted;
+use crate::view::View;
+use crate::vignetting::Gain;
+use progress::{Cancelled, Progress, Stage};
+use rayon::prelude::*;
+
+/// Labels from one to the next: pixels in the farthest view. Finer ones are found by refinement.
+const STEP_PX: f32 = 0.3;
+
+/// Labels that are tried at most: 0.3 pixels of a parallax of 75; wider ranges are tried in wider steps.
+const MOST_LABELS: usize = 250;
+
+/// Standard deviation, in pixels of the farthest view, at which a pixel is told half.
+const HALF_TOLD_PX: f32 = 0.15;
+
+/// The disparities of the reference, then of the other views that are asked for, in that order.
+///
+/// # Errors
+/// When the views are fewer than two, differ in size, share a place or hold what is no number; when a view or range that is asked
+/// for does not exist; when `progress` cancels.
+pub fn find(
+    views: &[View<'_>],
+    asked: &Asked,
+    progress: &dyn Progress,
+) -> Result<Vec<DisparityMap>, DisparityError> {
+    check(views, asked)?;
+    let field = even_field(views, asked, &Stage::new(progress, 0.0, 0.15))?;
+    let reference = asked.reference;
+    let share = if asked.others.is_empty() { 1.0 } else { 0.5 };
+    let first = field.reference_map(reference, &Stage::new(progress, 0.15, share))?;
+    let mut maps = vec![first];
+    for (k, &view) in asked.others.iter().enumerate() {
+        let part = |k: usize| share + (1.0 - share) * k as f32 / asked.others.len() as f32;
+        let stage = Stage::new(progress, part(k), part(k + 1));
+        let map =
+            if view == reference { maps[0].clone() } else { field.other_map(&maps[0], view, &stage)? };
+        maps.push(map);
+    }
+    progress.report(1.0);
+    Ok(maps)
+}
+
+/// Views that are evened out, and the labels that are tried.
+struct EvenField {
+    planes: Vec<Planes>,
+    places: Vec<[f64; 2]>,
+    weights: Vec<f32>,
+    labels: Labels,
+    /// The largest coordinate of an offset from the reference.
+    reach: f32,
+    noise: std::sync::OnceLock<f32>,
+}
+
+/// Evens the views out and finds the range of disparities, on small pictures.
+fn even_field(views: &[View<'_>], asked: &Asked, progress: &dyn Progress) -> Result<EvenField, Cancelled> {
+    let mut planes: Vec<Planes> = views.par_iter().map(|view| Planes::of(&view.picture)).collect();
+    let places: Vec<[f64; 2]> = views.iter().map(|view| view.position).collect();
+    let offsets: Vec<[f32; 2]> = places.iter().map(|place| offset(places[asked.reference], *place)).collect();
+    let reach = offsets.iter().flatten().fold(0.0f32, |reach, o| reach.max(o.abs()));
+    let factor = shrinking(planes[0].width(), planes[0].height());
+    let mut small: Vec<Planes> = planes.par_iter().map(|planes| planes.shrunk(factor)).collect();
+    let reference = small[asked.reference].clone();
+    progress.report(0.3);
+    progress.check()?;
+
+    // Once without parallax, once with what the first look tells of it.
+    let coarse = |disparity: Option<&[f32]>, small: &[Planes]| -> Vec<Gain> {
+        let gains = small.par_iter().zip(&offsets);
+        gains.map(|(view, offset)| Gain::fit(&reference, view, *offset, disparity)).collect()
+    };
+    let rough = coarse(None, &small);
+    let rough_weights: Vec<f32> =
+        small.par_iter_mut().zip(&rough).map(|(view, gain)| gain.apply(view)).collect();
+    let others: Vec<usize> = (0..views.len()).filter(|view| *view != asked.reference).collect();
+    let other_offsets: Vec<[f32; 2]> = others.iter().map(|&view| offsets[view]).collect();
+    let shifted: Vec<Shifted<'_>> = spread(&other_offsets)
+        .into_iter()
+        .map(|k| others[k])
+        .map(|view| Shifted { planes: &small[view], offset: offsets[view], weight: rough_weights[view] })
+        .collect();
+    let scale = 1.0 / factor as f32;
+    let range = asked.range.map(|(low, high)| (low * scale, high * scale));
+    let FirstLook { disparity, range: seen } =
+        first_look(&reference, &shifted, reach, range, &Stage::new(progress, 0.3, 0.8))?;
+    let fine = coarse(Some(&disparity), &small);
+    let mut weights: Vec<f32> = planes
+        .par_iter_mut()
+        .zip(rough.par_iter().zip(&fine))
+        .map(|(view, (rough, fine))| rough.apply(view) * fine.apply(view))
+        .collect();
+    weights[asked.reference] = 1.0;
+
+    // A range that is given is kept; one that is found ends where the first look does.
+    let (low, high) = asked.range.unwrap_or((seen.0 / scale, seen.1 / scale));
+    let step = (STEP_PX / reach).max((high - low) / (MOST_LABELS - 1) as f32);
+    let labels = Labels::covering(low, high, step);
+    Ok(EvenField { planes, places, weights, labels, reach, noise: std::sync::OnceLock::new() })
+}
+
+/// From one place to another.
+fn offset(from: [f64; 2], to: [f64; 2]) -> [f32; 2] {
+    std::array::from_fn(|k| (to[k] - from[k]) as f32)
+}
+
+impl EvenField {
+    /// All other views as one sees them.
+    fn shifted(&self, reference: usize) -> Vec<Shifted<'_>> {
+        (0..self.planes.len())
+            .filter(|view| *view != reference)
+            .map(|view| Shifted {
+                planes: &self.planes[view],
+                offset: offset(self.places[reference], self.places[view]),
+                weight: self.weights[view],
+            })
+            .collect()
+    }
+
+    fn reference_map(&self, view: usize, progress: &dyn Progress) -> Result<DisparityMap, Cancelled> {
+        let (picture, others) = (&self.planes[view], self.shifted(view));
+        let chosen = matched(picture, &others, &self.labels, &Stage::new(progress, 0.0, 0.5))?;
+        let mut disparity: Vec<f32> = chosen.iter().map(|choice| choice.disparity).collect();
+        let noise = *self.noise.get_or_init(|| noise(picture, &others, &disparity));
+        let refinement =
+            Refinement { reference: picture, others: &others, labels: self.labels, noise, reach: self.reach };
+        let told = refinement.run(&mut disparity, &|_| false, &Stage::new(progress, 0.5, 1.0))?;
+        let confidence = told.iter().map(|told| self.confidence(told)).collect();
+        Ok(DisparityMap { view, width: picture.width(), height: picture.height(), disparity, confidence })
+    }
+
+    fn other_map(
+        &self,
+        reference: &DisparityMap,
+        view: usize,
+        progress: &dyn Progress,
+    ) -> Result<DisparityMap, Cancelled> {
+        let (picture, others) = (&self.planes[view], self.shifted(view));
+        let from = offset(self.places[reference.view], self.places[view]);
+        let there = moved(&reference.disparity, &reference.confidence, reference.width, from);
+        let offsets: Vec<_> = others.iter().map(|other| other.offset).collect();
+        let chosen: Vec<_> = spread(&offsets).into_iter().map(|k| others[k]).collect();
+        let noise = self.noise.get().copied().unwrap_or_default();
+        let refinement =
+            Refinement { reference: picture, others: &chosen, labels: self.labels, noise, reach: self.reach };
+        let (disparity, told) = filled(&refinement, &there.disparity, &chosen, progress)?;
+        let confidence =
+            (0..disparity.len())
+                .map(|i| {
+                    if there.disparity[i].is_nan() { self.confidence(&told[i]) } else { there.confidence[i] }
+                })
+                .collect();
+        Ok(DisparityMap { view, width: picture.width(), height: picture.height(), disparity, confidence })
+    }
+
+    /// Agreement of the views that see a point, and how sharply they tell its place.
+    fn confidence(&self, told: &Evidence) -> f32 {
+        let half = (self.reach / HALF_TOLD_PX).powi(2);
+        let sharpness = told.certainty / (told.certainty + half);
+        (told.agreement * told.agreement * sharpness).clamp(0.0, 1.0)
+    }
+}

@@ -1,0 +1,121 @@
+//! Which views a point of the reference is hidden from, by the disparities of what is around it.
+//!
+//! A point (x, d) and another (x′, d′) of the reference lie on one ray of the view at offset b where x′ = x + (d′ − d) b. So the
+//! point is hidden there if, walking from x along b, some pixel is nearer by just as much as has been walked: the ray that leaves
+//! the point then meets that pixel. What the ray passes behind or in front of hides nothing, so that views see past thin things.
+
+/// Pixels a side of the tiles that tell how near anything around is.
+const TILE: usize = 8;
+
+/// The disparities of a picture, to ask what hides what.
+pub struct Hiding<'a> {
+    disparity: &'a [f32],
+    width: usize,
+    height: usize,
+    /// For every tile, the largest disparity that is close enough to hide anything in it.
+    nearest: Vec<f32>,
+    tiles_across: usize,
+    /// What is not nearer than this hides nothing: half a pixel in the farthest view.
+    margin: f32,
+}
+
+impl<'a> Hiding<'a> {
+    /// For views at these offsets.
+    pub fn new(disparity: &'a [f32], width: usize, offsets: &[[f32; 2]]) -> Self {
+        let height = disparity.len() / width;
+        let reach = offsets.iter().flatten().fold(0.0f32, |reach, o| reach.max(o.abs()));
+        let (across, down) = (width.div_ceil(TILE), height.div_ceil(TILE));
+        let mut own = vec![f32::MIN; across * down];
+        let (mut low, mut high) = (f32::MAX, f32::MIN);
+        for (index, &d) in disparity.iter().enumerate() {
+            let (x, y) = (index % width, index / width);
+            let tile = &mut own[y / TILE * across + x / TILE];
+            *tile = tile.max(d);
+            (low, high) = (low.min(d), high.max(d));
+        }
+        let around = (((high - low) * reach) as usize + 1).div_ceil(TILE);
+        let rows = largest_around(&own, across, down, |x, y| {
+            (x.saturating_sub(around)..(x + around + 1).min(across)).map(move |x| (x, y))
+        });
+        let nearest = largest_around(&rows, across, down, |x, y| {
+            (y.saturating_sub(around)..(y + around + 1).min(down)).map(move |y| (x, y))
+        });
+        Self {
+            disparity,
+            width,
+            height,
+            nearest,
+            tiles_across: across,
+            margin: 0.5 / reach.max(f32::MIN_POSITIVE),
+        }
+    }
+
+    /// The largest disparity that could hide the pixel.
+    pub fn nearest(&self, x: usize, y: usize) -> f32 {
+        self.nearest[y / TILE * self.tiles_across + x / TILE]
+    }
+
+    /// Whether the pixel, at this disparity, is hidden from the view at `offset`; `nearest` is what [`Hiding::nearest`] says.
+    pub fn hides(&self, (x, y): (usize, usize), disparity: f32, nearest: f32, offset: [f32; 2]) -> bool {
+        if nearest - disparity <= self.margin {
+            return false;
+        }
+        // One step of the walk is one pixel along the longer side; then the ray has come nearer by `step`.
+        let longer = offset[0].abs().max(offset[1].abs());
+        let step = 1.0 / longer;
+        let steps = ((nearest - disparity) * longer).ceil() as usize;
+        for k in 1..=steps {
+            let risen = k as f32 * step;
+            let column = (x as f32 + risen * offset[0]).round();
+            let row = (y as f32 + risen * offset[1]).round();
+            if column < 0.0 || row < 0.0 || column >= self.width as f32 || row >= self.height as f32 {
+                return false;
+            }
+            let nearer = self.disparity[row as usize * self.width + column as usize] - disparity;
+            // Three quarters of a step to either side: two pixels beside one another leave no gap.
+            if nearer > self.margin && (nearer - risen).abs() <= 0.75 * step {
+                return true;
+            }
+        }
+        false
+    }
+}
+
+/// For every tile the largest of those that `around` names.
+fn largest_around<I: Iterator<Item = (usize, usize)>>(
+    tiles: &[f32],
+    across: usize,
+    down: usize,
+    around: impl Fn(usize, usize) -> I,
+) -> Vec<f32> {
+    (0..across * down)
+        .map(|tile| {
+            around(tile % across, tile / across).map(|(x, y)| tiles[y * across + x]).fold(f32::MIN, f32::max)
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_post_hides_what_is_beside_it_and_views_look_past_it() {
+        // A post of four columns, two pixels a step nearer than the wall.
+        let (width, height) = (64, 16);
+        let disparity: Vec<f32> =
+            (0..width * height).map(|i| if (30..34).contains(&(i % width)) { 2.0 } else { 0.0 }).collect();
+        let offsets: Vec<[f32; 2]> = (-4..=4).filter(|u| *u != 0).map(|u| [u as f32, 0.0]).collect();
+        let hiding = Hiding::new(&disparity, width, &offsets);
+        let hidden = |x: usize, u: f32| hiding.hides((x, 8), 0.0, hiding.nearest(x, 8), [u, 0.0]);
+        for x in (4..60).filter(|x| !(30..34).contains(x)) {
+            for offset in &offsets {
+                // In view u the post lies at 30 − 2u … 33 − 2u, and the wall does not move.
+                let over = (30.0 - 2.0 * offset[0]..=33.0 - 2.0 * offset[0]).contains(&(x as f32));
+                assert_eq!(hidden(x, offset[0]), over, "pixel {x}, view {}", offset[0]);
+            }
+        }
+        // The post itself is hidden from nowhere.
+        assert!(offsets.iter().all(|o| !hiding.hides((31, 8), 2.0, hiding.nearest(31, 8), *o)));
+    }
+}

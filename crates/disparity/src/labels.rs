@@ -1,0 +1,25 @@
+//! The disparities that are tried, evenly spaced.
+
+/// Disparities `low + label · step`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Labels {
+    /// The disparity of label 0, pixels a step of the grid.
+    pub low: f32,
+    /// From one label to the next, pixels a step of the grid.
+    pub step: f32,
+    /// How many there are, at least 3.
+    pub count: usize,
+}
+
+impl Labels {
+    /// Labels that cover `low..=high` no more than `step` apart.
+    pub fn covering(low: f32, high: f32, step: f32) -> Self {
+        let count = (((high - low) / step).ceil() as usize + 1).max(3);
+        Self { low, step: ((high - low) / (count - 1) as f32).max(f32::MIN_POSITIVE), count }
+    }
+
+    /// The disparity of a label, or between two.
+    pub fn disparity(&self, label: f32) -> f32 {
+        self.low + label * self.step
+    }
+}

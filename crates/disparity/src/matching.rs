@@ -1,0 +1,41 @@
+//! Labels for a picture: costs, joined, and the best chosen; in strips, so that memory stays bounded.
+
+use crate::choice::{Choice, choose};
+use crate::labels::Labels;
+use crate::planes::Planes;
+use crate::semi_global::{Penalties, aggregate};
+use crate::sweep::{Shifted, sweep};
+use progress::{Cancelled, Progress, Stage};
+use rayon::prelude::*;
+
+/// Costs that are held at once (three numbers of 16 bits each): 240 MB.
+const COSTS: usize = 40_000_000;
+
+/// Rows that a strip overlaps the next by: paths of costs begin there and have settled where it counts.
+const OVERLAP: usize = 32;
+
+/// The choice for every pixel of the reference.
+pub fn matched(
+    reference: &Planes,
+    others: &[Shifted<'_>],
+    labels: &Labels,
+    progress: &dyn Progress,
+) -> Result<Vec<Choice>, Cancelled> {
+    let (width, height) = (reference.width(), reference.height());
+    let rows = (COSTS / (width * labels.count)).max(3 * OVERLAP);
+    let core = if rows >= height { height } else { rows - 2 * OVERLAP };
+    let mut chosen = Vec::with_capacity(width * height);
+    for top in (0..height).step_by(core) {
+        let end = (top + core).min(height);
+        let strip = top.saturating_sub(OVERLAP)..(end + OVERLAP).min(height);
+        let share = |y: usize| y as f32 / height as f32;
+        let stage = Stage::new(progress, share(top), share(end));
+        let volume = sweep(reference, others, labels, strip.clone(), &stage)?;
+        stage.report(0.85);
+        let sums = aggregate(&volume, reference, &Penalties::default(), &stage)?;
+        let own = (top - strip.start) * width * labels.count..(end - strip.start) * width * labels.count;
+        chosen.par_extend(sums[own].par_chunks(labels.count).map(|costs| choose(costs, labels)));
+        stage.report(1.0);
+    }
+    Ok(chosen)
+}

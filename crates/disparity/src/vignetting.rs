@@ -1,0 +1,169 @@
+//! Outer views are darker towards their corners, and of another exposure: evened out before anything is matched.
+//!
+//! A gain of encoded values is a gain of light (a power law keeps products), so a view is to the reference as a smooth factor: a
+//! polynomial of second degree of the place for the logarithm, a channel each, fitted to the quotients of small pictures. Parallax,
+//! gloss and hidden places are outliers: weights of Tukey, with a scale from the median (Holland and Welsch, *Robust Regression
+//! Using Iteratively Reweighted Least-Squares*, 1977). Once coarse disparities are known the quotients are of the same points.
+
+use crate::planes::Planes;
+
+/// Terms of the polynomial: 1, x, y, x², x y, y², with x and y in [−1, 1].
+const TERMS: usize = 6;
+
+/// Values below this are too dark to tell a quotient.
+const DARK: f32 = 0.03;
+
+/// Pixels that are needed for a fit.
+const ENOUGH: usize = 60;
+
+/// The natural logarithm below which a gain is none.
+const NOTHING: f32 = 0.002;
+
+/// What a view has to be multiplied by to look as the reference does.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Gain {
+    coefficients: [[f64; TERMS]; 3],
+}
+
+impl Gain {
+    /// The gain of the small picture `view`, where pixel (x, y) of the reference is at (x − d u, y − d v); `None` for its disparity
+    /// is the same place. No gain where too little can be compared.
+    pub fn fit(reference: &Planes, view: &Planes, offset: [f32; 2], disparity: Option<&[f32]>) -> Self {
+        let (width, height) = (reference.width(), reference.height());
+        let mut quotients: [Vec<(f64, [f64; TERMS])>; 3] = Default::default();
+        for index in 0..width * height {
+            let (x, y) = ((index % width) as f32, (index / width) as f32);
+            let d = disparity.map_or(0.0, |d| d[index]);
+            let place = [x - d * offset[0], y - d * offset[1]];
+            let Some(there) = view.between(place[0], place[1]) else { continue };
+            let own = reference.pixel(index % width, index / width);
+            let terms = terms(place[0] / width as f32, place[1] / height as f32);
+            for c in 0..3 {
+                if own[c] > DARK && there[c] > 0.3 * DARK && own[c] < 0.99 && there[c] < 0.99 {
+                    quotients[c].push((f64::from((own[c] / there[c]).ln()), terms));
+                }
+            }
+        }
+        let coefficients = quotients.map(|quotients| fit_robustly(&quotients).unwrap_or([0.0; TERMS]));
+        Self { coefficients }
+    }
+
+    /// The factor of each channel at a place of the view, shares of its width and height.
+    pub fn at(&self, x: f32, y: f32) -> [f32; 3] {
+        let terms = terms(x, y);
+        self.coefficients.map(|own| {
+            let logarithm: f64 = own.iter().zip(terms).map(|(a, b)| a * b).sum();
+            // A view that has to be brightened a hundredfold is noise; its weight says so.
+            logarithm.clamp(-4.6, 4.6).exp() as f32
+        })
+    }
+
+    /// Whether the gain is 1 within what can be told.
+    pub fn is_nothing(&self) -> bool {
+        let places = (0..25).map(|k| ((k % 5) as f32 / 4.0, (k / 5) as f32 / 4.0));
+        places.flat_map(|(x, y)| self.at(x, y)).all(|gain| gain.ln().abs() < NOTHING)
+    }
+
+    /// Brightens a view; returns how much it counts: 1 / mean gain², as its noise has grown, at most 1.
+    pub fn apply(&self, view: &mut Planes) -> f32 {
+        if !self.is_nothing() {
+            let (width, height) = (view.width() as f32, view.height() as f32);
+            view.scale(|x, y| self.at(x as f32 / width, y as f32 / height));
+        }
+        let places = (0..81).map(|k| ((k % 9) as f32 / 8.0, (k / 9) as f32 / 8.0));
+        let square: f32 =
+            places.flat_map(|(x, y)| self.at(x, y)).map(|gain| gain * gain).sum::<f32>() / 243.0;
+        (1.0 / square).min(1.0)
+    }
+}
+
+fn terms(x: f32, y: f32) -> [f64; TERMS] {
+    let (x, y) = (2.0 * f64::from(x) - 1.0, 2.0 * f64::from(y) - 1.0);
+    [1.0, x, y, x * x, x * y, y * y]
+}
+
+/// Iteratively reweighted least squares.
+fn fit_robustly(quotients: &[(f64, [f64; TERMS])]) -> Option<[f64; TERMS]> {
+    if quotients.len() < ENOUGH {
+        return None;
+    }
+    let mut all: Vec<f64> = quotients.iter().map(|q| q.0).collect();
+    let middle = median(&mut all);
+    let mut found = [middle, 0.0, 0.0, 0.0, 0.0, 0.0];
+    for _ in 0..8 {
+        let residual = |(value, terms): &(f64, [f64; TERMS])| {
+            value - found.iter().zip(terms).map(|(a, b)| a * b).sum::<f64>()
+        };
+        let mut sizes: Vec<f64> = quotients.iter().map(|q| residual(q).abs()).collect();
+        // Tukey's 4.685 standard deviations; a median of 0 (equal pictures) leaves the values' own steps.
+        let cut = 4.685 * (median(&mut sizes) / 0.6745).max(1e-3);
+        let mut system = [[0.0; TERMS + 1]; TERMS];
+        for quotient in quotients {
+            let share = residual(quotient) / cut;
+            if share.abs() >= 1.0 {
+                continue;
+            }
+            let weight = (1.0 - share * share).powi(2);
+            for (i, row) in system.iter_mut().enumerate() {
+                for (value, term) in row.iter_mut().zip(quotient.1) {
+                    *value += weight * quotient.1[i] * term;
+                }
+                row[TERMS] += weight * quotient.1[i] * quotient.0;
+            }
+        }
+        found = solve(system)?;
+    }
+    Some(found)
+}
+
+/// Gauss's elimination with pivots; `None` if the places of the quotients tell no polynomial.
+fn solve(mut system: [[f64; TERMS + 1]; TERMS]) -> Option<[f64; TERMS]> {
+    let scale = (0..TERMS).map(|i| system[i][i]).fold(0.0, f64::max);
+    for i in 0..TERMS {
+        let pivot = (i..TERMS).max_by(|&a, &b| system[a][i].abs().total_cmp(&system[b][i].abs()))?;
+        system.swap(i, pivot);
+        if system[i][i].abs() <= 1e-9 * scale {
+            return None;
+        }
+        let own = system[i];
+        for (other, row) in system.iter_mut().enumerate() {
+            if other != i {
+                let factor = row[i] / own[i];
+                row.iter_mut().zip(own).for_each(|(value, own)| *value -= factor * own);
+            }
+        }
+    }
+    Some(std::array::from_fn(|i| system[i][TERMS] / system[i][i]))
+}
+
+fn median(values: &mut [f64]) -> f64 {
+    let middle = values.len() / 2;
+    *values.select_nth_unstable_by(middle, f64::total_cmp).1
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_vignette_is_found_though_a_quarter_shows_something_else() {
+        let colour = |x: usize, y: usize| {
+            let wave = |k: f32| 0.5 + 0.2 * ((x as f32 * 0.7 * k).sin() + (y as f32 * 0.9 / k).cos());
+            [wave(1.0), wave(1.3), wave(0.7)]
+        };
+        let reference = Planes::filled(60, 40, colour);
+        let vignette = |x: f32, y: f32| 0.8 - 0.3 * (x - 0.6).powi(2) - 0.2 * (y - 0.4).powi(2);
+        let view = Planes::filled(60, 40, |x, y| {
+            let other = x < 20 && y > 10;
+            let dark = vignette(x as f32 / 60.0, y as f32 / 40.0);
+            colour(x, y).map(|v| if other { 0.35 } else { v * dark })
+        });
+        let gain = Gain::fit(&reference, &view, [1.0, 0.0], None);
+        for (x, y) in [(0.5, 0.5), (0.95, 0.9), (0.9, 0.05), (0.1, 0.05)] {
+            let error = gain.at(x, y)[1] * vignette(x, y) - 1.0;
+            assert!(error.abs() < 0.02, "({x}, {y}): {error}");
+        }
+        assert!(Gain::fit(&reference, &reference, [1.0, 0.0], None).is_nothing());
+        assert!(!gain.is_nothing());
+    }
+}

@@ -1,0 +1,34 @@
+//! A light field that a test owns.
+
+use disparity::{Picture, View};
+
+/// Pictures and their places.
+pub struct Field {
+    pub width: usize,
+    pub height: usize,
+    pub pictures: Vec<Vec<[f32; 3]>>,
+    pub positions: Vec<[f64; 2]>,
+}
+
+impl Field {
+    /// The views, to be looked at.
+    pub fn views(&self) -> Vec<View<'_>> {
+        let views = self.pictures.iter().zip(&self.positions);
+        views
+            .map(|(rgb, position)| View {
+                picture: Picture { width: self.width, height: self.height, rgb },
+                position: *position,
+            })
+            .collect()
+    }
+
+    /// The index of the view at a place.
+    pub fn at(&self, position: [f64; 2]) -> usize {
+        self.positions.iter().position(|p| *p == position).expect("a view is there")
+    }
+}
+
+/// A grid of places around the middle, row by row.
+pub fn grid(columns: i32, rows: i32) -> Vec<[f64; 2]> {
+    (-rows..=rows).flat_map(|y| (-columns..=columns).map(move |x| [f64::from(x), f64::from(y)])).collect()
+}
