@@ -11,6 +11,7 @@ use crate::disk::{extension, write_bytes};
 use crate::exr_file::{ExrAttribute, ExrImage, ExrSamples, read_exr, write_exr};
 use crate::png_file::{encode_rgb8, read_image};
 use lens::{Exposure, Picture};
+use scene::srgb_from_linear;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -122,11 +123,6 @@ pub(crate) fn color_channels(rgb: &[[f32; 3]]) -> [(String, Vec<f32>); 3] {
 /// Linear RGB as 8-bit sRGB, clipped to [0, 1], interleaved.
 pub(crate) fn srgb_bytes(rgb: &[[f32; 3]]) -> Vec<u8> {
     rgb.iter().flatten().map(|&c| (srgb_from_linear(c.clamp(0.0, 1.0)) * 255.0).round() as u8).collect()
-}
-
-/// sRGB's encoding of a linear value in [0, 1] (IEC 61966-2-1).
-fn srgb_from_linear(c: f32) -> f32 {
-    if c <= 0.0031308 { 12.92 * c } else { 1.055 * c.powf(1.0 / 2.4) - 0.055 }
 }
 
 /// The linear value of an sRGB-encoded one, both in [0, 1]. Inverse of [`srgb_from_linear`].

@@ -86,6 +86,6 @@ pub use picture_texture::PictureTexture;
 pub use source::{PartSource, Source, StoredElements};
 pub use surface_mesh::SurfaceMesh;
 pub use surface_point::{SurfaceField, SurfacePoint};
-pub use texture_lookup::linear_from_srgb;
+pub use texture_lookup::{linear_from_srgb, srgb_from_linear};
 pub use views::{Mask, PhotoLookup, Photograph, PictureError, View};
 pub use world::{Backdrop, Environment, EnvironmentMap, World};

@@ -15,6 +15,11 @@ static LINEAR_FROM_8: LazyLock<[f32; 256]> =
 static LINEAR_FROM_16: LazyLock<Vec<f32>> =
     LazyLock::new(|| (0..=65535).map(|v| linear_from_srgb(v as f64 / 65535.0)).collect());
 
+/// The encoded value of a linear one, as in sRGB (IEC 61966-2-1); below 0 as linear as near it.
+pub fn srgb_from_linear(linear: f32) -> f32 {
+    if linear <= 0.0031308 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 }
+}
+
 /// The linear value of one that is encoded as in sRGB (IEC 61966-2-1), both in [0, 1].
 pub fn linear_from_srgb(v: f64) -> f32 {
     (if v <= 0.04045 { v / 12.92 } else { ((v + 0.055) / 1.055).powf(2.4) }) as f32

@@ -3,6 +3,7 @@
 use super::tone_curve::ToneCurve;
 use lens::{Exposure, Picture};
 use rayon::prelude::*;
+use scene::srgb_from_linear;
 use std::ops::Range;
 use std::sync::LazyLock;
 
@@ -17,10 +18,9 @@ const PIXELS_OF_A_TASK: usize = 1 << 13;
 
 /// sRGB encoding of the middle of each of [`ENTRIES`] cells of [0, 1].
 static ENCODED: LazyLock<Vec<u8>> = LazyLock::new(|| {
-    let encode = |linear: f32| {
-        if linear <= 0.0031308 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 }
-    };
-    (0..ENTRIES).map(|k| (encode((k as f32 + 0.5) / ENTRIES as f32) * 255.0).round() as u8).collect()
+    (0..ENTRIES)
+        .map(|k| (srgb_from_linear((k as f32 + 0.5) / ENTRIES as f32) * 255.0).round() as u8)
+        .collect()
 });
 
 /// How a picture is put on screen.

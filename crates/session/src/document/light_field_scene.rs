@@ -1,12 +1,13 @@
 //! A light field as a scene: its middle view, a surface from disparities, and behind it what the other views see.
 
+use super::found_disparity::found_disparity;
 use super::picture_scene::{Named, PictureSpace, picture_camera, picture_scene, uncalibrated};
 use crate::error::SessionError;
 use capture::{CaptureError, LightField, LightFieldOptions, Optics};
 use lens::Camera;
 use progress::{Progress, Stage};
 use relief::{OtherView, Relief, ReliefError, ReliefOptions, filled, upsampled};
-use scene::Scene;
+use scene::{LoadOptions, Scene};
 use std::path::Path;
 
 /// The angle of view across a picture's longer side where no file tells it: that of a lens of 50 mm on a frame of 36.
@@ -33,7 +34,7 @@ pub(super) fn load_light_field(
     let size = field.size.map(|side| side as usize);
     let load = &options.load;
     let middle = field.views[field.reference].picture.photograph(load)?.pixels;
-    let disparity = disparity(&field, size, &middle, path)?;
+    let disparity = disparity(&field, size, &middle, load, &Stage::new(progress, 0.1, 0.5))?;
     let reach = field.views.iter().map(|view| view.position.length()).fold(0.0, f64::max);
     let range = range(&disparity);
     let space = space(&field.optics, field.size, range);
@@ -50,7 +51,7 @@ pub(super) fn load_light_field(
             read: Box::new(move || Ok(view.picture.photograph(load)?.pixels)),
         })
         .collect();
-    let stage = Stage::new(progress, 0.3, 1.0);
+    let stage = Stage::new(progress, 0.5, 1.0);
     let relief = Relief::of(size, &disparity, &middle, &others, &surface, &stage).map_err(relief_error)?;
     // What has disparity 0 is where the views agree: the camera that took them was focused there.
     let focus = if (range[0]..=range[1]).contains(&0.0) { 0.0 } else { 0.5 * (range[0] + range[1]) };
@@ -61,20 +62,16 @@ pub(super) fn load_light_field(
     Ok(OfPicture { scene, camera, remarks, is_incomplete })
 }
 
-/// The disparity of each pixel of the middle view.
+/// The disparity of each pixel of the middle view: as it is given, else found in the views.
 fn disparity(
     field: &LightField,
     size: [usize; 2],
     middle: &[[f32; 3]],
-    path: &Path,
+    load: &LoadOptions,
+    progress: &dyn Progress,
 ) -> Result<Vec<f32>, SessionError> {
     let given = field.disparity.as_ref().filter(|given| given.view == field.reference);
-    let Some(given) = given else {
-        return Err(SessionError::bad(
-            path,
-            "has no disparity map of its middle view (give one with --disparity)",
-        ));
-    };
+    let Some(given) = given else { return found_disparity(field, load, progress) };
     let map = [given.map.width as usize, given.map.height as usize];
     let known = upsampled(map, &given.map.inverse_depth(), size, middle);
     Ok(filled(size, known))

@@ -8,6 +8,7 @@ mod camera_edit;
 mod camera_path;
 mod capture_scene;
 mod depth_scene;
+mod found_disparity;
 mod input;
 mod kept_atlas;
 mod light_field_scene;

@@ -18,7 +18,7 @@ use lens::Camera;
 use relief::{Relief, TEXTURE_LAYERS};
 use scene::{
     AlphaMode, Image, ImageLevel, Material, Node, Part, PictureTexture, Scene, SceneCamera, TextureRef,
-    Triangle, Wrap,
+    Triangle, Wrap, srgb_from_linear,
 };
 use std::path::Path;
 
@@ -194,9 +194,7 @@ fn image(relief: &Relief, behind: usize, rows: usize) -> (Image, f32) {
         texture.copy_within((height - 1) * width..height * width, row * width);
     }
     let encoded = |linear: f32| {
-        let linear = (linear / brightest).clamp(0.0, 1.0);
-        let encoded =
-            if linear <= 0.0031308 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 };
+        let encoded = srgb_from_linear((linear / brightest).clamp(0.0, 1.0));
         (encoded * 65535.0).round() as u16
     };
     let texels =
