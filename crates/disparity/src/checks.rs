@@ -2,10 +2,7 @@
 
 use crate::asked::Asked;
 use crate::error::DisparityError;
-use crate::view::View;
-
-/// Pixels a side that a view needs.
-pub const SMALLEST: usize = 16;
+use crate::view::{SMALLEST, View};
 
 /// Pixels that a view may have: what is computed for them stays below 4 GB.
 const MOST_PIXELS: usize = 64_000_000;

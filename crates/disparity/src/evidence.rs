@@ -3,7 +3,9 @@
 //! With ∇I the reference's gradient, a view at offset b that sees the point shows I(x) + δ ∇I·b at the place that disparity d names
 //! if d + δ is right. So with r the differences there, over all channels and views that the point is not hidden from (`hiding`),
 //!
-//!     δ = Σ w r (∇I·b) / Σ w (∇I·b)²,     1/var δ = Σ w (∇I·b)² / 3σ²
+//! ```text
+//! δ = Σ w r (∇I·b) / Σ w (∇I·b)²,     1/var δ = Σ w (∇I·b)² / 3σ²
+//! ```
 //!
 //! (Lucas and Kanade, *An Iterative Image Registration Technique*, IJCAI 1981, for one offset; one unknown a pixel, for the offsets
 //! are known). The weights w are those of Geman and McClure. Noise has a gradient, too, that says nothing: it is taken off.

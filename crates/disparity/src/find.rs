@@ -12,6 +12,7 @@ use crate::noise::noise;
 use crate::other_view::{filled, moved};
 use crate::planes::Planes;
 use crate::refinement::Refinement;
+use crate::strays::without_strays;
 use crate::sweep::Shifted;
 use crate::view::View;
 use crate::vignetting::Gain;
@@ -111,6 +112,12 @@ fn even_field(views: &[View<'_>], asked: &Asked, progress: &dyn Progress) -> Res
     Ok(EvenField { planes, places, weights, labels, reach, noise: std::sync::OnceLock::new() })
 }
 
+/// Some views of many, spread evenly.
+fn spread_out<'a>(views: &[Shifted<'a>]) -> Vec<Shifted<'a>> {
+    let offsets: Vec<_> = views.iter().map(|view| view.offset).collect();
+    spread(&offsets).into_iter().map(|k| views[k]).collect()
+}
+
 /// From one place to another.
 fn offset(from: [f64; 2], to: [f64; 2]) -> [f32; 2] {
     std::array::from_fn(|k| (to[k] - from[k]) as f32)
@@ -131,12 +138,23 @@ impl EvenField {
 
     fn reference_map(&self, view: usize, progress: &dyn Progress) -> Result<DisparityMap, Cancelled> {
         let (picture, others) = (&self.planes[view], self.shifted(view));
+        let few = spread_out(&others);
         let chosen = matched(picture, &others, &self.labels, &Stage::new(progress, 0.0, 0.5))?;
-        let mut disparity: Vec<f32> = chosen.iter().map(|choice| choice.disparity).collect();
+        let labelled: Vec<f32> = chosen.iter().map(|choice| choice.disparity).collect();
+        // What belongs to one surface differs by three labels at most.
+        let same = 3.0 * self.labels.step;
+        let mut disparity = without_strays(&labelled, picture.width(), same);
         let noise = *self.noise.get_or_init(|| noise(picture, &others, &disparity));
-        let refinement =
-            Refinement { reference: picture, others: &others, labels: self.labels, noise, reach: self.reach };
+        let refinement = Refinement {
+            reference: picture,
+            others: &others,
+            few: &few,
+            labels: self.labels,
+            noise,
+            reach: self.reach,
+        };
         let told = refinement.run(&mut disparity, &|_| false, &Stage::new(progress, 0.5, 1.0))?;
+        let disparity = without_strays(&disparity, picture.width(), same);
         let confidence = told.iter().map(|told| self.confidence(told)).collect();
         Ok(DisparityMap { view, width: picture.width(), height: picture.height(), disparity, confidence })
     }
@@ -150,12 +168,18 @@ impl EvenField {
         let (picture, others) = (&self.planes[view], self.shifted(view));
         let from = offset(self.places[reference.view], self.places[view]);
         let there = moved(&reference.disparity, &reference.confidence, reference.width, from);
-        let offsets: Vec<_> = others.iter().map(|other| other.offset).collect();
-        let chosen: Vec<_> = spread(&offsets).into_iter().map(|k| others[k]).collect();
+        let chosen = spread_out(&others);
         let noise = self.noise.get().copied().unwrap_or_default();
-        let refinement =
-            Refinement { reference: picture, others: &chosen, labels: self.labels, noise, reach: self.reach };
+        let refinement = Refinement {
+            reference: picture,
+            others: &chosen,
+            few: &chosen,
+            labels: self.labels,
+            noise,
+            reach: self.reach,
+        };
         let (disparity, told) = filled(&refinement, &there.disparity, &chosen, progress)?;
+        let disparity = without_strays(&disparity, picture.width(), 3.0 * self.labels.step);
         let confidence =
             (0..disparity.len())
                 .map(|i| {

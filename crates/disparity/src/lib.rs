@@ -8,7 +8,7 @@
 //! The road: `planes` (pictures as they are matched) → `vignetting` (outer views evened out) and `coarse` (a first look at small
 //! pictures: the range) → `sweep` (what every disparity costs, by the best half of the views: `halves`) → `semi_global` (costs of
 //! neighbours joined) → `choice` (a `label` a pixel; by strips: `matching`) → `refinement`: in rounds, what views that see a point
-//! say of its place (`hiding`, `evidence`), and least squares with its neighbours (`lines`) → `other_view` (moved there, and what
+//! say of its place (`hiding`, `evidence`), and least squares with its neighbours (`lines`) → `strays` (specks) → `other_view` (moved there, and what
 //! was hidden matched anew). Values are encoded as for display: there noise is even. The result does not depend on how many
 //! threads there are.
 //!
@@ -37,13 +37,13 @@ mod other_view;
 mod planes;
 mod refinement;
 mod semi_global;
+mod strays;
 mod sweep;
 mod view;
 mod vignetting;
 
 pub use asked::Asked;
-pub use checks::SMALLEST;
 pub use error::DisparityError;
 pub use find::find;
 pub use map::DisparityMap;
-pub use view::{Picture, View};
+pub use view::{Picture, SMALLEST, View};

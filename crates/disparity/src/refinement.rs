@@ -44,6 +44,8 @@ pub struct Refinement<'a> {
     pub reference: &'a Planes,
     /// The others.
     pub others: &'a [Shifted<'a>],
+    /// A part of them, spread evenly: enough for all rounds but the last.
+    pub few: &'a [Shifted<'a>],
     /// The labels they come from: their range is kept.
     pub labels: Labels,
     /// Standard deviation of the noise of a value.
@@ -65,7 +67,8 @@ impl Refinement<'_> {
         for round in 0..ROUNDS {
             let part = |k: usize| (round as f32 + k as f32 / 2.0) / (ROUNDS as f32 + 0.5);
             let stage = Stage::new(progress, part(0), part(1));
-            told = evidence(self.reference, self.others, disparity, self.noise, &asked, &stage)?;
+            let views = if round + 1 < ROUNDS { self.few } else { self.others };
+            told = evidence(self.reference, views, disparity, self.noise, &asked, &stage)?;
             let (certainty, target) = self.data(disparity, &told, known);
             if round == 0 {
                 self.fill(disparity, &certainty, &target);

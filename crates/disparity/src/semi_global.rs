@@ -4,7 +4,9 @@
 //! next label costs `small` and a larger one `large`, less at edges of the picture (Hirschmüller, *Stereo Processing by Semiglobal
 //! Matching and Mutual Information*, PAMI 2008, equations 13 and 14):
 //!
-//!     L(p, l) = C(p, l) + min(L(q, l), L(q, l ± 1) + small, min L(q) + large) − min L(q)
+//! ```text
+//! L(p, l) = C(p, l) + min(L(q, l), L(q, l ± 1) + small, min L(q) + large) − min L(q)
+//! ```
 //!
 //! Four of the directions come from above or the left, four from below or the right: two passes that run side by side.
 

@@ -1,5 +1,8 @@
 //! A view as the caller has it: a picture, and where in the grid it was taken.
 
+/// Pixels a side that a view needs.
+pub const SMALLEST: usize = 16;
+
 /// A picture that is only looked at.
 #[derive(Clone, Copy, Debug)]
 pub struct Picture<'a> {

@@ -9,7 +9,7 @@ pub struct Score {
     pub bad_003: f32,
     /// Percent off by more than 0.3: another surface.
     pub bad_03: f32,
-    /// A hundred times the mean squared error.
+    /// A hundred times the mean squared error; not a number if any disparity is none.
     pub mse_100: f32,
 }
 
@@ -28,7 +28,7 @@ pub fn score_where(found: &[f32], truth: &[f32], counted: impl Fn(usize) -> bool
     let errors: Vec<f32> =
         (0..found.len()).filter(|i| counted(*i)).map(|i| (found[i] - truth[i]).abs()).collect();
     let count = errors.len() as f32;
-    let bad = |limit: f32| 100.0 * errors.iter().filter(|e| !(**e <= limit)).count() as f32 / count;
+    let bad = |limit: f32| 100.0 * errors.iter().filter(|e| **e > limit).count() as f32 / count;
     Score {
         bad_007: bad(0.07),
         bad_003: bad(0.03),
