@@ -152,7 +152,7 @@ fn a_picture_and_its_depth_are_refocused() {
     let place = tempfile::tempdir().unwrap();
     let folder = place.path();
     view([0.0; 2]).save(folder.join("card.png")).unwrap();
-    pfm(&folder.join("card.pfm"), |disparity| distance(disparity));
+    pfm(&folder.join("card.pfm"), distance);
     done(folder, "import card.png --depth card.pfm -o card.fbrush");
     let focal_px = 0.5 * 96.0 / (0.5 * 0.6911f64).tan();
     // As far as a disparity of one step of this length.

@@ -10,7 +10,8 @@ use std::io::Read;
 use std::path::Path;
 
 /// What tells of a capture's cameras and its surface, and so of what paint lies on; pictures are many, and nothing lies on them.
-const OF_CAPTURES: [&str; 9] = ["txt", "bin", "json", "xml", "out", "nvm", "ply", "obj", "glb"];
+const OF_CAPTURES: [&str; 12] =
+    ["txt", "bin", "json", "xml", "out", "nvm", "ply", "obj", "glb", "pfm", "cfg", "dat"];
 
 /// How deep such files lie in a capture's folder.
 const DEEPEST: usize = 3;

@@ -1,11 +1,13 @@
 //! Disparities of a light field that came without: found in its views.
 
 use crate::error::SessionError;
+use crate::kept_files::KeptFiles;
 use ::disparity::{Asked, DisparityError, Picture, View};
 use capture::LightField;
 use glam::DVec2;
 use progress::{Progress, Stage};
 use scene::{LoadOptions, srgb_from_linear};
+use sha2::Digest;
 
 /// Pixels of all views together that are looked at: some 12 bytes each as they are read, and about as much in work. Of more, views are
 /// left out.
@@ -13,7 +15,10 @@ const MOST_PIXELS: usize = 24_000_000;
 /// So many views are looked at, however large they are.
 const FEWEST: usize = 5;
 
-/// The disparities of the middle view.
+/// Four bytes a pixel.
+const FILES: KeptFiles = KeptFiles { name: "disparities", budget_bytes: 512 << 20 };
+
+/// The disparities of the middle view: found before, or now.
 pub(super) fn found_disparity(
     field: &LightField,
     load: &LoadOptions,
@@ -23,6 +28,19 @@ pub(super) fn found_disparity(
     let most = (MOST_PIXELS / (width * height).max(1)).max(FEWEST);
     let places: Vec<DVec2> = field.views.iter().map(|view| view.position).collect();
     let chosen = spread(&places, field.reference, most);
+    let file = FILES.file(|hash| {
+        for &number in &chosen {
+            let view = &field.views[number];
+            // A picture is taken for the same where file, size and time of change are.
+            let data = std::fs::metadata(view.picture.file()).map(|data| (data.len(), data.modified().ok()));
+            hash.update(format!("{:?} {} {:?}", view.picture, view.position, data.ok()));
+        }
+        hash.update(format!("{:?} {} {:?}", field.size, field.reference, field.optics.disparity_range));
+    });
+    let kept = file.as_ref().and_then(|file| FILES.read(file));
+    if let Some(kept) = kept.filter(|bytes| bytes.len() == 4 * width * height) {
+        return Ok(kept.as_chunks().0.iter().map(|bytes| f32::from_le_bytes(*bytes)).collect());
+    }
     let mut pictures = Vec::with_capacity(chosen.len());
     for (done, &number) in chosen.iter().enumerate() {
         progress.check()?;
@@ -52,7 +70,11 @@ pub(super) fn found_disparity(
             DisparityError::Cancelled(_) => SessionError::Cancelled,
             other => SessionError::bad(&field.path, format!("no depth is found in its views: {other}")),
         })?;
-    Ok(maps.swap_remove(0).disparity)
+    let found = maps.swap_remove(0).disparity;
+    if let Some(file) = file {
+        FILES.write(&file, &found.iter().flat_map(|disparity| disparity.to_le_bytes()).collect::<Vec<_>>());
+    }
+    Ok(found)
 }
 
 /// At most so many of the places, the first that of `start`, then always the one farthest from those that were chosen.

@@ -56,7 +56,11 @@ pub(super) fn load_light_field(
     // What has disparity 0 is where the views agree: the camera that took them was focused there.
     let focus = if (range[0]..=range[1]).contains(&0.0) { 0.0 } else { 0.5 * (range[0] + range[1]) };
     let scene = picture_scene(&relief, &space, &Named { name: &field.name, path }, focus);
-    let camera = picture_camera(&scene, field.size, &space, reach);
+    let mut camera = picture_camera(&scene, field.size, &space, reach);
+    if let Some(longer_mm) = field.optics.sensor_size_mm {
+        let [width, height] = field.size.map(f64::from);
+        camera.sensor_height = longer_mm * 1e-3 * height / width.max(height);
+    }
     let is_incomplete = field.remarks.iter().any(|remark| remark.is_incomplete);
     let remarks = field.remarks.into_iter().map(|remark| remark.text).collect();
     Ok(OfPicture { scene, camera, remarks, is_incomplete })

@@ -84,7 +84,6 @@ impl Session {
                 }
                 self.events.push(Event::Opened);
                 self.events.extend(document.selection.is_some().then_some(Event::SelectionChanged));
-                self.events.extend(document.warnings.iter().cloned().map(Event::Notice));
                 // What was restored is in its file already; a document as saved has none.
                 self.recovery = Recovery {
                     file: document.is_unsaved().then(|| document.recovery_path()),
