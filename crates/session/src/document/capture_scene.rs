@@ -57,6 +57,10 @@ pub(crate) fn load_capture(
                 format!("cannot be taken for \"{name}\" (photographs, lightfield or depth)"),
             )
         })?,
+        // A picture that somebody gives depth to needs none of its own.
+        None if !path.is_dir() && (choices.depth.is_some() || choices.disparity.is_some()) => {
+            CaptureKind::Depth
+        }
         None => capture::capture_kind(path)?,
     };
     let near = choices.near.as_ref().map(|near| near.parse::<NearEnd>());
