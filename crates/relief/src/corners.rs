@@ -36,8 +36,9 @@ impl Cells {
         let around = self.around(at);
         // Seen from the corner, the cell lies on the other side.
         let quadrant = usize::from(!right) + 2 * usize::from(!below);
-        let point = self.shared(&around)[4 * layer + quadrant];
-        Corner { at, point, disparity: self.disparity_at(&around, &self.shared(&around), point) }
+        let shared = self.shared(&around);
+        let point = shared[4 * layer + quadrant];
+        Corner { at, point, disparity: self.disparity_at(&around, &shared, point) }
     }
 
     /// A corner that all cells of the first layer around it share.

@@ -1,6 +1,6 @@
 //! The surface itself.
 
-use crate::cells::Cells;
+use crate::cells::{Cells, Grid};
 use crate::corners::Corner;
 use crate::frame::Frame;
 use crate::hidden::{Hidden, hidden};
@@ -112,7 +112,7 @@ impl Relief {
         progress.check().map_err(ReliefError::Cancelled)?;
         let Hidden { disparity: back, links: back_links, onward, order } = hidden;
         let cells = Cells { grid, disparity: [front, back], links: [links, back_links], onward };
-        let mut mesh = Mesh::default();
+        let mut mesh = Mesh::of(grid);
         let metric = Metric { reach: options.reach, offset: options.offset };
         mesh.add_first(&cells, metric, options.tolerance_px);
         mesh.add_second(&cells, &order);
@@ -136,20 +136,38 @@ impl Relief {
 }
 
 /// Triangles as they are found, and the points that they share.
-#[derive(Default)]
 struct Mesh {
     vertices: Vec<ReliefVertex>,
     triangles: Vec<[u32; 3]>,
-    known: HashMap<(u8, [usize; 2], u8), u32>,
+    /// Corners in a row of the grid.
+    row: usize,
+    /// The first layer's first point at each corner of the grid; most corners have no other.
+    first: Vec<u32>,
+    others: HashMap<(u8, usize, u8), u32>,
 }
 
+/// No vertex.
+const NONE: u32 = u32::MAX;
+
 impl Mesh {
+    fn of(grid: Grid) -> Self {
+        let row = grid.width + 1;
+        let first = vec![NONE; row * (grid.height + 1)];
+        Self { vertices: Vec::new(), triangles: Vec::new(), row, first, others: HashMap::new() }
+    }
+
     fn vertex(&mut self, layer: u8, corner: Corner) -> u32 {
-        *self.known.entry((layer, corner.at, corner.point)).or_insert_with(|| {
+        let at = corner.at[1] * self.row + corner.at[0];
+        let known = match layer == 0 && corner.point == 0 {
+            true => &mut self.first[at],
+            false => self.others.entry((layer, at, corner.point)).or_insert(NONE),
+        };
+        if *known == NONE {
+            *known = self.vertices.len() as u32;
             let place = Vec2::new(corner.at[0] as f32, corner.at[1] as f32);
             self.vertices.push(ReliefVertex { place, disparity: corner.disparity, layer });
-            self.vertices.len() as u32 - 1
-        })
+        }
+        *known
     }
 
     fn add_first(&mut self, cells: &Cells, metric: Metric, tolerance: f32) {

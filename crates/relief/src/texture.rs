@@ -93,6 +93,10 @@ impl Surface<'_> {
             progress.check().map_err(NotFound::Cancelled)?;
             progress.report(done as f32 / views.len() as f32);
             let shown = (view.read)().map_err(NotFound::View)?;
+            // A picture of another size shows nothing that could be found in it.
+            if shown.len() != picture.count() {
+                continue;
+            }
             let nearest = nearest(grid, self.front, view.offset);
             sums.par_iter_mut().zip(asked).for_each(|(sum, asked)| {
                 let place = place(grid, asked.cell, asked.disparity, view.offset);

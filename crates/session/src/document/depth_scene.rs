@@ -1,7 +1,7 @@
 //! A picture and its depth as a scene.
 
-use super::light_field_scene::{OfPicture, margin_px, range, relief_error, usual_focal_px};
-use super::picture_scene::{Named, PictureSpace, picture_camera, picture_scene, uncalibrated};
+use super::light_field_scene::{OfPicture, margin_px, of_size, range, relief_error, usual_focal_px};
+use super::picture_scene::{Named, PictureSpace, Shown, picture_camera, picture_scene, uncalibrated};
 use crate::error::SessionError;
 use capture::{CaptureError, DepthMeaning, DepthPictureOptions};
 use lens::Camera;
@@ -11,8 +11,15 @@ use std::path::Path;
 
 /// What is infinitely far, or as good as, is put at so many times the nearest distance.
 const FARTHEST: f32 = 1000.0;
+/// A surface of more cells than this is made coarser than its picture, which stays as fine as it is.
+const MOST_CELLS: u64 = 4_200_000;
 /// The f-number that the surface is made for: behind what stands before something it goes on as far as this aperture looks.
 const WIDEST: f64 = 1.0;
+
+/// Cells of so many pixels each way.
+fn cells([width, height]: [u32; 2], by: u32) -> u64 {
+    u64::from(width.div_ceil(by)) * u64::from(height.div_ceil(by))
+}
 
 /// Opens a picture with its depth and makes its surface.
 pub(super) fn load_depth_picture(
@@ -21,18 +28,21 @@ pub(super) fn load_depth_picture(
     progress: &dyn Progress,
 ) -> Result<OfPicture, SessionError> {
     let found = capture::open_depth_picture(path, options)?;
-    let size = found.size.map(|side| side as usize);
-    let picture = found.picture.photograph(&options.load)?.pixels;
+    let whole = of_size(found.picture.photograph(&options.load)?, found.size, path)?;
+    let by = (1..).find(|by| cells(found.size, *by) <= MOST_CELLS).unwrap_or(1);
+    let size = found.size.map(|side| side.div_ceil(by) as usize);
+    let coarse = if by > 1 { whole.clone().reduced(by).pixels } else { Vec::new() };
+    let picture = if by > 1 { &coarse } else { &whole.pixels };
     progress.check()?;
     let map = [found.depth.width as usize, found.depth.height as usize];
-    let mut disparity = filled(size, upsampled(map, &found.depth.inverse_depth(), size, &picture));
+    let mut disparity = filled(size, upsampled(map, &found.depth.inverse_depth(), size, picture));
     if disparity.first().is_none_or(|value| value.is_nan()) {
         return Err(SessionError::bad(
             &found.depth_file,
             "says of no pixel how far it is (give another map)",
         ));
     }
-    let focal_px = found.focal_px.unwrap_or_else(|| usual_focal_px(found.size));
+    let focal_px = found.focal_px.unwrap_or_else(|| usual_focal_px(found.size)) / f64::from(by);
     let space = match found.depth.meaning {
         DepthMeaning::Distance => {
             let nearest = disparity.iter().copied().fold(0.0, f32::max);
@@ -42,7 +52,7 @@ pub(super) fn load_depth_picture(
         DepthMeaning::Disparity | DepthMeaning::Relative => uncalibrated(range(&disparity), focal_px),
     };
     let sensor_height = Camera::default().sensor_height;
-    let focal_length = sensor_height * focal_px / f64::from(found.size[1]);
+    let focal_length = sensor_height * focal_px * f64::from(by) / f64::from(found.size[1]);
     let widest = focal_length / (2.0 * WIDEST);
     let reach = widest / space.baseline();
     let [low, high] = range(&disparity);
@@ -53,10 +63,12 @@ pub(super) fn load_depth_picture(
         ..ReliefOptions::default()
     };
     let stage = Stage::new(progress, 0.2, 1.0);
-    let relief = Relief::of::<CaptureError>(size, &disparity, &picture, &[], &surface, &stage)
-        .map_err(relief_error)?;
+    let relief =
+        Relief::of::<CaptureError>(size, &disparity, picture, &[], &surface, &stage).map_err(relief_error)?;
     let middle = disparity[size[1] / 2 * size[0] + size[0] / 2];
-    let scene = picture_scene(&relief, &space, &Named { name: &found.name, path }, f64::from(middle));
+    let named = Named { name: &found.name, path };
+    let shown = Shown { pixels: &whole.pixels, size: found.size.map(|side| side as usize), by: by as usize };
+    let scene = picture_scene(&relief, &shown, &space, &named, f64::from(middle));
     // At first half as wide as it may be.
     let camera = picture_camera(&scene, found.size, &space, reach / 2.0);
     let is_incomplete = found.remarks.iter().any(|remark| remark.is_incomplete);

@@ -1,13 +1,13 @@
 //! A light field as a scene: its middle view, a surface from disparities, and behind it what the other views see.
 
 use super::found_disparity::found_disparity;
-use super::picture_scene::{Named, PictureSpace, picture_camera, picture_scene, uncalibrated};
+use super::picture_scene::{Named, PictureSpace, Shown, picture_camera, picture_scene, uncalibrated};
 use crate::error::SessionError;
 use capture::{CaptureError, LightField, LightFieldOptions, Optics};
 use lens::Camera;
 use progress::{Progress, Stage};
 use relief::{OtherView, Relief, ReliefError, ReliefOptions, filled, upsampled};
-use scene::{LoadOptions, Scene};
+use scene::{LoadOptions, Photograph, Scene};
 use std::path::Path;
 
 /// The angle of view across a picture's longer side where no file tells it: that of a lens of 50 mm on a frame of 36.
@@ -33,7 +33,7 @@ pub(super) fn load_light_field(
     let field = capture::open_light_field(path, options, &Stage::new(progress, 0.0, 0.1))?;
     let size = field.size.map(|side| side as usize);
     let load = &options.load;
-    let middle = field.views[field.reference].picture.photograph(load)?.pixels;
+    let middle = of_size(field.views[field.reference].picture.photograph(load)?, field.size, path)?.pixels;
     let disparity = disparity(&field, size, &middle, load, &Stage::new(progress, 0.1, 0.5))?;
     let reach = field.views.iter().map(|view| view.position.length()).fold(0.0, f64::max);
     let range = range(&disparity);
@@ -55,7 +55,8 @@ pub(super) fn load_light_field(
     let relief = Relief::of(size, &disparity, &middle, &others, &surface, &stage).map_err(relief_error)?;
     // What has disparity 0 is where the views agree: the camera that took them was focused there.
     let focus = if (range[0]..=range[1]).contains(&0.0) { 0.0 } else { 0.5 * (range[0] + range[1]) };
-    let scene = picture_scene(&relief, &space, &Named { name: &field.name, path }, focus);
+    let shown = Shown { pixels: &middle, size, by: 1 };
+    let scene = picture_scene(&relief, &shown, &space, &Named { name: &field.name, path }, focus);
     let mut camera = picture_camera(&scene, field.size, &space, reach);
     if let Some(longer_mm) = field.optics.sensor_size_mm {
         let [width, height] = field.size.map(f64::from);
@@ -64,6 +65,18 @@ pub(super) fn load_light_field(
     let is_incomplete = field.remarks.iter().any(|remark| remark.is_incomplete);
     let remarks = field.remarks.into_iter().map(|remark| remark.text).collect();
     Ok(OfPicture { scene, camera, remarks, is_incomplete })
+}
+
+/// A picture, if it is still of the size that its file had a moment ago.
+pub(super) fn of_size(found: Photograph, size: [u32; 2], path: &Path) -> Result<Photograph, SessionError> {
+    if [found.width, found.height] == size {
+        return Ok(found);
+    }
+    let what = format!(
+        "has changed while it was opened: {} × {} px became {} × {} (open it again)",
+        size[0], size[1], found.width, found.height
+    );
+    Err(SessionError::bad(path, what))
 }
 
 /// The disparity of each pixel of the middle view: as it is given, else found in the views.

@@ -15,6 +15,7 @@
 use atlas::Atlas;
 use glam::{DMat4, DVec3, Mat3, Vec2};
 use lens::Camera;
+use rayon::prelude::*;
 use relief::{Relief, TEXTURE_LAYERS};
 use scene::{
     AlphaMode, Image, ImageLevel, Material, Node, Part, PictureTexture, Scene, SceneCamera, TextureRef,
@@ -66,13 +67,36 @@ pub(super) struct Named<'a> {
     pub path: &'a Path,
 }
 
-/// The scene of a surface. `focus` is the disparity that the camera focuses on.
-pub(super) fn picture_scene(relief: &Relief, space: &PictureSpace, named: &Named<'_>, focus: f64) -> Scene {
+/// The picture that a surface was made from, which it may be coarser than.
+pub(super) struct Shown<'a> {
+    /// Linear RGB, row by row.
+    pub pixels: &'a [[f32; 3]],
+    /// Columns and rows.
+    pub size: [usize; 2],
+    /// Pixels that a cell of the surface is wide and high; the last ones may reach beyond the picture.
+    pub by: usize,
+}
+
+impl Shown<'_> {
+    /// Columns and rows, in cells.
+    fn cells(&self) -> Vec2 {
+        Vec2::new(self.size[0] as f32, self.size[1] as f32) / self.by as f32
+    }
+}
+
+/// The scene of a surface, `space` in its cells. `focus` is the disparity that the camera focuses on.
+pub(super) fn picture_scene(
+    relief: &Relief,
+    shown: &Shown<'_>,
+    space: &PictureSpace,
+    named: &Named<'_>,
+    focus: f64,
+) -> Scene {
     let [width, height] = relief.size;
     let behind = height + GUTTER;
     let rows = height + (TEXTURE_LAYERS - 1) * behind;
     let margin = relief.margin as f32;
-    let middle = Vec2::new(width as f32, height as f32) / 2.0 - margin;
+    let middle = shown.cells() / 2.0;
     let position = |place: Vec2, disparity: f32| {
         let z = 1.0 / space.inverse_depth(f64::from(disparity));
         let aside = ((place - middle).as_dvec2() * z) / space.focal_px;
@@ -83,7 +107,7 @@ pub(super) fn picture_scene(relief: &Relief, space: &PictureSpace, named: &Named
         Vec2::new(column / width as f32, row / rows as f32)
     };
     let positions = relief.vertices.iter().map(|vertex| position(vertex.place, vertex.disparity)).collect();
-    let (image, brightest) = image(relief, behind, rows);
+    let (image, brightest) = image(relief, shown, behind, rows);
     let texture = TextureRef {
         image: 0,
         is_color: true,
@@ -184,25 +208,33 @@ fn in_rows<T: Copy>(
     all
 }
 
-/// The texture in sRGB's encoding, divided by what its brightest value is above white.
-fn image(relief: &Relief, behind: usize, rows: usize) -> (Image, f32) {
-    let [width, height] = relief.size;
-    let brightest = relief.texture.iter().flatten().copied().fold(1.0, f32::max);
-    let mut texture = in_rows(&relief.texture, relief.size, behind, rows, [0.0; 3]);
-    // Interpolation at the picture's lower border finds its last row.
-    for row in height..behind {
-        texture.copy_within((height - 1) * width..height * width, row * width);
-    }
+/// The texture in sRGB's encoding, divided by what its brightest value is above white: the picture as fine as it is, what is around and
+/// behind it as the surface has it.
+fn image(relief: &Relief, shown: &Shown<'_>, behind: usize, rows: usize) -> (Image, f32) {
+    let (width, margin, by) = (relief.size[0], relief.margin, shown.by);
+    let own = relief.texture.iter().chain(shown.pixels).flatten();
+    let brightest = own.copied().fold(1.0, f32::max);
+    let texture = in_rows(&relief.texture, relief.size, behind, rows, [0.0; 3]);
     let encoded = |linear: f32| {
         let encoded = srgb_from_linear((linear / brightest).clamp(0.0, 1.0));
         (encoded * 65535.0).round() as u16
     };
-    let texels =
-        texture.iter().flat_map(|&[r, g, b]| [encoded(r), encoded(g), encoded(b), u16::MAX]).collect();
+    let mut texels = vec![u16::MAX; 4 * width * by * rows * by];
+    texels.par_chunks_mut(4 * width * by).enumerate().for_each(|(y, row)| {
+        for (x, texel) in row.as_chunks_mut::<4>().0.iter_mut().enumerate() {
+            let in_picture = x.checked_sub(margin * by).zip(y.checked_sub(margin * by));
+            let in_picture = in_picture.filter(|&(x, y)| x < shown.size[0] && y < shown.size[1]);
+            let [r, g, b] = match in_picture {
+                Some((x, y)) => shown.pixels[y * shown.size[0] + x],
+                None => texture[y / by * width + x / by],
+            };
+            texel[..3].copy_from_slice(&[r, g, b].map(encoded));
+        }
+    });
     let image = Image {
         name: "picture".into(),
-        width: width as u32,
-        height: rows as u32,
+        width: (width * by) as u32,
+        height: (rows * by) as u32,
         texels: ImageLevel::Bits16(texels),
     };
     (image, brightest)
@@ -227,7 +259,8 @@ mod tests {
         assert!((1.0 / space.inverse_depth(0.46) - NEAREST).abs() < 1e-12);
         assert!((1.0 / space.inverse_depth(0.0) - FARTHEST).abs() < 1e-12);
         let named = Named { name: "a", path: Path::new("a.png") };
-        let scene = picture_scene(&relief, &space, &named, 0.2);
+        let shown = Shown { pixels: &picture, size, by: 1 };
+        let scene = picture_scene(&relief, &shown, &space, &named, 0.2);
         let camera = picture_camera(&scene, [24, 16], &space, 2.0);
         let optics = camera.optics();
         for (vertex, position) in relief.vertices.iter().zip(&scene.positions) {
