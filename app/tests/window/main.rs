@@ -4,6 +4,9 @@ mod accessible;
 mod acting;
 mod arranging;
 mod captures;
+#[allow(dead_code, reason = "shared by several tests")]
+#[path = "../card_light_field/mod.rs"]
+mod card_light_field;
 mod commands;
 mod comparing;
 mod controls;
@@ -11,6 +14,7 @@ mod documents;
 mod dragging;
 mod key_maps;
 mod layers;
+mod light_fields;
 mod on_card;
 mod painting;
 mod panels;

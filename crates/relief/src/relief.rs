@@ -17,6 +17,8 @@ use std::collections::HashMap;
 pub struct ReliefOptions {
     /// The radius of the aperture that the surface is for, in steps of the views: what a disparity times it is a parallax, px. > 0.
     pub reach: f32,
+    /// How many times as far one may look behind what stands before something, ≥ 1: what lies there is made for that.
+    pub beyond: f32,
     /// How far the surface may be off, as a parallax, and its texture, px.
     pub tolerance_px: f32,
     /// What makes disparities proportional to inverse depth when it is added. Where it is infinite, or does not make all of them positive,
@@ -31,7 +33,7 @@ pub struct ReliefOptions {
 impl Default for ReliefOptions {
     /// For one step either way.
     fn default() -> Self {
-        Self { reach: 1.0, tolerance_px: 0.1, offset: f32::INFINITY, jump_px: 1.0, margin_px: 0 }
+        Self { reach: 1.0, beyond: 1.0, tolerance_px: 0.1, offset: f32::INFINITY, jump_px: 1.0, margin_px: 0 }
     }
 }
 
@@ -101,7 +103,7 @@ impl Relief {
         steps::even_out(grid, &mut front, jump);
         let links = jumps::links(grid, &front, jump);
         progress.check().map_err(ReliefError::Cancelled)?;
-        let hidden = hidden(grid, &front, &links, options.reach, jump);
+        let hidden = hidden(grid, &front, &links, options.reach * options.beyond, jump);
         let stage = Stage::new(progress, 0.1, 0.8);
         let surface = Surface { frame: &frame, front: &front, hidden: &hidden, jump };
         let Behind { colors, is_seen } =

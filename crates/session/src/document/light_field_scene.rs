@@ -13,6 +13,9 @@ use std::path::Path;
 /// The angle of view across a picture's longer side where no file tells it: that of a lens of 50 mm on a frame of 36.
 const LONGER_ANGLE: f64 = 0.6911;
 
+/// Cameras may stand, and apertures reach, so many times as far from the middle view as the farthest view.
+const BEYOND: f64 = 1.6;
+
 /// A surface made from one picture, or several of one place.
 pub(super) struct OfPicture {
     pub scene: Scene,
@@ -40,8 +43,11 @@ pub(super) fn load_light_field(
     let space = space(&field.optics, field.size, range);
     let surface = ReliefOptions {
         reach: reach as f32,
+        beyond: BEYOND as f32,
         offset: space.offset as f32,
-        margin_px: margin_px(size, reach * (range[1] - range[0])),
+        // Blur reaches as far as parallax does against what is focused on; a camera that moves sees beside the picture as far as what is
+        // nearest moves.
+        margin_px: margin_px(size, BEYOND * reach * (range[1] - range[0]).max(range[1] + space.offset)),
         ..ReliefOptions::default()
     };
     let others = field.views.iter().enumerate().filter(|(number, _)| *number != field.reference);

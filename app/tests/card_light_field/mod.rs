@@ -1,0 +1,66 @@
+//! A made-up light field, a card before a wall, and pictures of it.
+
+use image::{Rgb, RgbImage};
+use std::path::Path;
+
+/// Columns and rows of the views, and steps to the outermost on each side.
+pub const SIZE: [u32; 2] = [96, 72];
+pub const STEPS: i32 = 2;
+/// Disparities of the card and of the wall.
+pub const CARD: f64 = 1.5;
+pub const WALL: f64 = -0.5;
+
+/// What a view at (u, v) shows at a place, linear, and the disparity of that.
+pub fn shown(x: f64, y: f64, [u, v]: [f64; 2]) -> ([f64; 3], f64) {
+    let of = |d: f64| (x + d * u, y + d * v);
+    let (cx, cy) = of(CARD);
+    let wave = |x: f64, y: f64, k: f64| 0.4 + 0.3 * (0.45 * k * x).sin() * (0.4 * k * y + k).cos();
+    if (30.0..62.0).contains(&cx) && (20.0..52.0).contains(&cy) {
+        return ([wave(cx, cy, 1.0), 0.5 * wave(cx, cy, 1.4), 0.1], CARD);
+    }
+    let (wx, wy) = of(WALL);
+    ([0.2, 0.7 * wave(wx, wy, 0.8), wave(wx, wy, 1.1)], WALL)
+}
+
+/// A pixel of a view, by 4 × 4 places in it.
+pub fn pixel(x: u32, y: u32, view: [f64; 2]) -> [f64; 3] {
+    let mut sum = [0.0; 3];
+    for k in 0..16u32 {
+        let at = |at: u32, k: u32| f64::from(at) + (f64::from(k) + 0.5) / 4.0;
+        let (color, _) = shown(at(x, k % 4), at(y, k / 4), view);
+        (0..3).for_each(|c| sum[c] += color[c] / 16.0);
+    }
+    sum
+}
+
+fn encoded(linear: f64) -> u8 {
+    let encoded = if linear <= 0.0031308 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 };
+    (encoded * 255.0).round() as u8
+}
+
+pub fn view(view: [f64; 2]) -> RgbImage {
+    RgbImage::from_fn(SIZE[0], SIZE[1], |x, y| Rgb(pixel(x, y, view).map(encoded)))
+}
+
+/// The numbers of the middle view's pixels as a PFM, rows from below.
+pub fn pfm(file: &Path, of: impl Fn(f64) -> f64) {
+    let mut bytes = format!("Pf\n{} {}\n-1.0\n", SIZE[0], SIZE[1]).into_bytes();
+    for y in (0..SIZE[1]).rev() {
+        for x in 0..SIZE[0] {
+            let (_, disparity) = shown(f64::from(x) + 0.5, f64::from(y) + 0.5, [0.0; 2]);
+            bytes.extend((of(disparity) as f32).to_le_bytes());
+        }
+    }
+    std::fs::write(file, bytes).unwrap();
+}
+
+/// Five by five views, by row and column, and the disparities of the middle one.
+pub fn write(folder: &Path) {
+    std::fs::create_dir_all(folder).unwrap();
+    for (row, v) in (-STEPS..=STEPS).enumerate() {
+        for (column, u) in (-STEPS..=STEPS).enumerate() {
+            view([u.into(), v.into()]).save(folder.join(format!("{row:02}_{column:02}.png"))).unwrap();
+        }
+    }
+    pfm(&folder.join("disparity.pfm"), |disparity| disparity);
+}
