@@ -156,3 +156,58 @@ fn two_eyes_see_what_they_fixate_at_one_place() {
     let output = run(folder, "render card.fbrush --stereo sidebyside --eyes 1.2 -o x.png");
     assert_eq!(output.status.code(), Some(3), "{}", String::from_utf8_lossy(&output.stderr));
 }
+
+/// Real light fields that lie beside the checkout.
+const DATA: &str =
+    concat!(env!("CARGO_MANIFEST_DIR"), "/../../shared/data/lightfield/synthetic_helmet_cake_9x9");
+
+#[test]
+fn a_map_that_is_coded_by_colour_is_decoded_by_the_views() {
+    let data = Path::new(DATA);
+    if !data.is_dir() {
+        eprintln!("SKIPPED: {} is not there", data.display());
+        return;
+    }
+    let place = tempfile::tempdir().unwrap();
+    let folder = place.path();
+    std::fs::create_dir(folder.join("views")).unwrap();
+    for entry in std::fs::read_dir(data).unwrap() {
+        let file = entry.unwrap().path();
+        if file.extension().is_some_and(|extension| extension == "png") {
+            std::fs::copy(&file, folder.join("views").join(file.file_name().unwrap())).unwrap();
+        }
+    }
+    // Its disparities, rows from below, as hues of a mapping that is not linear, compressed.
+    let pfm = std::fs::read(data.join("gt_disp_lowres.pfm")).unwrap();
+    let numbers = &pfm[pfm.len() - 4 * 256 * 256..];
+    let disparity = |x: u32, y: u32| {
+        let at = 4 * ((255 - y) * 256 + x) as usize;
+        f32::from_le_bytes(numbers[at..at + 4].try_into().unwrap())
+    };
+    let all = (0..256 * 256).map(|pixel| disparity(pixel % 256, pixel / 256));
+    let [low, high] = all.fold([f32::MAX, f32::MIN], |[low, high], d| [low.min(d), high.max(d)]);
+    let coded = image::RgbImage::from_fn(256, 256, |x, y| {
+        let share = ((disparity(x, y) - low) / (high - low)).powf(1.5);
+        let hue = |middle: f32| ((1.5 - (4.0 * share - middle).abs()).clamp(0.0, 1.0) * 255.0) as u8;
+        image::Rgb([hue(3.0), hue(2.0), hue(1.0)])
+    });
+    let mut bytes = Vec::new();
+    image::codecs::jpeg::JpegEncoder::new_with_quality(&mut bytes, 85).encode_image(&coded).unwrap();
+    std::fs::write(folder.join("coded.jpg"), bytes).unwrap();
+    let truth = data.join("gt_disp_lowres.pfm");
+    done(folder, &format!("import views --disparity {} -o told.fbrush", truth.display()));
+    done(folder, "import views --disparity coded.jpg -o coded.fbrush");
+    for name in ["told", "coded"] {
+        done(folder, &format!("render {name}.fbrush -o {name}.exr --backend cpu"));
+    }
+    let [told, coded] = ["told.exr", "coded.exr"].map(|name| read_picture(&folder.join(name)).unwrap());
+    let off = |(a, b): (&[f32; 3], &[f32; 3])| (0..3).map(|c| f64::from(a[c] - b[c]).powi(2)).sum::<f64>();
+    let squares: f64 = told.rgb.iter().zip(&coded.rgb).map(off).sum();
+    let psnr = -10.0 * (squares / (3 * told.rgb.len()) as f64).log10();
+    assert!(psnr > 35.0, "{psnr} dB");
+    // Negative control: one of the views is no map of their disparities.
+    let output = run(folder, "import views --disparity views/input_Cam000.png -o wrong.fbrush");
+    let errors = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(3), "{errors}");
+    assert!(errors.contains("residual"), "{errors}");
+}

@@ -31,6 +31,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "progress",
             "scene",
             "capture",
+            "disparity",
             "relief",
             "atlas",
             "trace",

@@ -14,7 +14,7 @@ mod raw_floats;
 mod stored;
 
 pub use depth_file::read_depth_map;
-pub(crate) use levels::levels_of;
+pub(crate) use levels::{is_coded_by_color, levels_of};
 pub use map::{DepthMap, DepthMeaning};
 pub use meaning::DepthAs;
 pub(crate) use meaning::said_by_name;

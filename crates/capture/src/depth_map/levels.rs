@@ -1,9 +1,22 @@
 //! Grey levels of pictures of 8 and 16 bits as numbers from 0 to 1: not turned into linear light, for they are none.
 
 use super::stored::{Numbers, Stored};
+use crate::folder::extension;
+use crate::whole_file::whole_file;
 use image::{ColorType, DynamicImage, ImageDecoder, ImageReader, Limits};
 use scene::LoadOptions;
 use std::io::Cursor;
+use std::path::Path;
+
+/// What is said of maps whose numbers are colours.
+const CODED: &str = "is coded by colour, not by grey";
+
+/// Whether a file is a picture whose colours are not grey: a map that is coded by them. What cannot be read is told when it is.
+pub(crate) fn is_coded_by_color(file: &Path, options: &LoadOptions) -> bool {
+    let is_picture = ["png", "jpg", "jpeg", "webp"].contains(&extension(file).as_str());
+    let bytes = is_picture.then(|| whole_file(file, options.max_memory / 4).ok()).flatten();
+    bytes.is_some_and(|bytes| levels_of(&bytes, options).is_err_and(|why| why == CODED))
+}
 
 /// The levels of a picture's bytes; of colours the mean of the channels, if they differ that is said: such a map is coded by colour.
 pub(crate) fn levels_of(bytes: &[u8], options: &LoadOptions) -> Result<Stored, String> {
@@ -23,7 +36,7 @@ pub(crate) fn levels_of(bytes: &[u8], options: &LoadOptions) -> Result<Stored, S
     }
     let picture = DynamicImage::from_decoder(decoder).map_err(text)?;
     if is_colored(&picture) {
-        return Err("is coded by colour, not by grey".into());
+        return Err(CODED.into());
     }
     let numbers = match picture.color() {
         ColorType::Rgb32F | ColorType::Rgba32F => Numbers::Floats,

@@ -3,7 +3,7 @@
 use super::attributes::read_attributes;
 use super::optics::Optics;
 use crate::CaptureError;
-use crate::depth_map::{DepthAs, DepthMap, DepthMeaning, NearEnd, read_depth_map};
+use crate::depth_map::{DepthAs, DepthMap, DepthMeaning, NearEnd, is_coded_by_color, read_depth_map};
 use crate::folder::{Folder, Found, extension};
 use scene::LoadOptions;
 use std::path::{Path, PathBuf};
@@ -19,20 +19,37 @@ pub(super) struct Wanted<'a> {
     pub load: &'a LoadOptions,
 }
 
+/// A disparity map that was found.
+pub(super) enum FoundDisparity {
+    /// Its numbers, and its file.
+    Map(DepthMap, PathBuf),
+    /// A file whose colours are a code.
+    Coded(PathBuf),
+}
+
+impl FoundDisparity {
+    /// What a file holds that is given as disparities.
+    pub fn of(file: &Path, near: Option<NearEnd>, load: &LoadOptions) -> Result<Self, CaptureError> {
+        if is_coded_by_color(file, load) {
+            return Ok(Self::Coded(file.into()));
+        }
+        Ok(Self::Map(read_depth_map(file, Some(DepthAs::Disparity), near, load)?, file.into()))
+    }
+}
+
 /// The disparity map of these places and its file, if there is one: `depth.bin` with `attributes.dat`; a file called after disparity as PFM, EXR or
 /// picture; distances with parameters that turn them into disparities.
-pub(super) fn find_disparity(wanted: &Wanted<'_>) -> Result<Option<(DepthMap, PathBuf)>, CaptureError> {
+pub(super) fn find_disparity(wanted: &Wanted<'_>) -> Result<Option<FoundDisparity>, CaptureError> {
     let inside = |path: &PathBuf| wanted.folder.has_file(path);
     for place in wanted.places {
         let [attributes, depth] = ["attributes.dat", "depth.bin"].map(|name| place.join(name));
         if inside(&attributes) && inside(&depth) {
             let map = read_attributes(&attributes)?.disparity(&depth, wanted.size, wanted.load)?;
-            return Ok(Some((map, depth)));
+            return Ok(Some(FoundDisparity::Map(map, depth)));
         }
     }
     if let Some(file) = named(wanted, "disp") {
-        let map = read_depth_map(&file, Some(DepthAs::Disparity), wanted.near, wanted.load)?;
-        return Ok(Some((map, file)));
+        return FoundDisparity::of(&file, wanted.near, wanted.load).map(Some);
     }
     let Some(file) = named(wanted, "depth").filter(|file| ["pfm", "exr"].contains(&extension(file).as_str()))
     else {
@@ -52,7 +69,7 @@ pub(super) fn find_disparity(wanted: &Wanted<'_>) -> Result<Option<(DepthMap, Pa
         let what = "parameters.cfg makes no finite disparity of any distance";
         return Err(CaptureError::malformed(&file, "all pixels", what));
     }
-    Ok(Some((map, file)))
+    Ok(Some(FoundDisparity::Map(map, file)))
 }
 
 /// The likeliest file whose name has this word: floats before levels, of the size of the views before finer ones.

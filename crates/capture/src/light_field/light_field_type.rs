@@ -52,6 +52,8 @@ pub struct LightField {
     pub reference: usize,
     /// The disparity map that came with them.
     pub disparity: Option<GivenDisparity>,
+    /// A map of the reference's disparities that is coded by colour, and what the code is has to be found out from the views.
+    pub coded_disparity: Option<PictureSource>,
     /// What the files say of the camera.
     pub optics: Optics,
     /// What is incomplete, or good to know.

@@ -2,12 +2,12 @@
 
 use super::arrangement::{Arrangement, Placed, ViewLayout};
 use super::attributes::read_attributes;
-use super::disparity::{Wanted, find_disparity};
+use super::disparity::{FoundDisparity, Wanted, find_disparity};
 use super::finding::find_views;
 use super::light_field_type::{GivenDisparity, LightField, SubAperture};
 use super::optics::{Optics, read_parameters};
 use super::parallax::{GridTurn, GridTurnFound, grid_turn};
-use crate::depth_map::{DepthAs, DepthMap, DepthMeaning, NearEnd, read_depth_map};
+use crate::depth_map::{DepthMap, DepthMeaning, NearEnd};
 use crate::folder::Folder;
 use crate::foreign::foreign;
 use crate::mosaic::{Mosaic, pitch_of};
@@ -116,13 +116,12 @@ fn of_folder(
         grid: arrangement.grid,
         reference,
         disparity: None,
+        coded_disparity: None,
         optics,
         remarks,
     };
     let found = match options.disparity.as_ref().or(arrangement.disparity.as_ref()) {
-        Some(file) => {
-            Some((read_depth_map(file, Some(DepthAs::Disparity), options.near, &options.load)?, file.clone()))
-        }
+        Some(file) => Some(FoundDisparity::of(file, options.near, &options.load)?),
         None => {
             let wanted = Wanted {
                 folder: &folder,
@@ -135,8 +134,8 @@ fn of_folder(
             find_disparity(&wanted)?
         }
     };
-    if let Some((map, file)) = found {
-        take_disparity(&mut field, map, file);
+    if let Some(found) = found {
+        take(&mut field, found);
     }
     Ok(field)
 }
@@ -188,12 +187,12 @@ fn of_mosaic(path: &Path, options: &LightFieldOptions) -> Result<LightField, Cap
         grid: Some(pitch),
         reference: (middle[1] * columns + middle[0]) as usize,
         disparity: None,
+        coded_disparity: None,
         optics: Optics::default(),
         remarks,
     };
     if let Some(file) = &options.disparity {
-        let map = read_depth_map(file, Some(DepthAs::Disparity), options.near, &options.load)?;
-        take_disparity(&mut field, map, file.clone());
+        take(&mut field, FoundDisparity::of(file, options.near, &options.load)?);
     }
     Ok(field)
 }
@@ -282,6 +281,20 @@ fn reference(arrangement: &Arrangement, placed: &[Placed]) -> usize {
     let distance = |index: &usize| placed[*index].position.distance(middle);
     // Of equals the first.
     (0..placed.len()).min_by(|a, b| distance(a).total_cmp(&distance(b)).then(a.cmp(b))).unwrap_or(0)
+}
+
+/// Keeps what was found of disparities.
+fn take(field: &mut LightField, found: FoundDisparity) {
+    match found {
+        FoundDisparity::Map(map, file) => take_disparity(field, map, file),
+        FoundDisparity::Coded(file) => {
+            field.remarks.push(Remark::note(format!(
+                "{}: is coded by colour; what its colours mean is found out from the views",
+                file.display()
+            )));
+            field.coded_disparity = Some(PictureSource::stored(&file));
+        }
+    }
 }
 
 /// Keeps a disparity map: of the view that its file is named after, else of the middle one.

@@ -1,13 +1,15 @@
-//! Disparities of a light field that came without: found in its views.
+//! Disparities of a light field that came without: found in its views; or with a map that is coded by colour: decoded by them.
 
 use crate::error::SessionError;
 use crate::kept_files::KeptFiles;
+use ::disparity::colour_coded::{Sample, decode};
 use ::disparity::{Asked, DisparityError, Picture, View};
-use capture::LightField;
+use capture::{LightField, PictureSource};
 use glam::DVec2;
 use progress::{Progress, Stage};
-use scene::{LoadOptions, srgb_from_linear};
+use scene::{LoadOptions, Photograph, srgb_from_linear};
 use sha2::Digest;
+use std::path::Path;
 
 /// Pixels of all views together that are looked at: some 12 bytes each as they are read, and about as much in work. Of more, views are
 /// left out.
@@ -15,15 +17,77 @@ const MOST_PIXELS: usize = 24_000_000;
 /// So many views are looked at, however large they are.
 const FEWEST: usize = 5;
 
-/// Four bytes a pixel.
+/// Pixels of a map that is coded by colour are told where the views tell their disparity this surely.
+const SURE: f32 = 0.5;
+/// As many of them are enough, spread over the picture.
+const SAMPLES: usize = 4000;
+
+/// Eight bytes a pixel: disparities, then how surely each is told.
 const FILES: KeptFiles = KeptFiles { name: "disparities", budget_bytes: 512 << 20 };
 
-/// The disparities of the middle view: found before, or now.
+/// Disparities of the middle view, and how surely each is told, in [0, 1].
+struct Told {
+    disparity: Vec<f32>,
+    confidence: Vec<f32>,
+}
+
+/// The disparities of the middle view.
 pub(super) fn found_disparity(
     field: &LightField,
     load: &LoadOptions,
     progress: &dyn Progress,
 ) -> Result<Vec<f32>, SessionError> {
+    let told = told(field, load, &Stage::new(progress, 0.0, 0.9))?;
+    match &field.coded_disparity {
+        Some(coded) => decoded(field, &coded.photograph(load)?, &told, &Stage::new(progress, 0.9, 1.0)),
+        None => Ok(told.disparity),
+    }
+}
+
+/// A map that is coded by colour, decoded by what the views tell surely; at the size of the views.
+fn decoded(
+    field: &LightField,
+    coded: &Photograph,
+    told: &Told,
+    progress: &dyn Progress,
+) -> Result<Vec<f32>, SessionError> {
+    let [width, height] = field.size.map(|side| side as usize);
+    let [columns, rows] = [coded.width, coded.height].map(|side| side as usize);
+    let rgb: Vec<[f32; 3]> = coded.pixels.iter().map(|rgb| rgb.map(shown)).collect();
+    let sure: Vec<usize> = (0..width * height).filter(|&pixel| told.confidence[pixel] >= SURE).collect();
+    let samples = sure.iter().step_by(sure.len().div_ceil(SAMPLES).max(1)).map(|&pixel| Sample {
+        x: (2 * (pixel % width) + 1) * columns / (2 * width),
+        y: (2 * (pixel / width) + 1) * rows / (2 * height),
+        disparity: told.disparity[pixel],
+    });
+    let map = Picture { width: columns, height: rows, rgb: &rgb };
+    let decoded = decode(&map, &samples.collect::<Vec<_>>(), progress);
+    let file = field.coded_disparity.as_ref().map_or(field.path.as_path(), PictureSource::file);
+    let decoded = decoded.map_err(|error| disparity_error(file, error))?;
+    let middle = |pixel: usize| {
+        let (x, y) = (
+            (2 * (pixel % width) + 1) * columns / (2 * width),
+            (2 * (pixel / width) + 1) * rows / (2 * height),
+        );
+        decoded.disparity[y * columns + x]
+    };
+    Ok((0..width * height).map(middle).collect())
+}
+
+fn disparity_error(file: &Path, error: DisparityError) -> SessionError {
+    match error {
+        DisparityError::Cancelled(_) => SessionError::Cancelled,
+        other => SessionError::bad(file, format!("tells no disparities: {other}")),
+    }
+}
+
+/// As a screen shows it, up to white.
+fn shown(linear: f32) -> f32 {
+    srgb_from_linear(linear.clamp(0.0, 1.0))
+}
+
+/// What the views tell: found before, or now.
+fn told(field: &LightField, load: &LoadOptions, progress: &dyn Progress) -> Result<Told, SessionError> {
     let [width, height] = field.size.map(|side| side as usize);
     let most = (MOST_PIXELS / (width * height).max(1)).max(FEWEST);
     let places: Vec<DVec2> = field.views.iter().map(|view| view.position).collect();
@@ -38,21 +102,18 @@ pub(super) fn found_disparity(
         hash.update(format!("{:?} {} {:?}", field.size, field.reference, field.optics.disparity_range));
     });
     let kept = file.as_ref().and_then(|file| FILES.read(file));
-    if let Some(kept) = kept.filter(|bytes| bytes.len() == 4 * width * height) {
-        return Ok(kept.as_chunks().0.iter().map(|bytes| f32::from_le_bytes(*bytes)).collect());
+    if let Some(kept) = kept.filter(|bytes| bytes.len() == 8 * width * height) {
+        let numbers =
+            |bytes: &[u8]| bytes.as_chunks().0.iter().map(|bytes| f32::from_le_bytes(*bytes)).collect();
+        let (disparity, confidence) = kept.split_at(4 * width * height);
+        return Ok(Told { disparity: numbers(disparity), confidence: numbers(confidence) });
     }
     let mut pictures = Vec::with_capacity(chosen.len());
     for (done, &number) in chosen.iter().enumerate() {
         progress.check()?;
         progress.report(0.3 * done as f32 / chosen.len() as f32);
-        let shown = field.views[number].picture.photograph(load)?;
-        pictures.push(
-            shown
-                .pixels
-                .into_iter()
-                .map(|rgb| rgb.map(|linear| srgb_from_linear(linear.clamp(0.0, 1.0))))
-                .collect::<Vec<_>>(),
-        );
+        let picture = field.views[number].picture.photograph(load)?;
+        pictures.push(picture.pixels.into_iter().map(|rgb| rgb.map(shown)).collect::<Vec<_>>());
     }
     let views: Vec<View<'_>> = chosen
         .iter()
@@ -65,16 +126,13 @@ pub(super) fn found_disparity(
     let reference = chosen.iter().position(|&number| number == field.reference).unwrap_or(0);
     let range = field.optics.disparity_range.map(|[low, high]| (low as f32, high as f32));
     let asked = Asked { reference, range, ..Asked::default() };
-    let mut maps =
-        ::disparity::find(&views, &asked, &Stage::new(progress, 0.3, 1.0)).map_err(|error| match error {
-            DisparityError::Cancelled(_) => SessionError::Cancelled,
-            other => SessionError::bad(&field.path, format!("no depth is found in its views: {other}")),
-        })?;
-    let found = maps.swap_remove(0).disparity;
+    let found = ::disparity::find(&views, &asked, &Stage::new(progress, 0.3, 1.0));
+    let found = found.map_err(|error| disparity_error(&field.path, error))?.swap_remove(0);
     if let Some(file) = file {
-        FILES.write(&file, &found.iter().flat_map(|disparity| disparity.to_le_bytes()).collect::<Vec<_>>());
+        let numbers = found.disparity.iter().chain(&found.confidence);
+        FILES.write(&file, &numbers.flat_map(|number| number.to_le_bytes()).collect::<Vec<_>>());
     }
-    Ok(found)
+    Ok(Told { disparity: found.disparity, confidence: found.confidence })
 }
 
 /// At most so many of the places, the first that of `start`, then always the one farthest from those that were chosen.
