@@ -128,7 +128,7 @@ fn nearest(grid: Grid, front: &[f32], offset: [f32; 2]) -> Vec<f32> {
             let share = at - 0.5 - first;
             [
                 (share < 1.0 - RIM_SHARE).then_some(first as isize),
-                (share > RIM_SHARE).then_some(first as isize + 1),
+                (share > RIM_SHARE).then_some((first as isize).saturating_add(1)),
             ]
         });
         for y in rows.into_iter().flatten().filter(|y| (0..grid.height as isize).contains(y)) {

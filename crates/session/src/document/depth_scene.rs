@@ -46,6 +46,10 @@ pub(super) fn load_depth_picture(
     let space = match found.depth.meaning {
         DepthMeaning::Distance => {
             let nearest = disparity.iter().copied().fold(0.0, f32::max);
+            if !(nearest > 0.0 && nearest.is_finite()) {
+                let what = "says of no pixel how far it is in metres (give another map)";
+                return Err(SessionError::bad(&found.depth_file, what));
+            }
             disparity.iter_mut().for_each(|value| *value = value.max(nearest / FARTHEST));
             PictureSpace { focal_px, offset: 0.0, scale: 1.0 }
         }
