@@ -174,24 +174,36 @@ impl DepthPicture {
     fn shut_holes(&mut self) {
         let (width, height) = (self.width, self.height);
         let mut is_open = vec![false; width * height];
-        let on_border = |number: &usize| {
-            let (x, y) = (number % width, number / width);
-            x == 0 || y == 0 || x + 1 == width || y + 1 == height
-        };
-        let mut reached: Vec<usize> = (0..width * height).filter(on_border).collect();
-        while let Some(number) = reached.pop() {
-            if is_open[number] || self.inverse[number] > 0.0 {
-                continue;
+        // What is open opens what is right of it and below, then what is left and above, until nothing more is reached.
+        let mut goes_on = true;
+        while goes_on {
+            goes_on = false;
+            let mut open = |x: usize, y: usize, across: Option<usize>, along: Option<usize>| {
+                let number = y * width + x;
+                if is_open[number] || self.inverse[number] > 0.0 {
+                    return;
+                }
+                // Beyond the border all is open.
+                let is_reached = |neighbour: Option<usize>| neighbour.is_none_or(|number| is_open[number]);
+                if is_reached(across) || is_reached(along) {
+                    is_open[number] = true;
+                    goes_on = true;
+                }
+            };
+            for y in 0..height {
+                for x in 0..width {
+                    let number = y * width + x;
+                    open(x, y, (x > 0).then(|| number - 1), (y > 0).then(|| number - width));
+                }
             }
-            is_open[number] = true;
-            let (x, y) = (number % width, number / width);
-            let around = [
-                (x > 0).then(|| number - 1),
-                (x + 1 < width).then(|| number + 1),
-                (y > 0).then(|| number - width),
-                (y + 1 < height).then(|| number + width),
-            ];
-            reached.extend(around.into_iter().flatten());
+            for y in (0..height).rev() {
+                for x in (0..width).rev() {
+                    let number = y * width + x;
+                    let (right, below) =
+                        ((x + 1 < width).then(|| number + 1), (y + 1 < height).then(|| number + width));
+                    open(x, y, right, below);
+                }
+            }
         }
         for ((from_edge, inverse), is_open) in self.from_edge.iter_mut().zip(&self.inverse).zip(is_open) {
             if *inverse == 0.0 && !is_open {
