@@ -1,27 +1,11 @@
 //! Captures from end to end: photographs of a wall that the test takes itself.
 
+mod program;
 mod wall_capture;
 
+use program::{done, run};
 use project::read_picture;
 use serde_json::Value;
-use std::path::Path;
-use std::process::{Command, Output};
-
-fn run(folder: &Path, arguments: &str) -> Output {
-    let program = Command::new(env!("CARGO_BIN_EXE_focus-brush"))
-        .args(arguments.split_whitespace())
-        .current_dir(folder)
-        .env("XDG_CACHE_HOME", folder.join("cache"))
-        .env_remove("XDG_RUNTIME_DIR")
-        .output();
-    program.unwrap()
-}
-
-fn done(folder: &Path, arguments: &str) -> String {
-    let output = run(folder, arguments);
-    assert!(output.status.success(), "{arguments}: {}", String::from_utf8_lossy(&output.stderr));
-    String::from_utf8(output.stdout).unwrap()
-}
 
 #[test]
 fn a_photograph_left_out_is_what_the_others_tell() {

@@ -1,12 +1,13 @@
 //! Light fields and pictures with depth from end to end: a card before a wall that the test photographs itself.
 
 mod card_light_field;
+mod program;
 
 use card_light_field::{CARD, SIZE, STEPS, WALL, pfm, pixel, shown, view};
+use program::{done, run};
 use project::read_picture;
 use serde_json::Value;
 use std::path::Path;
-use std::process::{Command, Output};
 
 /// The picture through a disc of radius `reach` steps that is focused on a disparity: the mean of many views.
 fn truth(reach: f64, focus: f64) -> Vec<[f64; 3]> {
@@ -27,22 +28,6 @@ fn truth(reach: f64, focus: f64) -> Vec<[f64; 3]> {
         sum
     };
     places.map(mean).collect()
-}
-
-fn run(folder: &Path, arguments: &str) -> Output {
-    let program = Command::new(env!("CARGO_BIN_EXE_focus-brush"))
-        .args(arguments.split_whitespace())
-        .current_dir(folder)
-        .env("XDG_CACHE_HOME", folder.join("cache"))
-        .env_remove("XDG_RUNTIME_DIR")
-        .output();
-    program.unwrap()
-}
-
-fn done(folder: &Path, arguments: &str) -> String {
-    let output = run(folder, arguments);
-    assert!(output.status.success(), "{arguments}: {}", String::from_utf8_lossy(&output.stderr));
-    String::from_utf8(output.stdout).unwrap()
 }
 
 /// Peak signal-to-noise ratio of a written picture, dB.

@@ -19,6 +19,7 @@
 
 mod cells;
 mod corners;
+mod error;
 mod filling;
 mod frame;
 mod hidden;
@@ -30,7 +31,8 @@ mod texture;
 mod triangulation;
 mod upsampling;
 
+pub use error::ReliefError;
 pub use filling::filled;
 pub use other_view::OtherView;
-pub use relief::{Relief, ReliefError, ReliefOptions, ReliefVertex, TEXTURE_LAYERS};
+pub use relief::{Relief, ReliefOptions, ReliefVertex, TEXTURE_LAYERS};
 pub use upsampling::upsampled;

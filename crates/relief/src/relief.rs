@@ -2,14 +2,15 @@
 
 use crate::cells::{Cells, Grid};
 use crate::corners::Corner;
+use crate::error::ReliefError;
 use crate::frame::Frame;
 use crate::hidden::{Hidden, hidden};
 use crate::other_view::OtherView;
-use crate::texture::{Behind, NotFound, Surface};
+use crate::texture::{Behind, Surface};
 use crate::triangulation::{Metric, Triangulation};
 use crate::{jumps, steps};
 use glam::Vec2;
-use progress::{Cancelled, Progress, Stage};
+use progress::{Progress, Stage};
 use std::collections::HashMap;
 
 /// How a surface is made.
@@ -68,15 +69,6 @@ pub struct Relief {
 /// Layers of the texture.
 pub const TEXTURE_LAYERS: usize = crate::cells::LAYERS;
 
-/// Why there is no surface.
-#[derive(Debug)]
-pub enum ReliefError<E> {
-    /// It was cancelled.
-    Cancelled(Cancelled),
-    /// A view cannot be read.
-    View(E),
-}
-
 impl Relief {
     /// Makes the surface of a picture (linear RGB) by its disparities, larger ones nearer; pixels whose disparity is no number have none.
     /// Deterministic.
@@ -106,11 +98,7 @@ impl Relief {
         let hidden = hidden(grid, &front, &links, options.reach * options.beyond, jump);
         let stage = Stage::new(progress, 0.1, 0.8);
         let surface = Surface { frame: &frame, front: &front, hidden: &hidden, jump };
-        let Behind { colors, is_seen } =
-            surface.complete(&mut shown, views, &stage).map_err(|error| match error {
-                NotFound::Cancelled(cancelled) => ReliefError::Cancelled(cancelled),
-                NotFound::View(error) => ReliefError::View(error),
-            })?;
+        let Behind { colors, is_seen } = surface.complete(&mut shown, views, &stage)?;
         progress.check().map_err(ReliefError::Cancelled)?;
         let Hidden { disparity: back, links: back_links, onward, order } = hidden;
         let cells = Cells { grid, disparity: [front, back], links: [links, back_links], onward };

@@ -1,6 +1,7 @@
 //! The colours of what goes on behind and beside the picture: from views that see it; where none does, from around, known as invented.
 
 use crate::cells::Grid;
+use crate::error::ReliefError;
 use crate::frame::Frame;
 use crate::hidden::{Hidden, number};
 use crate::other_view::OtherView;
@@ -18,12 +19,6 @@ const ROUNDS: usize = 32;
 pub(crate) struct Behind {
     pub colors: Vec<[f32; 3]>,
     pub is_seen: Vec<bool>,
-}
-
-/// Why there are none.
-pub(crate) enum NotFound<E> {
-    Cancelled(progress::Cancelled),
-    View(E),
 }
 
 /// Cells of the first layer and of what goes on behind it, whose colours are looked for.
@@ -50,7 +45,7 @@ impl Surface<'_> {
         shown: &mut [[f32; 3]],
         views: &[OtherView<'_, E>],
         progress: &dyn Progress,
-    ) -> Result<Behind, NotFound<E>> {
+    ) -> Result<Behind, ReliefError<E>> {
         let grid = self.frame.grid;
         let beside = (0..grid.count()).filter(|&cell| !self.frame.is_in_picture(cell));
         let beside = beside.map(|cell| Asked { cell, disparity: self.front[cell], layer: 0 });
@@ -81,7 +76,7 @@ impl Surface<'_> {
         asked: &[Asked],
         views: &[OtherView<'_, E>],
         progress: &dyn Progress,
-    ) -> Result<Vec<[f32; 4]>, NotFound<E>> {
+    ) -> Result<Vec<[f32; 4]>, ReliefError<E>> {
         let mut sums = vec![[0.0f32; 4]; asked.len()];
         if asked.is_empty() {
             return Ok(sums);
@@ -90,9 +85,9 @@ impl Surface<'_> {
         let [width, height] = self.frame.picture();
         let picture = Grid { width, height };
         for (done, view) in views.iter().enumerate() {
-            progress.check().map_err(NotFound::Cancelled)?;
+            progress.check().map_err(ReliefError::Cancelled)?;
             progress.report(done as f32 / views.len() as f32);
-            let shown = (view.read)().map_err(NotFound::View)?;
+            let shown = (view.read)().map_err(ReliefError::View)?;
             // A picture of another size shows nothing that could be found in it.
             if shown.len() != picture.count() {
                 continue;

@@ -23,7 +23,7 @@ pub(crate) struct Triangulation {
     errors: Vec<f32>,
 }
 
-/// A triangle: corners of the grid, the right angle last, and a cell of the picture within it.
+/// A triangle: corners of the grid, the right angle last.
 pub(crate) struct FirstTriangle {
     pub corners: [[usize; 2]; 3],
 }
@@ -42,8 +42,7 @@ impl Triangulation {
             })
             .collect();
         let is_cut = |x: usize, y: usize| x <= grid.width && y <= grid.height && joints[y * row + x].is_nan();
-        let mut triangulation = Self { grid, side, errors: vec![0.0; (side + 1) * (side + 1)] };
-        let mut errors = std::mem::take(&mut triangulation.errors);
+        let mut errors = vec![0.0; (side + 1) * (side + 1)];
         errors.par_chunks_mut(side + 1).enumerate().for_each(|(y, errors)| {
             for (x, error) in errors.iter_mut().enumerate() {
                 let near = |at: usize, last: usize| at.saturating_sub(1)..=(at + 1).min(last);
@@ -118,7 +117,7 @@ impl Triangulation {
             raise(&mut errors, middles);
             step *= 2;
         }
-        Self { errors, ..triangulation }
+        Self { grid, side, errors }
     }
 
     /// The triangles that stay within a tolerance, in the picture.

@@ -1,9 +1,14 @@
-//! What of a surface that was made from a picture was photographed.
+//! The photographs of a scene, and what of a surface that was made from a picture was photographed.
 
-use crate::{Scene, SurfacePoint};
+use crate::{Scene, SurfacePoint, View};
 use glam::DVec2;
 
 impl Scene {
+    /// Its photographs: first those that light it, then those that are only compared with.
+    pub fn photographs(&self) -> impl Iterator<Item = &View> {
+        self.views.iter().chain(&self.left_out)
+    }
+
     /// How far a surface that was made from a picture was photographed at a point: 1 it was, 0 it was invented; none of other surfaces.
     pub fn photographed(&self, point: SurfacePoint) -> Option<f32> {
         let picture = self.picture.as_ref()?;

@@ -36,7 +36,7 @@ impl PhotographStrip {
     pub fn ui(&mut self, ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
         let Some(document) = session.document() else { return };
         let scene = &document.stage.scene;
-        let count = scene.views.len() + scene.left_out.len();
+        let count = scene.photographs().count();
         if count == 0 {
             ui.weak("This is no capture: it has no photographs (File, Open a capture…).");
             return;
@@ -70,7 +70,7 @@ impl PhotographStrip {
         actions: &mut Vec<Action>,
     ) {
         let scene = &document.stage.scene;
-        let Some(view) = scene.views.iter().chain(&scene.left_out).nth(number) else { return };
+        let Some(view) = scene.photographs().nth(number) else { return };
         let [columns, rows] = view.lens.size_px().map(|side| side as f32);
         let size = vec2(height * columns / rows, height + NAME_HEIGHT);
         let (rect, response) = ui.allocate_exact_size(size, Sense::click());
@@ -125,7 +125,7 @@ impl PhotographStrip {
     fn current(&self, document: &Document) -> Option<usize> {
         let scene = &document.stage.scene;
         let name = document.photograph().map(|view| &view.name);
-        let mut views = scene.views.iter().chain(&scene.left_out);
+        let mut views = scene.photographs();
         let current = name.and_then(|name| views.position(|view| view.name == *name));
         current.or(self.path.as_ref().map(|path| path.from))
     }
@@ -173,9 +173,7 @@ impl PhotographStrip {
     fn path_ui(&mut self, ui: &mut Ui, document: &Document, actions: &mut Vec<Action>) {
         let Some(path) = &mut self.path else { return };
         let scene = &document.stage.scene;
-        let name = |number: usize| {
-            scene.views.iter().chain(&scene.left_out).nth(number).map_or("", |view| view.name.as_str())
-        };
+        let name = |number: usize| scene.photographs().nth(number).map_or("", |view| view.name.as_str());
         let mut is_over = false;
         ui.horizontal(|ui| {
             ui.label(name(path.from));

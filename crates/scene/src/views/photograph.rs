@@ -110,6 +110,14 @@ impl Photograph {
         Ok(Self { width, height, pixels: colors.linear(picture) })
     }
 
+    /// From which value on the sensor was at its limit; infinite where the picture has values above white, for then it had none there.
+    pub fn limit(&self) -> f32 {
+        /// JPEG and demosaicking leave pixels that were at the sensor's limit a little below white.
+        const AT_LIMIT: f32 = 0.985;
+        let mut finite = self.pixels.iter().flatten().filter(|value| value.is_finite());
+        if finite.all(|value| *value <= 1.0) { AT_LIMIT } else { f32::INFINITY }
+    }
+
     /// The same with each pixel the mean of `by` × `by` of its own (fewer at the right and lower border).
     pub fn reduced(self, by: u32) -> Self {
         if by <= 1 {

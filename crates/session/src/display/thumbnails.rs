@@ -91,7 +91,7 @@ fn read(shared: &Weak<Shared>, waker: &Waker) {
             next
         };
         let Some(number) = next else { return };
-        let mut views = shared.scene.views.iter().chain(&shared.scene.left_out);
+        let mut views = shared.scene.photographs();
         let Some(view) = views.nth(number) else { continue };
         let result = guarded("reading a photograph", || among_others(Urgency::Later, || thumbnail(view)));
         shared.asked().there.insert(number, result.map(Arc::new).map_err(|error| error.to_string().into()));

@@ -2,7 +2,8 @@
 
 use super::camera_path::camera_between;
 use super::depth_scene::load_depth_picture;
-use super::light_field_scene::{OfPicture, load_light_field};
+use super::light_field_scene::load_light_field;
+use super::of_picture::OfPicture;
 use crate::error::SessionError;
 use capture::{
     Capture, CaptureError, CaptureKind, CaptureOptions, DepthAs, DepthPictureOptions, LightFieldOptions,
@@ -127,7 +128,7 @@ pub(crate) fn photograph_camera(scene: &Scene, name: &str, like: &Camera) -> Res
 
 /// The photograph of a name, left out or not; else what is wrong with it.
 pub(crate) fn photograph<'a>(scene: &'a Scene, name: &str) -> Result<&'a View, String> {
-    let mut views = scene.views.iter().chain(&scene.left_out);
+    let mut views = scene.photographs();
     let view = views.find(|view| view.name == name);
     view.ok_or_else(|| format!("no photograph is called \"{name}\" ({})", names(&scene.views)))
 }

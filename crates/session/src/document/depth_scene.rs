@@ -1,6 +1,6 @@
 //! A picture and its depth as a scene.
 
-use super::light_field_scene::{OfPicture, margin_px, of_size, range, relief_error, usual_focal_px};
+use super::of_picture::{OfPicture, margin_px, of_size, range, relief_error, usual_focal_px};
 use super::picture_scene::{Named, PictureSpace, Shown, picture_camera, picture_scene, uncalibrated};
 use crate::error::SessionError;
 use capture::{CaptureError, DepthMeaning, DepthPictureOptions};

@@ -55,23 +55,24 @@ fn decoded(
     let [columns, rows] = [coded.width, coded.height].map(|side| side as usize);
     let rgb: Vec<[f32; 3]> = coded.pixels.iter().map(|rgb| rgb.map(shown)).collect();
     let sure: Vec<usize> = (0..width * height).filter(|&pixel| told.confidence[pixel] >= SURE).collect();
-    let samples = sure.iter().step_by(sure.len().div_ceil(SAMPLES).max(1)).map(|&pixel| Sample {
-        x: (2 * (pixel % width) + 1) * columns / (2 * width),
-        y: (2 * (pixel / width) + 1) * rows / (2 * height),
-        disparity: told.disparity[pixel],
+    // The pixel of the map at a pixel's middle.
+    let place = |pixel: usize| {
+        let middle = |at: usize, of: usize, to: usize| (2 * at + 1) * to / (2 * of);
+        [middle(pixel % width, width, columns), middle(pixel / width, height, rows)]
+    };
+    let samples = sure.iter().step_by(sure.len().div_ceil(SAMPLES).max(1)).map(|&pixel| {
+        let [x, y] = place(pixel);
+        Sample { x, y, disparity: told.disparity[pixel] }
     });
     let map = Picture { width: columns, height: rows, rgb: &rgb };
     let decoded = decode(&map, &samples.collect::<Vec<_>>(), progress);
     let file = field.coded_disparity.as_ref().map_or(field.path.as_path(), PictureSource::file);
     let decoded = decoded.map_err(|error| disparity_error(file, error))?;
-    let middle = |pixel: usize| {
-        let (x, y) = (
-            (2 * (pixel % width) + 1) * columns / (2 * width),
-            (2 * (pixel / width) + 1) * rows / (2 * height),
-        );
+    let at = |pixel: usize| {
+        let [x, y] = place(pixel);
         decoded.disparity[y * columns + x]
     };
-    Ok((0..width * height).map(middle).collect())
+    Ok((0..width * height).map(at).collect())
 }
 
 fn disparity_error(file: &Path, error: DisparityError) -> SessionError {

@@ -1,31 +1,17 @@
 //! A light field as a scene: its middle view, a surface from disparities, and behind it what the other views see.
 
 use super::found_disparity::found_disparity;
+use super::of_picture::{OfPicture, margin_px, of_size, range, relief_error, usual_focal_px};
 use super::picture_scene::{Named, PictureSpace, Shown, picture_camera, picture_scene, uncalibrated};
 use crate::error::SessionError;
 use capture::{CaptureError, LightField, LightFieldOptions, Optics};
-use lens::Camera;
 use progress::{Progress, Stage};
-use relief::{OtherView, Relief, ReliefError, ReliefOptions, filled, upsampled};
-use scene::{LoadOptions, Photograph, Scene};
+use relief::{OtherView, Relief, ReliefOptions, filled, upsampled};
+use scene::LoadOptions;
 use std::path::Path;
-
-/// The angle of view across a picture's longer side where no file tells it: that of a lens of 50 mm on a frame of 36.
-const LONGER_ANGLE: f64 = 0.6911;
 
 /// Cameras may stand, and apertures reach, so many times as far from the middle view as the farthest view.
 const BEYOND: f64 = 1.6;
-
-/// A surface made from one picture, or several of one place.
-pub(super) struct OfPicture {
-    pub scene: Scene,
-    /// The camera of the picture.
-    pub camera: Camera,
-    /// What is good to know, a sentence each.
-    pub remarks: Vec<String>,
-    /// Whether something is missing.
-    pub is_incomplete: bool,
-}
 
 /// Opens a light field and makes its surface.
 pub(super) fn load_light_field(
@@ -73,18 +59,6 @@ pub(super) fn load_light_field(
     Ok(OfPicture { scene, camera, remarks, is_incomplete })
 }
 
-/// A picture, if it is still of the size that its file had a moment ago.
-pub(super) fn of_size(found: Photograph, size: [u32; 2], path: &Path) -> Result<Photograph, SessionError> {
-    if [found.width, found.height] == size {
-        return Ok(found);
-    }
-    let what = format!(
-        "has changed while it was opened: {} × {} px became {} × {} (open it again)",
-        size[0], size[1], found.width, found.height
-    );
-    Err(SessionError::bad(path, what))
-}
-
 /// The disparity of each pixel of the middle view: as it is given, else found in the views.
 fn disparity(
     field: &LightField,
@@ -100,27 +74,6 @@ fn disparity(
     Ok(filled(size, known))
 }
 
-/// How far the surface goes on around the picture for blur of at most this radius, px.
-pub(super) fn margin_px(size: [usize; 2], largest_px: f64) -> usize {
-    /// Of the shorter side: more would rather be seen as what it is, invented.
-    const MOST: f64 = 0.2;
-    let most = MOST * size[0].min(size[1]) as f64;
-    largest_px.min(most).ceil() as usize
-}
-
-/// The least and the greatest.
-pub(super) fn range(values: &[f32]) -> [f64; 2] {
-    let finite = values.iter().copied().filter(|value| value.is_finite());
-    let [low, high] = finite
-        .fold([f32::INFINITY, f32::NEG_INFINITY], |[low, high], value| [low.min(value), high.max(value)]);
-    if low <= high { [low, high].map(f64::from) } else { [0.0; 2] }
-}
-
-/// Focal length in pixels where nothing is known of the lens.
-pub(super) fn usual_focal_px(size: [u32; 2]) -> f64 {
-    0.5 * f64::from(size[0].max(size[1])) / (0.5 * LONGER_ANGLE).tan()
-}
-
 /// How disparities become distances: as the files say, if all of them are then ahead of the camera.
 fn space(optics: &Optics, size: [u32; 2], range: [f64; 2]) -> PictureSpace {
     let longer = f64::from(size[0].max(size[1]));
@@ -134,11 +87,4 @@ fn space(optics: &Optics, size: [u32; 2], range: [f64; 2]) -> PictureSpace {
     let scale = focal_px * baseline * 1e-3;
     let told = PictureSpace { focal_px, scale, offset: scale / focus };
     if told.inverse_depth(range[0]) > 0.0 { told } else { usual }
-}
-
-pub(super) fn relief_error(error: ReliefError<CaptureError>) -> SessionError {
-    match error {
-        ReliefError::Cancelled(_) => SessionError::Cancelled,
-        ReliefError::View(error) => error.into(),
-    }
 }

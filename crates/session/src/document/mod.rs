@@ -12,6 +12,7 @@ mod found_disparity;
 mod input;
 mod kept_atlas;
 mod light_field_scene;
+mod of_picture;
 mod open_document;
 mod picking;
 mod picture_scene;

@@ -339,7 +339,7 @@ impl Document {
         let scene = &self.stage.scene;
         let cameras = scene.cameras.iter();
         let cameras = cameras.map(|camera| (camera.name.as_str(), camera_of(camera, &self.camera)));
-        let names = scene.views.iter().chain(&scene.left_out).map(|view| view.name.as_str());
+        let names = scene.photographs().map(|view| view.name.as_str());
         cameras.chain(names.zip(self.photograph_cameras()))
     }
 
@@ -347,7 +347,7 @@ impl Document {
     /// aperture.
     pub fn photograph_cameras(&self) -> impl Iterator<Item = Camera> {
         let scene = &self.stage.scene;
-        scene.views.iter().chain(&scene.left_out).map(|view| Camera {
+        scene.photographs().map(|view| Camera {
             aperture_radius: self.camera.aperture_radius,
             ..camera_of_photograph(self.stage.bounds, view, &self.camera)
         })
@@ -356,7 +356,7 @@ impl Document {
     /// The photograph that the camera looks through, if it is that of one.
     pub fn photograph(&self) -> Option<&View> {
         let scene = &self.stage.scene;
-        let mut views = scene.views.iter().chain(&scene.left_out);
+        let mut views = scene.photographs();
         views.find(|view| view.camera_to_world == self.camera.camera_to_world)
     }
 }

@@ -71,9 +71,6 @@ pub(crate) fn photograph_picture(
     Ok((picture, vec![layer]))
 }
 
-/// Photographs reach their white here: JPEG and demosaicking leave pixels that were at the sensor's limit a little below 1.
-const AT_LIMIT: f32 = 0.985;
-
 /// A photograph, and the camera that it is shown by.
 struct Place<'a> {
     camera: &'a Camera,
@@ -98,9 +95,7 @@ impl Place<'_> {
         let of_lens = views.iter().position(|other| other.lens == self.view.lens);
         let vignetting_stops = of_lens.map_or([0.0; 2], |index| light.exposures()[index].vignetting_stops);
         let flat = Exposure { vignetting_stops, ..Exposure::default() };
-        // What has values above white has no limit there.
-        let brightest = self.shown.pixels.iter().flatten().copied().fold(0.0, f32::max);
-        let limit = if brightest <= 1.0 { AT_LIMIT } else { f32::INFINITY };
+        let limit = self.shown.limit();
         let products = |number: u32| {
             let there = seen[number as usize] >= SEEN;
             let (at, shown) = self.at(number).filter(|_| there)?;

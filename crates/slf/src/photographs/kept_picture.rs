@@ -25,8 +25,6 @@ pub(crate) struct Shown {
     pub clipped: f32,
 }
 
-/// Photographs reach their white here: JPEG and demosaicking leave clipped pixels a little below 1.
-const CLIPPED: f32 = 0.985;
 const STEPS: f32 = 1023.0;
 
 impl KeptPicture {
@@ -36,7 +34,7 @@ impl KeptPicture {
         let [width, height] =
             [photograph.width, photograph.height].map(|side| side.div_ceil(reduction).max(1));
         let brightest = photograph.pixels.iter().flatten().copied().filter(|v| v.is_finite());
-        let brightest = brightest.fold(1.0, f32::max);
+        let (brightest, limit) = (brightest.fold(1.0, f32::max), photograph.limit());
         let mut pixels = Vec::with_capacity(width as usize * height as usize);
         for y in 0..height {
             for x in 0..width {
@@ -45,7 +43,7 @@ impl KeptPicture {
                     for column in (x * reduction)..((x + 1) * reduction).min(photograph.width) {
                         let pixel = photograph.pixels[(row * photograph.width + column) as usize];
                         let light = Vec3::from_array(pixel).max(Vec3::ZERO);
-                        is_clipped |= brightest <= 1.0 && light.max_element() >= CLIPPED;
+                        is_clipped |= light.max_element() >= limit;
                         sum += light;
                         count += 1.0;
                     }
