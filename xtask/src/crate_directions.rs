@@ -23,7 +23,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
         &["lens", "material", "scene", "atlas", "trace", "slf", "salf", "focus", "splat", "progress"],
     ),
     ("baselines", &["salf", "trace", "scene", "lens", "progress"]),
-    ("project", &["scene", "focus", "atlas", "lens"]),
+    ("project", &["scene", "relief", "focus", "atlas", "lens"]),
     (
         "session",
         &[

@@ -18,6 +18,7 @@ pub fn run(arguments: &ImportArguments, console: &Console) -> Result<(), Failure
         return Err(Failure::bad(format!("{}: {what}", capture.display())));
     }
     let choices = CaptureChoices {
+        depth_strokes: Vec::new(),
         mesh: mesh.clone(),
         leave_out: leave_out.clone(),
         kind: kind.map(|kind| kind.name().into()),

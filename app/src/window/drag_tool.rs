@@ -1,4 +1,4 @@
-//! Tools that are dragged from one place of a view to another: gradients, and what may be painted.
+//! Tools that are dragged from one place of a view to another: gradients, what may be painted, and depth that is repaired.
 
 use super::tool_settings::ToolSettings;
 use super::{Action, Tool};
@@ -51,7 +51,7 @@ impl Drag {
         if self.way.last() == Some(&at) {
             return None;
         }
-        if self.tool == Tool::SelectLasso || self.way.len() < 2 {
+        if self.follows_pointer() || self.way.len() < 2 {
             self.way.push(at);
         } else {
             self.way[1] = at;
@@ -77,6 +77,12 @@ impl Drag {
     /// Ends it.
     pub fn end(self, session: &Session, settings: &ToolSettings, view: &DragView<'_>) -> Option<Action> {
         let (frame, through) = (view.frame, settings.select_through);
+        if let Some(repair) = self.tool.depth_repair() {
+            let document = session.document()?;
+            let pick = |at: &Pos2| session.pick(&view_ray(&frame, (view.position)(*at)));
+            let hits: Vec<SurfaceHit> = self.way.iter().filter_map(pick).collect();
+            return document.depth_stroke(repair, &hits).map(|stroke| Command::RepairDepth(stroke).into());
+        }
         let shape = match self.tool {
             Tool::Gradient => return Some(Command::CommitStroke.into()),
             _ if self.length() < LEAST_WAY => return None,
@@ -113,6 +119,9 @@ impl Drag {
                 Tool::SelectLasso => {
                     painter.add(Shape::closed_line(self.way.clone(), stroke));
                 }
+                _ if self.follows_pointer() => {
+                    painter.add(Shape::line(self.way.clone(), stroke));
+                }
                 _ => {
                     painter.line_segment([a, b], stroke);
                 }
@@ -122,6 +131,11 @@ impl Drag {
             painter.circle(a, 5.0, Color32::WHITE, Stroke::new(1.0, Color32::from_gray(20)));
             painter.circle(b, 5.0, Color32::from_gray(20), light);
         }
+    }
+
+    /// Whether all of its way counts, and not its ends alone.
+    fn follows_pointer(&self) -> bool {
+        self.tool == Tool::SelectLasso || self.tool.depth_repair().is_some()
     }
 
     fn ends(&self) -> [Pos2; 2] {

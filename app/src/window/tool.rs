@@ -2,7 +2,7 @@
 
 use focus::{Brush, BrushMode};
 use lens::FocusOffset;
-use session::CommandId;
+use session::{CommandId, DepthRepair};
 
 /// The chosen tool. Not part of the document.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -32,6 +32,14 @@ pub enum Tool {
     FocalPlane,
     /// A click makes the object sharp.
     SharpHere,
+    /// A drag copies depth from where it begins.
+    DepthSpread,
+    /// A drag pulls depth nearer.
+    DepthNearer,
+    /// A drag pushes depth farther.
+    DepthFarther,
+    /// A drag evens depth out.
+    DepthSmooth,
     /// A line around what may be painted.
     SelectLasso,
     /// A box around what may be painted.
@@ -56,13 +64,14 @@ pub enum Tool {
 
 impl Tool {
     /// Those in the tool bar, left to right: families, of which the chosen one is shown, the first otherwise.
-    pub const BAR: [&[Tool]; 9] = [
+    pub const BAR: [&[Tool]; 10] = [
         &[Tool::Brush, Tool::Curve],
         &[Tool::Smooth, Tool::Sharpen],
         &[Tool::Clone],
         &[Tool::Reset],
         &[Tool::FillObject, Tool::FillMaterial, Tool::FillChart, Tool::SharpHere],
         &[Tool::Gradient, Tool::FocalPlane],
+        &[Tool::DepthSpread, Tool::DepthNearer, Tool::DepthFarther, Tool::DepthSmooth],
         &[
             Tool::SelectLasso,
             Tool::SelectBox,
@@ -90,6 +99,10 @@ impl Tool {
             Tool::FillChart => CommandId::FillChart,
             Tool::Gradient => CommandId::Gradient,
             Tool::FocalPlane => CommandId::PlaceFocalPlane,
+            Tool::DepthSpread => CommandId::DepthSpread,
+            Tool::DepthNearer => CommandId::DepthNearer,
+            Tool::DepthFarther => CommandId::DepthFarther,
+            Tool::DepthSmooth => CommandId::DepthSmooth,
             Tool::SharpHere => CommandId::SharpHere,
             Tool::SelectLasso => CommandId::SelectLasso,
             Tool::SelectBox => CommandId::SelectBox,
@@ -115,6 +128,8 @@ impl Tool {
             Tool::Reset => "Reset",
             Tool::FillObject => "Fill",
             Tool::FocalPlane => "Focal plane",
+            Tool::DepthNearer => "Nearer",
+            Tool::DepthFarther => "Farther",
             Tool::Inspect => "Inspect",
             Tool::SelectObject => "Select object",
             Tool::SelectMaterial => "Select material",
@@ -133,6 +148,18 @@ impl Tool {
     /// Whether it is dragged from one place to another.
     pub fn drags(self) -> bool {
         matches!(self, Tool::Gradient | Tool::SelectLasso | Tool::SelectBox | Tool::SelectDepth)
+            || self.depth_repair().is_some()
+    }
+
+    /// What it does to depth, if that is what it repairs.
+    pub fn depth_repair(self) -> Option<DepthRepair> {
+        match self {
+            Tool::DepthSpread => Some(DepthRepair::Spread),
+            Tool::DepthNearer => Some(DepthRepair::Nearer),
+            Tool::DepthFarther => Some(DepthRepair::Farther),
+            Tool::DepthSmooth => Some(DepthRepair::Smooth),
+            _ => None,
+        }
     }
 
     /// Whether it chooses what may be painted.

@@ -10,7 +10,11 @@ use session::{Command, Document};
 /// Draws the tool bar.
 pub fn tool_bar(ui: &mut Ui, document: Option<&Document>, tool: Tool, actions: &mut Vec<Action>) {
     ui.horizontal(|ui| {
+        let has_depth = document.is_some_and(|document| document.scene().picture.is_some());
         for family in Tool::BAR {
+            if family[0].depth_repair().is_some() && !has_depth {
+                continue;
+            }
             tool_button(ui, family, tool, actions);
         }
         let Some(document) = document else { return };

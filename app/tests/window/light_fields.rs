@@ -4,7 +4,42 @@ use crate::acting::{Person, at, difference};
 use crate::card_light_field;
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable;
+use focus_brush::window::Shell;
+use glam::DVec2;
 use std::path::Path;
+
+/// Copies the depth of the card over the wall beside it, takes that back, and does it again.
+fn repairs_depth(person: &mut Person) {
+    let painted = person.document().map.clone();
+    let depth = |person: &Person| {
+        let camera = &person.document().camera;
+        let ray = person.shell().session().picture_ray(DVec2::new(0.85, 0.5)).unwrap();
+        person.shell().session().pick(&ray).map(|hit| camera.camera_from_world(hit.position).z).unwrap()
+    };
+    let (before, picture) = (depth(person), person.picture());
+    let rect = person.picture_rect();
+    person.presses(Modifiers::NONE, Key::U);
+    person.drags(&[at(rect, 0.5, 0.5), at(rect, 0.7, 0.5), at(rect, 0.9, 0.5)]);
+    person.lets_go(at(rect, 0.9, 0.5));
+    let made_of = |strokes| {
+        move |shell: &Shell| shell.session().document().unwrap().stage.depth_strokes.len() == strokes
+    };
+    person.wait_until("depth is repaired", made_of(1));
+    person.waits();
+    let after = depth(person);
+    assert!(after < 0.9 * before, "{after} {before}");
+    assert_eq!(person.document().map, painted, "paint stays where it is");
+    assert!(difference(&person.picture(), &picture) > 0.0, "it is seen");
+    person.presses(Modifiers::COMMAND, Key::Z);
+    person.wait_until("it is taken back", made_of(0));
+    person.waits();
+    assert_eq!((depth(person), difference(&person.picture(), &picture)), (before, 0.0));
+    person.presses(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
+    person.wait_until("it is done again", made_of(1));
+    person.waits();
+    assert_eq!(depth(person), after);
+    assert_eq!(person.complaints(), [""; 0]);
+}
 
 /// Drops a capture, paints on its card, saves, and opens the project again.
 fn is_the_same_when_opened_again(capture: &Path, project: &Path) {
@@ -21,6 +56,7 @@ fn is_the_same_when_opened_again(capture: &Path, project: &Path) {
     person.presses(Modifiers::NONE, Key::G);
     person.clicks(at(person.picture_rect(), 0.5, 0.5));
     assert!(difference(&person.picture(), &before) > 0.0, "paint is seen");
+    repairs_depth(&mut person);
     person.presses(Modifiers::COMMAND, Key::S);
     person.window.get_by_label("Save").click();
     person.waits();

@@ -1,11 +1,12 @@
 //! What was chosen of a capture: what it is, which mesh or depth, and which photographs no light is made of.
 
 use crate::scene_path::ScenePath;
+use relief::DepthStroke;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
 /// What was chosen of a capture.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct CaptureChoices {
     /// The mesh; none: the one that is found in the capture's folder.
     pub mesh: Option<PathBuf>,
@@ -19,6 +20,8 @@ pub struct CaptureChoices {
     pub depth: Option<PathBuf>,
     /// Which end of a relative depth map is near: `white`, `black`, or the distances of both.
     pub near: Option<String>,
+    /// Strokes that repair the depth of a light field or picture, in their order.
+    pub depth_strokes: Vec<DepthStroke>,
 }
 
 /// The same in a manifest.
@@ -36,6 +39,8 @@ pub(crate) struct CaptureRow {
     depth: Option<ScenePath>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     near: Option<String>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    depth_strokes: Vec<DepthStroke>,
 }
 
 impl CaptureRow {
@@ -49,11 +54,25 @@ impl CaptureRow {
             disparity: path(&choices.disparity),
             depth: path(&choices.depth),
             near: choices.near.clone(),
+            depth_strokes: choices.depth_strokes.clone(),
         }
     }
 
-    /// What is meant, from where the project lies; `None` if what stands there is no path.
-    pub fn choices(&self, project: &Path) -> Option<CaptureChoices> {
+    /// Whether depth was repaired.
+    pub fn repairs_depth(&self) -> bool {
+        !self.depth_strokes.is_empty()
+    }
+
+    /// What is meant, from where the project lies; else what is wrong.
+    pub fn choices(&self, project: &Path) -> Result<CaptureChoices, &'static str> {
+        if !self.depth_strokes.iter().all(DepthStroke::is_valid) {
+            return Err("capture.depth_strokes has a stroke beyond all pictures");
+        }
+        self.paths(project).ok_or("capture.mesh.path_bytes is not in hex")
+    }
+
+    /// The same, `None` if what stands there is no path.
+    fn paths(&self, project: &Path) -> Option<CaptureChoices> {
         let path = |path: &Option<ScenePath>| match path {
             Some(path) => path.from(project).map(Some),
             None => Some(None),
@@ -65,6 +84,7 @@ impl CaptureRow {
             disparity: path(&self.disparity)?,
             depth: path(&self.depth)?,
             near: self.near.clone(),
+            depth_strokes: self.depth_strokes.clone(),
         })
     }
 }

@@ -15,6 +15,9 @@ use std::path::Path;
 /// The manifest's entry: the first of the container.
 pub(crate) const MANIFEST: &str = "manifest.json";
 
+/// The version of a project whose depth is as it was found: older programs would show it so.
+const WITHOUT_DEPTH: u64 = 6;
+
 /// The version of a project in which gloss keeps the lens's focus everywhere: older programs would take it so.
 const WITHOUT_GLOSS: u64 = 5;
 
@@ -109,7 +112,7 @@ impl Manifest {
     pub const FORMAT: &str = "focus-brush project";
 
     /// The newest version. It changes when an older program would misread the file.
-    pub const VERSION: u64 = 6;
+    pub const VERSION: u64 = 7;
 
     /// The same in the oldest version that can say it all.
     pub fn in_oldest_version(self) -> Self {
@@ -120,7 +123,8 @@ impl Manifest {
             || self.focus_map.as_ref().is_some_and(|map| map.gloss.is_some())
             || any_row(LayerRow::has_gloss);
         let version = match () {
-            _ if has_gloss => Self::VERSION,
+            _ if self.capture.as_ref().is_some_and(CaptureRow::repairs_depth) => Self::VERSION,
+            _ if has_gloss => WITHOUT_DEPTH,
             _ if self.variant.is_some() => WITHOUT_GLOSS,
             _ if any_row(|row| row.plane.is_some()) => WITHOUT_VARIANT,
             _ if self.brush.has_own_axes() => WITHOUT_PLANES,

@@ -334,10 +334,7 @@ impl ProjectFile {
         }
         let scene = manifest.scene.path.from(file);
         let capture = match &manifest.capture {
-            Some(row) => Some(
-                row.choices(file)
-                    .ok_or_else(|| error("capture.mesh.path_bytes is not in hex".to_string()))?,
-            ),
+            Some(row) => Some(row.choices(file).map_err(|what| error(what.to_string()))?),
             None => None,
         };
         Ok(Self {

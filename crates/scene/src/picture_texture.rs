@@ -9,11 +9,21 @@ pub struct PictureTexture {
     pub behind: u32,
     /// Columns and rows around the picture that it does not show.
     pub margin: u32,
+    /// Pixels of the picture that a texel is wide and high.
+    pub pixels: u32,
     /// By texel, row 0 on top, whether it was photographed; else it was invented.
     pub is_seen: Vec<bool>,
 }
 
 impl PictureTexture {
+    /// Rows between the picture and what goes on behind it.
+    pub const GUTTER: u32 = 4;
+
+    /// Columns and rows that the picture shows.
+    pub fn shown(&self) -> [u32; 2] {
+        [self.size[0] - 2 * self.margin, self.behind - Self::GUTTER - 2 * self.margin]
+    }
+
     /// Whether what is at this place of the texture, each coordinate in [0, 1], was photographed.
     pub fn is_seen_at(&self, [u, v]: [f64; 2]) -> bool {
         let [width, height] = self.size;

@@ -52,6 +52,7 @@ pub use output::{
     render_input, render_stereo, write_unwrapped,
 };
 pub use preview::{DrawingCosts, PictureTimes, Preview, PreviewActivity, PreviewKind, Quality};
+pub use relief::{DepthRepair, DepthStroke};
 pub use session::{FullSize, Session, SessionOptions};
 pub use slf::PhotographLight;
 pub use trace::truth::Region;

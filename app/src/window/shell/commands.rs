@@ -94,6 +94,10 @@ impl Shell {
             | CommandId::FillMaterial
             | CommandId::FillChart
             | CommandId::Gradient
+            | CommandId::DepthSpread
+            | CommandId::DepthNearer
+            | CommandId::DepthFarther
+            | CommandId::DepthSmooth
             | CommandId::PlaceFocalPlane
             | CommandId::SharpHere
             | CommandId::SelectLasso

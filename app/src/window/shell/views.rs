@@ -66,7 +66,8 @@ impl Shell {
     }
 
     pub(super) fn ring(&self) -> Option<BrushRing> {
-        let document = self.session.document().filter(|_| self.tool.paints())?;
+        let shows_reach = self.tool.paints() || self.tool.depth_repair().is_some();
+        let document = self.session.document().filter(|_| shows_reach)?;
         let brush = &document.brush;
         let circle_px = match self.tool {
             Tool::Brush => signed_circle_px(&document.camera.optics(), brush.target.t),

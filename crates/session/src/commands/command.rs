@@ -9,6 +9,7 @@ use focus::{Brush, Combine, Gradient, LayerEdit};
 use glam::DVec2;
 use lens::{Exposure, FocusOffset};
 use project::{RecordedStep, SelectionShape};
+use relief::DepthStroke;
 use scene::{BackFaces, World};
 use splat::Tolerance;
 use std::path::PathBuf;
@@ -74,6 +75,8 @@ pub enum Command {
 
     /// The brush of the strokes to come.
     SetBrush(Brush),
+    /// Repairs the depth of a light field or picture along a stroke; the surface is made anew in the background. A step of undo.
+    RepairDepth(DepthStroke),
     /// Begins a stroke, with a first dab if the point is on a surface.
     BeginStroke(StrokePoint),
     /// Moves the stroke on.

@@ -72,12 +72,13 @@ pub(crate) fn load_capture(
         CaptureKind::LightField => {
             let options =
                 LightFieldOptions { disparity: choices.disparity.clone(), near, load, ..Default::default() };
-            load_light_field(path, &options, progress)?
+            load_light_field(path, &options, &choices.depth_strokes, progress)?
         }
         CaptureKind::Depth => {
             let disparity = choices.disparity.clone().map(|file| (file, DepthAs::Disparity));
             let depth = choices.depth.clone().map(|file| (file, DepthAs::Depth)).or(disparity);
-            load_depth_picture(path, &DepthPictureOptions { depth, near, load }, progress)?
+            let options = DepthPictureOptions { depth, near, load };
+            load_depth_picture(path, &options, &choices.depth_strokes, progress)?
         }
     };
     let OfPicture { scene, camera, remarks, is_incomplete } = of_picture;

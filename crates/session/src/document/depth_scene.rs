@@ -6,7 +6,7 @@ use crate::error::SessionError;
 use capture::{CaptureError, DepthMeaning, DepthPictureOptions};
 use lens::Camera;
 use progress::{Progress, Stage};
-use relief::{Relief, ReliefOptions, filled, upsampled};
+use relief::{DepthStroke, Relief, ReliefOptions, filled, repaired, upsampled};
 use std::path::Path;
 
 /// What is infinitely far, or as good as, is put at so many times the nearest distance.
@@ -25,6 +25,7 @@ fn cells([width, height]: [u32; 2], by: u32) -> u64 {
 pub(super) fn load_depth_picture(
     path: &Path,
     options: &DepthPictureOptions,
+    strokes: &[DepthStroke],
     progress: &dyn Progress,
 ) -> Result<OfPicture, SessionError> {
     let found = capture::open_depth_picture(path, options)?;
@@ -67,6 +68,7 @@ pub(super) fn load_depth_picture(
         ..ReliefOptions::default()
     };
     let stage = Stage::new(progress, 0.2, 1.0);
+    let disparity = repaired(size, disparity, picture, strokes, by as f32);
     let relief =
         Relief::of::<CaptureError>(size, &disparity, picture, &[], &surface, &stage).map_err(relief_error)?;
     let middle = disparity[size[1] / 2 * size[0] + size[0] / 2];

@@ -346,6 +346,8 @@ impl Input {
     /// The atlas: the project's, or the scene unwrapped.
     pub fn atlas(&self, unwrap: &UnwrapOptions, steps: &dyn Steps) -> Result<Arc<Atlas>, SessionError> {
         let stored = self.project.as_ref().and_then(|project| project.atlas.as_ref());
+        // That of a picture follows from it, however its depth was repaired since.
+        let stored = stored.filter(|_| self.scene.picture.is_none());
         let atlas = match stored {
             Some(bytes) => Atlas::from_bytes(bytes, &self.scene),
             None => unwrapped(&self.scene, unwrap, &*steps.begin("unwrapping")),
@@ -386,7 +388,10 @@ impl Input {
             }
         };
         self.check_fit(&map, &atlas)?;
-        Ok((Stage::of(tracer, atlas, &*steps.begin("preparing"))?, map))
+        let mut stage = Stage::of(tracer, atlas, &*steps.begin("preparing"))?;
+        let choices = project.and_then(|project| project.capture.as_ref()).or(self.capture.as_ref());
+        stage.depth_strokes = choices.map(|choices| choices.depth_strokes.clone()).unwrap_or_default().into();
+        Ok((stage, map))
     }
 }
 

@@ -6,17 +6,18 @@ use super::picture_scene::{Named, PictureSpace, Shown, picture_camera, picture_s
 use crate::error::SessionError;
 use capture::{CaptureError, LightField, LightFieldOptions, Optics};
 use progress::{Progress, Stage};
-use relief::{OtherView, Relief, ReliefOptions, filled, upsampled};
+use relief::{DepthStroke, OtherView, Relief, ReliefOptions, filled, repaired, upsampled};
 use scene::LoadOptions;
 use std::path::Path;
 
 /// Cameras may stand, and apertures reach, so many times as far from the middle view as the farthest view.
 const BEYOND: f64 = 1.6;
 
-/// Opens a light field and makes its surface.
+/// Opens a light field and makes its surface, the depth of which is repaired by `strokes`.
 pub(super) fn load_light_field(
     path: &Path,
     options: &LightFieldOptions,
+    strokes: &[DepthStroke],
     progress: &dyn Progress,
 ) -> Result<OfPicture, SessionError> {
     let field = capture::open_light_field(path, options, &Stage::new(progress, 0.0, 0.1))?;
@@ -26,6 +27,7 @@ pub(super) fn load_light_field(
     let disparity = disparity(&field, size, &middle, load, &Stage::new(progress, 0.1, 0.5))?;
     let reach = field.views.iter().map(|view| view.position.length()).fold(0.0, f64::max);
     let range = range(&disparity);
+    let disparity = repaired(size, disparity, &middle, strokes, 1.0);
     let space = space(&field.optics, field.size, range);
     let surface = ReliefOptions {
         reach: reach as f32,

@@ -15,7 +15,8 @@ use focus::{
     Brush, Changed, FocusMap, FocusRecipe, LayerStack, RecipeEntry, Selection, SelectionResult, Thumbnail,
 };
 use lens::{Camera, Exposure, FocusOffset};
-use project::{FocusFile, NamedCamera, ProjectFile, TexelSet, WorldFile};
+use project::{CaptureChoices, FocusFile, NamedCamera, ProjectFile, TexelSet, WorldFile};
+use relief::DepthStroke;
 use scene::{Scene, View};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -48,6 +49,8 @@ pub struct Document {
     pub brush: Brush,
     /// What may be painted; everything where there is none.
     pub selection: Option<Selection>,
+    /// The strokes that repair depth, in their order; the stage may still be made without the latest.
+    pub depth_strokes: Arc<Vec<DepthStroke>>,
     /// Layout and viewpoint as the window wants them, any JSON.
     pub view: serde_json::Value,
     /// The project file; none before the first save.
@@ -210,6 +213,7 @@ impl Document {
         };
         let selection = template.selection.as_ref().and_then(|saved| selected_of(&stage, saved));
         Ok(Self {
+            depth_strokes: stage.depth_strokes.clone(),
             stage: Arc::new(stage),
             layers,
             pictured: map.clone(),
@@ -240,19 +244,35 @@ impl Document {
         project.world = scene.world.as_ref().map(|world| WorldFile::of(world, scene));
         project.brush = self.brush.clone();
         project.view = self.view.clone();
-        project.atlas = Some(self.stage.atlas.to_bytes());
+        project.capture = self.capture();
+        // That of a picture follows from it, and its depth may be repaired further than the stage's.
+        project.atlas = scene.picture.is_none().then(|| self.stage.atlas.to_bytes());
         project.background_focus = self.map.background;
         project.focus_map = Some(self.map.clone());
-        project.selection = self.selection.as_ref().map(|selection| self.saved_selection(selection));
+        project.selection = self.selection.as_ref().map(|selection| saved(&self.stage, selection));
         project.layers = (!self.layers.is_single()).then(|| self.layers.clone());
         project
     }
 
-    /// The selection as a project keeps it.
-    fn saved_selection(&self, selection: &Selection) -> TexelSet {
-        let texels = self.stage.canvas.texels().iter().enumerate();
-        let chosen = texels.filter(|(index, _)| selection.contains(*index));
-        TexelSet::new(self.map.size(), chosen.map(|(_, texel)| [texel.x, texel.y]))
+    /// Of a capture, what of it was chosen.
+    pub(crate) fn capture(&self) -> Option<CaptureChoices> {
+        let choices = self.template.capture.clone();
+        choices.map(|choices| CaptureChoices { depth_strokes: (*self.depth_strokes).clone(), ..choices })
+    }
+
+    /// Takes up another surface in the same atlas, on which paint and selections stay where they are.
+    pub(crate) fn take_surface(&mut self, stage: Stage) {
+        let before = std::mem::replace(&mut self.stage, Arc::new(stage));
+        let after = self.stage.clone();
+        let moved = |selection: &Selection| selected_of(&after, &saved(&before, selection));
+        self.selection = self.selection.as_ref().and_then(moved);
+        self.undo.map_selections(moved);
+        for index in 0..self.layers.layers().len() {
+            if let Some(layer) = self.layers.layer_mut(index) {
+                after.canvas.dilate(&mut layer.map);
+            }
+        }
+        self.adjust();
     }
 
     /// Brings the map up to date after `changed` texels of any layer have changed, or after any change (`None`).
@@ -359,6 +379,13 @@ impl Document {
         let mut views = scene.photographs();
         views.find(|view| view.camera_to_world == self.camera.camera_to_world)
     }
+}
+
+/// A selection by the places of its texels.
+fn saved(stage: &Stage, selection: &Selection) -> TexelSet {
+    let texels = stage.canvas.texels().iter().enumerate();
+    let chosen = texels.filter(|(index, _)| selection.contains(*index));
+    TexelSet::new([stage.atlas.width, stage.atlas.height], chosen.map(|(_, texel)| [texel.x, texel.y]))
 }
 
 /// The selection that a project kept; none where it chose nothing, or everything.

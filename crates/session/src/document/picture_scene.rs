@@ -23,9 +23,6 @@ use scene::{
 };
 use std::path::Path;
 
-/// Rows between the picture and what goes on behind it.
-const GUTTER: usize = 4;
-
 /// How disparities become distances, and pixels directions.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct PictureSpace {
@@ -93,7 +90,7 @@ pub(super) fn picture_scene(
     focus: f64,
 ) -> Scene {
     let [width, height] = relief.size;
-    let behind = height + GUTTER;
+    let behind = height + PictureTexture::GUTTER as usize;
     let rows = height + (TEXTURE_LAYERS - 1) * behind;
     let margin = relief.margin as f32;
     let middle = shown.cells() / 2.0;
@@ -154,6 +151,7 @@ pub(super) fn picture_scene(
             size: [width as u32, rows as u32],
             behind: behind as u32,
             margin: relief.margin as u32,
+            pixels: shown.by as u32,
             is_seen: in_rows(&relief.is_seen, relief.size, behind, rows, true),
         }),
         ..Scene::default()
@@ -187,8 +185,7 @@ pub(super) fn picture_atlas(scene: &Scene) -> Option<Atlas> {
     // Texels a unit of length, where one is at the distance that the camera focuses on.
     let camera = scene.cameras.first()?;
     let height = 2.0 * camera.focus_distance * (0.5 * camera.yfov).tan();
-    let rows = picture.behind as usize - GUTTER - 2 * picture.margin as usize;
-    let density = rows as f64 / height;
+    let density = f64::from(picture.shown()[1]) / height;
     Some(Atlas::new(picture.size, corners, chart_of, &[0, 0], density))
 }
 

@@ -1,6 +1,8 @@
 //! What stays while a document is open: the scene, its atlas and what answers rays and dabs on it.
 
+use super::capture_scene::load_capture;
 use super::picking::SurfaceHit;
+use super::picture_scene::picture_atlas;
 use super::scene_hashes::light_hash;
 use crate::error::SessionError;
 use crate::light_field::keep_photographs_at;
@@ -8,6 +10,8 @@ use atlas::{Atlas, AtlasError, TexelMap};
 use focus::Canvas;
 use glam::{DVec2, DVec3};
 use progress::Progress;
+use project::CaptureChoices;
+use relief::DepthStroke;
 use scene::{BackFaces, LoadOptions, Scene, SceneError, World};
 use std::path::Path;
 use std::sync::{Arc, OnceLock};
@@ -27,6 +31,8 @@ pub struct Stage {
     pub texels: Arc<TexelMap>,
     /// What dabs are painted on.
     pub canvas: Arc<Canvas>,
+    /// The strokes that repaired the depth that the surface was made from.
+    pub depth_strokes: Arc<Vec<DepthStroke>>,
     light_hash: OnceLock<[u8; 32]>,
 }
 
@@ -120,6 +126,31 @@ impl Stage {
         Ok(Self { canvas, ..self.with_scene(scene, progress)? })
     }
 
+    /// The surface made anew from the picture and its depth, which are read again, with other strokes. Paint still fits.
+    pub fn with_depth_repaired(
+        &self,
+        choices: &CaptureChoices,
+        progress: &dyn Progress,
+    ) -> Result<Self, SessionError> {
+        let before = &self.scene;
+        let read = load_capture(&before.path, choices, &progress::Stage::new(progress, 0.0, 0.8))?.scene;
+        let scene = Arc::new(Scene {
+            world: before.world.clone(),
+            own_world: before.own_world.clone(),
+            back_faces: before.back_faces,
+            ..Arc::unwrap_or_clone(read)
+        });
+        let atlas = picture_atlas(&scene)
+            .filter(|atlas| [atlas.width, atlas.height] == [self.atlas.width, self.atlas.height]);
+        let atlas = atlas.ok_or_else(|| {
+            SessionError::bad(&before.path, "has changed since it was opened (open it again)")
+        })?;
+        progress.check()?;
+        let tracer = Arc::new(Tracer::new(scene));
+        let stage = Self::of(tracer, Arc::new(atlas), &progress::Stage::new(progress, 0.9, 1.0))?;
+        Ok(Self { depth_strokes: Arc::new(choices.depth_strokes.clone()), ..stage })
+    }
+
     /// The same surface, seen or lit in another way.
     fn with_scene(&self, scene: Scene, progress: &dyn Progress) -> Result<Self, SessionError> {
         progress.check()?;
@@ -128,10 +159,12 @@ impl Stage {
         progress.check()?;
         let (atlas, texels, canvas) = (self.atlas.clone(), self.texels.clone(), self.canvas.clone());
         keep_photographs_at(&tracer, &atlas);
-        Ok(Self { scene, bounds: self.bounds, atlas, tracer, texels, canvas, light_hash: OnceLock::new() })
+        let (bounds, depth_strokes) = (self.bounds, self.depth_strokes.clone());
+        let light_hash = OnceLock::new();
+        Ok(Self { scene, bounds, atlas, tracer, texels, canvas, depth_strokes, light_hash })
     }
 
-    /// Prepares the scene of `tracer`, whose atlas is known.
+    /// Prepares the scene of `tracer`, whose atlas is known, and whose depth is as it was found.
     pub fn of(tracer: Arc<Tracer>, atlas: Arc<Atlas>, progress: &dyn Progress) -> Result<Self, SessionError> {
         progress.check()?;
         let scene = tracer.scene().clone();
@@ -143,6 +176,7 @@ impl Stage {
         let gutters: Vec<_> = texels.dilations.iter().map(|d| [place(d.texel), place(d.source)]).collect();
         let canvas = Arc::new(Canvas::new(&scene, &atlas, &texels.texels, &gutters));
         progress.report(1.0);
-        Ok(Self { bounds: scene.bounds(), scene, atlas, tracer, texels, canvas, light_hash: OnceLock::new() })
+        let (bounds, depth_strokes, light_hash) = (scene.bounds(), Arc::default(), OnceLock::new());
+        Ok(Self { bounds, scene, atlas, tracer, texels, canvas, depth_strokes, light_hash })
     }
 }

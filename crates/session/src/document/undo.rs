@@ -1,9 +1,11 @@
-//! Undo and redo of paint, selection, lens and the scene's variant in the order in which they happened.
+//! Undo and redo of paint, selection, lens, repaired depth and the scene's variant in the order in which they happened.
 
 use focus::{Edit, LayerStack, Selection, Thumbnail};
 use lens::Camera;
 use project::RecordedStep;
+use relief::DepthStroke;
 use std::collections::VecDeque;
+use std::sync::Arc;
 
 /// What a step changed, and both its ends.
 #[derive(Clone, Debug)]
@@ -18,6 +20,8 @@ enum Change {
     Selection { before: Option<Selection>, after: Option<Selection> },
     /// The scene's variant, by name. Who takes such a step back reads the scene again.
     Variant { before: Option<String>, after: Option<String> },
+    /// The strokes that repair depth. Who takes such a step back makes the surface anew.
+    Depth { before: Arc<Vec<DepthStroke>>, after: Arc<Vec<DepthStroke>> },
 }
 
 impl Change {
@@ -28,9 +32,15 @@ impl Change {
             Self::Layers { before, after } => before.bytes_beside(after) + after.bytes_beside(before),
             Self::Camera { .. } => 2 * size_of::<Camera>(),
             Self::Selection { before, after } => selected(before) + selected(after),
+            // Each list has a stroke more than the one before it.
+            Self::Depth { after, .. } => after.iter().map(depth_stroke_bytes).sum(),
             Self::Variant { before, after } => [before, after].into_iter().flatten().map(String::len).sum(),
         }
     }
+}
+
+fn depth_stroke_bytes(stroke: &DepthStroke) -> usize {
+    size_of::<DepthStroke>() + size_of_val(&*stroke.way)
 }
 
 /// One step.
@@ -67,6 +77,8 @@ pub(crate) enum Undone {
     Selection,
     /// The variant that the scene is to have now, by name.
     Variant(Option<String>),
+    /// The strokes that repair depth.
+    Depth,
 }
 
 /// A step of the history, as a list shows it.
@@ -91,6 +103,7 @@ pub(crate) struct Undoable<'a> {
     pub layers: &'a mut LayerStack,
     pub camera: &'a mut Camera,
     pub selection: &'a mut Option<Selection>,
+    pub depth_strokes: &'a mut Arc<Vec<DepthStroke>>,
 }
 
 /// The steps that can be taken back, and those that can be done again.
@@ -133,6 +146,22 @@ impl Undo {
     pub fn push_variant(&mut self, before: Option<String>, after: Option<String>) {
         self.push(Step::new("Variant".into(), Change::Variant { before, after }, None));
         self.run = false;
+    }
+
+    /// Takes up a change of the strokes that repair depth.
+    pub fn push_depth(&mut self, name: &str, before: Arc<Vec<DepthStroke>>, after: Arc<Vec<DepthStroke>>) {
+        self.push(Step::new(name.into(), Change::Depth { before, after }, None));
+        self.run = false;
+    }
+
+    /// Exchanges all selections, because the texels that may be selected are others now.
+    pub fn map_selections(&mut self, other: impl Fn(&Selection) -> Option<Selection>) {
+        for step in self.done.iter_mut().chain(&mut self.undone) {
+            if let Change::Selection { before, after } = &mut step.change {
+                *before = before.as_ref().and_then(&other);
+                *after = after.as_ref().and_then(&other);
+            }
+        }
     }
 
     /// What was done and can be taken back, as data, oldest first.
@@ -234,6 +263,10 @@ impl Undo {
                 Undone::Selection
             }
             Change::Variant { before, .. } => Undone::Variant(before.clone()),
+            Change::Depth { before, .. } => {
+                *state.depth_strokes = before.clone();
+                Undone::Depth
+            }
         };
         self.undone.push(step);
         Some(undone)
@@ -262,6 +295,10 @@ impl Undo {
                 Undone::Selection
             }
             Change::Variant { after, .. } => Undone::Variant(after.clone()),
+            Change::Depth { after, .. } => {
+                *state.depth_strokes = after.clone();
+                Undone::Depth
+            }
         };
         self.done.push_back(step);
         Some(done)
@@ -304,22 +341,24 @@ mod tests {
         layers: LayerStack,
         camera: Camera,
         selection: Option<Selection>,
+        depth_strokes: Arc<Vec<DepthStroke>>,
     }
 
     impl State {
         fn new() -> Self {
             let layers = LayerStack::of(FocusMap::new(4, 4, FocusOffset::STANDARD));
-            Self { undo: Undo::new(1 << 20), layers, camera: focused(3.0), selection: None }
+            let (selection, depth_strokes) = (None, Arc::default());
+            Self { undo: Undo::new(1 << 20), layers, camera: focused(3.0), selection, depth_strokes }
         }
 
         fn undo(&mut self) -> Option<Undone> {
-            let Self { undo, layers, camera, selection } = self;
-            undo.undo(Undoable { layers, camera, selection })
+            let Self { undo, layers, camera, selection, depth_strokes } = self;
+            undo.undo(Undoable { layers, camera, selection, depth_strokes })
         }
 
         fn redo(&mut self) -> Option<Undone> {
-            let Self { undo, layers, camera, selection } = self;
-            undo.redo(Undoable { layers, camera, selection })
+            let Self { undo, layers, camera, selection, depth_strokes } = self;
+            undo.redo(Undoable { layers, camera, selection, depth_strokes })
         }
 
         fn focuses(&mut self, at: f64) {

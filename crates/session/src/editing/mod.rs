@@ -3,6 +3,7 @@
 //! Strokes, fills, gradients, selections and layers, each a step of undo that can be recorded and done again. Nothing here
 //! knows of pictures: what changed is returned.
 
+mod depth_stroke;
 mod edits;
 mod gradient_in_hand;
 mod object_axes;

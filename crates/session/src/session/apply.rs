@@ -70,6 +70,7 @@ impl Session {
             Command::Fill(region, focus) => self.fill(region, focus),
             Command::ResetMap => self.reset_map(),
             Command::SetBackgroundFocus(focus) => self.fill_targets(vec![FillTarget::Background], focus),
+            Command::RepairDepth(stroke) => self.repair_depth(stroke),
             Command::DragGradient(gradient) => self.drag_gradient(gradient),
             Command::Select(shape, combine) => self.select(shape, combine),
             Command::MaskFromSelection => self.mask_selected(),

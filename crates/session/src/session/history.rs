@@ -14,8 +14,8 @@ impl Session {
             return self.abort_stroke();
         }
         let document = self.opened()?;
-        let Document { undo, layers, camera, selection, .. } = document;
-        let undone = undo.undo(Undoable { layers, camera, selection });
+        let Document { undo, layers, camera, selection, depth_strokes, .. } = document;
+        let undone = undo.undo(Undoable { layers, camera, selection, depth_strokes });
         self.after_step(undone)
     }
 
@@ -24,8 +24,8 @@ impl Session {
             return Ok(());
         }
         let document = self.opened()?;
-        let Document { undo, layers, camera, selection, .. } = document;
-        let done = undo.redo(Undoable { layers, camera, selection });
+        let Document { undo, layers, camera, selection, depth_strokes, .. } = document;
+        let done = undo.redo(Undoable { layers, camera, selection, depth_strokes });
         self.after_step(done)
     }
 
@@ -66,6 +66,10 @@ impl Session {
                 Ok(())
             }
             Some(Undone::Variant(name)) => self.restage(Restaging::Variant { name, cause: Cause::History }),
+            Some(Undone::Depth) => {
+                self.opened()?.revision += 1;
+                self.follow_depth()
+            }
             Some(Undone::Layers) => {
                 let document = self.opened()?;
                 // Steps hold no values that follow from the camera.

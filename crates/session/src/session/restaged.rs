@@ -3,8 +3,8 @@
 use crate::document::Stage;
 use crate::error::SessionError;
 use crate::jobs::JobProgress;
-use project::WorldFile;
-use scene::{BackFaces, Scene, World};
+use project::{CaptureChoices, WorldFile};
+use scene::{BackFaces, World};
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -19,6 +19,8 @@ pub(super) enum Restaging {
     Environment(PathBuf),
     /// The scene's variant; none: its own materials.
     Variant { name: Option<String>, cause: Cause },
+    /// The depth of a picture: what was chosen of it, and the strokes that repair it.
+    Depth(CaptureChoices),
 }
 
 /// Why it is to be different.
@@ -46,16 +48,19 @@ impl Restaging {
             Self::BackFaces(_) => "looking at other faces",
             Self::World(_) | Self::Environment(_) => "changing the world",
             Self::Variant { .. } => "changing the variant",
+            Self::Depth(_) => "repairing depth",
         }
     }
 
-    /// Whether the scene is not that way already.
-    pub fn is_new_to(&self, scene: &Scene) -> bool {
+    /// Whether the stage is not that way already.
+    pub fn is_new_to(&self, stage: &Stage) -> bool {
+        let scene = &stage.scene;
         match self {
             Self::BackFaces(back_faces) => scene.back_faces != *back_faces,
             Self::World(world) => scene.world != *world,
             Self::Environment(_) => true,
             Self::Variant { name, .. } => scene.variant != *name,
+            Self::Depth(choices) => *stage.depth_strokes != choices.depth_strokes,
         }
     }
 
@@ -76,6 +81,7 @@ impl Restaging {
                 stage.with_world(Some(world.load(&stage.scene)?), progress)
             }
             Self::Variant { name, .. } => stage.with_variant(name.as_deref(), progress),
+            Self::Depth(choices) => stage.with_depth_repaired(choices, progress),
         }
     }
 }
