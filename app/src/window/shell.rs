@@ -260,7 +260,7 @@ impl Shell {
                 Event::Glaring(_) => {}
                 Event::SurfaceChanged => {
                     if let Some(document) = self.session.document() {
-                        self.paint.upload_surface(document, None, context);
+                        self.paint.surface_changed(document, context);
                     }
                 }
                 Event::MapChanged(rectangles) => {

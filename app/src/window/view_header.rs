@@ -127,7 +127,15 @@ fn paint_header(ui: &mut Ui, session: &Session, settings: &mut ViewSettings) {
     ui.label("Blur").on_hover_text("The false colour of blur.");
     ui.checkbox(&mut settings.contours, "Contours")
         .on_hover_text("Lines where the blur is 1, 4 and 16 px wide.");
-    if session.document().is_some_and(|document| !document.stage.scene.views.is_empty()) {
+    let Some(document) = session.document() else { return };
+    if document.stage.scene.picture.is_some() {
+        ui.checkbox(&mut settings.depth, "Depth").on_hover_text(
+            "How far everything is: near yellow, far dark blue. Drag the slider to Surface to see it alone; the tools behind Copy depth (U) mend it.",
+        );
+        ui.checkbox(&mut settings.seeing, "Invented")
+            .on_hover_text("What no picture shows and was filled in from around: magenta. Drag the slider to Surface to see it alone.");
+    }
+    if !document.stage.scene.views.is_empty() {
         ui.checkbox(&mut settings.seeing, "Photographs").on_hover_text(
             "How many photographs see the surface: none magenta (its light is filled in from around), one dark blue, ten green, 32 and more \
              yellow. Drag the slider to Surface to see it alone.",

@@ -24,8 +24,10 @@ pub struct ViewSettings {
     pub focus_share: f32,
     /// Contour lines of blur.
     pub contours: bool,
-    /// How many photographs see the surface of a capture.
+    /// How many photographs see the surface of a capture, or what of it was invented.
     pub seeing: bool,
+    /// How far the surface of a picture is.
+    pub depth: bool,
     /// The longest side that the preview is drawn at, px.
     pub preview_size: u32,
     /// Sides of what the live picture draws as one where the circle of confusion is 16 px wide, px; 0: every sample.
@@ -57,6 +59,7 @@ impl Default for ViewSettings {
             focus_share: look.focus_share,
             contours: look.contours,
             seeing: look.seeing,
+            depth: look.depth,
             preview_size: 960,
             tolerance_px: TOLERANCE_PX,
             display_stops: 0.0,
@@ -75,7 +78,8 @@ impl Default for ViewSettings {
 impl ViewSettings {
     /// The paint view's look.
     pub fn look(&self) -> SurfaceLook {
-        SurfaceLook { focus_share: self.focus_share, contours: self.contours, seeing: self.seeing }
+        let Self { focus_share, contours, seeing, depth, .. } = *self;
+        SurfaceLook { focus_share, contours, seeing, depth }
     }
 
     /// How pictures are put on screen.

@@ -1,10 +1,12 @@
-//! A picture over the whole atlas that the surface is shown in instead of its materials: what photographs show of it, or how many do.
+//! A picture over the whole atlas that the surface is shown in instead of its materials: what photographs show of it, or how many do; of a
+//! surface that was made from a picture, how far it is, or what of it was invented.
 
 use atlas::TexelMap;
 use egui::ecolor::gamma_u8_from_linear_f32;
+use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 use scene::SurfacePoint;
-use session::PhotographLight;
+use session::{PhotographLight, Stage};
 
 /// What the surface is shown in.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -16,6 +18,10 @@ pub enum Coating {
     Photographs,
     /// How many photographs see it.
     Seeing,
+    /// How far it is from the camera that took the picture it was made from.
+    Depth,
+    /// Its picture, and what no picture showed.
+    Invented,
 }
 
 /// Texels of an atlas, sRGB-encoded.
@@ -28,7 +34,7 @@ pub struct Coat {
     pub rgba: Vec<u8>,
 }
 
-/// What no photograph sees, and the colours from one photograph to [`MANY`]: sRGB-encoded, lightness rises.
+/// What no photograph sees, and the colours from one photograph to [`MANY`], or from far to near: sRGB-encoded, lightness rises.
 const UNSEEN: [u8; 3] = [200, 40, 140];
 const FEW: [f32; 3] = [30.0, 50.0, 110.0];
 const SEVERAL: [f32; 3] = [40.0, 150.0, 140.0];
@@ -37,13 +43,45 @@ const ALL: [f32; 3] = [250.0, 230.0, 90.0];
 const MANY: f32 = 32.0;
 
 impl Coat {
-    /// What photographs show of a surface, toward all directions alike, or how many see it.
-    pub fn of(map: &TexelMap, light: &PhotographLight, coating: Coating) -> Self {
-        let color = |point: SurfacePoint| match coating {
-            Coating::Seeing if light.seen(point) < 0.5 => UNSEEN,
-            Coating::Seeing => color_of_count(light.seeing(point)),
-            _ => light.constant(point).to_array().map(gamma_u8_from_linear_f32),
-        };
+    /// A surface's coat; none where it is to be shown in its materials. What photographs show of it they show toward all directions alike.
+    pub fn of(stage: &Stage, light: Option<&PhotographLight>, coating: Coating) -> Option<Self> {
+        let scene = &stage.scene;
+        match (coating, light) {
+            (Coating::Photographs, Some(light)) => {
+                Some(Self::colored(&stage.texels, |point| encoded(light.constant(point))))
+            }
+            (Coating::Seeing, Some(light)) => {
+                Some(Self::colored(&stage.texels, |point| match light.seen(point) < 0.5 {
+                    true => UNSEEN,
+                    false => color_of_count(light.seeing(point)),
+                }))
+            }
+            (Coating::Depth, _) => {
+                let camera_from_world = scene.cameras.first()?.camera_to_world.inverse();
+                let nearness = |position: DVec3| -1.0 / camera_from_world.transform_point3(position).z;
+                let [low, high] = scene
+                    .positions
+                    .iter()
+                    .map(|&position| nearness(position))
+                    .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], nearness| {
+                        [low.min(nearness), high.max(nearness)]
+                    });
+                let range = if high > low { high - low } else { 1.0 };
+                let share = |point: SurfacePoint| (nearness(point.position(scene)) - low) / range;
+                Some(Self::colored(&stage.texels, |point| ramp(share(point) as f32)))
+            }
+            (Coating::Invented, _) => {
+                Some(Self::colored(&stage.texels, |point| match scene.photographed(point) {
+                    Some(0.0) => UNSEEN,
+                    _ => encoded(scene.base_color(point).truncate()),
+                }))
+            }
+            _ => None,
+        }
+    }
+
+    /// A colour a texel, by the middle of what it covers.
+    fn colored(map: &TexelMap, color: impl Fn(SurfacePoint) -> [u8; 3] + Sync) -> Self {
         let colors: Vec<[u8; 3]> = map.texels.par_iter().map(|texel| color(texel.centroid)).collect();
         let mut rgba = vec![255; 4 * map.width as usize * map.height as usize];
         let mut set = |place: usize, color: [u8; 3]| rgba[4 * place..4 * place + 3].copy_from_slice(&color);
@@ -60,9 +98,19 @@ impl Coat {
     }
 }
 
+/// Linear light as a screen shows it.
+fn encoded(linear: Vec3) -> [u8; 3] {
+    linear.to_array().map(gamma_u8_from_linear_f32)
+}
+
 /// By the logarithm of the count: the first photographs matter most.
 fn color_of_count(count: u16) -> [u8; 3] {
-    let at = 2.0 * (f32::from(count.max(1)).ln() / MANY.ln()).min(1.0);
+    ramp(f32::from(count.max(1)).ln() / MANY.ln())
+}
+
+/// From few, or far, at 0 to all, or near, at 1.
+fn ramp(share: f32) -> [u8; 3] {
+    let at = 2.0 * share.clamp(0.0, 1.0);
     let (from, to, share) = if at < 1.0 { (FEW, SEVERAL, at) } else { (SEVERAL, ALL, at - 1.0) };
     std::array::from_fn(|k| (from[k] + (to[k] - from[k]) * share + 0.5) as u8)
 }

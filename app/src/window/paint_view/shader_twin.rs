@@ -51,7 +51,7 @@ fn drawn(renderer: &mut SurfaceRenderer, z: f64, focus: FocusOffset, shot: &Came
     let mesh = SurfaceMesh::upload(device, queue, &square(z), &atlas(), None).unwrap();
     let texture = FocusTexture::new(device, queue, &FocusMap::new(8, 8, focus)).unwrap();
     let view = OrbitCamera::from_shot(shot, z);
-    let look = SurfaceLook { focus_share: share, contours: false, seeing: false };
+    let look = SurfaceLook { focus_share: share, contours: false, seeing: false, depth: false };
     let shown = SurfaceFrame { view: &view, shot, look, size: [SIDE, SIDE] };
     renderer.draw(&mesh, &texture, shown, Stale::Everything).unwrap();
     let pixels = read(renderer);

@@ -16,13 +16,15 @@ pub struct SurfaceLook {
     pub focus_share: f32,
     /// Lines where the circle of confusion is 1, 4 and 16 px.
     pub contours: bool,
-    /// How many photographs see the surface, instead of what they show.
+    /// How many photographs see the surface, or what of it none showed, instead of what they show.
     pub seeing: bool,
+    /// How far the surface of a picture is, instead of what it shows.
+    pub depth: bool,
 }
 
 impl Default for SurfaceLook {
     fn default() -> Self {
-        Self { focus_share: 0.65, contours: false, seeing: false }
+        Self { focus_share: 0.65, contours: false, seeing: false, depth: false }
     }
 }
 

@@ -109,11 +109,17 @@ impl PaintView {
             Ok(focus) => self.focus = Some(focus),
             Err(error) => self.problem = Some(error.to_string()),
         }
-        self.upload_surface(document, None, context);
+        self.surface_changed(document, context);
     }
 
-    /// Has the surface shown as photographs show it, as soon as their light is there, or by how many see it.
-    fn follow_photographs(
+    /// Takes up another surface, or the same in other materials.
+    pub fn surface_changed(&mut self, document: &Document, context: &egui::Context) {
+        self.upload_surface(document, (Coating::Materials, None), context);
+    }
+
+    /// Has the surface shown as it is to look: as photographs show it, as soon as their light is there, or by how many see it; of a picture by its
+    /// depth, or what was invented.
+    fn follow_look(
         &mut self,
         session: &Session,
         document: &Document,
@@ -124,22 +130,24 @@ impl PaintView {
             return;
         }
         let light = session.photograph_light();
-        let wanted = match (&light, look.seeing) {
-            (None, _) => Coating::Materials,
-            (Some(_), false) => Coating::Photographs,
-            (Some(_), true) => Coating::Seeing,
+        let wanted = match document.stage.scene.picture {
+            Some(_) if look.depth => Coating::Depth,
+            Some(_) if look.seeing => Coating::Invented,
+            None if light.is_some() && look.seeing => Coating::Seeing,
+            None if light.is_some() => Coating::Photographs,
+            _ => Coating::Materials,
         };
         if wanted != self.coating {
-            self.upload_surface(document, light.map(|light| (light, wanted)), context);
+            self.upload_surface(document, (wanted, light), context);
         }
     }
 
-    /// Copies the surface to the graphics card in the background, under a coat if photographs light it; what was there is drawn until
+    /// Copies the surface to the graphics card in the background, under a coat of photographs' light if need be; what was there is drawn until
     /// then.
-    pub fn upload_surface(
+    fn upload_surface(
         &mut self,
         document: &Document,
-        coating: Option<(Arc<PhotographLight>, Coating)>,
+        (coating, light): (Coating, Option<Arc<PhotographLight>>),
         context: &egui::Context,
     ) {
         let Some(renderer) = &self.renderer else { return };
@@ -147,13 +155,13 @@ impl PaintView {
         let (sender, receiver) = mpsc::channel();
         self.upload = Some(receiver);
         let (device, queue, context) = (device.clone(), queue.clone(), context.clone());
-        let (scene, atlas) = (document.stage.scene.clone(), document.stage.atlas.clone());
-        self.coating = coating.as_ref().map_or(Coating::Materials, |(_, coating)| *coating);
-        let texels = document.stage.texels.clone();
+        let stage = document.stage.clone();
+        self.coating = coating;
         let upload = move || {
-            let coat = coating.map(|(light, coating)| Coat::of(&texels, &light, coating));
+            let coat = Coat::of(&stage, light.as_deref(), coating);
             // The view may be gone, or show another scene by now.
-            let _ = sender.send(SurfaceMesh::upload(&device, &queue, &scene, &atlas, coat.as_ref()));
+            let _ =
+                sender.send(SurfaceMesh::upload(&device, &queue, &stage.scene, &stage.atlas, coat.as_ref()));
             context.request_repaint();
         };
         let thread = std::thread::Builder::new().name("surface upload".into());
@@ -282,7 +290,7 @@ impl PaintView {
         };
         self.follow(&document.camera);
         self.receive_mesh(actions);
-        self.follow_photographs(session, document, look, ui.ctx());
+        self.follow_look(session, document, look, ui.ctx());
         self.navigate(ui, &response);
         self.draw(ui, document, look, actions);
         let frame =

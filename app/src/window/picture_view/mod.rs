@@ -230,6 +230,10 @@ impl PictureView {
                     Shown::Standard => "Drawing the ordinary lens…",
                     Shown::Pinhole => "Drawing the pinhole…",
                     Shown::Truth => "Tracing rays…",
+                    Shown::Stereo if session.document().is_some_and(|d| d.camera.aperture_radius <= 0.0) => {
+                        "A pinhole has no room for two eyes: open the aperture."
+                    }
+                    Shown::Stereo => "Drawing for two eyes…",
                     Shown::Photograph if session.document().is_some_and(|d| d.photograph().is_none()) => {
                         "Choose a photograph as the camera (Lens, Camera)."
                     }

@@ -21,11 +21,14 @@ pub enum Shown {
     Truth,
     /// The photograph that the camera looks through.
     Photograph,
+    /// The live picture for two eyes.
+    Stereo,
 }
 
 impl Shown {
     /// All, as a menu offers them.
-    pub const ALL: [Self; 5] = [Self::Painted, Self::Standard, Self::Pinhole, Self::Truth, Self::Photograph];
+    pub const ALL: [Self; 6] =
+        [Self::Painted, Self::Standard, Self::Pinhole, Self::Stereo, Self::Truth, Self::Photograph];
 
     /// What it is called.
     pub fn name(self) -> &'static str {
@@ -35,6 +38,7 @@ impl Shown {
             Self::Pinhole => "Pinhole",
             Self::Truth => "Ray traced",
             Self::Photograph => "Photograph",
+            Self::Stereo => "Stereo",
         }
     }
 
@@ -45,6 +49,9 @@ impl Shown {
             Self::Standard => "The same lens without any paint.",
             Self::Pinhole => "Everything sharp.",
             Self::Truth => "The picture as painted, by rays: slow and sure (F12 traces it anew).",
+            Self::Stereo => {
+                "The picture as painted for two eyes, through glasses of red (left) and cyan: what the lens is focused on lies in the screen."
+            }
             Self::Photograph => {
                 "The photograph that the camera looks through, exposed as all of them together."
             }
@@ -53,7 +60,11 @@ impl Shown {
 
     /// Whether there is such a picture of what is open.
     pub fn is_of(self, document: Option<&Document>) -> bool {
-        self != Self::Photograph || document.is_some_and(|document| !document.stage.scene.views.is_empty())
+        match self {
+            Self::Photograph => document.is_some_and(|document| !document.stage.scene.views.is_empty()),
+            Self::Stereo => document.is_some_and(|document| document.camera.aperture_radius > 0.0),
+            _ => true,
+        }
     }
 
     /// The session's picture of it.
@@ -64,6 +75,7 @@ impl Shown {
             Self::Pinhole => Some(ReferenceKind::Pinhole),
             Self::Truth => Some(ReferenceKind::Truth),
             Self::Photograph => Some(ReferenceKind::Photograph),
+            Self::Stereo => Some(ReferenceKind::Stereo),
         }
     }
 }

@@ -19,6 +19,7 @@ pub use left_out::{LeftOut, LeftOutPicture, ToldBy};
 pub use reference::{Reference, ReferenceKind};
 pub use render::{MOST_CELLS_A_SIDE, RenderCost, RenderOptions, Rendered, render, render_input};
 pub use renderer::Renderer;
+pub(crate) use stereo::pair;
 pub use stereo::{Stereo, StereoForm, render_stereo};
 pub use unwrapped::write_unwrapped;
 pub use verification::{Verification, VerifiedError};

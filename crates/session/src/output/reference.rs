@@ -14,6 +14,8 @@ pub enum ReferenceKind {
     Truth,
     /// The photograph that the camera looks through.
     Photograph,
+    /// The document as it is for two eyes, an anaglyph of red and cyan.
+    Stereo,
 }
 
 /// A picture of the document to compare the live one with, at the preview's size.
@@ -43,7 +45,9 @@ impl Reference {
                 without_lens(&self.camera) == without_lens(camera)
             }
             ReferenceKind::Standard => self.camera == *camera,
-            ReferenceKind::Truth => self.camera == *camera && self.revision == revision,
+            ReferenceKind::Truth | ReferenceKind::Stereo => {
+                self.camera == *camera && self.revision == revision
+            }
         }
     }
 }
@@ -79,6 +83,7 @@ mod tests {
         assert_eq!(shows(ReferenceKind::Pinhole), [true, true, true, false]);
         assert_eq!(shows(ReferenceKind::Standard), [true, true, false, false]);
         assert_eq!(shows(ReferenceKind::Truth), [true, false, false, false]);
+        assert_eq!(shows(ReferenceKind::Stereo), [true, false, false, false]);
         assert_eq!(shows(ReferenceKind::Photograph), [true, true, true, false]);
     }
 }

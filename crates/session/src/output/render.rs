@@ -170,10 +170,8 @@ pub fn render(
         Renderer::Splat | Renderer::Scatter => {
             let salf = Arc::new(options.bake(tracer, camera, focus, steps)?);
             let bake_seconds = start.elapsed().as_secs_f64();
-            let (drawn, cost) = draw_light_field(salf.clone(), &salf.camera, focus, options, steps)?;
-            let (picture, cost) = (drawn.averaged(options.cells_a_side), RenderCost { bake_seconds, ..cost });
-            let shot = Shot { tracer, camera, focus };
-            return finish(shot, options, Drawn { picture, estimate: None, cost }, steps);
+            let drawn = draw_baked(&salf, tracer, camera, focus, options, steps)?;
+            return Ok(Rendered { cost: RenderCost { bake_seconds, ..drawn.cost }, ..drawn });
         }
         Renderer::Truth => {
             let light = light_for_many_points(tracer, camera, &*steps.begin("light"))?;
@@ -198,6 +196,21 @@ pub fn render(
     cost.picture_seconds = start.elapsed().as_secs_f64();
     let shot = Shot { tracer, camera, focus };
     finish(shot, options, Drawn { picture, estimate, cost }, steps)
+}
+
+/// Draws what [`RenderOptions::bake`] baked, for a camera that it serves.
+pub(super) fn draw_baked(
+    salf: &Arc<Salf>,
+    tracer: &Arc<Tracer>,
+    camera: &Camera,
+    focus: &Focus,
+    options: &RenderOptions,
+    steps: &dyn Steps,
+) -> Result<Rendered, SessionError> {
+    let cells = options.cells_a_side;
+    let (drawn, cost) = draw_light_field(salf.clone(), &camera.finer(cells), focus, options, steps)?;
+    let shot = Shot { tracer, camera, focus };
+    finish(shot, options, Drawn { picture: drawn.averaged(cells), estimate: None, cost }, steps)
 }
 
 /// Renders what was opened: a scene, a project, or (where the renderer draws one) a light field.

@@ -3,13 +3,16 @@
 //! A thin lens shows what it is focused on at one place through every part of its aperture, so that an eye's picture is the lens's through a
 //! small part of it, focused on the point that both eyes fixate: that has no disparity, and nothing is cut off at the frame's sides.
 
-use super::render::{RenderOptions, Rendered, pixel_ray, render_input};
+use super::render::{RenderCost, RenderOptions, Rendered, draw_baked, pixel_ray, render_input};
+use super::renderer::Renderer;
 use crate::document::Input;
 use crate::error::SessionError;
 use crate::jobs::Steps;
 use focus::Focus;
 use glam::DVec2;
 use lens::{Aperture, Camera, Exposure, Picture, SUB_APERTURE_RADIUS};
+use std::sync::Arc;
+use std::time::Instant;
 use trace::Tracer;
 
 /// How the two pictures become one.
@@ -64,16 +67,40 @@ pub fn render_stereo(
         Some(place) => fixated(input, camera, place)?,
         None => camera.focus_distance,
     };
+    let camera = Camera { focus_distance, ..camera.clone() };
+    let options = RenderOptions { aovs: Vec::new(), ..options.clone() };
+    let mut rendered = match input.salf.is_none() && options.renderer == Renderer::Splat {
+        // One light field serves both.
+        true => {
+            camera.validate().map_err(|error| SessionError::bad(&input.path, error))?;
+            let tracer = Arc::new(Tracer::new(input.scene.clone()));
+            input.tell_atlas(&tracer)?;
+            let start = Instant::now();
+            let salf = Arc::new(options.bake(&tracer, &camera, focus, steps)?);
+            let bake_seconds = start.elapsed().as_secs_f64();
+            let drawn = pair(&camera, stereo, |eye| draw_baked(&salf, &tracer, eye, focus, &options, steps))?;
+            Rendered { cost: RenderCost { bake_seconds, ..drawn.cost }, ..drawn }
+        }
+        false => pair(&camera, stereo, |eye| render_input(input, eye, focus, &options, steps))?,
+    };
+    rendered.layers.clear();
+    Ok(rendered)
+}
+
+/// The pair that a camera's aperture shows, its focus distance the fixated one: each eye's picture as `drawn`, what is told of it that of the
+/// right eye's.
+pub(crate) fn pair(
+    camera: &Camera,
+    stereo: &Stereo,
+    mut drawn: impl FnMut(&Camera) -> Result<Rendered, SessionError>,
+) -> Result<Rendered, SessionError> {
     let eye = |side: f64| Camera {
-        focus_distance,
         aperture: Aperture::sub_aperture(DVec2::new(side * stereo.eyes, 0.0)),
         ..camera.clone()
     };
-    let options = RenderOptions { aovs: Vec::new(), ..options.clone() };
-    let left = render_input(input, &eye(-1.0), focus, &options, steps)?;
-    let right = render_input(input, &eye(1.0), focus, &options, steps)?;
+    let (left, right) = (drawn(&eye(-1.0))?, drawn(&eye(1.0))?);
     let picture = joined(&left.picture, &right.picture, stereo);
-    Ok(Rendered { picture, layers: Vec::new(), ..right })
+    Ok(Rendered { picture, ..right })
 }
 
 /// How far ahead is what the picture shows at a place; at infinity where no surface is.

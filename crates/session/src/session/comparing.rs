@@ -6,7 +6,9 @@ use crate::commands::Event;
 use crate::error::SessionError;
 use crate::jobs::{JobSteps, Steps};
 use crate::light_field::{LightQuality, light, photograph_light};
-use crate::output::{Reference, ReferenceKind, RenderOptions, Renderer, photograph_picture, render};
+use crate::output::{
+    Reference, ReferenceKind, RenderOptions, Renderer, Stereo, StereoForm, pair, photograph_picture, render,
+};
 use crate::preview::PreviewActivity;
 use baselines::FirstHits;
 use focus::Focus;
@@ -14,6 +16,9 @@ use lens::FocusOffset;
 use std::sync::Arc;
 use std::time::Instant;
 use trace::truth::TruthOptions;
+
+/// How far the eyes are apart, as a share of the aperture's diameter.
+const EYES: f64 = 0.5;
 
 impl Session {
     /// The picture of a kind that was made last of this document.
@@ -24,7 +29,7 @@ impl Session {
     /// Whether the picture of a kind shows the document as it is.
     pub fn is_reference_current(&self, kind: ReferenceKind) -> bool {
         let (Some(document), Some(reference)) = (&self.document, self.reference(kind)) else { return false };
-        let painting = kind == ReferenceKind::Truth && self.is_painting();
+        let painting = matches!(kind, ReferenceKind::Truth | ReferenceKind::Stereo) && self.is_painting();
         !painting && reference.shows(&self.scaled_camera(&document.camera), document.revision)
     }
 
@@ -48,13 +53,13 @@ impl Session {
         let document = self.opened()?;
         let (stage, revision) = (document.stage.clone(), document.revision);
         let focus = match kind {
-            ReferenceKind::Truth => {
+            ReferenceKind::Truth | ReferenceKind::Stereo => {
                 let map = Arc::new(document.map.clone());
                 Focus::painted(stage.scene.clone(), stage.atlas.clone(), map)
             }
             _ => Focus::constant(stage.scene.clone(), FocusOffset::STANDARD),
         };
-        let shot = document.camera.clone();
+        let (shot, exposure) = (document.camera.clone(), document.exposure);
         let (camera, generation) = (self.scaled_camera(&shot), self.generation);
         for (id, _) in self.reference_jobs.iter().filter(|(_, of)| *of == kind) {
             self.jobs.iter().filter(|job| job.id == *id).for_each(|job| job.progress.cancel());
@@ -64,6 +69,7 @@ impl Session {
             ReferenceKind::Standard => "drawing the ordinary lens",
             ReferenceKind::Truth => "tracing the ground truth",
             ReferenceKind::Photograph => "reading the photograph",
+            ReferenceKind::Stereo => "drawing for two eyes",
         };
         let photograph = self.document.as_ref().and_then(|document| document.photograph().cloned());
         let at_hand = self.at_hand(stage.clone());
@@ -84,6 +90,11 @@ impl Session {
                     let options =
                         RenderOptions { renderer: Renderer::Truth, truth, ..RenderOptions::default() };
                     render(&stage.tracer, &camera, &focus, &options, &steps)?.picture
+                }
+                ReferenceKind::Stereo => {
+                    let stereo = Stereo { form: StereoForm::Anaglyph, eyes: EYES, fixate: None, exposure };
+                    let options = RenderOptions::default();
+                    pair(&camera, &stereo, |eye| at_hand.render(eye, &focus, &options, &steps))?.picture
                 }
                 ReferenceKind::Photograph => {
                     let what = "the camera is that of no photograph (choose one of them as the camera)";
