@@ -119,9 +119,9 @@ impl Photograph {
     }
 
     /// The same with each pixel the mean of `by` × `by` of its own (fewer at the right and lower border).
-    pub fn reduced(self, by: u32) -> Self {
+    pub fn reduced(&self, by: u32) -> Self {
         if by <= 1 {
-            return self;
+            return self.clone();
         }
         let [width, height] = [self.width, self.height].map(|side| side.div_ceil(by));
         let mut pixels = Vec::with_capacity(width as usize * height as usize);

@@ -5,6 +5,7 @@ use super::depth_scene::load_depth_picture;
 use super::light_field_scene::load_light_field;
 use super::of_picture::OfPicture;
 use crate::error::SessionError;
+use crate::jobs::Steps;
 use capture::{
     Capture, CaptureError, CaptureKind, CaptureOptions, DepthAs, DepthPictureOptions, LightFieldOptions,
     NearEnd,
@@ -49,7 +50,7 @@ pub fn is_capture(path: &Path) -> bool {
 pub(crate) fn load_capture(
     path: &Path,
     choices: &CaptureChoices,
-    progress: &dyn Progress,
+    steps: &dyn Steps,
 ) -> Result<CaptureScene, SessionError> {
     let kind = match &choices.kind {
         Some(name) => CaptureKind::named(name).ok_or_else(|| {
@@ -68,17 +69,17 @@ pub(crate) fn load_capture(
     let near = near.transpose().map_err(|what| SessionError::BadInput(format!("--near {what}")))?;
     let load = LoadOptions::default();
     let of_picture = match kind {
-        CaptureKind::Photographs => return load_photographs(path, choices, progress),
+        CaptureKind::Photographs => return load_photographs(path, choices, &*steps.begin("reading")),
         CaptureKind::LightField => {
             let options =
                 LightFieldOptions { disparity: choices.disparity.clone(), near, load, ..Default::default() };
-            load_light_field(path, &options, &choices.depth_strokes, progress)?
+            load_light_field(path, &options, &choices.depth_strokes, steps)?
         }
         CaptureKind::Depth => {
             let disparity = choices.disparity.clone().map(|file| (file, DepthAs::Disparity));
             let depth = choices.depth.clone().map(|file| (file, DepthAs::Depth)).or(disparity);
             let options = DepthPictureOptions { depth, near, load };
-            load_depth_picture(path, &options, &choices.depth_strokes, progress)?
+            load_depth_picture(path, &options, &choices.depth_strokes, steps)?
         }
     };
     let OfPicture { scene, camera, remarks, is_incomplete } = of_picture;

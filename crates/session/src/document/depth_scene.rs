@@ -1,11 +1,12 @@
 //! A picture and its depth as a scene.
 
-use super::of_picture::{OfPicture, margin_px, of_size, range, relief_error, usual_focal_px};
+use super::of_picture::{OfPicture, margin_px, of_size, range, relief_error, show, usual_focal_px};
 use super::picture_scene::{Named, PictureSpace, Shown, picture_camera, picture_scene, uncalibrated};
 use crate::error::SessionError;
+use crate::jobs::Steps;
 use capture::{CaptureError, DepthMeaning, DepthPictureOptions};
 use lens::Camera;
-use progress::{Progress, Stage};
+use progress::Stage;
 use relief::{DepthStroke, Relief, ReliefOptions, filled, repaired, upsampled};
 use std::path::Path;
 
@@ -26,13 +27,15 @@ pub(super) fn load_depth_picture(
     path: &Path,
     options: &DepthPictureOptions,
     strokes: &[DepthStroke],
-    progress: &dyn Progress,
+    steps: &dyn Steps,
 ) -> Result<OfPicture, SessionError> {
+    let progress = &*steps.begin("reading");
     let found = capture::open_depth_picture(path, options)?;
     let whole = of_size(found.picture.photograph(&options.load)?, found.size, path)?;
+    show(&whole, steps);
     let by = (1..).find(|by| cells(found.size, *by) <= MOST_CELLS).unwrap_or(1);
     let size = found.size.map(|side| side.div_ceil(by) as usize);
-    let coarse = if by > 1 { whole.clone().reduced(by).pixels } else { Vec::new() };
+    let coarse = if by > 1 { whole.reduced(by).pixels } else { Vec::new() };
     let picture = if by > 1 { &coarse } else { &whole.pixels };
     progress.check()?;
     let map = [found.depth.width as usize, found.depth.height as usize];

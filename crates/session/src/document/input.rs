@@ -124,7 +124,7 @@ impl Input {
         choices: CaptureChoices,
         steps: &dyn Steps,
     ) -> Result<Self, SessionError> {
-        let read = load_capture(path, &choices, &*steps.begin("reading"))?;
+        let read = load_capture(path, &choices, steps)?;
         let CaptureScene { scene, camera, remarks: mut warnings, is_incomplete } = read;
         warnings.extend(named(path, &scene.warnings));
         let camera = camera.unwrap_or_else(|| camera_of(&scene.cameras[0], &Camera::default()));
@@ -166,7 +166,7 @@ impl Input {
             }
         }
         if let Some(choices) = &project.capture {
-            let read = load_capture(&project.scene, choices, &*steps.begin("reading"))?;
+            let read = load_capture(&project.scene, choices, steps)?;
             warnings.extend(read.remarks);
             let is_incomplete = read.is_incomplete;
             return Ok(Self { is_incomplete, ..Self::of_project(path, project, read.scene, warnings) });

@@ -1,9 +1,10 @@
 //! A light field as a scene: its middle view, a surface from disparities, and behind it what the other views see.
 
 use super::found_disparity::found_disparity;
-use super::of_picture::{OfPicture, margin_px, of_size, range, relief_error, usual_focal_px};
+use super::of_picture::{OfPicture, margin_px, of_size, range, relief_error, show, usual_focal_px};
 use super::picture_scene::{Named, PictureSpace, Shown, picture_camera, picture_scene, uncalibrated};
 use crate::error::SessionError;
+use crate::jobs::Steps;
 use capture::{CaptureError, LightField, LightFieldOptions, Optics};
 use progress::{Progress, Stage};
 use relief::{DepthStroke, OtherView, Relief, ReliefOptions, filled, repaired, upsampled};
@@ -18,12 +19,15 @@ pub(super) fn load_light_field(
     path: &Path,
     options: &LightFieldOptions,
     strokes: &[DepthStroke],
-    progress: &dyn Progress,
+    steps: &dyn Steps,
 ) -> Result<OfPicture, SessionError> {
+    let progress = &*steps.begin("reading");
     let field = capture::open_light_field(path, options, &Stage::new(progress, 0.0, 0.1))?;
     let size = field.size.map(|side| side as usize);
     let load = &options.load;
-    let middle = of_size(field.views[field.reference].picture.photograph(load)?, field.size, path)?.pixels;
+    let middle = of_size(field.views[field.reference].picture.photograph(load)?, field.size, path)?;
+    show(&middle, steps);
+    let middle = middle.pixels;
     let disparity = disparity(&field, size, &middle, load, &Stage::new(progress, 0.1, 0.5))?;
     let reach = field.views.iter().map(|view| view.position.length()).fold(0.0, f64::max);
     let range = range(&disparity);

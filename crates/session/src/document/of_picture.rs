@@ -1,8 +1,9 @@
 //! What surfaces of light fields and of pictures with depth have in common.
 
 use crate::error::SessionError;
+use crate::jobs::Steps;
 use capture::CaptureError;
-use lens::Camera;
+use lens::{Camera, Picture};
 use relief::ReliefError;
 use scene::{Photograph, Scene};
 use std::path::Path;
@@ -19,6 +20,17 @@ pub(super) struct OfPicture {
     pub remarks: Vec<String>,
     /// Whether something is missing.
     pub is_incomplete: bool,
+}
+
+/// The longest side of a picture that is shown before it has a surface, px.
+const SHOWN_PX: u32 = 1000;
+
+/// Shows a picture while its surface is made.
+pub(super) fn show(picture: &Photograph, steps: &dyn Steps) {
+    let longer = picture.width.max(picture.height);
+    let Photograph { width, height, pixels } = picture.reduced(longer.div_ceil(SHOWN_PX));
+    let coverage = vec![1.0; pixels.len()];
+    steps.shown(&Picture { width, height, radiance: pixels, coverage });
 }
 
 /// A picture, if it is still of the size that its file had a moment ago.

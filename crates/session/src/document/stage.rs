@@ -5,6 +5,7 @@ use super::picking::SurfaceHit;
 use super::picture_scene::picture_atlas;
 use super::scene_hashes::light_hash;
 use crate::error::SessionError;
+use crate::jobs::Steps;
 use crate::light_field::keep_photographs_at;
 use atlas::{Atlas, AtlasError, TexelMap};
 use focus::Canvas;
@@ -130,10 +131,10 @@ impl Stage {
     pub fn with_depth_repaired(
         &self,
         choices: &CaptureChoices,
-        progress: &dyn Progress,
+        steps: &dyn Steps,
     ) -> Result<Self, SessionError> {
         let before = &self.scene;
-        let read = load_capture(&before.path, choices, &progress::Stage::new(progress, 0.0, 0.8))?.scene;
+        let read = load_capture(&before.path, choices, steps)?.scene;
         let scene = Arc::new(Scene {
             world: before.world.clone(),
             own_world: before.own_world.clone(),
@@ -145,9 +146,10 @@ impl Stage {
         let atlas = atlas.ok_or_else(|| {
             SessionError::bad(&before.path, "has changed since it was opened (open it again)")
         })?;
+        let progress = steps.begin("preparing");
         progress.check()?;
         let tracer = Arc::new(Tracer::new(scene));
-        let stage = Self::of(tracer, Arc::new(atlas), &progress::Stage::new(progress, 0.9, 1.0))?;
+        let stage = Self::of(tracer, Arc::new(atlas), &*progress)?;
         Ok(Self { depth_strokes: Arc::new(choices.depth_strokes.clone()), ..stage })
     }
 

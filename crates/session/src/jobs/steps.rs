@@ -1,7 +1,7 @@
 //! Long work in named steps, for whoever watches it.
 
 use super::job_progress::JobProgress;
-use lens::Camera;
+use lens::{Camera, Picture};
 use progress::{Progress, Unwatched};
 use std::sync::Arc;
 use trace::Tracer;
@@ -16,6 +16,9 @@ pub trait Steps: Sync {
 
     /// The scene can be seen through `camera`, though it takes a while until it can be painted on.
     fn seen(&self, _tracer: &Arc<Tracer>, _camera: &Camera) {}
+
+    /// The picture of what is being opened is there, though it takes a while until it has a surface.
+    fn shown(&self, _picture: &Picture) {}
 }
 
 /// Nobody watches.

@@ -1,4 +1,4 @@
-//! What is seen of a scene that takes a while to unwrap, before it can be painted on: a small picture without blur.
+//! What is seen of a scene that takes a while to prepare, before it can be painted on: a small picture without blur.
 
 use super::outcome::Outcome;
 use super::showing::scaled_within;
@@ -47,10 +47,14 @@ impl Steps for OpeningSteps<'_> {
         let light = bare_light(tracer, &camera);
         let progress = self.begin("first look");
         if let Ok(hits) = FirstHits::trace(tracer, &*light, &focus, &camera, &*progress) {
-            // A session that is gone wants nothing.
-            let _ = self.look.sender.send((None, Ok(Outcome::Seen(hits.picture()))));
-            (self.look.waker)();
+            self.shown(&hits.picture());
         }
+    }
+
+    fn shown(&self, picture: &Picture) {
+        // A session that is gone wants nothing.
+        let _ = self.look.sender.send((None, Ok(Outcome::Seen(picture.clone()))));
+        (self.look.waker)();
     }
 }
 

@@ -2,7 +2,7 @@
 
 use crate::document::Stage;
 use crate::error::SessionError;
-use crate::jobs::JobProgress;
+use crate::jobs::{JobProgress, JobSteps};
 use project::{CaptureChoices, WorldFile};
 use scene::{BackFaces, World};
 use std::path::PathBuf;
@@ -81,7 +81,7 @@ impl Restaging {
                 stage.with_world(Some(world.load(&stage.scene)?), progress)
             }
             Self::Variant { name, .. } => stage.with_variant(name.as_deref(), progress),
-            Self::Depth(choices) => stage.with_depth_repaired(choices, progress),
+            Self::Depth(choices) => stage.with_depth_repaired(choices, &JobSteps { progress }),
         }
     }
 }
