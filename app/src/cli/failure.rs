@@ -70,9 +70,10 @@ impl From<SessionError> for Failure {
             SessionError::TryAgain(_) => Self::try_again(message),
             SessionError::GpuAbsent(_) => Self::new(NO_GPU, message),
             SessionError::Internal(_) => Self::fault(message),
-            SessionError::NothingOpen | SessionError::BadInput(_) | SessionError::Cancelled => {
-                Self::bad(message)
-            }
+            SessionError::NothingOpen
+            | SessionError::BadInput(_)
+            | SessionError::NearUnknown { .. }
+            | SessionError::Cancelled => Self::bad(message),
         }
     }
 }

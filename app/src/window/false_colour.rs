@@ -49,6 +49,18 @@ pub fn color(circle_px: f64) -> Color32 {
     Color32::from_rgb(r, g, b)
 }
 
+/// From far to near.
+const FEW: [f32; 3] = [30.0, 50.0, 110.0];
+const SEVERAL: [f32; 3] = [40.0, 150.0, 140.0];
+const ALL: [f32; 3] = [250.0, 230.0, 90.0];
+
+/// The colour of what is far (0) to near (1), or few to many, sRGB-encoded: lightness rises.
+pub fn nearness_color(share: f32) -> [u8; 3] {
+    let at = 2.0 * share.clamp(0.0, 1.0);
+    let (from, to, share) = if at < 1.0 { (FEW, SEVERAL, at) } else { (SEVERAL, ALL, at - 1.0) };
+    std::array::from_fn(|k| (from[k] + (to[k] - from[k]) * share + 0.5) as u8)
+}
+
 /// Draws the map as a bar from the nearest blur to the farthest; `fade` below 1 for a control that is off.
 pub fn paint_bar(painter: &Painter, rect: Rect, fade: f32) {
     let mut mesh = Mesh::default();

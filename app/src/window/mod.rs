@@ -35,6 +35,7 @@ mod layout;
 mod looking_round;
 mod menu_bar;
 mod navigation;
+mod near_asked;
 mod options;
 mod paint_view;
 mod palette;

@@ -22,6 +22,7 @@ use super::inspector::Inspector;
 use super::layout::{Layout, Pane};
 use super::looking_round::LookingRound;
 use super::menu_bar::{MenuState, is_possible, menu_bar};
+use super::near_asked::NearAsked;
 use super::options::WindowOptions;
 use super::paint_view::PaintView;
 use super::palette::Palette;
@@ -64,6 +65,7 @@ pub struct Shell {
     looking_round: LookingRound,
     dialog: FileDialog,
     question: UnsavedQuestion,
+    near: NearAsked,
     presets: PresetShelf,
     preset_name: PresetName,
     /// The preset that a file is asked for.
@@ -129,6 +131,7 @@ impl Shell {
             looking_round: LookingRound::default(),
             dialog: FileDialog::new(options.system_dialogs),
             question: UnsavedQuestion::default(),
+            near: NearAsked::default(),
             presets: PresetShelf::open(options.presets),
             preset_name: PresetName::default(),
             exported_preset: None,
@@ -183,6 +186,11 @@ impl Shell {
     /// The drawer beneath the views.
     pub fn drawer(&self) -> &Drawer {
         &self.drawer
+    }
+
+    /// Whether it asks which end of a depth map is near.
+    pub fn asks_which_end_is_near(&self) -> bool {
+        self.near.is_open()
     }
 
     /// The chosen tool.
@@ -257,6 +265,7 @@ impl Shell {
                         "Shown {stops} stops darker: its lights are that bright (Lens, Display)"
                     ));
                 }
+                Event::AsksNear(question) => self.near.ask(*question, context),
                 Event::Glaring(_) => {}
                 Event::SurfaceChanged => {
                     if let Some(document) = self.session.document() {
@@ -295,6 +304,7 @@ impl Shell {
         if self.palette.is_open()
             || self.dialog.is_open()
             || self.question.is_open()
+            || self.near.is_open()
             || self.preset_name.is_open()
         {
             return;

@@ -79,6 +79,31 @@ fn a_light_field_is_painted_and_the_same_when_opened_again() {
 }
 
 #[test]
+fn a_depth_map_that_does_not_say_which_end_is_near_is_asked_about() {
+    let folder = tempfile::tempdir().unwrap();
+    let picture = folder.path().join("card.png");
+    card_light_field::view([0.0; 2]).save(&picture).unwrap();
+    let [width, height] = card_light_field::SIZE;
+    let is_card = |x: u32, y: u32| x.abs_diff(width / 2) < width / 6 && y.abs_diff(height / 2) < height / 6;
+    let level = |x, y| image::Luma([if is_card(x, y) { 60u8 } else { 200 }]);
+    image::GrayImage::from_fn(width, height, level).save(folder.path().join("card_depth.png")).unwrap();
+    let mut person = Person::starts(None);
+    person.drops(&picture);
+    person.wait_until("it asks", |shell| shell.asks_which_end_is_near());
+    person.window.run_steps(3);
+    person.window.get_by_label("Black is near").click();
+    person.wait_until("it is open", |shell| shell.session().document().is_some());
+    person.waits();
+    assert_eq!(person.complaints(), [""; 0]);
+    let depth = |x: f64| {
+        let session = person.shell().session();
+        let hit = session.pick(&session.picture_ray(DVec2::new(x, 0.5)).unwrap()).unwrap();
+        person.document().camera.camera_from_world(hit.position).z
+    };
+    assert!(depth(0.5) < depth(0.9), "{} {}", depth(0.5), depth(0.9));
+}
+
+#[test]
 fn a_picture_with_depth_is_painted_and_the_same_when_opened_again() {
     let folder = tempfile::tempdir().unwrap();
     let picture = folder.path().join("card.png");

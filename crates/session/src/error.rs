@@ -12,6 +12,14 @@ pub enum SessionError {
     /// A file or a value cannot be used; the text names it, what is wrong and what to do.
     #[error("{0}")]
     BadInput(String),
+    /// A capture's depth map does not say which end is near; the text says how to tell.
+    #[error("{text}")]
+    NearUnknown {
+        /// The map.
+        map: PathBuf,
+        /// What is wrong and what to do.
+        text: String,
+    },
     /// The machine, not the input, stands in the way for now: a full disk, a locked file.
     #[error("{0}")]
     TryAgain(String),

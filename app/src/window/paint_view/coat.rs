@@ -1,6 +1,7 @@
 //! A picture over the whole atlas that the surface is shown in instead of its materials: what photographs show of it, or how many do; of a
 //! surface that was made from a picture, how far it is, or what of it was invented.
 
+use crate::window::false_colour::nearness_color;
 use atlas::TexelMap;
 use egui::ecolor::gamma_u8_from_linear_f32;
 use glam::{DVec3, Vec3};
@@ -34,11 +35,8 @@ pub struct Coat {
     pub rgba: Vec<u8>,
 }
 
-/// What no photograph sees, and the colours from one photograph to [`MANY`], or from far to near: sRGB-encoded, lightness rises.
+/// What no photograph sees, sRGB-encoded.
 const UNSEEN: [u8; 3] = [200, 40, 140];
-const FEW: [f32; 3] = [30.0, 50.0, 110.0];
-const SEVERAL: [f32; 3] = [40.0, 150.0, 140.0];
-const ALL: [f32; 3] = [250.0, 230.0, 90.0];
 /// From so many on it does not matter how many there are.
 const MANY: f32 = 32.0;
 
@@ -68,7 +66,7 @@ impl Coat {
                     });
                 let range = if high > low { high - low } else { 1.0 };
                 let share = |point: SurfacePoint| (nearness(point.position(scene)) - low) / range;
-                Some(Self::colored(&stage.texels, |point| ramp(share(point) as f32)))
+                Some(Self::colored(&stage.texels, |point| nearness_color(share(point) as f32)))
             }
             (Coating::Invented, _) => {
                 Some(Self::colored(&stage.texels, |point| match scene.photographed(point) {
@@ -105,14 +103,7 @@ fn encoded(linear: Vec3) -> [u8; 3] {
 
 /// By the logarithm of the count: the first photographs matter most.
 fn color_of_count(count: u16) -> [u8; 3] {
-    ramp(f32::from(count.max(1)).ln() / MANY.ln())
-}
-
-/// From few, or far, at 0 to all, or near, at 1.
-fn ramp(share: f32) -> [u8; 3] {
-    let at = 2.0 * share.clamp(0.0, 1.0);
-    let (from, to, share) = if at < 1.0 { (FEW, SEVERAL, at) } else { (SEVERAL, ALL, at - 1.0) };
-    std::array::from_fn(|k| (from[k] + (to[k] - from[k]) * share + 0.5) as u8)
+    nearness_color(f32::from(count.max(1)).ln() / MANY.ln())
 }
 
 #[cfg(test)]

@@ -6,7 +6,8 @@ use crate::window::layout::Pane;
 use crate::window::unsaved_question::{Answer, Next};
 use crate::window::{Tool, demo};
 use egui::{Context, ViewportCommand};
-use session::{Command, FullSize, is_capture};
+use project::CaptureChoices;
+use session::{Command, FullSize, NearQuestion, is_capture};
 use std::path::{Path, PathBuf};
 
 impl Shell {
@@ -216,6 +217,10 @@ impl Shell {
             }
             Some(Answer::Discard(next)) => self.go_on(next, context),
             Some(Answer::Stay) | None => {}
+        }
+        if let Some((NearQuestion { capture, .. }, near)) = self.near.show(context) {
+            let choices = CaptureChoices { near: Some(near.into()), ..CaptureChoices::default() };
+            self.apply(Command::OpenCapture(capture, choices));
         }
         let was_open = self.dialog.is_open();
         match self.dialog.show(context) {

@@ -8,7 +8,7 @@ use crate::output::ReferenceKind;
 use focus::{Brush, Combine, Gradient, LayerEdit};
 use glam::DVec2;
 use lens::{Exposure, FocusOffset};
-use project::{RecordedStep, SelectionShape};
+use project::{CaptureChoices, RecordedStep, SelectionShape};
 use relief::DepthStroke;
 use scene::{BackFaces, World};
 use splat::Tolerance;
@@ -21,6 +21,8 @@ pub enum Command {
     Open(PathBuf),
     /// Opens a project as what a new document begins with: the first save asks for a file.
     OpenTemplate(PathBuf),
+    /// Opens a capture of which something was chosen, as [`Self::Open`].
+    OpenCapture(PathBuf, CaptureChoices),
     /// Saves to the project's own file. An error where it has none yet.
     Save,
     /// Saves to this file and keeps it as the project's own.

@@ -1,5 +1,6 @@
 //! What a session tells back.
 
+use crate::document::NearQuestion;
 use crate::jobs::JobStatus;
 use crate::output::ReferenceKind;
 use std::ops::Range;
@@ -10,6 +11,8 @@ use std::path::PathBuf;
 pub enum Event {
     /// A document was opened; everything drawn of the old one is stale.
     Opened,
+    /// A capture does not open until somebody says which end of its depth map is near: [`crate::Command::OpenCapture`].
+    AsksNear(Box<NearQuestion>),
     /// Other faces or materials are seen than before, or in another light; what is drawn of the scene's surface is stale.
     SurfaceChanged,
     /// The camera changed (also by undo).

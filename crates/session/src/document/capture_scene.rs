@@ -25,6 +25,9 @@ impl From<CaptureError> for SessionError {
     fn from(error: CaptureError) -> Self {
         match error {
             CaptureError::Cancelled(_) => Self::Cancelled,
+            CaptureError::NearUnknown { ref file } => {
+                Self::NearUnknown { map: file.clone(), text: error.to_string() }
+            }
             other => Self::BadInput(other.to_string()),
         }
     }

@@ -12,6 +12,7 @@ impl Session {
     pub fn apply(&mut self, command: Command) -> Result<(), SessionError> {
         match command {
             Command::Open(path) => self.open(path),
+            Command::OpenCapture(path, choices) => self.open_capture(path, choices),
             Command::OpenTemplate(path) => self.open_template(path),
             Command::Undo => self.step_back(),
             Command::Redo => self.step_forward(),

@@ -3,11 +3,11 @@
 use super::outcome::Outcome;
 use super::state::Session;
 use crate::commands::Event;
-use crate::document::Document;
+use crate::document::{Beginning, Document, Input, NearQuestion};
 use crate::error::{SessionError, file_name};
 use crate::jobs::JobSteps;
 use crate::output::write_unwrapped;
-use project::{FocusMapFile, write_focus_map};
+use project::{CaptureChoices, FocusMapFile, write_focus_map};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -26,7 +26,29 @@ impl Session {
         let label = format!("opening {}", file_name(&path));
         let first_look = self.first_look();
         self.start(label, move |progress| {
-            let document = Document::open(&path, &unwrap, &first_look.steps(progress))?;
+            let opened = Document::open(&path, &unwrap, &first_look.steps(progress));
+            match opened {
+                Err(SessionError::NearUnknown { map, .. }) => {
+                    Ok(Outcome::AsksNear(Box::new(NearQuestion::of(path, map)?)))
+                }
+                opened => Ok(Outcome::Opened(Box::new(opened?))),
+            }
+        })?;
+        Ok(())
+    }
+
+    pub(super) fn open_capture(
+        &mut self,
+        path: PathBuf,
+        choices: CaptureChoices,
+    ) -> Result<(), SessionError> {
+        let unwrap = self.options.unwrap.clone();
+        let label = format!("opening {}", file_name(&path));
+        let first_look = self.first_look();
+        self.start(label, move |progress| {
+            let steps = first_look.steps(progress);
+            let input = Input::open_capture(&path, choices, &steps)?;
+            let document = Document::begin_with(input, &Beginning::default(), &unwrap, &steps)?;
             Ok(Outcome::Opened(Box::new(document)))
         })?;
         Ok(())

@@ -1,7 +1,7 @@
 //! What background work hands to the session.
 
 use super::restaged::Restaged;
-use crate::document::Document;
+use crate::document::{Document, NearQuestion};
 use crate::output::Reference;
 use lens::Picture;
 use std::path::PathBuf;
@@ -10,6 +10,8 @@ use trace::truth::Estimate;
 /// What a finished job hands to the session.
 pub(super) enum Outcome {
     Opened(Box<Document>),
+    /// A capture that does not open until somebody says which end of its depth map is near.
+    AsksNear(Box<NearQuestion>),
     /// What is seen of a scene before it can be painted on.
     Seen(Picture),
     /// The stage of the document, seen or lit in another way.

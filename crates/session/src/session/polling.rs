@@ -93,6 +93,7 @@ impl Session {
                 self.document = Some(*document);
                 self.show_tone();
             }
+            Outcome::AsksNear(question) => self.events.push(Event::AsksNear(question)),
             Outcome::Seen(picture) => self.take_seen(&picture),
             Outcome::Restaged(restaged) => {
                 if let Err(error) = self.take_restaged(*restaged) {

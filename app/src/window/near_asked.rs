@@ -1,0 +1,77 @@
+//! The question which end of a depth map is near, with a picture of both answers.
+
+use super::false_colour::nearness_color;
+use egui::{Button, ColorImage, Context, Id, Image, TextureHandle, TextureOptions, vec2};
+use session::NearQuestion;
+
+/// Width of a picture, points.
+const WIDTH: f32 = 240.0;
+
+/// The question, when it is open.
+#[derive(Default)]
+pub struct NearAsked {
+    asked: Option<(NearQuestion, [TextureHandle; 2])>,
+}
+
+/// The answers: what `--near` calls them, what they are called here, and whether white is near.
+const ANSWERS: [(&str, &str, bool); 2] =
+    [("white", "White is near", true), ("black", "Black is near", false)];
+
+impl NearAsked {
+    /// Asks.
+    pub fn ask(&mut self, question: NearQuestion, context: &Context) {
+        let textures = ANSWERS.map(|(name, _, is_white)| {
+            let share = |nearness: f32| if is_white { nearness } else { 1.0 - nearness };
+            let pixels = question.nearness.iter().map(|&nearness| {
+                let [r, g, b] = nearness_color(share(nearness));
+                egui::Color32::from_rgb(r, g, b)
+            });
+            let image = ColorImage::new(question.size, pixels.collect());
+            context.load_texture(name, image, TextureOptions::LINEAR)
+        });
+        self.asked = Some((question, textures));
+    }
+
+    /// Whether it is open.
+    pub fn is_open(&self) -> bool {
+        self.asked.is_some()
+    }
+
+    /// Draws it. Once it is answered: what was asked, and which end is near, as `--near` says it.
+    pub fn show(&mut self, context: &Context) -> Option<(NearQuestion, &'static str)> {
+        let (question, textures) = self.asked.as_ref()?;
+        let mut answer = None;
+        let mut is_given_up = false;
+        let frame = egui::Frame::popup(&context.global_style()).inner_margin(14.0);
+        let modal = egui::Modal::new(Id::unique("which end is near")).frame(frame).show(context, |ui| {
+            ui.heading("Which picture is right?");
+            let map = question.map.file_name().unwrap_or_default().to_string_lossy();
+            ui.label(format!("{map} does not say which end is near. Yellow is near here, dark blue far."));
+            ui.add_space(8.0);
+            ui.horizontal(|ui| {
+                for ((name, label, _), texture) in ANSWERS.into_iter().zip(textures) {
+                    ui.vertical(|ui| {
+                        let [width, height] = texture.size().map(|side| side as f32);
+                        let image =
+                            Image::new(texture).fit_to_exact_size(vec2(WIDTH, WIDTH * height / width));
+                        let tip = format!("Opens it so; on the command line: --near {name}.");
+                        let is_shown =
+                            ui.add(image.sense(egui::Sense::click())).on_hover_text(&tip).clicked();
+                        let size = vec2(WIDTH, 0.0);
+                        if ui.add(Button::new(label).min_size(size)).on_hover_text(tip).clicked() || is_shown
+                        {
+                            answer = Some(name);
+                        }
+                    });
+                }
+            });
+            ui.add_space(8.0);
+            is_given_up = ui.button("Cancel").on_hover_text("Open nothing.").clicked();
+        });
+        if answer.is_none() && !is_given_up && !modal.should_close() {
+            return None;
+        }
+        let (question, _) = self.asked.take()?;
+        answer.map(|answer| (question, answer))
+    }
+}
