@@ -89,8 +89,8 @@ impl InputKind {
             "glb" | "gltf" => Ok(Self::Scene),
             ProjectFile::EXTENSION | "recovery" => Ok(Self::Project),
             "salf" => Ok(Self::LightField),
-            _ if capture::may_be_picture(path) => Ok(Self::Capture),
             _ if !path.exists() => Err(SessionError::bad(path, "no such file (check the path)")),
+            _ if capture::may_be_picture(path) => Ok(Self::Capture),
             _ => {
                 let known = format!(".glb, .gltf, .{} or .salf", ProjectFile::EXTENSION);
                 Err(SessionError::bad(
