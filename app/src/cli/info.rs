@@ -173,6 +173,9 @@ fn scene_lines(scene: &Scene, health: &MeshHealth) {
         scene.nodes.len(),
         health.area
     ));
+    if let Some(picture) = &scene.picture {
+        say(format!("  picture      {}", picture.origin));
+    }
     let size = std::array::from_fn::<f64, 3, _>(|k| health.high[k] - health.low[k]);
     say(format!("  size         {:.4} × {:.4} × {:.4}", size[0], size[1], size[2]));
     let names: Vec<_> = scene.cameras.iter().map(|camera| format!("\"{}\"", camera.name)).collect();
@@ -286,6 +289,7 @@ fn scene_json(scene: &Scene) -> Value {
         "variants": scene.variants,
         "variant": scene.variant,
         "lights": scene.lights.len(),
+        "picture": scene.picture.as_ref().map(|picture| &picture.origin),
     })
 }
 

@@ -11,6 +11,8 @@ pub struct PictureTexture {
     pub margin: u32,
     /// Pixels of the picture that a texel is wide and high.
     pub pixels: u32,
+    /// What it was made from, for people: the views and where their disparities are from, or the picture and its depth.
+    pub origin: String,
     /// By texel, row 0 on top, whether it was photographed; else it was invented.
     pub is_seen: Vec<bool>,
 }

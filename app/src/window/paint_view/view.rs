@@ -282,7 +282,9 @@ impl PaintView {
                 ui,
                 rect,
                 match session.jobs().is_empty() {
-                    true => "Drop a glTF scene, a project, the folder of a capture or a picture with depth here, or press Ctrl+O.",
+                    true => {
+                        "Drop a glTF scene, a project, the folder of a capture or a picture with depth here, or press Ctrl+O."
+                    }
                     false => "Opening…",
                 },
             );

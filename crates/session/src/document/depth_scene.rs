@@ -2,7 +2,7 @@
 
 use super::of_picture::{OfPicture, margin_px, of_size, range, relief_error, show, usual_focal_px};
 use super::picture_scene::{Named, PictureSpace, Shown, picture_camera, picture_scene, uncalibrated};
-use crate::error::SessionError;
+use crate::error::{SessionError, file_name};
 use crate::jobs::Steps;
 use capture::{CaptureError, DepthMeaning, DepthPictureOptions};
 use lens::Camera;
@@ -75,7 +75,14 @@ pub(super) fn load_depth_picture(
     let relief =
         Relief::of::<CaptureError>(size, &disparity, picture, &[], &surface, &stage).map_err(relief_error)?;
     let middle = disparity[size[1] / 2 * size[0] + size[0] / 2];
-    let named = Named { name: &found.name, path };
+    let [width, height] = found.size;
+    let what = match found.depth.meaning {
+        DepthMeaning::Distance => "distances",
+        DepthMeaning::Disparity => "disparities",
+        DepthMeaning::Relative => "relative depth",
+    };
+    let origin = format!("{width} × {height} px, {what} of {}", file_name(&found.depth_file));
+    let named = Named { name: &found.name, path, origin };
     let shown = Shown { pixels: &whole.pixels, size: found.size.map(|side| side as usize), by: by as usize };
     let scene = picture_scene(&relief, &shown, &space, &named, f64::from(middle));
     // At first half as wide as it may be.

@@ -3,9 +3,9 @@
 use super::found_disparity::found_disparity;
 use super::of_picture::{OfPicture, margin_px, of_size, range, relief_error, show, usual_focal_px};
 use super::picture_scene::{Named, PictureSpace, Shown, picture_camera, picture_scene, uncalibrated};
-use crate::error::SessionError;
+use crate::error::{SessionError, file_name};
 use crate::jobs::Steps;
-use capture::{CaptureError, LightField, LightFieldOptions, Optics};
+use capture::{CaptureError, GivenDisparity, LightField, LightFieldOptions, Optics};
 use progress::{Progress, Stage};
 use relief::{DepthStroke, OtherView, Relief, ReliefOptions, filled, repaired, upsampled};
 use scene::LoadOptions;
@@ -54,7 +54,17 @@ pub(super) fn load_light_field(
     // What has disparity 0 is where the views agree: the camera that took them was focused there.
     let focus = if (range[0]..=range[1]).contains(&0.0) { 0.0 } else { 0.5 * (range[0] + range[1]) };
     let shown = Shown { pixels: &middle, size, by: 1 };
-    let scene = picture_scene(&relief, &shown, &space, &Named { name: &field.name, path }, focus);
+    let whence = match given(&field) {
+        Some(given) => format!("of {}", file_name(&given.file)),
+        None if field.coded_disparity.is_some() => "decoded from their colours".into(),
+        None => "found in them".into(),
+    };
+    let ([width, height], [low, high]) = (size, range);
+    let views = field.views.len();
+    let origin = format!(
+        "{views} views of {width} × {height} px, disparities {low:.2} to {high:.2} px a step, {whence}"
+    );
+    let scene = picture_scene(&relief, &shown, &space, &Named { name: &field.name, path, origin }, focus);
     let mut camera = picture_camera(&scene, field.size, &space, reach);
     if let Some(longer_mm) = field.optics.sensor_size_mm {
         let [width, height] = field.size.map(f64::from);
@@ -65,6 +75,11 @@ pub(super) fn load_light_field(
     Ok(OfPicture { scene, camera, remarks, is_incomplete })
 }
 
+/// The disparities of the middle view that came along.
+fn given(field: &LightField) -> Option<&GivenDisparity> {
+    field.disparity.as_ref().filter(|given| given.view == field.reference)
+}
+
 /// The disparity of each pixel of the middle view: as it is given, else found in the views.
 fn disparity(
     field: &LightField,
@@ -73,8 +88,7 @@ fn disparity(
     load: &LoadOptions,
     progress: &dyn Progress,
 ) -> Result<Vec<f32>, SessionError> {
-    let given = field.disparity.as_ref().filter(|given| given.view == field.reference);
-    let Some(given) = given else { return found_disparity(field, load, progress) };
+    let Some(given) = given(field) else { return found_disparity(field, load, progress) };
     let map = [given.map.width as usize, given.map.height as usize];
     let known = upsampled(map, &given.map.inverse_depth(), size, middle);
     Ok(filled(size, known))

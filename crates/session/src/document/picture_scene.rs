@@ -58,10 +58,12 @@ pub(super) fn uncalibrated([low, high]: [f64; 2], focal_px: f64) -> PictureSpace
     PictureSpace { focal_px, scale, offset: scale / NEAREST - high }
 }
 
-/// What a surface is called, and where it is from.
+/// What a surface is called, and what it is from.
 pub(super) struct Named<'a> {
     pub name: &'a str,
     pub path: &'a Path,
+    /// See [`PictureTexture::origin`].
+    pub origin: String,
 }
 
 /// The picture that a surface was made from, which it may be coarser than.
@@ -152,6 +154,7 @@ pub(super) fn picture_scene(
             behind: behind as u32,
             margin: relief.margin as u32,
             pixels: shown.by as u32,
+            origin: named.origin.clone(),
             is_seen: in_rows(&relief.is_seen, relief.size, behind, rows, true),
         }),
         ..Scene::default()
@@ -255,7 +258,7 @@ mod tests {
         let space = uncalibrated([0.0, 0.46], 30.0);
         assert!((1.0 / space.inverse_depth(0.46) - NEAREST).abs() < 1e-12);
         assert!((1.0 / space.inverse_depth(0.0) - FARTHEST).abs() < 1e-12);
-        let named = Named { name: "a", path: Path::new("a.png") };
+        let named = Named { name: "a", path: Path::new("a.png"), origin: String::new() };
         let shown = Shown { pixels: &picture, size, by: 1 };
         let scene = picture_scene(&relief, &shown, &space, &named, 0.2);
         let camera = picture_camera(&scene, [24, 16], &space, 2.0);
