@@ -17,7 +17,7 @@ use glam::{DVec2, DVec3};
 pub use place_set::PlaceSet;
 pub use places::Places;
 pub(crate) use projection::Outline;
-use projection::Projection;
+use projection::{Boxes, Projection};
 use shadow::Shadow;
 pub use square::Square;
 pub(crate) use viewpoint::Eye;
@@ -111,13 +111,18 @@ impl<'a> Looking<'a> {
         }
     }
 
-    /// Those of the places that a triangle may hide, and some that it does not.
+    /// Calls `visit` with the index of each triangle that may hide some of the places, those of them, and some that it does not.
     #[inline(always)]
-    pub fn may_hide(&self, outline: &Outline) -> PlaceSet {
-        match self.projection.bounds(outline) {
-            Some(bounds) if bounds.is_outside() => PlaceSet::default(),
-            Some(bounds) => self.places.near(&bounds),
-            None => self.places.all(),
+    pub fn each_near(&self, outlines: &[Outline], mut visit: impl FnMut(usize, PlaceSet)) {
+        for (chunk, outlines) in outlines.chunks(Boxes::MOST).enumerate() {
+            let boxes = self.projection.boxes(outlines);
+            let mut left = boxes.reaching;
+            while left != 0 {
+                let at = left.trailing_zeros() as usize;
+                left &= left - 1;
+                let near = boxes.get(at).map_or(self.places.all(), |bounds| self.places.near(&bounds));
+                visit(chunk * Boxes::MOST + at, near);
+            }
         }
     }
 

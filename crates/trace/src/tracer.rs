@@ -239,11 +239,15 @@ impl Tracer {
         let all = places.all();
         let mut sight = Sight::past(self.behind_own_face(from, square, places));
         self.hierarchy.walk_within(&looking.shaft(&self.space), f32::INFINITY, |leaf| {
-            for place in leaf {
-                let near = looking.may_hide(&self.outlines[place]) - sight.hidden;
-                let triangle = &self.triangles[place];
-                if near.is_empty() || skip == Some(triangle.index) {
-                    continue;
+            let triangles = &self.triangles[leaf.clone()];
+            looking.each_near(&self.outlines[leaf], |at, near| {
+                let near = near - sight.hidden;
+                if near.is_empty() {
+                    return;
+                }
+                let triangle = &triangles[at];
+                if skip == Some(triangle.index) {
+                    return;
                 }
                 let mut new = looking.newly_hidden(&triangle.corners, near);
                 // The places lie on its other side than the viewpoint.
@@ -255,7 +259,7 @@ impl Tracer {
                 } else {
                     sight.hidden |= new;
                 }
-            }
+            });
             if sight.hidden == all { f32::NEG_INFINITY } else { f32::INFINITY }
         });
         sight
