@@ -10,7 +10,7 @@ mod square;
 mod viewpoint;
 
 use crate::Ray;
-use crate::hierarchy::Halfspaces;
+use crate::hierarchy::{Halfspaces, Node};
 use crate::local_space::LocalSpace;
 use crate::watertight::in_plane;
 use glam::{DVec2, DVec3};
@@ -124,6 +124,24 @@ impl<'a> Looking<'a> {
                 visit(chunk * Boxes::MOST + at, near);
             }
         }
+    }
+
+    /// Those of a node's boxes, of the `reached` ones, in which triangles may hide more of the places than are `hidden`.
+    #[inline(always)]
+    pub fn may_hide_more(&self, node: &Node, reached: u32, hidden: PlaceSet) -> u32 {
+        let boxes = self.projection.boxes_of(node);
+        let mut wanted = reached & boxes.reaching;
+        let mut left = wanted;
+        while left != 0 {
+            let at = left.trailing_zeros();
+            left &= left - 1;
+            if let Some(bounds) = boxes.get(at as usize)
+                && (self.places.near(&bounds) - hidden).is_empty()
+            {
+                wanted &= !(1 << at);
+            }
+        }
+        wanted
     }
 
     /// Those of the places `near` it that a triangle hides.

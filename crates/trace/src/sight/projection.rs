@@ -1,5 +1,6 @@
 //! Where triangles lie on the square as a viewpoint sees them, quickly: in f32, generously.
 
+use crate::hierarchy::Node;
 use crate::local_space::LocalSpace;
 use crate::sight::places::Bounds;
 use crate::sight::{Eye, Square};
@@ -99,25 +100,52 @@ impl Projection {
                 high[axis] = high[axis].max(at + error);
             }
         }
-        // Of a square without sides nothing is known.
-        is_known &= low[0].cmple(high[0]) & low[1].cmple(high[1]);
-        let is_outside = (low[0].cmpgt(Vec4::ONE) | high[0].cmplt(Vec4::NEG_ONE))
-            | (low[1].cmpgt(Vec4::ONE) | high[1].cmplt(Vec4::NEG_ONE));
-        let some = u32::MAX >> (31 - last);
-        Boxes {
-            low: [low[0].to_array(), low[1].to_array()],
-            high: [high[0].to_array(), high[1].to_array()],
-            known: is_known.bitmask(),
-            reaching: some & !(is_known & is_outside).bitmask(),
+        Boxes::new(low, high, is_known, u32::MAX >> (31 - last))
+    }
+
+    /// The boxes around all that a node's boxes hold.
+    #[inline(always)]
+    pub fn boxes_of(&self, node: &Node) -> Boxes {
+        let mut from_origin = node.sides;
+        for (axis, sides) in from_origin.iter_mut().enumerate() {
+            let origin = Vec4::splat(self.origin[axis]);
+            sides.iter_mut().for_each(|side| *side -= origin);
         }
+        // The least and the most that anything in the boxes lies along a side.
+        let along = |side: Vec3| {
+            let (mut least, mut most) = (Vec4::ZERO, Vec4::ZERO);
+            for (axis, sides) in from_origin.iter().enumerate() {
+                let [low, high] = [sides[0] * side[axis], sides[1] * side[axis]];
+                least += low.min(high);
+                most += low.max(high);
+            }
+            (least, most)
+        };
+        let (mut nearest, mut farthest, mut depth_share) = (Vec4::ONE, Vec4::ONE, Vec4::ZERO);
+        let mut is_known = BVec4A::splat(true);
+        if let Some(toward) = self.toward {
+            let (least, most) = along(toward);
+            is_known = least.cmpgt(Vec4::splat(16.0 * self.depth_error));
+            (nearest, farthest) = (least.recip(), most.recip());
+            depth_share = nearest * (1.1 * self.depth_error);
+        }
+        let (mut low, mut high) = ([Vec4::ZERO; 2], [Vec4::ZERO; 2]);
+        for axis in 0..2 {
+            let (least, most) = along(self.sides[axis]);
+            let farthest_out = least.abs().max(most.abs());
+            let error = (farthest_out * depth_share + self.side_error) * (nearest * 1.1) + SLACK;
+            low[axis] = (least * nearest).min(least * farthest) - self.middle[axis] - error;
+            high[axis] = (most * nearest).max(most * farthest) - self.middle[axis] + error;
+        }
+        Boxes::new(low, high, is_known, 0b1111)
     }
 }
 
-/// Boxes around triangles on the square.
+/// Boxes on the square, around triangles or what boxes hold.
 pub(super) struct Boxes {
     low: [[f32; Self::MOST]; 2],
     high: [[f32; Self::MOST]; 2],
-    /// A bit for each that is known: of no other corner is nearly beside the viewpoint, or behind it.
+    /// A bit for each that is known: of others a corner is nearly beside the viewpoint, or behind it.
     known: u32,
     /// A bit for each that has something of the square, as far as is known.
     pub reaching: u32,
@@ -126,6 +154,21 @@ pub(super) struct Boxes {
 impl Boxes {
     /// So many are found at once.
     pub const MOST: usize = 4;
+
+    /// From their ends, `some` of them, a bit each.
+    #[inline(always)]
+    fn new(low: [Vec4; 2], high: [Vec4; 2], is_known: BVec4A, some: u32) -> Self {
+        // Of a square without sides nothing is known.
+        let is_known = is_known & low[0].cmple(high[0]) & low[1].cmple(high[1]);
+        let is_outside = (low[0].cmpgt(Vec4::ONE) | high[0].cmplt(Vec4::NEG_ONE))
+            | (low[1].cmpgt(Vec4::ONE) | high[1].cmplt(Vec4::NEG_ONE));
+        Self {
+            low: [low[0].to_array(), low[1].to_array()],
+            high: [high[0].to_array(), high[1].to_array()],
+            known: is_known.bitmask(),
+            reaching: some & !(is_known & is_outside).bitmask(),
+        }
+    }
 
     /// One of them, if it is known.
     #[inline(always)]

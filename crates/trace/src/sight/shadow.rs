@@ -96,10 +96,9 @@ impl Shadow {
             return None;
         }
         let mut edges = [beyond; 3];
-        for k in 0..3 {
-            let (from, to) = sides[k];
-            edges[k] = edge(from, to);
-            if edges[k].most() < 0.0 {
+        for (found, (from, to)) in edges.iter_mut().zip(sides) {
+            *found = edge(from, to);
+            if found.most() < 0.0 {
                 return None;
             }
         }
