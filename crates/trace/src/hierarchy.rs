@@ -25,10 +25,10 @@ pub(crate) struct Hierarchy {
 
 /// Four boxes and what they hold.
 #[derive(Clone, Copy, Debug)]
-struct Node {
+pub(crate) struct Node {
     /// By axis, the low and high sides of the four boxes. An absent child has a box turned inside out, which
     /// nothing meets.
-    sides: [[Vec4; 2]; 3],
+    pub sides: [[Vec4; 2]; 3],
     /// A node, or the first item of a leaf.
     first: [u32; 4],
     /// Items of a leaf; 0 for a node.
@@ -41,6 +41,25 @@ struct Pending {
     near: f32,
     first: u32,
     count: u32,
+}
+
+/// What walks through a part of space.
+pub(crate) trait Visit {
+    /// Those of a node's boxes, a bit each, that are worth a visit; `reached` are those that reach into the part of space.
+    #[inline(always)]
+    fn wanted(&mut self, _node: &Node, reached: u32) -> u32 {
+        reached
+    }
+
+    /// Visits the items of a leaf; returns how far the walk goes on: −∞ ends it.
+    fn leaf(&mut self, items: Range<usize>) -> f32;
+}
+
+impl<F: FnMut(Range<usize>) -> f32> Visit for F {
+    #[inline(always)]
+    fn leaf(&mut self, items: Range<usize>) -> f32 {
+        self(items)
+    }
 }
 
 impl Hierarchy {
@@ -74,10 +93,9 @@ impl Hierarchy {
         }
     }
 
-    /// Calls `visit` for the items of every leaf whose box reaches into `space` and comes nearer than `far` (see
-    /// [`Halfspaces::height`]), nearer ones first by and large; `visit` returns the new `far`: −∞ ends
-    /// the walk.
-    pub fn walk_within(&self, space: &Halfspaces, far: f32, visit: impl FnMut(Range<usize>) -> f32) {
+    /// Visits the items of every leaf whose box reaches into `space` and comes nearer than `far` (see
+    /// [`Halfspaces::height`]), nearer ones first by and large; the visit of a leaf returns the new `far`.
+    pub fn walk_within(&self, space: &Halfspaces, far: f32, visit: &mut impl Visit) {
         if self.stack_size <= SHALLOW_STACK {
             self.walk_within_with(&mut [Pending::default(); SHALLOW_STACK], space, far, visit);
         } else {
@@ -91,7 +109,7 @@ impl Hierarchy {
         stack: &mut [Pending],
         space: &Halfspaces,
         mut far: f32,
-        mut visit: impl FnMut(Range<usize>) -> f32,
+        visit: &mut impl Visit,
     ) {
         let mut waiting = usize::from(!self.nodes.is_empty());
         if waiting > 0 {
@@ -104,12 +122,13 @@ impl Hierarchy {
                 continue;
             }
             if count > 0 {
-                far = visit(first as usize..(first + count) as usize);
+                far = visit.leaf(first as usize..(first + count) as usize);
                 continue;
             }
             let node = &self.nodes[first as usize];
             let (mut reached, near) = space.reached(node);
             reached &= near.cmple(Vec4::splat(far)).bitmask();
+            reached = visit.wanted(node, reached);
             let near = near.to_array();
             let base = waiting;
             while reached != 0 {

@@ -10,14 +10,14 @@ mod square;
 mod viewpoint;
 
 use crate::Ray;
-use crate::hierarchy::Halfspaces;
+use crate::hierarchy::{Halfspaces, Node};
 use crate::local_space::LocalSpace;
 use crate::watertight::in_plane;
 use glam::{DVec2, DVec3};
 pub use place_set::PlaceSet;
 pub use places::Places;
 pub(crate) use projection::Outline;
-use projection::Projection;
+use projection::{Boxes, Projection};
 use shadow::Shadow;
 pub use square::Square;
 pub(crate) use viewpoint::Eye;
@@ -111,14 +111,37 @@ impl<'a> Looking<'a> {
         }
     }
 
-    /// Those of the places that a triangle may hide, and some that it does not.
+    /// Calls `visit` with the index of each triangle that may hide some of the places, those of them, and some that it does not.
     #[inline(always)]
-    pub fn may_hide(&self, outline: &Outline) -> PlaceSet {
-        match self.projection.bounds(outline) {
-            Some(bounds) if bounds.is_outside() => PlaceSet::default(),
-            Some(bounds) => self.places.near(&bounds),
-            None => self.places.all(),
+    pub fn each_near(&self, outlines: &[Outline], mut visit: impl FnMut(usize, PlaceSet)) {
+        for (chunk, outlines) in outlines.chunks(Boxes::MOST).enumerate() {
+            let boxes = self.projection.boxes(outlines);
+            let mut left = boxes.reaching;
+            while left != 0 {
+                let at = left.trailing_zeros() as usize;
+                left &= left - 1;
+                let near = boxes.get(at).map_or(self.places.all(), |bounds| self.places.near(&bounds));
+                visit(chunk * Boxes::MOST + at, near);
+            }
         }
+    }
+
+    /// Those of a node's boxes, of the `reached` ones, in which triangles may hide more of the places than are `hidden`.
+    #[inline(always)]
+    pub fn may_hide_more(&self, node: &Node, reached: u32, hidden: PlaceSet) -> u32 {
+        let boxes = self.projection.boxes_of(node);
+        let mut wanted = reached & boxes.reaching;
+        let mut left = wanted;
+        while left != 0 {
+            let at = left.trailing_zeros();
+            left &= left - 1;
+            if let Some(bounds) = boxes.get(at as usize)
+                && (self.places.near(&bounds) - hidden).is_empty()
+            {
+                wanted &= !(1 << at);
+            }
+        }
+        wanted
     }
 
     /// Those of the places `near` it that a triangle hides.

@@ -1,11 +1,12 @@
 //! The scene's triangles in a bounding volume hierarchy.
 
 mod beams;
+mod sights;
 
 use crate::hierarchy::Hierarchy;
 use crate::local_space::LocalSpace;
 use crate::presence::Presence;
-use crate::sight::{Eye, Looking, Outline, PlaceSet, Places, Sight, Square, Viewpoint};
+use crate::sight::Outline;
 use crate::watertight::{Crossing, ShearedRay, has_area, in_plane};
 use crate::{Hit, Ray};
 use glam::DVec3;
@@ -225,74 +226,6 @@ impl Tracer {
     /// Whether an eye at the ray's origin sees any surface along it.
     pub fn any_hit(&self, ray: &Ray) -> bool {
         self.any(ray, |triangle, crossing| !triangle.hides_back || crossing.from_front)
-    }
-
-    /// What a viewpoint sees of the `places` of a square: of each what [`Self::hidden`] (or, from infinity, [`Self::any_hit`])
-    /// says of the ray to it, to the precision of f32 in u and v, for the cost of a few; but what is half there hides by its
-    /// share.
-    pub fn sight(&self, from: Viewpoint, square: &Square, places: &Places) -> Sight {
-        let (eye, skip) = match from {
-            Viewpoint::Surface(point) => (Eye::At(point.position(&self.scene)), Some(point.triangle)),
-            Viewpoint::Infinity(direction) => (Eye::Toward(direction.normalize_or_zero()), None),
-        };
-        let looking = Looking::new(eye, square, places, &self.space);
-        let all = places.all();
-        let mut sight = Sight::past(self.behind_own_face(from, square, places));
-        self.hierarchy.walk_within(&looking.shaft(&self.space), f32::INFINITY, |leaf| {
-            for place in leaf {
-                let near = looking.may_hide(&self.outlines[place]) - sight.hidden;
-                let triangle = &self.triangles[place];
-                if near.is_empty() || skip == Some(triangle.index) {
-                    continue;
-                }
-                let mut new = looking.newly_hidden(&triangle.corners, near);
-                // The places lie on its other side than the viewpoint.
-                if triangle.hides_back && !new.is_empty() && looking.sees_front(&triangle.corners) {
-                    new = PlaceSet::default();
-                }
-                if triangle.may_be_transparent && !new.is_empty() {
-                    self.dim(&mut sight, triangle, &looking, places, new);
-                } else {
-                    sight.hidden |= new;
-                }
-            }
-            if sight.hidden == all { f32::NEG_INFINITY } else { f32::INFINITY }
-        });
-        sight
-    }
-
-    /// Those of the places of a square that the back of the viewpoint's own face would be seen from.
-    fn behind_own_face(&self, from: Viewpoint, square: &Square, places: &Places) -> PlaceSet {
-        let Viewpoint::Surface(point) = from else { return PlaceSet::default() };
-        if !self.scene.hides_back(point.triangle) {
-            return PlaceSet::default();
-        }
-        let (normal, position) = (self.scene.area_normal(point.triangle), point.position(&self.scene));
-        let is_behind = |place: DVec3| normal.dot(place - position) <= 0.0;
-        if !square.corners().into_iter().any(is_behind) {
-            return PlaceSet::default();
-        }
-        places.all().iter().filter(|&place| is_behind(square.at(places.at(place)))).collect()
-    }
-
-    /// Takes from the sight of some places what a triangle in between takes: its opacity where their rays meet it.
-    #[cold]
-    fn dim(
-        &self,
-        sight: &mut Sight,
-        triangle: &LeafTriangle,
-        looking: &Looking,
-        places: &Places,
-        some: PlaceSet,
-    ) {
-        for place in some.iter() {
-            let ray = looking.ray(places.at(place));
-            let Some(crossing) = ShearedRay::new(ray.origin, ray.direction).cross(&triangle.corners) else {
-                continue;
-            };
-            let point = SurfacePoint { triangle: triangle.index, barycentric: crossing.barycentric };
-            sight.dim(place, self.scene.opacity(point));
-        }
     }
 
     /// Whether a ray meets any triangle that `counts`.

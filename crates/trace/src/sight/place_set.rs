@@ -25,7 +25,8 @@ impl PlaceSet {
     /// Whether it has none.
     #[inline(always)]
     pub fn is_empty(&self) -> bool {
-        self.0 == [0; Self::WORDS]
+        // Together, not compared: that would send the words through memory.
+        self.0.iter().fold(0, |all, word| all | word) == 0
     }
 
     /// Whether it has a place.

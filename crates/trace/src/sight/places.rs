@@ -14,13 +14,16 @@ pub struct Places {
     strips: [[[PlaceSet; 2]; STRIPS]; 2],
 }
 
-/// Strips that the square is cut into along either axis.
-const STRIPS: usize = 8;
+/// Strips that the square is cut into along either axis: finer than places lie, so that what is small has few of them.
+const STRIPS: usize = 32;
 
 /// The strip of a coordinate; the first or the last for those outside. Never falls as the coordinate rises.
 #[inline(always)]
 fn strip(x: f32) -> usize {
-    ((x + 1.0) * (STRIPS as f32 / 2.0)).clamp(0.0, STRIPS as f32 - 1.0) as usize
+    // From here on floats are whole numbers, and end in their digits.
+    const WHOLE: f32 = (1u32 << 23) as f32;
+    let at = ((x + 1.0) * (STRIPS as f32 / 2.0)).clamp(0.0, STRIPS as f32 - 1.0);
+    (at + WHOLE).to_bits() as usize % STRIPS
 }
 
 /// A box on the square.
@@ -28,14 +31,6 @@ fn strip(x: f32) -> usize {
 pub struct Bounds {
     pub low: [f32; 2],
     pub high: [f32; 2],
-}
-
-impl Bounds {
-    /// Whether it has nothing of the square.
-    #[inline(always)]
-    pub fn is_outside(&self) -> bool {
-        (self.low[0] > 1.0) | (self.high[0] < -1.0) | (self.low[1] > 1.0) | (self.high[1] < -1.0)
-    }
 }
 
 impl Places {

@@ -1,9 +1,10 @@
 //! Where triangles lie on the square as a viewpoint sees them, quickly: in f32, generously.
 
+use crate::hierarchy::Node;
 use crate::local_space::LocalSpace;
 use crate::sight::places::Bounds;
 use crate::sight::{Eye, Square};
-use glam::{DVec3, Vec3, Vec4};
+use glam::{BVec4A, DVec3, Mat4, Vec3, Vec4};
 
 /// A triangle's corners in local space, rounded: x, y and z, the last corner twice.
 #[derive(Clone, Copy, Debug)]
@@ -66,34 +67,116 @@ impl Projection {
         }
     }
 
-    /// The box around a triangle; `None` if that is not known: a corner is nearly beside the viewpoint, or behind it.
+    /// The boxes around some triangles, at most [`Boxes::MOST`] and at least one.
     #[inline(always)]
-    pub fn bounds(&self, outline: &Outline) -> Option<Bounds> {
-        let mut from_origin = outline.0;
-        for (axis, coordinates) in from_origin.iter_mut().enumerate() {
-            *coordinates -= Vec4::splat(self.origin[axis]);
+    pub fn boxes(&self, outlines: &[Outline]) -> Boxes {
+        let last = outlines.len() - 1;
+        let [a, b, c, d] = [0, 1, 2, 3].map(|k: usize| &outlines[k.min(last)].0);
+        // By axis and corner, a triangle a lane. Loops, not maps: those of many vectors become calls.
+        let mut from_origin = [[Vec4::ZERO; 3]; 3];
+        for (axis, corners) in from_origin.iter_mut().enumerate() {
+            let by_corner = Mat4::from_cols(a[axis], b[axis], c[axis], d[axis]).transpose();
+            let origin = Vec4::splat(self.origin[axis]);
+            *corners = [by_corner.x_axis - origin, by_corner.y_axis - origin, by_corner.z_axis - origin];
         }
-        let along = |side: Vec3| from_origin[0] * side.x + from_origin[1] * side.y + from_origin[2] * side.z;
-        let (mut per_depth, mut depth_share) = (Vec4::ONE, Vec4::ZERO);
-        if let Some(toward) = self.toward {
-            let depth = along(toward);
-            // Its error shall be small beside it.
-            if !depth.cmpgt(Vec4::splat(16.0 * self.depth_error)).all() {
-                return None;
+        let [x, y, z] = &from_origin;
+        let (mut low, mut high) = ([Vec4::INFINITY; 2], [Vec4::NEG_INFINITY; 2]);
+        let mut is_known = BVec4A::splat(true);
+        for k in 0..3 {
+            let along = |side: Vec3| x[k] * side.x + y[k] * side.y + z[k] * side.z;
+            let (mut per_depth, mut depth_share) = (Vec4::ONE, Vec4::ZERO);
+            if let Some(toward) = self.toward {
+                let depth = along(toward);
+                // Its error shall be small beside it.
+                is_known &= depth.cmpgt(Vec4::splat(16.0 * self.depth_error));
+                per_depth = depth.recip();
+                depth_share = per_depth * (1.1 * self.depth_error);
             }
-            per_depth = depth.recip();
-            depth_share = per_depth * (1.1 * self.depth_error);
+            for axis in 0..2 {
+                let numerator = along(self.sides[axis]);
+                let error = (numerator.abs() * depth_share + self.side_error) * (per_depth * 1.1) + SLACK;
+                let at = numerator * per_depth - self.middle[axis];
+                low[axis] = low[axis].min(at - error);
+                high[axis] = high[axis].max(at + error);
+            }
         }
-        let mut bounds = Bounds { low: [0.0; 2], high: [0.0; 2] };
-        for k in 0..2 {
-            let numerator = along(self.sides[k]);
-            let error = (numerator.abs() * depth_share + self.side_error) * (per_depth * 1.1) + SLACK;
-            let at = numerator * per_depth - self.middle[k];
-            bounds.low[k] = (at - error).min_element();
-            bounds.high[k] = (at + error).max_element();
+        Boxes::new(low, high, is_known, u32::MAX >> (31 - last))
+    }
+
+    /// The boxes around all that a node's boxes hold.
+    #[inline(always)]
+    pub fn boxes_of(&self, node: &Node) -> Boxes {
+        let mut from_origin = node.sides;
+        for (axis, sides) in from_origin.iter_mut().enumerate() {
+            let origin = Vec4::splat(self.origin[axis]);
+            sides.iter_mut().for_each(|side| *side -= origin);
         }
+        // The least and the most that anything in the boxes lies along a side.
+        let along = |side: Vec3| {
+            let (mut least, mut most) = (Vec4::ZERO, Vec4::ZERO);
+            for (axis, sides) in from_origin.iter().enumerate() {
+                let [low, high] = [sides[0] * side[axis], sides[1] * side[axis]];
+                least += low.min(high);
+                most += low.max(high);
+            }
+            (least, most)
+        };
+        let (mut nearest, mut farthest, mut depth_share) = (Vec4::ONE, Vec4::ONE, Vec4::ZERO);
+        let mut is_known = BVec4A::splat(true);
+        if let Some(toward) = self.toward {
+            let (least, most) = along(toward);
+            is_known = least.cmpgt(Vec4::splat(16.0 * self.depth_error));
+            (nearest, farthest) = (least.recip(), most.recip());
+            depth_share = nearest * (1.1 * self.depth_error);
+        }
+        let (mut low, mut high) = ([Vec4::ZERO; 2], [Vec4::ZERO; 2]);
+        for axis in 0..2 {
+            let (least, most) = along(self.sides[axis]);
+            let farthest_out = least.abs().max(most.abs());
+            let error = (farthest_out * depth_share + self.side_error) * (nearest * 1.1) + SLACK;
+            low[axis] = (least * nearest).min(least * farthest) - self.middle[axis] - error;
+            high[axis] = (most * nearest).max(most * farthest) - self.middle[axis] + error;
+        }
+        Boxes::new(low, high, is_known, 0b1111)
+    }
+}
+
+/// Boxes on the square, around triangles or what boxes hold.
+pub(super) struct Boxes {
+    low: [[f32; Self::MOST]; 2],
+    high: [[f32; Self::MOST]; 2],
+    /// A bit for each that is known: of others a corner is nearly beside the viewpoint, or behind it.
+    known: u32,
+    /// A bit for each that has something of the square, as far as is known.
+    pub reaching: u32,
+}
+
+impl Boxes {
+    /// So many are found at once.
+    pub const MOST: usize = 4;
+
+    /// From their ends, `some` of them, a bit each.
+    #[inline(always)]
+    fn new(low: [Vec4; 2], high: [Vec4; 2], is_known: BVec4A, some: u32) -> Self {
         // Of a square without sides nothing is known.
-        let is_known = (bounds.low[0] <= bounds.high[0]) & (bounds.low[1] <= bounds.high[1]);
-        is_known.then_some(bounds)
+        let is_known = is_known & low[0].cmple(high[0]) & low[1].cmple(high[1]);
+        let is_outside = (low[0].cmpgt(Vec4::ONE) | high[0].cmplt(Vec4::NEG_ONE))
+            | (low[1].cmpgt(Vec4::ONE) | high[1].cmplt(Vec4::NEG_ONE));
+        Self {
+            low: [low[0].to_array(), low[1].to_array()],
+            high: [high[0].to_array(), high[1].to_array()],
+            known: is_known.bitmask(),
+            reaching: some & !(is_known & is_outside).bitmask(),
+        }
+    }
+
+    /// One of them, if it is known.
+    #[inline(always)]
+    pub fn get(&self, index: usize) -> Option<Bounds> {
+        let is_known = self.known >> index & 1 == 1;
+        is_known.then(|| Bounds {
+            low: [self.low[0][index], self.low[1][index]],
+            high: [self.high[0][index], self.high[1][index]],
+        })
     }
 }

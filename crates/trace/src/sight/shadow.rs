@@ -33,6 +33,13 @@ impl Linear {
         let [a, b, c] = self.0.map(Vec4::splat);
         (a * u + b * v) + c
     }
+
+    /// What [`Self::of`] is at most on the square: it is rounded likewise.
+    #[inline(always)]
+    fn most(self) -> f32 {
+        let [a, b, c] = self.0;
+        (a.abs() + b.abs()) + c
+    }
 }
 
 /// The places behind a triangle: where its edges' functions are not negative, and that of its plane is positive.
@@ -42,8 +49,8 @@ pub(super) struct Shadow {
 }
 
 impl Shadow {
-    /// Of the triangle with these corners on a square that is looked at from `eye`; `None` if it throws none: it is seen along
-    /// its plane.
+    /// Of the triangle with these corners on a square that is looked at from `eye`; `None` if it throws none there: it is seen
+    /// along its plane, or the whole square lies before that plane or beside an edge.
     #[inline(always)]
     pub fn of(corners: &[DVec3; 3], eye: Eye, square: &Square) -> Option<Self> {
         let Square { center, right, up } = *square;
@@ -57,8 +64,8 @@ impl Shadow {
                 let linear = |n: DVec3, offset: f64| {
                     Linear::new(sign * n.dot(right), sign * n.dot(up), sign * (n.dot(to_square) - offset))
                 };
-                let edges = [linear(b.cross(c), 0.0), linear(c.cross(a), 0.0), linear(a.cross(b), 0.0)];
-                (height != 0.0).then(|| Self { edges, beyond: linear(normal, height) })
+                let edge = |from: DVec3, to: DVec3| linear(from.cross(to), 0.0);
+                Self::within(height != 0.0, linear(normal, height), [(b, c), (c, a), (a, b)], edge)
             }
             Eye::Toward(direction) => {
                 let [a, b, c] = corners.map(|corner| corner - center);
@@ -72,8 +79,29 @@ impl Shadow {
                 };
                 let beyond =
                     Linear::new(-sign * normal.dot(right), -sign * normal.dot(up), sign * normal.dot(a));
-                (facing != 0.0).then(|| Self { edges: [edge(b, c), edge(c, a), edge(a, b)], beyond })
+                Self::within(facing != 0.0, beyond, [(b, c), (c, a), (a, b)], edge)
             }
         }
+    }
+
+    /// From its parts, as long as each leaves something of the square.
+    #[inline(always)]
+    fn within(
+        is_faced: bool,
+        beyond: Linear,
+        sides: [(DVec3, DVec3); 3],
+        edge: impl Fn(DVec3, DVec3) -> Linear,
+    ) -> Option<Self> {
+        if !is_faced || beyond.most() <= 0.0 {
+            return None;
+        }
+        let mut edges = [beyond; 3];
+        for (found, (from, to)) in edges.iter_mut().zip(sides) {
+            *found = edge(from, to);
+            if found.most() < 0.0 {
+                return None;
+            }
+        }
+        Some(Self { edges, beyond })
     }
 }

@@ -5,6 +5,7 @@ use crate::presence::Presence;
 use crate::watertight::{ShearedRay, ShearedRays};
 use crate::{Beam, Hit, Ray};
 use glam::DVec3;
+use std::ops::Range;
 
 /// Rays of a beam, prepared for the test of many triangles.
 struct Bundle<'a> {
@@ -62,7 +63,7 @@ impl Tracer {
             if farthest.is_finite() { beam.height(&self.space, farthest) } else { f32::INFINITY }
         };
         let mut farthest = far(&nearest);
-        self.hierarchy.walk_within(&beam.shaft(&self.space), farthest, |leaf| {
+        self.hierarchy.walk_within(&beam.shaft(&self.space), farthest, &mut |leaf: Range<usize>| {
             let mut is_changed = false;
             for triangle in &self.triangles[leaf] {
                 bundle.each_near(triangle, |at, ray, sheared| {
@@ -83,7 +84,7 @@ impl Tracer {
     pub fn all_hits(&self, beam: &Beam, rays: &[Ray], most: usize) -> Vec<(usize, Hit)> {
         let Some(bundle) = Bundle::new(rays) else { return self.all_hits_one_by_one(rays, most) };
         let mut found: Vec<(usize, Hit)> = Vec::new();
-        self.hierarchy.walk_within(&beam.shaft(&self.space), f32::INFINITY, |leaf| {
+        self.hierarchy.walk_within(&beam.shaft(&self.space), f32::INFINITY, &mut |leaf: Range<usize>| {
             for triangle in &self.triangles[leaf] {
                 bundle.each_near(triangle, |at, ray, sheared| {
                     let mut only = Nearest { hit: None, t_max: ray.t_max };

@@ -1,6 +1,7 @@
 use super::*;
 use crate::Beam;
 use crate::test_scene::*;
+use crate::{Places, Square, Viewpoint};
 use glam::DVec2;
 use scene::{AlphaMode, Material};
 
