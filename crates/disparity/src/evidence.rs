@@ -8,7 +8,8 @@
 //! ```
 //!
 //! (Lucas and Kanade, *An Iterative Image Registration Technique*, IJCAI 1981, for one offset; one unknown a pixel, for the offsets
-//! are known). The weights w are those of Geman and McClure. Noise has a gradient, too, that says nothing: it is taken off.
+//! are known). The weights w are those of Geman and McClure. Noise has a gradient, too, that says nothing: it is taken off. An edge
+//! belongs to what is nearer: gradients do not reach across to what stands before the pixel.
 
 use crate::hiding::Hiding;
 use crate::planes::Planes;
@@ -25,6 +26,8 @@ pub struct Evidence {
     pub certainty: f32,
     /// The share of the views that see the point and show its colour, in [0, 1].
     pub agreement: f32,
+    /// The share of the views that show its place from which nothing nearer hides it, in [0, 1].
+    pub seen: f32,
 }
 
 /// Where a squared residual counts as wrong: so many variances of noise,
@@ -68,15 +71,17 @@ fn at_pixel(
     hiding: &Hiding<'_>,
 ) -> Evidence {
     let own = reference.pixel(x, y);
-    let gradient = gradient(reference, x, y);
+    let gradient = gradient(reference, hiding.not_before((x, y), disparity));
     let steepness: f32 = gradient.iter().map(|g| g[0] * g[0] + g[1] * g[1]).sum();
     let cut = CUT * (6.0 * noise * noise + STEEP * steepness);
     let nearest = hiding.nearest(x, y);
-    let (mut normal, mut right_side, mut agreeing, mut seen, mut lengths) = (0.0, 0.0, 0.0, 0.0, 0.0);
+    let (mut normal, mut right_side, mut lengths) = (0.0, 0.0, 0.0);
+    let (mut agreeing, mut seen, mut all) = (0.0, 0.0, 0.0);
     for view in others {
         let [u, v] = view.offset;
         let place = (x as f32 - disparity * u, y as f32 - disparity * v);
         let Some(there) = view.planes.between(place.0, place.1) else { continue };
+        all += view.weight;
         if hiding.hides((x, y), disparity, nearest, view.offset) {
             continue;
         }
@@ -95,26 +100,27 @@ fn at_pixel(
     if seen <= 0.0 {
         return Evidence::default();
     }
-    let agreement = agreeing / seen;
+    let (agreement, seen) = (agreeing / seen, seen / all);
     // A central difference of noise has the variance σ²/2; three channels, half of the squared length along each axis.
     let by_noise = 0.75 * noise * noise * lengths;
     let signal = normal - NOISE_TAKEN_OFF * by_noise;
     if signal <= 0.0 {
-        return Evidence { step: 0.0, certainty: 0.0, agreement };
+        return Evidence { step: 0.0, certainty: 0.0, agreement, seen };
     }
-    Evidence { step: right_side / normal, certainty: signal / (3.0 * noise * noise), agreement }
+    Evidence { step: right_side / normal, certainty: signal / (3.0 * noise * noise), agreement, seen }
 }
 
-/// Central differences of the three channels, a pixel; one-sided at the frame.
-fn gradient(picture: &Planes, x: usize, y: usize) -> [[f32; 2]; 3] {
-    let (left, right) = (x.saturating_sub(1), (x + 1).min(picture.width() - 1));
-    let (above, below) = (y.saturating_sub(1), (y + 1).min(picture.height() - 1));
+/// Differences of the three channels from first to last pixel, a pixel, along a row and along a column.
+fn gradient(
+    picture: &Planes,
+    [(left, right, y), (above, below, x)]: [(usize, usize, usize); 2],
+) -> [[f32; 2]; 3] {
     let across = [picture.pixel(left, y), picture.pixel(right, y)];
     let down = [picture.pixel(x, above), picture.pixel(x, below)];
     std::array::from_fn(|c| {
         [
-            (across[1][c] - across[0][c]) / (right - left) as f32,
-            (down[1][c] - down[0][c]) / (below - above) as f32,
+            (across[1][c] - across[0][c]) / (right - left).max(1) as f32,
+            (down[1][c] - down[0][c]) / (below - above).max(1) as f32,
         ]
     })
 }

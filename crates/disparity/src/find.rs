@@ -189,10 +189,10 @@ impl EvenField {
         Ok(DisparityMap { view, width: picture.width(), height: picture.height(), disparity, confidence })
     }
 
-    /// Agreement of the views that see a point, and how sharply they tell its place.
+    /// Agreement of the views that see a point, how many they are, and how sharply they tell its place.
     fn confidence(&self, told: &Evidence) -> f32 {
         let half = (self.reach / HALF_TOLD_PX).powi(2);
         let sharpness = told.certainty / (told.certainty + half);
-        (told.agreement * told.agreement * sharpness).clamp(0.0, 1.0)
+        (told.agreement * told.agreement * told.seen * sharpness).clamp(0.0, 1.0)
     }
 }

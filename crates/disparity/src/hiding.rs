@@ -55,6 +55,24 @@ impl<'a> Hiding<'a> {
         self.nearest[y / TILE * self.tiles_across + x / TILE]
     }
 
+    /// Neighbours that do not stand before the pixel at this disparity, or the pixel itself: columns to the left and right and the row,
+    /// rows above and below and the column.
+    pub fn not_before(&self, (x, y): (usize, usize), disparity: f32) -> [(usize, usize, usize); 2] {
+        let most = disparity + self.margin;
+        // The next but one counts, too: an edge is blurred over two pixels.
+        let side = |own: usize, last: usize, step: isize, at: &dyn Fn(usize) -> usize| {
+            let next = |k: isize| (own as isize + k * step).clamp(0, last as isize) as usize;
+            if [1, 2].iter().all(|k| self.disparity[at(next(*k))] <= most) { next(1) } else { own }
+        };
+        let in_row = |x: usize| y * self.width + x;
+        let in_column = |y: usize| y * self.width + x;
+        let (right, bottom) = (self.width - 1, self.height - 1);
+        [
+            (side(x, right, -1, &in_row), side(x, right, 1, &in_row), y),
+            (side(y, bottom, -1, &in_column), side(y, bottom, 1, &in_column), x),
+        ]
+    }
+
     /// Whether the pixel, at this disparity, is hidden from the view at `offset`; `nearest` is what [`Hiding::nearest`] says.
     pub fn hides(&self, (x, y): (usize, usize), disparity: f32, nearest: f32, offset: [f32; 2]) -> bool {
         if nearest - disparity <= self.margin {
@@ -115,6 +133,9 @@ mod tests {
                 assert_eq!(hidden(x, offset[0]), over, "pixel {x}, view {}", offset[0]);
             }
         }
+        // Its edges are not the wall's.
+        assert_eq!(hiding.not_before((28, 8), 0.0)[0], (27, 28, 8));
+        assert_eq!(hiding.not_before((28, 8), 2.0), [(27, 29, 8), (7, 9, 28)]);
         // The post itself is hidden from nowhere.
         assert!(offsets.iter().all(|o| !hiding.hides((31, 8), 2.0, hiding.nearest(31, 8), *o)));
     }

@@ -47,3 +47,6 @@ pub use error::DisparityError;
 pub use find::find;
 pub use map::DisparityMap;
 pub use view::{Picture, SMALLEST, View};
+
+/// Changes whenever what is found does: of maps that are kept.
+pub const VERSION: u32 = 2;

@@ -2,9 +2,13 @@
 //!
 //! A row whose neighbours above and below are known is a tridiagonal system: solved exactly in one walk there and back. Rows and
 //! columns in turn carry what is known across plain surfaces in a few rounds (line relaxation; Min et al., *Fast Global Image
-//! Smoothing Based on Weighted Least Squares*, TIP 2014, section III for lines). Columns are rows of the transposed picture.
+//! Smoothing Based on Weighted Least Squares*, TIP 2014, section III for lines), across the whole picture if coarser ones are
+//! settled first. Columns are rows of the transposed picture.
 
 use rayon::prelude::*;
+
+/// Pixels a side that pictures are not made smaller than; there so many times as many rounds cost nothing.
+const COARSEST: usize = 8;
 
 /// How much neighbours hang together.
 pub struct Bonds {
@@ -33,24 +37,63 @@ impl Bonds {
         Self { width, along_rows, along_columns }
     }
 
-    /// Smooths values over about √`strength` pixels where bonds are 1.
-    pub fn smooth(&self, values: &mut Vec<f32>, strength: f32) {
-        let height = values.len() / self.width;
-        // Weaker from round to round, so that the last one leaves no streaks: Min et al., equation 13.
-        for round in 0..3 {
-            let strength = 1.5 * 4f32.powi(2 - round) / 63.0 * strength;
-            let rounds = [(self.width, &self.along_rows), (height, &self.along_columns)];
-            for (length, bonds) in rounds {
-                values.par_chunks_mut(length).zip(bonds.par_chunks(length)).for_each(|(values, bonds)| {
-                    let mut walk = Walk::new(length);
-                    for i in 0..length {
-                        let before = if i > 0 { strength * bonds[i - 1] } else { 0.0 };
-                        walk.step(before, strength * bonds[i], 1.0, values[i]);
-                    }
-                    walk.back(values);
-                });
-                *values = transposed(values, length);
-            }
+    /// Finds values near the minimum that [`Bonds::relax`] goes to, wherever they start: first those of every second pixel of every
+    /// second line, and so on. What is left out counts as far as it hangs together with what stays, so that thin things and what lies
+    /// behind them are not taken for one.
+    pub fn settle(&self, values: &mut Vec<f32>, certainty: &[f32], target: &[f32], rounds: usize) {
+        let (width, height) = (self.width, values.len() / self.width);
+        let is_coarsest = width.min(height) < 2 * COARSEST;
+        if !is_coarsest {
+            let coarse = self.halved(height);
+            let [columns, rows] = [width.div_ceil(2), height.div_ceil(2)];
+            let (known, towards): (Vec<f32>, Vec<f32>) = (0..columns * rows)
+                .into_par_iter()
+                .map(|at| self.together([at % columns * 2, at / columns * 2], height, certainty, target))
+                .unzip();
+            let mut start: Vec<f32> =
+                (0..columns * rows).map(|at| values[at / columns * 2 * width + at % columns * 2]).collect();
+            coarse.settle(&mut start, &known, &towards, rounds);
+            values.par_chunks_mut(width).enumerate().for_each(|(y, values)| {
+                let row = &start[y / 2 * columns..][..columns];
+                values.iter_mut().enumerate().for_each(|(x, value)| *value = row[x / 2]);
+            });
+        }
+        let rounds = if is_coarsest { COARSEST * rounds } else { rounds };
+        self.relax(values, certainty, target, rounds);
+    }
+
+    /// What a pixel and those to the right, below and between know: the others through their bonds with it.
+    fn together(&self, [x, y]: [usize; 2], height: usize, certainty: &[f32], target: &[f32]) -> (f32, f32) {
+        let (mut sum, mut towards) = (0.0, 0.0);
+        let mut add = |at: usize, bond: f32| {
+            let known = series(certainty[at], bond);
+            sum += known;
+            towards += known * target[at];
+        };
+        let at = y * self.width + x;
+        add(at, f32::INFINITY);
+        let right = (x + 1 < self.width).then(|| self.along_rows[at]);
+        let below = (y + 1 < height).then(|| self.along_columns[x * height + y]);
+        if let Some(bond) = right {
+            add(at + 1, bond);
+        }
+        if let Some(bond) = below {
+            add(at + self.width, bond);
+        }
+        if let (Some(right), Some(below)) = (right, below) {
+            let around = series(right, self.along_columns[(x + 1) * height + y]);
+            add(at + self.width + 1, around + series(below, self.along_rows[at + self.width]));
+        }
+        (sum, if sum > 0.0 { towards / sum } else { target[at] })
+    }
+
+    /// The bonds of every second pixel of every second line.
+    fn halved(&self, height: usize) -> Self {
+        let columns = self.width.div_ceil(2);
+        Self {
+            width: columns,
+            along_rows: every_second(&self.along_rows, self.width),
+            along_columns: every_second(&self.along_columns, height),
         }
     }
 
@@ -69,6 +112,24 @@ impl Bonds {
             *values = transposed(values, height);
         }
     }
+}
+
+/// Two bonds one after the other.
+fn series(a: f32, b: f32) -> f32 {
+    if b.is_infinite() {
+        a
+    } else if a + b > 0.0 {
+        a * b / (a + b)
+    } else {
+        0.0
+    }
+}
+
+/// Bonds along every second line of `length` between every second pixel; each stands for two lines.
+fn every_second(along: &[f32], length: usize) -> Vec<f32> {
+    let lines = along.chunks(length).step_by(2);
+    let bond = |pair: &[f32]| if let [a, b] = *pair { 2.0 * series(a, b) } else { 0.0 };
+    lines.flat_map(|line| line.chunks(2).map(bond)).collect()
 }
 
 /// The rows of a picture, or of the transposed one.
@@ -184,15 +245,17 @@ mod tests {
     }
 
     #[test]
-    fn smoothing_keeps_a_constant_and_stops_where_there_is_no_bond() {
-        let (width, height) = (12, 10);
-        let bonds = Bonds::new(width, height, |a, b| f32::from(a % width != 5 || b % width != 6));
-        let start: Vec<f32> = (0..width * height).map(|i| if i % width < 6 { 1.0 } else { 3.0 }).collect();
-        let mut values = start.clone();
-        bonds.smooth(&mut values, 500.0);
-        assert!(values.iter().zip(&start).all(|(a, b)| (a - b).abs() < 1e-4));
-        // With bonds throughout, the step is smoothed away.
-        Bonds::new(width, height, |_, _| 1.0).smooth(&mut values, 500.0);
-        assert!((values[5] - values[6]).abs() < 0.5);
+    fn what_is_far_away_settles_a_plain_surface_and_a_line_before_it_stays() {
+        // A plain picture of which one side is known, and before it a line two pixels wide that is known to be nearer.
+        let (width, height) = (150, 90);
+        let line = |i: usize| (70..72).contains(&(i % width)) && i / width >= 60;
+        let bonds = Bonds::new(width, height, |a, b| if line(a) == line(b) { 1.0 } else { 1e-6 });
+        let target: Vec<f32> = (0..width * height).map(|i| f32::from(line(i))).collect();
+        let certainty: Vec<f32> = (0..width * height).map(|i| f32::from(line(i) || i % width == 0)).collect();
+        let mut values = vec![0.7; width * height];
+        bonds.settle(&mut values, &certainty, &target, 24);
+        for (i, value) in values.iter().enumerate() {
+            assert!((value - f32::from(line(i))).abs() < 0.3, "{}, {}: {value}", i % width, i / width);
+        }
     }
 }

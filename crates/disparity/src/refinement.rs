@@ -2,7 +2,8 @@
 //!
 //! Rounds of (1) the `evidence` of every pixel at its present disparity and (2) weighted least squares (`lines`) between that and
 //! neighbours, whose bonds are weak over edges of the picture and over jumps of the disparity (Geman–McClure weights of the present
-//! differences). Before the first round plain surfaces, where a label says nothing, are filled from what is certain around them.
+//! differences). Before the first round plain surfaces, where a label says nothing, are filled from what is certain around them, from
+//! the farther of it: thin things before a plain wall do not draw it to them.
 
 use crate::evidence::{Evidence, evidence};
 use crate::labels::Labels;
@@ -12,7 +13,7 @@ use crate::sweep::Shifted;
 use progress::{Cancelled, Progress, Stage};
 
 /// Rounds of evidence and smoothing. More than four gain a tenth of what the last one does.
-const ROUNDS: usize = 4;
+const ROUNDS: usize = 5;
 
 /// How much disparities of neighbours differ, pixels in the farthest view.
 const SLOPE_PX: f32 = 0.1;
@@ -26,11 +27,34 @@ const LEAST_BOND: f32 = 1e-4;
 /// Labels that neighbours differ by where a surface ends.
 const JUMP_LABELS: f32 = 2.0;
 
-/// Filling reaches so far: the square root of this, pixels.
-const FILL_STRENGTH: f32 = 100.0;
+/// Rounds that a membrane settles in, on each size of picture.
+const SETTLING: usize = 8;
 
-/// Certainties below this share of the smoothness' own fill nothing.
-const FILLING: f32 = 0.05;
+/// How much a certain pixel that is nearer than the membrane counts at first: plain surfaces are settled by what is farthest at their
+/// edges, even where that is little and far away.
+const LIFT: f32 = 0.003;
+
+/// Rounds in which it counts so little, and those after them, in which what is near the membrane counts in full.
+const BEHIND: usize = 3;
+const ATTACHED: usize = 5;
+
+/// The power of likeness that bonds a membrane: edges stop it more than they stop the last rounds.
+const MEMBRANE_POWER: i32 = 3;
+
+/// What a membrane's bond over an edge is at least, of one without.
+const LEAST_MEMBRANE_BOND: f32 = 1e-8;
+
+/// The membrane is taken where so much of the views sees it,
+const SEEN: f32 = 0.5;
+
+/// and where they agree no less than this below what they did.
+const LOSS: f32 = 0.1;
+
+/// Certainties below this share of the smoothness' own hold no membrane: noise alone hardly ever reaches it.
+const FILLING: f32 = 0.3;
+
+/// A pixel that counts less than this beside its neighbours takes the membrane whether views agree or not.
+const OPEN: f32 = 0.05;
 
 /// The power of the views' agreement that certainty is multiplied by: what only half of the views that see it say is not said.
 const AGREEMENT_POWER: i32 = 6;
@@ -64,17 +88,14 @@ impl Refinement<'_> {
     ) -> Result<Vec<Evidence>, Cancelled> {
         let asked = |index: usize| !known(index);
         let mut told = Vec::new();
+        let part = |k: usize| k as f32 / (ROUNDS + 2) as f32;
+        self.fill(disparity, known, &Stage::new(progress, 0.0, part(2)))?;
         for round in 0..ROUNDS {
-            let part = |k: usize| (round as f32 + k as f32 / 2.0) / (ROUNDS as f32 + 0.5);
-            let stage = Stage::new(progress, part(0), part(1));
+            let stage = Stage::new(progress, part(round + 2), part(round + 3));
             let views = if round + 1 < ROUNDS { self.few } else { self.others };
             told = evidence(self.reference, views, disparity, self.noise, &asked, &stage)?;
             let (certainty, target) = self.data(disparity, &told, known);
-            if round == 0 {
-                self.fill(disparity, &certainty, &target);
-            }
             self.bonds(disparity).relax(disparity, &certainty, &target, 6);
-            progress.report(part(2));
         }
         Ok(told)
     }
@@ -116,29 +137,73 @@ impl Refinement<'_> {
         1.0 / (1.0 + (difference / EDGE).powi(2))
     }
 
-    /// Spreads what is certain to what is not, along like colours: a quotient of two smoothed pictures.
-    fn fill(&self, disparity: &mut [f32], certainty: &[f32], target: &[f32]) {
-        let (width, height) = (self.reference.width(), self.reference.height());
-        let bonds = Bonds::new(width, height, |a, b| self.likeness(a, b));
-        let smoothness = self.smoothness();
-        let counted = |certainty: f32| if certainty < FILLING * smoothness { 0.0 } else { certainty };
-        let mut weights: Vec<f32> = certainty.iter().map(|c| counted(*c)).collect();
-        let mut sums: Vec<f32> = weights.iter().zip(target).map(|(weight, target)| weight * target).collect();
-        bonds.smooth(&mut weights, FILL_STRENGTH);
-        bonds.smooth(&mut sums, FILL_STRENGTH);
-        for (index, d) in disparity.iter_mut().enumerate() {
-            // Where nothing certain is within reach, the label stays.
-            if weights[index] > 1e-12 * smoothness {
-                let own = certainty[index] / (certainty[index] + smoothness);
-                *d = own * target[index] + (1.0 - own) * sums[index] / weights[index];
+    /// Takes what is not certain to a membrane over what is, and what is certain, too, where views agree as well with that: beside an
+    /// edge, a plain surface may stand where the edge does, or anywhere behind it.
+    fn fill(
+        &self,
+        disparity: &mut [f32],
+        known: &(impl Fn(usize) -> bool + Sync),
+        progress: &dyn Progress,
+    ) -> Result<(), Cancelled> {
+        let asked = |index: usize| !known(index);
+        let evidence_at = |disparity: &[f32], from: f32, to: f32| {
+            let stage = Stage::new(progress, from, to);
+            evidence(self.reference, self.few, disparity, self.noise, &asked, &stage)
+        };
+        let told = evidence_at(disparity, 0.0, 0.4)?;
+        let (certainty, target) = self.data(disparity, &told, known);
+        let membrane = self.membrane(&certainty, &target);
+        let there = evidence_at(&membrane, 0.6, 1.0)?;
+        let jump = self.jump();
+        for index in (0..disparity.len()).filter(|index| asked(*index)) {
+            let own = certainty[index] / (certainty[index] + self.smoothness());
+            let (target, membrane) = (target[index], membrane[index]);
+            if (membrane - target).abs() < jump {
+                disparity[index] = own * target + (1.0 - own) * membrane;
+                continue;
+            }
+            let agrees = own < OPEN || there[index].agreement > told[index].agreement - LOSS;
+            if agrees && there[index].seen > SEEN {
+                disparity[index] = membrane;
             }
         }
+        Ok(())
+    }
+
+    /// A membrane that what is certain holds and that edges of the picture cut. An edge belongs to the nearer of its two sides: a
+    /// surface lies where the farthest of its edges are, and what is nearer stands before it. So what is nearer than the membrane counts
+    /// little at first (asymmetric least squares: Newey and Powell, 1987), then as much as it is close.
+    fn membrane(&self, certainty: &[f32], target: &[f32]) -> Vec<f32> {
+        let (smoothness, jump) = (self.smoothness(), self.jump());
+        let bonds = Bonds::new(self.reference.width(), self.reference.height(), |a, b| {
+            smoothness * (self.likeness(a, b).powi(MEMBRANE_POWER) + LEAST_MEMBRANE_BOND)
+        });
+        let held = |c: f32| if c < FILLING * smoothness { 0.0 } else { c.min(smoothness) };
+        let held: Vec<f32> = certainty.iter().map(|c| held(*c)).collect();
+        let mut membrane = target.to_vec();
+        bonds.settle(&mut membrane, &held, target, SETTLING);
+        for round in 0..BEHIND + ATTACHED {
+            let counted = |nearer: f32| match nearer > 0.0 {
+                true if round < BEHIND => LIFT,
+                true => (-(nearer / jump).powi(2)).exp(),
+                false => 1.0,
+            };
+            let pixels = held.iter().zip(target.iter().zip(&membrane));
+            let weights: Vec<f32> =
+                pixels.map(|(held, (target, membrane))| held * counted(target - membrane)).collect();
+            bonds.settle(&mut membrane, &weights, target, SETTLING);
+        }
+        membrane
+    }
+
+    /// The least step of disparity where a surface ends.
+    fn jump(&self) -> f32 {
+        JUMP_LABELS * self.labels.step
     }
 
     /// Bonds by colours and by the present disparities.
     fn bonds(&self, disparity: &[f32]) -> Bonds {
-        let jump = JUMP_LABELS * self.labels.step;
-        let smoothness = self.smoothness();
+        let (smoothness, jump) = (self.smoothness(), self.jump());
         Bonds::new(self.reference.width(), self.reference.height(), |a, b| {
             let apart = (disparity[a] - disparity[b]) / jump;
             smoothness * (self.likeness(a, b) + LEAST_BOND) / (1.0 + apart * apart).powi(2)

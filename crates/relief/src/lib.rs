@@ -20,6 +20,7 @@
 mod cells;
 mod corners;
 mod error;
+mod fading;
 mod filling;
 mod frame;
 mod hidden;

@@ -2,6 +2,7 @@
 
 use crate::cells::Grid;
 use crate::error::ReliefError;
+use crate::fading::fade;
 use crate::frame::Frame;
 use crate::hidden::{Hidden, number};
 use crate::other_view::OtherView;
@@ -65,6 +66,7 @@ impl Surface<'_> {
                 layer[asked.cell] = color;
             }
         }
+        fade(grid, shown, &is_seen[..grid.count()]);
         invent(grid, shown, self.hidden, &is_seen[grid.count()..], &mut colors);
         fill_rim(grid, &self.hidden.order, &mut colors);
         Ok(Behind { colors, is_seen })

@@ -100,7 +100,8 @@ fn told(field: &LightField, load: &LoadOptions, progress: &dyn Progress) -> Resu
             let data = std::fs::metadata(view.picture.file()).map(|data| (data.len(), data.modified().ok()));
             hash.update(format!("{:?} {} {:?}", view.picture, view.position, data.ok()));
         }
-        hash.update(format!("{:?} {} {:?}", field.size, field.reference, field.optics.disparity_range));
+        let range = field.optics.disparity_range;
+        hash.update(format!("{} {:?} {} {range:?}", ::disparity::VERSION, field.size, field.reference));
     });
     let kept = file.as_ref().and_then(|file| FILES.read(file));
     if let Some(kept) = kept.filter(|bytes| bytes.len() == 8 * width * height) {

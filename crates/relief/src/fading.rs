@@ -1,0 +1,113 @@
+//! Colours beside what is known: near it those of its border, farther away only about as bright.
+//!
+//! What is beside a picture is like its border for a few pixels; of what is farther away only a mean can be told, over about the distance.
+//! Of continuing the border, mirroring the picture, a pyramid's smooth filling and this, this errs least where the frame of pictures was
+//! made smaller and what was cut off compared.
+
+use crate::cells::Grid;
+use rayon::prelude::*;
+
+/// Boxes that make a bell.
+const BOXES: usize = 3;
+
+/// Gives cells that are not known the colour of the nearest that is, blurred by a bell as wide as it is far away.
+pub(crate) fn fade(grid: Grid, colors: &mut [[f32; 3]], is_known: &[bool]) {
+    let distance = continued(grid, colors, is_known);
+    let farthest = distance.iter().copied().max().unwrap_or(0) as f32;
+    let mut blurred = colors.to_vec();
+    let mut sigma = 0.0f32;
+    // Blurs of σ = 1, 2, 4 …, each from the last; what is as far away as between two of them has a share of both.
+    while sigma < farthest {
+        let wider = if sigma > 0.0 { 2.0 * sigma } else { 1.0 };
+        let narrow = blurred.clone();
+        blur(grid, &mut blurred, (wider * wider - sigma * sigma).sqrt());
+        let pairs = narrow.par_iter().zip(&blurred);
+        colors.par_iter_mut().zip(&distance).zip(pairs).for_each(|((color, far), (narrow, wide))| {
+            let share = (*far as f32 - sigma) / (wider - sigma);
+            if share > 0.0 && share <= 1.0 {
+                *color = std::array::from_fn(|c| narrow[c] + (wide[c] - narrow[c]) * share);
+            }
+        });
+        sigma = wider;
+    }
+}
+
+/// Carries colours from what is known outward; tells by how many cells. Where nothing is known nothing changes.
+fn continued(grid: Grid, colors: &mut [[f32; 3]], is_known: &[bool]) -> Vec<u32> {
+    let mut distance: Vec<u32> = is_known.iter().map(|known| if *known { 0 } else { u32::MAX }).collect();
+    let mut border: Vec<usize> = (0..grid.count()).filter(|&cell| is_known[cell]).collect();
+    while !border.is_empty() {
+        let mut next = Vec::new();
+        for cell in border {
+            for (_, other) in grid.around(cell) {
+                if distance[other] != u32::MAX {
+                    continue;
+                }
+                distance[other] = distance[cell] + 1;
+                colors[other] = colors[cell];
+                next.push(other);
+            }
+        }
+        border = next;
+    }
+    distance.iter_mut().filter(|far| **far == u32::MAX).for_each(|far| *far = 0);
+    distance
+}
+
+/// Three boxes along rows and columns: a bell of about this standard deviation.
+fn blur(grid: Grid, colors: &mut Vec<[f32; 3]>, sigma: f32) {
+    // A box of 2 r + 1 cells has the variance (r² + r) / 3.
+    let radius = ((0.25 + sigma * sigma).sqrt() - 0.5).round().max(1.0) as usize;
+    for _ in 0..BOXES {
+        *colors = boxed(colors, grid.width, radius);
+        *colors = boxed(colors, grid.height, radius);
+    }
+}
+
+/// Means over 2 `radius` + 1 cells along lines of `length`, whose ends go on beyond them; the lines come out as columns.
+fn boxed(colors: &[[f32; 3]], length: usize, radius: usize) -> Vec<[f32; 3]> {
+    let lines: Vec<Vec<[f32; 3]>> =
+        colors.par_chunks(length).map(|line| means(line, radius as isize)).collect();
+    let mut turned = vec![[0.0; 3]; colors.len()];
+    turned.par_chunks_mut(lines.len()).enumerate().for_each(|(i, column)| {
+        column.iter_mut().zip(&lines).for_each(|(mean, line)| *mean = line[i]);
+    });
+    turned
+}
+
+fn means(line: &[[f32; 3]], radius: isize) -> Vec<[f32; 3]> {
+    let last = line.len() as isize - 1;
+    let at = |i: isize| line[i.clamp(0, last) as usize].map(f64::from);
+    let mut sum = [0.0; 3];
+    (-radius..=radius).for_each(|i| (0..3).for_each(|c| sum[c] += at(i)[c]));
+    let count = (2 * radius + 1) as f64;
+    (0..=last)
+        .map(|i| {
+            let mean = sum.map(|sum| (sum / count) as f32);
+            (0..3).for_each(|c| sum[c] += at(i + radius + 1)[c] - at(i - radius)[c]);
+            mean
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn stripes_go_on_nearby_and_fade_to_their_mean() {
+        let grid = Grid { width: 60, height: 40 };
+        let is_known: Vec<bool> = (0..grid.count()).map(|cell| cell / 60 < 20).collect();
+        let striped: Vec<[f32; 3]> =
+            (0..grid.count()).map(|cell| [f32::from(cell / 6 % 2 == 0), 0.3, 0.0]).collect();
+        let mut faded = striped.clone();
+        fade(grid, &mut faded, &is_known);
+        assert_eq!(faded[..20 * 60], striped[..20 * 60]);
+        assert!(faded.iter().all(|color| (color[1] - 0.3).abs() < 1e-4));
+        let contrast = |y: usize| (15..45).map(|x| (faded[grid.at(x, y)][0] - 0.5).abs()).fold(0.0, f32::max);
+        assert!(contrast(20) > 0.45 && contrast(38) < 0.1, "{} {}", contrast(20), contrast(38));
+        let mut none = striped.clone();
+        fade(grid, &mut none, &vec![false; grid.count()]);
+        assert_eq!(none, striped);
+    }
+}
