@@ -17,13 +17,14 @@ pub struct BrushRing {
     pub hardness: f64,
     /// The blur that is painted, px: colours the middle.
     pub circle_px: f64,
+    /// What it faces, where that is not the surface's normal.
+    pub facing: Option<DVec3>,
 }
 
-/// World positions of the ring around `hit`, in the plane of its normal.
-pub fn ring_points(hit: &SurfaceHit, radius: f64) -> impl Iterator<Item = DVec3> {
-    let normal = if hit.normal == DVec3::ZERO { DVec3::Z } else { hit.normal };
+/// World positions of a ring around `center`, in the plane of a normal.
+pub fn ring_points(center: DVec3, normal: DVec3, radius: f64) -> impl Iterator<Item = DVec3> {
+    let normal = if normal == DVec3::ZERO { DVec3::Z } else { normal };
     let (u, v) = normal.any_orthonormal_pair();
-    let center = hit.position;
     (0..=CORNERS).map(move |k| {
         let (sin, cos) = (std::f64::consts::TAU * k as f64 / CORNERS as f64).sin_cos();
         center + (u * cos + v * sin) * radius
@@ -36,7 +37,7 @@ pub fn paint(painter: &Painter, hit: &SurfaceHit, ring: BrushRing, project: impl
         let mut run = Vec::new();
         let mut shapes = Vec::new();
         // What lies behind the eye breaks the line.
-        for point in ring_points(hit, radius).map(&project) {
+        for point in ring_points(hit.position, ring.facing.unwrap_or(hit.normal), radius).map(&project) {
             match point {
                 Some(point) => run.push(point),
                 None => shapes.push(Shape::line(std::mem::take(&mut run), Stroke::new(width, color))),
@@ -72,7 +73,7 @@ mod tests {
         let point = scene::SurfacePoint { triangle: 0, barycentric: DVec2::ZERO };
         let normal = DVec3::new(1.0, 2.0, -0.5).normalize();
         let hit = SurfaceHit { point, position: DVec3::new(3.0, 0.0, 1.0), normal, distance: 1.0 };
-        let points: Vec<_> = ring_points(&hit, 0.7).collect();
+        let points: Vec<_> = ring_points(hit.position, hit.normal, 0.7).collect();
         for p in &points {
             assert!(((*p - hit.position).length() - 0.7).abs() < 1e-12);
             assert!((*p - hit.position).dot(normal).abs() < 1e-12);

@@ -73,7 +73,11 @@ impl Shell {
             Tool::Brush => signed_circle_px(&document.camera.optics(), brush.target.t),
             _ => 0.0,
         };
-        Some(BrushRing { radius: brush.radius, hardness: brush.hardness, circle_px })
+        // The normals of a surface that was made from depth are rough: there the ring faces the camera that took the picture.
+        let scene = document.scene();
+        let axis = || scene.cameras.first().map(|camera| camera.camera_to_world.z_axis.truncate());
+        let facing = scene.picture.as_ref().and_then(|_| axis());
+        Some(BrushRing { radius: brush.radius, hardness: brush.hardness, circle_px, facing })
     }
 
     /// What the user holds.

@@ -206,7 +206,11 @@ impl Document {
                 let shot = NamedCamera { name: SHOT.into(), camera: input.camera.clone() };
                 let (low, high) = input.scene.bounds();
                 let radius = brush_radius(&input.camera, (high - low).length());
-                let brush = Brush { radius, ..Brush::default() };
+                let mut brush = Brush { radius, ..Brush::default() };
+                if input.scene.picture.is_some() {
+                    // The normals of a surface that was made from depth are as rough as that.
+                    brush.normal_limit_degrees = 180.0;
+                }
                 let capture = input.capture.clone();
                 ProjectFile { brush, capture, ..ProjectFile::new(&input.scene.path, vec![shot])? }
             }
