@@ -268,8 +268,12 @@ impl Shell {
                 Event::AsksNear(question) => self.near.ask(*question, context),
                 Event::Glaring(_) => {}
                 Event::SurfaceChanged => {
+                    self.picture.surface_changed();
                     if let Some(document) = self.session.document() {
                         self.paint.surface_changed(document, context);
+                        if document.scene().picture.is_some() {
+                            self.drawer.surface_changed();
+                        }
                     }
                 }
                 Event::MapChanged(rectangles) => {

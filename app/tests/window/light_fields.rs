@@ -17,6 +17,9 @@ fn repairs_depth(person: &mut Person) {
         person.shell().session().pick(&ray).map(|hit| camera.camera_from_world(hit.position).z).unwrap()
     };
     let (before, picture) = (depth(person), person.picture());
+    // A point looks at the aperture meanwhile: it is none of the surface afterwards.
+    person.presses(Modifiers::NONE, Key::F8);
+    person.clicks(at(person.picture_rect(), 0.5, 0.5));
     let rect = person.picture_rect();
     person.presses(Modifiers::NONE, Key::U);
     person.drags(&[at(rect, 0.5, 0.5), at(rect, 0.7, 0.5), at(rect, 0.9, 0.5)]);

@@ -32,6 +32,11 @@ impl Drawer {
         *self = Self::default();
     }
 
+    /// Another surface: a point that was chosen is no place of it.
+    pub fn surface_changed(&mut self) {
+        self.aperture = ApertureView::default();
+    }
+
     /// Takes a point to look from at the aperture.
     pub fn inspect(&mut self, hit: SurfaceHit) {
         self.aperture.inspect(hit);

@@ -114,6 +114,8 @@ impl PaintView {
 
     /// Takes up another surface, or the same in other materials.
     pub fn surface_changed(&mut self, document: &Document, context: &egui::Context) {
+        self.hover = None;
+        self.highlight.forget();
         self.upload_surface(document, (Coating::Materials, None), context);
     }
 

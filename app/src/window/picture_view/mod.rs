@@ -83,6 +83,12 @@ impl PictureView {
         *self = Self::new(self.blitter.take());
     }
 
+    /// Another surface: what lay under the pointer is no place of it.
+    pub fn surface_changed(&mut self) {
+        self.hover = None;
+        self.highlight.forget();
+    }
+
     /// Shows a picture, on whatever side of the line it is not yet.
     pub fn show(&mut self, shown: Shown) {
         if !(self.wipe.is_on && self.wipe.against == shown) {
