@@ -19,13 +19,15 @@ pub(crate) struct Corner {
     pub disparity: f32,
 }
 
-/// What a corner of the grid is.
+/// What a corner of the grid is for a layer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Joint {
-    /// All four cells of the first layer share it, with this disparity.
+    /// All four cells are there and each hangs together with those beside it, none with the other layer; its disparity.
     Whole(f32),
-    /// Some are missing or do not.
+    /// It is otherwise.
     Cut,
+    /// There are no cells.
+    Absent,
 }
 
 impl Cells {
@@ -41,23 +43,34 @@ impl Cells {
         Corner { at, point, disparity: self.disparity_at(&around, &shared, point) }
     }
 
-    /// A corner that all cells of the first layer around it share.
-    pub(crate) fn whole_corner(&self, at: [usize; 2]) -> Corner {
-        let around = self.around(at);
-        let shared = self.shared(&around);
-        Corner { at, point: shared[0], disparity: self.disparity_at(&around, &shared, shared[0]) }
+    /// A corner of the grid as one of the cells there has it, if it is there: that left of it and above it where `is_after` says so, else
+    /// right and below.
+    pub(crate) fn corner_at(&self, layer: usize, at: [usize; 2], is_after: [bool; 2]) -> Option<Corner> {
+        let [x, y] = [0, 1].map(|axis| at[axis].wrapping_sub(usize::from(is_after[axis])));
+        let is_there =
+            x < self.grid.width && y < self.grid.height && self.is_there(layer, self.grid.at(x, y));
+        is_there.then(|| self.corner(layer, self.grid.at(x, y), is_after))
     }
 
-    /// What a corner of the grid is for the first layer.
-    pub(crate) fn joint(&self, at: [usize; 2]) -> Joint {
+    /// What a corner of the grid is for a layer.
+    pub(crate) fn joint(&self, layer: usize, at: [usize; 2]) -> Joint {
         let around = self.around(at);
-        let is_whole = around[..4].iter().all(Option::is_some) && around[4..].iter().all(Option::is_none);
-        if !is_whole {
-            return Joint::Cut;
+        let own = 4 * layer..4 * layer + 4;
+        match around[own.clone()].iter().flatten().count() {
+            0 => return Joint::Absent,
+            4 => {}
+            _ => return Joint::Cut,
         }
+        let has = |place: usize, side| {
+            around[own.start + place].is_some_and(|cell| self.links[layer].has(cell, side))
+        };
+        let is_ring = has(0, Side::Right) && has(0, Side::Below) && has(3, Side::Left) && has(3, Side::Above);
         let shared = self.shared(&around);
-        match shared[..4].iter().all(|&point| point == shared[0]) {
-            true => Joint::Whole(self.disparity_at(&around, &shared, shared[0])),
+        let point = shared[own.start];
+        let is_own =
+            shared.iter().enumerate().all(|(place, &other)| own.contains(&place) == (other == point));
+        match is_ring && is_own {
+            true => Joint::Whole(self.disparity_at(&around, &shared, point)),
             false => Joint::Cut,
         }
     }

@@ -13,9 +13,9 @@
 //! ```
 //!
 //! A pixel is a cell between four corners; cells beside each other share corners unless depth jumps between them. Behind what stands before
-//! something, a second layer of cells goes on as far as the aperture may look. The first layer's triangles are joined while the surface stays
-//! within a tolerance (`triangulation`). Every layer has the whole picture's place in the texture, one below the other: the texture is an
-//! atlas, and the picture is its upper part.
+//! something, a second layer of cells goes on as far as the aperture may look. Triangles are joined while the surface stays within a
+//! tolerance (`triangulation`). Every layer has the whole picture's place in the texture, one below the other: the texture is an atlas, and
+//! the picture is its upper part.
 
 mod cells;
 mod corners;

@@ -100,12 +100,13 @@ impl Relief {
         let surface = Surface { frame: &frame, front: &front, hidden: &hidden, jump };
         let Behind { colors, is_seen } = surface.complete(&mut shown, views, &stage)?;
         progress.check().map_err(ReliefError::Cancelled)?;
-        let Hidden { disparity: back, links: back_links, onward, order } = hidden;
+        let Hidden { disparity: back, links: back_links, onward, .. } = hidden;
         let cells = Cells { grid, disparity: [front, back], links: [links, back_links], onward };
         let mut mesh = Mesh::of(grid);
         let metric = Metric { reach: options.reach, offset: options.offset };
-        mesh.add_first(&cells, metric, options.tolerance_px);
-        mesh.add_second(&cells, &order);
+        for layer in 0..TEXTURE_LAYERS {
+            mesh.add(&cells, layer, metric, options.tolerance_px);
+        }
         progress.report(1.0);
         let corner = Vec2::splat(frame.margin as f32);
         mesh.vertices.iter_mut().for_each(|vertex| vertex.place -= corner);
@@ -160,33 +161,16 @@ impl Mesh {
         *known
     }
 
-    fn add_first(&mut self, cells: &Cells, metric: Metric, tolerance: f32) {
-        for triangle in Triangulation::of(cells, metric).triangles(tolerance) {
-            let low = |axis: usize| triangle.corners.iter().map(|at| at[axis]).min().unwrap_or(0);
-            let (x, y) = (low(0), low(1));
-            let cell = cells.grid.at(x, y);
-            let high = |axis: usize| triangle.corners.iter().map(|at| at[axis]).max().unwrap_or(0);
-            let is_one_cell = high(0) - x == 1 && high(1) - y == 1;
-            if is_one_cell && !cells.is_there(0, cell) {
-                continue;
-            }
-            // Corners of what is larger than a cell are whole.
-            let corners = triangle.corners.map(|at| match is_one_cell {
-                true => cells.corner(0, cell, [at[0] > x, at[1] > y]),
-                false => cells.whole_corner(at),
-            });
-            let corners = corners.map(|corner| self.vertex(0, corner));
+    fn add(&mut self, cells: &Cells, layer: usize, metric: Metric, tolerance: f32) {
+        for triangle in Triangulation::of(cells, layer, metric).triangles(tolerance) {
+            // Of the points at a corner it has that of its own cell there: towards its middle.
+            let sum = [0, 1].map(|axis| triangle.corners.iter().map(|at| at[axis]).sum::<usize>());
+            let corners = triangle
+                .corners
+                .map(|at| cells.corner_at(layer, at, [3 * at[0] > sum[0], 3 * at[1] > sum[1]]));
+            let [Some(a), Some(b), Some(c)] = corners else { continue };
+            let corners = [a, b, c].map(|corner| self.vertex(layer as u8, corner));
             self.triangles.push(corners);
-        }
-    }
-
-    fn add_second(&mut self, cells: &Cells, order: &[usize]) {
-        for &cell in order {
-            let corner = |right, below| cells.corner(1, cell, [right, below]);
-            let [a, b, c, d] =
-                [corner(false, false), corner(true, false), corner(false, true), corner(true, true)]
-                    .map(|corner| self.vertex(1, corner));
-            self.triangles.extend([[a, c, d], [a, d, b]]);
         }
     }
 }

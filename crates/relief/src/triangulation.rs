@@ -1,8 +1,8 @@
-//! The first layer's triangles: as few as keep the surface within a tolerance.
+//! A layer's triangles: as few as keep the surface within a tolerance.
 //!
 //! Right triangles are halved where the middle of their longest side is off (Evans, Kirkpatrick and Townsend 2001, right-triangulated
 //! irregular networks; Lindstrom and Pascucci 2002). A corner counts as far off as what is halved beneath it, so that neighbours are halved
-//! alike and nothing gapes. Corners at jumps, and those around them, are always there.
+//! alike and nothing gapes. Corners at jumps are always there: all cells beneath a triangle hang together, and with those along its sides.
 //!
 //! A texture is laid on a triangle evenly in space, not as the picture shows it. Between ends a and b of inverse depths q the middle in
 //! space is seen beside that in the picture, and that counts as off, too:
@@ -24,36 +24,40 @@ pub(crate) struct Triangulation {
 }
 
 /// A triangle: corners of the grid, the right angle last.
-pub(crate) struct FirstTriangle {
+pub(crate) struct LayerTriangle {
     pub corners: [[usize; 2]; 3],
 }
 
 impl Triangulation {
-    /// How far off the corners of the first layer's cells are.
-    pub fn of(cells: &Cells, metric: Metric) -> Self {
+    /// How far off the corners of a layer's cells are.
+    pub fn of(cells: &Cells, layer: usize, metric: Metric) -> Self {
         let grid = cells.grid;
         let side = grid.width.max(grid.height).next_power_of_two().max(2);
         let row = grid.width + 1;
         let joints: Vec<f32> = (0..row * (grid.height + 1))
             .into_par_iter()
-            .map(|corner| match cells.joint([corner % row, corner / row]) {
+            .map(|corner| match cells.joint(layer, [corner % row, corner / row]) {
                 Joint::Whole(disparity) => disparity,
                 Joint::Cut => f32::NAN,
+                Joint::Absent => 0.0,
             })
             .collect();
-        let is_cut = |x: usize, y: usize| x <= grid.width && y <= grid.height && joints[y * row + x].is_nan();
-        let mut errors = vec![0.0; (side + 1) * (side + 1)];
-        errors.par_chunks_mut(side + 1).enumerate().for_each(|(y, errors)| {
-            for (x, error) in errors.iter_mut().enumerate() {
-                let near = |at: usize, last: usize| at.saturating_sub(1)..=(at + 1).min(last);
-                let is_near_cut = near(y, side).any(|y| near(x, side).any(|x| is_cut(x, y)));
-                *error = if is_near_cut { f32::INFINITY } else { 0.0 };
-            }
-        });
         let at = |x: usize, y: usize| match x <= grid.width && y <= grid.height {
             true => joints[y * row + x],
             false => 0.0,
         };
+        // What a middle, and all up to it, hangs together with there.
+        let end = |x: usize, y: usize, middle: [usize; 2]| {
+            let joint = at(x, y);
+            let of_cell = || cells.corner_at(layer, [x, y], [x > middle[0], y > middle[1]]);
+            if joint.is_nan() { of_cell().map_or(joint, |corner| corner.disparity) } else { joint }
+        };
+        let mut errors = vec![0.0; (side + 1) * (side + 1)];
+        errors.par_chunks_mut(side + 1).enumerate().for_each(|(y, errors)| {
+            for (x, error) in errors.iter_mut().enumerate() {
+                *error = if at(x, y).is_nan() { f32::INFINITY } else { 0.0 };
+            }
+        });
         let mut step = 2;
         while step <= side {
             let half = step / 2;
@@ -81,9 +85,9 @@ impl Triangulation {
                     let mut found = Vec::new();
                     for x in (first..=side).step_by(step) {
                         let ends = if line % 2 == 0 {
-                            [at(x - half, y), at(x + half, y)]
+                            [end(x - half, y, [x, y]), end(x + half, y, [x, y])]
                         } else {
-                            [at(x, y - half), at(x, y + half)]
+                            [end(x, y - half, [x, y]), end(x, y + half, [x, y])]
                         };
                         let off = metric.off(at(x, y), ends, step as f32);
                         found.push((y * (side + 1) + x, off.max(beneath(before, x, y))));
@@ -101,9 +105,10 @@ impl Triangulation {
                     let mut found = Vec::new();
                     for column in 0..side / step {
                         let x = column * step + half;
+                        let end = |x: usize, y: usize| end(x, y, [column * step + half, line * step + half]);
                         let ends = match (column + line) % 2 {
-                            0 => [at(x - half, y - half), at(x + half, y + half)],
-                            _ => [at(x + half, y - half), at(x - half, y + half)],
+                            0 => [end(x - half, y - half), end(x + half, y + half)],
+                            _ => [end(x + half, y - half), end(x - half, y + half)],
                         };
                         let sides = [(x - half, y), (x + half, y), (x, y - half), (x, y + half)];
                         let most =
@@ -120,8 +125,8 @@ impl Triangulation {
         Self { grid, side, errors }
     }
 
-    /// The triangles that stay within a tolerance, in the picture.
-    pub fn triangles(&self, tolerance: f32) -> Vec<FirstTriangle> {
+    /// The triangles that stay within a tolerance, in the picture. All cells beneath one are there, or none.
+    pub fn triangles(&self, tolerance: f32) -> Vec<LayerTriangle> {
         let side = self.side;
         let mut triangles = Vec::new();
         let mut open = vec![([0, 0], [side, side], [side, 0]), ([side, side], [0, 0], [0, side])];
@@ -138,7 +143,7 @@ impl Triangulation {
                 open.push((apex, a, middle));
                 open.push((b, apex, middle));
             } else {
-                triangles.push(FirstTriangle { corners: [a, b, apex] });
+                triangles.push(LayerTriangle { corners: [a, b, apex] });
             }
         }
         triangles

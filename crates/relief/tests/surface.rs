@@ -30,10 +30,15 @@ fn card(x: f32, y: f32) -> f32 {
 
 /// The disparity of the first layer at a place, and how many triangles are there.
 fn first_layer(relief: &Relief, at: Vec2) -> (f32, usize) {
+    of_layer(relief, 0, at)
+}
+
+/// The disparity of a layer at a place, and how many triangles are there.
+fn of_layer(relief: &Relief, layer: u8, at: Vec2) -> (f32, usize) {
     let mut found = (f32::NAN, 0);
     for corners in &relief.triangles {
         let [a, b, c] = corners.map(|v| relief.vertices[v as usize]);
-        if a.layer > 0 {
+        if a.layer != layer {
             continue;
         }
         let area = (b.place - a.place).perp_dot(c.place - a.place);
@@ -85,6 +90,45 @@ fn nothing_gapes_where_nothing_jumps() {
         let is_border = on_border(a).into_iter().zip(on_border(b)).any(|(a, b)| a && b);
         assert_eq!(count, if is_border { 1 } else { 2 }, "{a} {b}");
     }
+}
+
+#[test]
+fn only_cells_sides_gape_where_depth_jumps() {
+    // A tilted disc before the hill.
+    let disc = |x: f32, y: f32| match (x - 40.0).hypot(y - 22.0) < 14.0 {
+        true => 3.0 + 0.02 * x - 0.01 * y,
+        false => hill(x, y),
+    };
+    let relief = surface(&disparities(disc), &ReliefOptions { reach: 4.0, ..ReliefOptions::default() });
+    assert!(relief.hidden_triangles() > 100);
+    let mut sides: HashMap<[u32; 2], usize> = HashMap::new();
+    for &[a, b, c] in &relief.triangles {
+        for [from, to] in [[a, b], [b, c], [c, a]] {
+            *sides.entry([from.min(to), from.max(to)]).or_default() += 1;
+        }
+    }
+    for (&[a, b], &count) in &sides {
+        let [a, b] = [a, b].map(|v| relief.vertices[v as usize].place);
+        assert!(count == 2 || count == 1 && a.distance(b) == 1.0, "{count} at {a} {b}");
+    }
+}
+
+#[test]
+fn what_is_behind_is_joined_and_lies_beneath_the_same_cells() {
+    let wall = |x: f32, y: f32| if card(x, y) == 2.0 { 2.0 } else { 0.3 };
+    let relief = surface(&disparities(wall), &ReliefOptions { reach: 6.0, ..ReliefOptions::default() });
+    for y in 0..SIZE[1] {
+        for x in 0..SIZE[0] {
+            for (right, below) in [(0.47, 0.56), (0.1, 0.2), (0.9, 0.3), (0.2, 0.9), (0.8, 0.7)] {
+                let at = Vec2::new(x as f32 + right, y as f32 + below);
+                let (found, count) = of_layer(&relief, 1, at);
+                assert_eq!(count, usize::from(wall(at.x, at.y) == 2.0), "{at}");
+                assert!(count == 0 || (found - 0.3).abs() < 1e-5, "{found} at {at}");
+            }
+        }
+    }
+    let cells = 2 * 30 * 21;
+    assert!(relief.hidden_triangles() < cells / 3, "{} of {cells}", relief.hidden_triangles());
 }
 
 #[test]
