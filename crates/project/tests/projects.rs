@@ -6,13 +6,20 @@ use damage::{damage, is_one_line};
 use focus::{Brush, BrushMode, FocusMap};
 use lens::{Aperture, ApertureMask, ApertureShape, Camera, Exposure, FocusOffset};
 use project::{
-    NamedCamera, ProjectError, ProjectFile, SceneState, TexelSet, find_recovery, recovery_path_for,
-    remove_recovery, unsaved_recovery_path,
+    CaptureChoices, NamedCamera, ProjectError, ProjectFile, SceneState, TexelSet, find_recovery,
+    recovery_path_for, remove_recovery, unsaved_recovery_path,
 };
+use relief::{DepthRepair, DepthStroke};
 use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use tempfile::TempDir;
+
+/// What a project's manifest says.
+fn manifest(file: &Path) -> serde_json::Value {
+    let mut zip = zip::ZipArchive::new(std::fs::File::open(file).unwrap()).unwrap();
+    serde_json::from_reader(zip.by_name("manifest.json").unwrap()).unwrap()
+}
 
 fn document(folder: &Path) -> ProjectFile {
     std::fs::create_dir_all(folder.join("models")).unwrap();
@@ -55,11 +62,7 @@ fn the_selection_comes_back_and_a_brush_mirrored_by_objects_is_told_by_the_versi
         ProjectFile { selection: Some(TexelSet::new([130, 70], texels)), ..document(folder.path()) };
     selected.save(&file).unwrap();
     assert_eq!(ProjectFile::load(&file).unwrap(), selected);
-    let version = |file: &Path| {
-        let mut zip = zip::ZipArchive::new(std::fs::File::open(file).unwrap()).unwrap();
-        let manifest = zip.by_name("manifest.json").unwrap();
-        serde_json::from_reader::<_, serde_json::Value>(manifest).unwrap()["version"].clone()
-    };
+    let version = |file: &Path| manifest(file)["version"].clone();
     assert_eq!(version(&file), 1, "older programs let everything be painted");
     let brush = Brush { mirror: [true, false, false], mirror_by_object: true, ..Brush::default() };
     let mirrored = ProjectFile { brush, ..selected.clone() };
@@ -78,11 +81,6 @@ fn layers_come_back_the_same_and_a_plain_document_stays_as_older_programs_know_i
     let file = folder.path().join("layers.fbrush");
     let plain = document(folder.path());
     plain.save(&file).unwrap();
-    let manifest = |file: &Path| {
-        let mut zip = zip::ZipArchive::new(std::fs::File::open(file).unwrap()).unwrap();
-        let manifest = zip.by_name("manifest.json").unwrap();
-        serde_json::from_reader::<_, serde_json::Value>(manifest).unwrap()
-    };
     assert_eq!((&manifest(&file)["version"], manifest(&file).get("layers")), (&1.into(), None));
 
     let mut masked = FocusMap::clear(130, 70);
@@ -279,6 +277,30 @@ fn repack(file: &Path, change: Change<'_>) -> PathBuf {
 }
 
 #[test]
+fn repaired_depth_is_kept_and_needs_a_program_that_knows_it() {
+    let folder = TempDir::new().unwrap();
+    let file = folder.path().join("work.fbrush");
+    let stroke = DepthStroke {
+        repair: DepthRepair::Spread,
+        way: vec![[12.5, 3.25], [40.0, -1.0]],
+        radius_px: 7.5,
+        hardness: 0.5,
+        strength: 1.0,
+    };
+    let choices = CaptureChoices { depth_strokes: vec![stroke], ..CaptureChoices::default() };
+    let project = ProjectFile { capture: Some(choices.clone()), ..document(folder.path()) };
+    project.save(&file).unwrap();
+    assert_eq!(manifest(&file)["version"], 7);
+    assert_eq!(ProjectFile::load(&file).unwrap().capture, Some(choices));
+    let wide = |name: &str, bytes: Vec<u8>| match name {
+        "manifest.json" => String::from_utf8(bytes).unwrap().replacen("7.5", "1e30", 1).into_bytes(),
+        _ => bytes,
+    };
+    let error = ProjectFile::load(&repack(&file, &wide)).unwrap_err().to_string();
+    assert!(error.contains("capture.depth_strokes has a stroke beyond all pictures"), "{error}");
+}
+
+#[test]
 fn wrong_content_is_told_with_its_entry() {
     let folder = TempDir::new().unwrap();
     let file = folder.path().join("work.fbrush");
@@ -299,7 +321,7 @@ fn wrong_content_is_told_with_its_entry() {
     };
     assert!(load(&|_, bytes| bytes).is_ok());
     let cases: [(Change<'_>, &str); 8] = [
-        (&in_manifest("\"version\": 1", "\"version\": 7"), "update the program"),
+        (&in_manifest("\"version\": 1", "\"version\": 8"), "update the program"),
         (&in_manifest("focus-brush project", "shopping list"), "shopping list"),
         (&in_manifest("\"active_camera\": 1", "\"active_camera\": 2"), "camera 2 of 2"),
         (&in_manifest("\"width\": 130", "\"width\": 131"), "focus.f32"),
