@@ -1,5 +1,6 @@
 //! Opening, saving, exporting and keeping unsaved work: all in the background.
 
+use super::first_look::OpeningSteps;
 use super::outcome::Outcome;
 use super::state::Session;
 use crate::commands::Event;
@@ -7,6 +8,7 @@ use crate::document::{Beginning, Document, Input, NearQuestion};
 use crate::error::{SessionError, file_name};
 use crate::jobs::JobSteps;
 use crate::output::write_unwrapped;
+use atlas::UnwrapOptions;
 use project::{CaptureChoices, FocusMapFile, write_focus_map};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -22,19 +24,7 @@ const LONGEST_WRITE: Duration = Duration::from_secs(30);
 
 impl Session {
     pub(super) fn open(&mut self, path: PathBuf) -> Result<(), SessionError> {
-        let unwrap = self.options.unwrap.clone();
-        let label = format!("opening {}", file_name(&path));
-        let first_look = self.first_look();
-        self.start(label, move |progress| {
-            let opened = Document::open(&path, &unwrap, &first_look.steps(progress));
-            match opened {
-                Err(SessionError::NearUnknown { map, .. }) => {
-                    Ok(Outcome::AsksNear(Box::new(NearQuestion::of(path, map)?)))
-                }
-                opened => Ok(Outcome::Opened(Box::new(opened?))),
-            }
-        })?;
-        Ok(())
+        self.start_opening(path, |path, unwrap, steps| Document::open(path, unwrap, steps))
     }
 
     pub(super) fn open_capture(
@@ -42,25 +32,32 @@ impl Session {
         path: PathBuf,
         choices: CaptureChoices,
     ) -> Result<(), SessionError> {
-        let unwrap = self.options.unwrap.clone();
-        let label = format!("opening {}", file_name(&path));
-        let first_look = self.first_look();
-        self.start(label, move |progress| {
-            let steps = first_look.steps(progress);
-            let input = Input::open_capture(&path, choices, &steps)?;
-            let document = Document::begin_with(input, &Beginning::default(), &unwrap, &steps)?;
-            Ok(Outcome::Opened(Box::new(document)))
-        })?;
-        Ok(())
+        self.start_opening(path, |path, unwrap, steps| {
+            let input = Input::open_capture(path, choices, steps)?;
+            Document::begin_with(input, &Beginning::default(), unwrap, steps)
+        })
     }
 
     pub(super) fn open_template(&mut self, path: PathBuf) -> Result<(), SessionError> {
+        self.start_opening(path, |path, unwrap, steps| Document::open_template(path, unwrap, steps))
+    }
+
+    /// Opens in the background what `open` opens; a question that comes up is passed on.
+    fn start_opening(
+        &mut self,
+        path: PathBuf,
+        open: impl FnOnce(&Path, &UnwrapOptions, &OpeningSteps<'_>) -> Result<Document, SessionError>
+        + Send
+        + 'static,
+    ) -> Result<(), SessionError> {
         let unwrap = self.options.unwrap.clone();
         let label = format!("opening {}", file_name(&path));
         let first_look = self.first_look();
-        self.start(label, move |progress| {
-            let document = Document::open_template(&path, &unwrap, &first_look.steps(progress))?;
-            Ok(Outcome::Opened(Box::new(document)))
+        self.start(label, move |progress| match open(&path, &unwrap, &first_look.steps(progress)) {
+            Err(SessionError::NearUnknown { map, .. }) => {
+                Ok(Outcome::AsksNear(Box::new(NearQuestion::of(path, map)?)))
+            }
+            opened => Ok(Outcome::Opened(Box::new(opened?))),
         })?;
         Ok(())
     }
