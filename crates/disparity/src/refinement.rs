@@ -12,7 +12,7 @@ use crate::planes::Planes;
 use crate::sweep::Shifted;
 use progress::{Cancelled, Progress, Stage};
 
-/// Rounds of evidence and smoothing. More than four gain a tenth of what the last one does.
+/// Rounds of evidence and smoothing.
 const ROUNDS: usize = 5;
 
 /// How much disparities of neighbours differ, pixels in the farthest view.

@@ -221,10 +221,8 @@ pub fn render_input(
     options: &RenderOptions,
     steps: &dyn Steps,
 ) -> Result<Rendered, SessionError> {
-    camera.validate().map_err(|error| SessionError::bad(&input.path, error))?;
     let start = Instant::now();
-    let tracer = Arc::new(Tracer::new(input.scene.clone()));
-    input.tell_atlas(&tracer)?;
+    let tracer = tracer_of(input, camera)?;
     let prepare_seconds = start.elapsed().as_secs_f64();
     let mut rendered = match input.salf.as_ref().filter(|_| options.renderer.draws_light_field()) {
         None => render(&tracer, camera, focus, options, steps)?,
@@ -247,6 +245,14 @@ pub fn render_input(
     };
     rendered.cost.prepare_seconds = prepare_seconds;
     Ok(rendered)
+}
+
+/// What answers the rays of a camera that can be used.
+pub(super) fn tracer_of(input: &Input, camera: &Camera) -> Result<Arc<Tracer>, SessionError> {
+    camera.validate().map_err(|error| SessionError::bad(&input.path, error))?;
+    let tracer = Arc::new(Tracer::new(input.scene.clone()));
+    input.tell_atlas(&tracer)?;
+    Ok(tracer)
 }
 
 /// What keeps a light field of `baked` from serving `camera`.

@@ -3,7 +3,7 @@
 //! A thin lens shows what it is focused on at one place through every part of its aperture, so that an eye's picture is the lens's through a
 //! small part of it, focused on the point that both eyes fixate: that has no disparity, and nothing is cut off at the frame's sides.
 
-use super::render::{RenderCost, RenderOptions, Rendered, draw_baked, pixel_ray, render_input};
+use super::render::{RenderCost, RenderOptions, Rendered, draw_baked, pixel_ray, render_input, tracer_of};
 use super::renderer::Renderer;
 use crate::document::Input;
 use crate::error::SessionError;
@@ -63,8 +63,9 @@ pub fn render_stereo(
             "two eyes have no place that far apart (give --eyes between 0 and 0.9375 of the aperture's diameter)",
         );
     }
+    let tracer = tracer_of(input, camera)?;
     let focus_distance = match stereo.fixate {
-        Some(place) => fixated(input, camera, place)?,
+        Some(place) => fixated(&tracer, input, camera, place)?,
         None => camera.focus_distance,
     };
     let camera = Camera { focus_distance, ..camera.clone() };
@@ -72,9 +73,6 @@ pub fn render_stereo(
     let mut rendered = match input.salf.is_none() && options.renderer == Renderer::Splat {
         // One light field serves both.
         true => {
-            camera.validate().map_err(|error| SessionError::bad(&input.path, error))?;
-            let tracer = Arc::new(Tracer::new(input.scene.clone()));
-            input.tell_atlas(&tracer)?;
             let start = Instant::now();
             let salf = Arc::new(options.bake(&tracer, &camera, focus, steps)?);
             let bake_seconds = start.elapsed().as_secs_f64();
@@ -104,7 +102,7 @@ pub(crate) fn pair(
 }
 
 /// How far ahead is what the picture shows at a place; at infinity where no surface is.
-fn fixated(input: &Input, camera: &Camera, place: DVec2) -> Result<f64, SessionError> {
+fn fixated(tracer: &Tracer, input: &Input, camera: &Camera, place: DVec2) -> Result<f64, SessionError> {
     let size = DVec2::new(f64::from(camera.width), f64::from(camera.height));
     if !(place.cmpge(DVec2::ZERO).all() && place.cmplt(size).all()) {
         let what = format!(
@@ -115,7 +113,7 @@ fn fixated(input: &Input, camera: &Camera, place: DVec2) -> Result<f64, SessionE
     }
     let number = place.y as u32 * camera.width + place.x as u32;
     let ray = pixel_ray(camera, number);
-    let hit = Tracer::new(input.scene.clone()).first_hit(&ray);
+    let hit = tracer.first_hit(&ray);
     let depth = hit.map(|hit| camera.camera_from_world(hit.point.position(&input.scene)).z);
     Ok(depth.unwrap_or(f64::INFINITY))
 }

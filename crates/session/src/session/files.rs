@@ -4,7 +4,7 @@ use super::first_look::OpeningSteps;
 use super::outcome::Outcome;
 use super::state::Session;
 use crate::commands::Event;
-use crate::document::{Beginning, Document, Input, NearQuestion};
+use crate::document::{Beginning, Document, Input, InputKind, NearQuestion};
 use crate::error::{SessionError, file_name};
 use crate::jobs::JobSteps;
 use crate::output::write_unwrapped;
@@ -54,7 +54,7 @@ impl Session {
         let label = format!("opening {}", file_name(&path));
         let first_look = self.first_look();
         self.start(label, move |progress| match open(&path, &unwrap, &first_look.steps(progress)) {
-            Err(SessionError::NearUnknown { map, .. }) => {
+            Err(SessionError::NearUnknown { map, .. }) if InputKind::of(&path) == Ok(InputKind::Capture) => {
                 Ok(Outcome::AsksNear(Box::new(NearQuestion::of(path, map)?)))
             }
             opened => Ok(Outcome::Opened(Box::new(opened?))),

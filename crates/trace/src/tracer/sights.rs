@@ -37,6 +37,26 @@ impl Tracer {
         }
         places.all().iter().filter(|&place| is_behind(square.at(places.at(place)))).collect()
     }
+
+    /// Takes from the sight of some places what a triangle in between takes: its opacity where their rays meet it.
+    #[cold]
+    fn dim(
+        &self,
+        sight: &mut Sight,
+        triangle: &LeafTriangle,
+        looking: &Looking,
+        places: &Places,
+        some: PlaceSet,
+    ) {
+        for place in some.iter() {
+            let ray = looking.ray(places.at(place));
+            let Some(crossing) = ShearedRay::new(ray.origin, ray.direction).cross(&triangle.corners) else {
+                continue;
+            };
+            let point = SurfacePoint { triangle: triangle.index, barycentric: crossing.barycentric };
+            sight.dim(place, self.scene.opacity(point));
+        }
+    }
 }
 
 /// A walk from a viewpoint to a square.
@@ -84,27 +104,5 @@ impl Visit for Watch<'_> {
             }
         });
         if self.sight.hidden == self.places.all() { f32::NEG_INFINITY } else { f32::INFINITY }
-    }
-}
-
-impl Tracer {
-    /// Takes from the sight of some places what a triangle in between takes: its opacity where their rays meet it.
-    #[cold]
-    fn dim(
-        &self,
-        sight: &mut Sight,
-        triangle: &LeafTriangle,
-        looking: &Looking,
-        places: &Places,
-        some: PlaceSet,
-    ) {
-        for place in some.iter() {
-            let ray = looking.ray(places.at(place));
-            let Some(crossing) = ShearedRay::new(ray.origin, ray.direction).cross(&triangle.corners) else {
-                continue;
-            };
-            let point = SurfacePoint { triangle: triangle.index, barycentric: crossing.barycentric };
-            sight.dim(place, self.scene.opacity(point));
-        }
     }
 }
