@@ -598,3 +598,30 @@ fn strokes_are_replayed_onto_a_new_project() {
     project::write_strokes(&place.path("lost.json"), &recorded(&lost)).unwrap();
     place.fails("replay quads.fbrush lost.json -o x.fbrush", 3, &["lost.json", "step 1", "nowhere"]);
 }
+
+#[test]
+fn file_managers_see_what_is_in_a_file() {
+    let place = Workplace::new();
+    let project = place.paint("painted.fbrush");
+    place.fails("thumbnail painted.fbrush -o small.png", 3, &["painted.fbrush", "without a picture"]);
+    let shown = project::Thumbnail::of(640, 320, vec![[0.25, 0.5, 1.0]; 640 * 320]);
+    let saved = ProjectFile { thumbnail: Some(shown), ..ProjectFile::load(&project).unwrap() };
+    saved.save(&project).unwrap();
+    // They name the file as they like.
+    place.done("thumbnail painted.fbrush --size 128 -o small");
+    std::fs::rename(place.path("small"), place.path("small.png")).unwrap();
+    let small = read_picture(&place.path("small.png")).unwrap();
+    assert_eq!((small.width, small.height), (107, 54));
+    assert!(small.rgb.iter().all(|rgb| (rgb[1] - 0.5).abs() < 0.01), "{:?}", small.rgb[0]);
+    // A light field is drawn, though its scene is out of reach.
+    place.done(&format!("render quads.glb {SHOT} -o whole.png"));
+    place.done("bake quads.glb --camera camera.json -o field.salf");
+    std::fs::rename(place.path("quads.glb"), place.path("away.glb")).unwrap();
+    place.done("thumbnail field.salf --size 512 -o field.png");
+    let (whole, field) =
+        (read_picture(&place.path("whole.png")).unwrap(), read_picture(&place.path("field.png")).unwrap());
+    assert_eq!((whole.width, whole.height), (field.width, field.height));
+    assert!(field.rgb.iter().any(|rgb| rgb[0] > 0.1), "it shows something");
+    place.fails("thumbnail away.glb -o x.png", 3, &["away.glb", "no picture of itself"]);
+    place.fails("thumbnail nothing.fbrush -o x.png", 3, &["nothing.fbrush"]);
+}

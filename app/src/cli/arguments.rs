@@ -61,6 +61,8 @@ pub enum Subcommand {
     Export(ExportArguments),
     /// The presets of brushes, lenses and bokeh
     Presets(PresetsArguments),
+    /// The small picture of a project or a light field, as file managers show it
+    Thumbnail(ThumbnailArguments),
     /// Adapters, libraries, what is missing and how to get it
     Doctor(DoctorArguments),
 }
@@ -452,6 +454,19 @@ pub struct PresetsArguments {
     /// Write JSON to stdout
     #[arg(long)]
     pub json: bool,
+}
+
+/// `thumbnail`.
+#[derive(Debug, Args)]
+pub struct ThumbnailArguments {
+    /// A project (.fbrush), which holds what it looked like when it was saved, or a light field (.salf), which is drawn
+    pub file: PathBuf,
+    /// Where to write it
+    #[arg(short, long, value_name = "PNG")]
+    pub output: PathBuf,
+    /// Its longer side in pixels, at most
+    #[arg(long, value_name = "PX", default_value_t = 256, value_parser = clap::value_parser!(u32).range(1..=512))]
+    pub size: u32,
 }
 
 /// `doctor`.

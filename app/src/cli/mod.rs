@@ -1,7 +1,7 @@
 //! The command line: a thin layer over the `session` crate.
 //!
 //! * `arguments`: what can be typed. One file a subcommand does it: `info`, `new`, `import`, `replay`, `unwrap`, `bake`, `render`,
-//!   `compare`, `report`, `export`, `presets`, `doctor`.
+//!   `compare`, `report`, `export`, `presets`, `thumbnail`, `doctor`.
 //! * `console`: progress on stderr, results on stdout. `failure`: errors and exit codes.
 
 mod arguments;
@@ -19,6 +19,7 @@ mod render;
 mod replay;
 mod report;
 mod shot;
+mod thumbnail;
 mod unwrap;
 
 use crate::window;
@@ -88,6 +89,7 @@ fn dispatch(command: Subcommand) -> Result<(), Failure> {
             export::run(&arguments, &console)
         }
         Subcommand::Presets(arguments) => presets::run(&arguments),
+        Subcommand::Thumbnail(arguments) => thumbnail::run(&arguments, &console),
         Subcommand::Doctor(arguments) => doctor::run(&arguments),
     }
 }

@@ -7,7 +7,7 @@
 //! * [`compare`]: how far two pictures are apart; [`write_error_map`]: where; [`z_test`]: whether
 //!   chance explains it.
 //! * [`Preset`]: a brush, lens or bokeh to be used again; [`PresetShelf`]: all that there are.
-//! * [`ProjectFile`]: the saved document.
+//! * [`ProjectFile`]: the saved document; [`Thumbnail`]: the small picture in it.
 //!
 //! Everything is written atomically: the old file stays until the new one is complete.
 
@@ -39,6 +39,7 @@ mod scene_path;
 mod strokes_file;
 mod texel_bytes;
 mod texel_set;
+mod thumbnail;
 mod world_file;
 mod z_test;
 
@@ -59,5 +60,6 @@ pub use strokes_file::{
     StrokeView, read_strokes, write_strokes,
 };
 pub use texel_set::TexelSet;
+pub use thumbnail::Thumbnail;
 pub use world_file::{EnvironmentChoice, WorldFile};
 pub use z_test::{ZAgreement, z_test};

@@ -126,7 +126,7 @@ pub(crate) fn srgb_bytes(rgb: &[[f32; 3]]) -> Vec<u8> {
 }
 
 /// The linear value of an sRGB-encoded one, both in [0, 1]. Inverse of [`srgb_from_linear`].
-fn linear_from_srgb(c: f32) -> f32 {
+pub(crate) fn linear_from_srgb(c: f32) -> f32 {
     if c <= 0.04045 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) }
 }
 

@@ -23,9 +23,14 @@ pub(crate) fn read_image(file: &Path) -> Result<DynamicImage, ProjectError> {
             "write it again, or take another copy",
         )
     };
+    decode(&bytes).map_err(error)
+}
+
+/// What the bytes of a picture's file show, or why they show nothing.
+pub(crate) fn decode(bytes: &[u8]) -> Result<DynamicImage, String> {
     let decoded = std::panic::catch_unwind(|| {
         let mut reader =
-            ImageReader::new(Cursor::new(&bytes)).with_guessed_format().map_err(|e| e.to_string())?;
+            ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(|e| e.to_string())?;
         let mut limits = Limits::default();
         limits.max_image_width = Some(LARGEST_SIDE);
         limits.max_image_height = Some(LARGEST_SIDE);
@@ -33,7 +38,7 @@ pub(crate) fn read_image(file: &Path) -> Result<DynamicImage, ProjectError> {
         reader.limits(limits);
         reader.decode().map_err(|e| e.to_string())
     });
-    decoded.unwrap_or_else(|_| Err("its content contradicts itself".to_string())).map_err(error)
+    decoded.unwrap_or_else(|_| Err("its content contradicts itself".to_string()))
 }
 
 /// Columns, rows and the stored red, green and blue of a picture, in [0, 1], not decoded from sRGB.

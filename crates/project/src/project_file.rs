@@ -11,6 +11,7 @@
 //! | `focus.gloss.f32` | how far gloss obeys them, the same way; where it does |
 //! | `layers/N.f32`, `layers/N.gloss.f32`, `layers/N.mask.f32` | the same of one layer, and its mask; where there are layers |
 //! | `selection.bits` | what may be painted, a bit a texel; where that is not everything |
+//! | `thumbnail.png` | what the picture looked like when it was saved, for file managers; where one was shown |
 //! | `masks/N.f32` | the aperture mask of camera N: width and height as u32, then transmissions as f32 |
 //!
 //! The scene itself stays where it is; its path is kept relative to the project, so that both may be moved
@@ -26,6 +27,7 @@ use crate::scene_checksum::scene_checksum;
 use crate::scene_path::ScenePath;
 use crate::texel_bytes::{bytes_of, floats, pairs};
 use crate::texel_set::TexelSet;
+use crate::thumbnail::{THUMBNAIL, Thumbnail};
 use crate::{ProjectError, WorldFile};
 use focus::{Brush, FocusLayer, FocusMap, LayerStack};
 use lens::{ApertureMask, ApertureShape, Camera, Exposure, FocusOffset};
@@ -92,6 +94,8 @@ pub struct ProjectFile {
     pub selection: Option<TexelSet>,
     /// The background's focus where there is no focus map; else the map's own counts.
     pub background_focus: FocusOffset,
+    /// What its picture looked like when it was saved.
+    pub thumbnail: Option<Thumbnail>,
 }
 
 /// Whether the scene is still the one that the document was made for.
@@ -128,6 +132,7 @@ impl ProjectFile {
             layers: None,
             selection: None,
             background_focus: FocusOffset::STANDARD,
+            thumbnail: None,
         })
     }
 
@@ -238,6 +243,9 @@ impl ProjectFile {
             let [width, height] = selection.size();
             MapEntry { entry: SELECTION.to_string(), width, height, gloss: None }
         });
+        if let Some(Thumbnail(png)) = &self.thumbnail {
+            entries.push((THUMBNAIL.to_string(), png.clone()));
+        }
 
         let manifest = Manifest {
             format: Manifest::FORMAT.to_string(),
@@ -332,6 +340,7 @@ impl ProjectFile {
         {
             return Err(error("has a selection of another size than its focus map".to_string()));
         }
+        let thumbnail = Thumbnail::from_container(file, &manifest, &mut container)?;
         let scene = manifest.scene.path.from(file);
         let capture = match &manifest.capture {
             Some(row) => Some(row.choices(file).map_err(|what| error(what.to_string()))?),
@@ -354,6 +363,7 @@ impl ProjectFile {
             layers,
             selection,
             background_focus,
+            thumbnail,
         })
     }
 }

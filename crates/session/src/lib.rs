@@ -49,7 +49,7 @@ pub use light_field::{
 pub use output::{
     Aov, BlurHistogram, LeftOut, LeftOutPicture, MOST_CELLS_A_SIDE, Reference, ReferenceKind, RenderCost,
     RenderOptions, Rendered, Renderer, Stereo, StereoForm, ToldBy, Verification, VerifiedError, render,
-    render_input, render_stereo, write_unwrapped,
+    render_input, render_stereo, thumbnail, write_unwrapped,
 };
 pub use preview::{DrawingCosts, PictureTimes, Preview, PreviewActivity, PreviewKind, Quality};
 pub use relief::{DepthRepair, DepthStroke};

@@ -10,6 +10,7 @@ mod reference;
 mod render;
 mod renderer;
 mod stereo;
+mod thumbnail;
 mod unwrapped;
 mod verification;
 
@@ -21,6 +22,7 @@ pub use render::{MOST_CELLS_A_SIDE, RenderCost, RenderOptions, Rendered, render,
 pub use renderer::Renderer;
 pub(crate) use stereo::pair;
 pub use stereo::{Stereo, StereoForm, render_stereo};
+pub use thumbnail::thumbnail;
 pub use unwrapped::write_unwrapped;
 pub use verification::{Verification, VerifiedError};
 
