@@ -16,6 +16,7 @@ mod near_question;
 mod of_picture;
 mod open_document;
 mod picking;
+mod picture_regions;
 mod picture_scene;
 mod scene_camera;
 mod scene_hashes;
