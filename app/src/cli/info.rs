@@ -319,9 +319,10 @@ fn bake_lines(camera: &Camera, scene: &Scene) {
 /// The least and greatest depth of vertices inside the picture.
 fn corners_ahead(camera: &Camera, scene: &Scene) -> Option<(f64, f64)> {
     let optics = camera.optics();
+    let [width, height] = [camera.width, camera.height].map(f64::from);
     let in_picture = scene.positions.iter().map(|&p| camera.camera_from_world(p)).filter(|p| {
-        let q = optics.chief(*p);
-        p.z > 0.0 && q.x.abs() <= camera.aspect() && q.y.abs() <= 1.0
+        let pixel = camera.pixel_from_q(optics.chief(*p));
+        p.z > 0.0 && (0.0..=width).contains(&pixel.x) && (0.0..=height).contains(&pixel.y)
     });
     in_picture.map(|p| p.z).fold(None, |range, z| {
         Some(range.map_or((z, z), |(near, far): (f64, f64)| (near.min(z), far.max(z))))
