@@ -14,7 +14,6 @@ import bpy
 
 from . import handover, meshes_back, program, world_light
 from .glb_file import Glb, atlas_set
-from .meshes_back import TO_BLENDER  # noqa: F401
 from .names import KEY, BridgeError, extras, of_extras
 
 ATLAS = "Focus Brush atlas"

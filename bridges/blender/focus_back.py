@@ -1,5 +1,6 @@
 """What was painted, into Blender: the focus map as an image and as attributes, its UV map, the lens, the picture."""
 
+import json
 from pathlib import Path
 
 import bpy
@@ -9,25 +10,30 @@ from . import camera_lens, exr_file, handover, meshes_back, program
 from .names import ATTRIBUTES, FOCUS_IMAGE, PICTURE, BridgeError
 
 
-def fetch(found, folder, picture=True):
-    """Asks the program for what a project holds, and writes it into `back` within the folder. Gives what `apply` needs."""
+def commands(folder, picture=True):
+    """What the program is asked for a project's state, into `back` within the folder: commands of a `program.Queue`."""
     folder = Path(folder)
-    manifest = handover.read(folder)
-    project = folder / manifest["project"]
+    project = folder / handover.read(folder)["project"]
     if not project.is_file():
         raise BridgeError(f"{project}: is missing (save it in Focus Brush, or open the scene there again)")
     back = folder / "back"
     back.mkdir(exist_ok=True)
-    program.run(found, "export", project, "--glb", back / "scene.glb", "--focus-map", back / "focus.exr")
-    if picture:
-        program.run(found, "render", project, "-o", back / "picture.exr")
-    return manifest, program.told(found, "info", project)["camera"], back
+    asked = [
+        (("export", project, "--glb", back / "scene.glb", "--focus-map", back / "focus.exr"), None),
+        (("info", project, "--json"), back / "info.json"),
+    ]
+    return asked + ([(("render", project, "-o", back / "picture.exr"), None)] if picture else [])
 
 
-def apply(scene, fetched):
+def fetch(found, folder, picture=True):
+    """Asks the program, and waits for it."""
+    program.Queue(found, commands(folder, picture)).finish()
+
+
+def apply(scene, folder):
     """Puts what was fetched into the scene. Gives what there is to tell, a sentence each."""
-    manifest, camera, back = fetched
-    told = []
+    manifest, back, told = handover.read(folder), Path(folder) / "back", []
+    camera = json.loads((back / "info.json").read_text(encoding="utf-8"))["camera"]
     planes, _ = exr_file.read(back / "focus.exr")
     focus_image(planes)
     meshes_back.forget_copies()

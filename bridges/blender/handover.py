@@ -111,17 +111,24 @@ def read(folder):
     return manifest
 
 
-def make_project(found, folder, manifest):
-    """Makes the project, or, where there is one already, a new one that carries its paint over. Gives its path."""
+def project_commands(folder, manifest):
+    """What the program is asked for the project: a new one, or, where there is one already, one that carries its paint over. Commands of
+    a `program.Queue`, and what is to be done after them."""
     folder = Path(folder)
-    project = folder / manifest["project"]
+    project, after = folder / manifest["project"], folder / "next.fbrush"
     arguments = ["new", folder / manifest["scene"], "--camera", manifest["camera_data"], "--world", folder / manifest["world"]]
-    if project.is_file():
-        arguments += ["--paint-from", project]
-        kept = project.with_name(f"{project.stem} before.fbrush")
-        program.run(found, *arguments, "-o", folder / "next.fbrush")
-        project.replace(kept)
-        (folder / "next.fbrush").replace(project)
-    else:
-        program.run(found, *arguments, "-o", project)
-    return project
+    if not project.is_file():
+        return [([*arguments, "-o", project], None)], lambda: project
+
+    def replaced():
+        project.replace(project.with_name(f"{project.stem} before.fbrush"))
+        return after.replace(project)
+
+    return [([*arguments, "--paint-from", project, "-o", after], folder / "carried.txt")], replaced
+
+
+def make_project(found, folder, manifest):
+    """Makes the project, and waits for it. Gives its path."""
+    asked, done = project_commands(folder, manifest)
+    program.Queue(found, asked).finish()
+    return done()

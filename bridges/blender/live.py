@@ -14,6 +14,8 @@ LOOKED_EVERY = 1.0
 
 # The project that was seen last, and its date.
 _seen = {}
+# What is being fetched.
+_fetching = None
 
 
 @persistent
@@ -43,16 +45,22 @@ def changed(scene):
 
 
 def look():
-    """Looks at the project, and shows what is new."""
+    """Looks at the project; fetches what is new, and shows it when it is there."""
+    global _fetching
     scene = bpy.context.scene
     if scene is None or not scene.focus_brush.live:
         return LOOKED_EVERY
     try:
-        if changed(scene):
-            found = program.find(settings.program_of(bpy.context))
-            folder = handover.folder_of(scene.focus_brush.folder)
-            focus_back.apply(scene, focus_back.fetch(found, folder, scene.focus_brush.picture))
+        folder = handover.folder_of(scene.focus_brush.folder)
+        if _fetching is not None:
+            if _fetching.poll():
+                _fetching = None
+                focus_back.apply(scene, folder)
+        elif changed(scene):
+            asked = focus_back.commands(folder, scene.focus_brush.picture)
+            _fetching = program.Queue(program.find(settings.program_of(bpy.context)), asked)
     except BridgeError as error:
+        _fetching = None
         print("Focus Brush:", error)
     return LOOKED_EVERY
 
@@ -63,6 +71,10 @@ def register():
 
 
 def unregister():
+    global _fetching
+    if _fetching is not None:
+        _fetching.stop()
+        _fetching = None
     if bpy.app.timers.is_registered(look):
         bpy.app.timers.unregister(look)
     if saved in bpy.app.handlers.save_post:

@@ -25,7 +25,9 @@ class FOCUSBRUSH_OT_open(bpy.types.Operator):
             if chosen.light == "cycles":
                 return self._bake(context, found, folder)
             manifest = handover.write(scene, folder, animation=chosen.animation)
-            start(self.report, found, folder, manifest)
+            start(found, folder, manifest)
+            for sentence in manifest["told"]:
+                self.report({"WARNING"}, sentence)
         except BridgeError as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
@@ -48,10 +50,7 @@ class FOCUSBRUSH_OT_open(bpy.types.Operator):
                 told.unlink(missing_ok=True)
                 _notice("ERROR", [why])
                 return None
-            try:
-                start(lambda kinds, text: _notice("INFO", [text]), found, folder, handover.read(folder))
-            except BridgeError as error:
-                _notice("ERROR", [str(error)])
+            start(found, folder, handover.read(folder))
             return None
 
         bpy.app.timers.register(asked, first_interval=ASKED_EVERY)
@@ -59,12 +58,31 @@ class FOCUSBRUSH_OT_open(bpy.types.Operator):
         return {"FINISHED"}
 
 
-def start(report, found, folder, manifest):
-    """Makes the project and opens it; says what does not come along."""
-    project = handover.make_project(found, folder, manifest)
-    program.start(found, project)
-    for sentence in manifest["told"]:
-        report({"WARNING"}, sentence)
+def start(found, folder, manifest):
+    """Lets the program make the project, and opens it then."""
+    asked, done = handover.project_commands(folder, manifest)
+
+    def opened():
+        program.start(found, done())
+        if manifest["told"]:
+            _notice("INFO", manifest["told"])
+
+    when_done(program.Queue(found, asked), opened)
+
+
+def when_done(queue, then):
+    """Asks a queue until it is done, and does something then. Nothing waits."""
+
+    def asked():
+        try:
+            if not queue.poll():
+                return ASKED_EVERY
+            then()
+        except BridgeError as error:
+            _notice("ERROR", [str(error)])
+        return None
+
+    bpy.app.timers.register(asked)
 
 
 def _notice(icon, lines):
@@ -83,19 +101,23 @@ class FOCUSBRUSH_OT_fetch(bpy.types.Operator):
     bl_idname = "focus_brush.fetch"
     bl_label = "Fetch from Focus Brush"
     bl_description = "Brings the saved focus map, the lens and the picture back into this scene"
-    bl_options = {"REGISTER", "UNDO"}
 
     def execute(self, context):
         scene = context.scene
         try:
             found = program.find(settings.program_of(context))
             folder = handover.folder_of(scene.focus_brush.folder)
-            told = focus_back.apply(scene, focus_back.fetch(found, folder, scene.focus_brush.picture))
+            queue = program.Queue(found, focus_back.commands(folder, scene.focus_brush.picture))
         except BridgeError as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
-        for sentence in told:
-            self.report({"WARNING"}, sentence)
+
+        def shown():
+            told = focus_back.apply(scene, folder)
+            bpy.ops.ed.undo_push(message="Fetch from Focus Brush")
+            _notice("INFO", told or ["The paint is here"])
+
+        when_done(queue, shown)
         return {"FINISHED"}
 
 

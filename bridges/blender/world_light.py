@@ -11,7 +11,7 @@ from pathlib import Path
 import bpy
 
 WIDTH = 2048
-SAMPLES = 16
+SAMPLES = 4
 
 
 def uniform(world):
