@@ -576,11 +576,7 @@ fn strokes_are_replayed_onto_a_new_project() {
     let project = ProjectFile::load(&place.path("quads.fbrush")).unwrap();
     assert!(project.focus_map.is_some() && project.cameras[0].camera.width == 96);
     let camera = &project.cameras[0].camera;
-    let view = focus::ViewFrame {
-        camera_to_world: camera.camera_to_world,
-        yfov: camera.yfov,
-        aspect: camera.aspect(),
-    };
+    let view = focus::ViewFrame::of(camera);
     let brush = focus::Brush { radius: 0.3, target: lens::FocusOffset::new(1.4, 0.5), ..Default::default() };
     let points = (0..20).map(|k| [0.3 + 0.02 * k as f64, 0.5, 1.0]).collect();
     let stroke = project::RecordedStroke { layer: "Paint".into(), brush, view: view.into(), points };

@@ -14,7 +14,7 @@ import struct
 import sys
 from collections import namedtuple
 
-VERSION = 5
+VERSION = 6
 MAGIC = b"FBSALF\r\n"
 LONGEST_TEXT = 65536
 LARGEST_SIDE = 16384
@@ -102,11 +102,13 @@ def is_rigid(pose):
 def read_camera(file):
     width, height = file.numbers("II")
     yfov, focus_distance, radius, sensor_height = file.numbers("4d")
+    shift = file.numbers("2d")
     background, pose, ratio = file.numbers("3d"), file.numbers("16d"), file.number("d")
     shape = file.number("B")
     require(1 <= width <= LARGEST_SIDE and 1 <= height <= LARGEST_SIDE, "a picture without a size")
     require(0 < yfov < math.pi, "an angle of view that is none")
     require(focus_distance > 0 and 0 <= radius < math.inf and 0 < sensor_height < math.inf, "a lens that is none")
+    require(all(-100 <= value <= 100 for value in shift), "a shift that is none")
     require(all(0 <= value < math.inf for value in background), "a background that is none")
     require(is_rigid(pose), "a pose that is none")
     require(0 < ratio < math.inf, "an anamorphic ratio that is none")
@@ -135,6 +137,7 @@ def read_camera(file):
         "focus_distance": focus_distance,
         "aperture_radius": radius,
         "sensor_height": sensor_height,
+        "shift": shift,
         "background": background,
         "pose": pose,
         "aperture": aperture,

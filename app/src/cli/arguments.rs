@@ -131,6 +131,10 @@ pub struct NewArguments {
     /// How it is focused to begin with: a recipe (.json) or a focus map (.exr, .png) (default: the ordinary lens)
     #[arg(long, value_name = "RECIPE.json|MAP.exr|png")]
     pub focus: Option<PathBuf>,
+    /// A project whose paint is carried over by surface: to the nearest point of the node of the same name that looks the same way.
+    /// The project stays as it is; what finds no partner is listed and selected
+    #[arg(long, value_name = "OLD.fbrush", conflicts_with = "focus")]
+    pub paint_from: Option<PathBuf>,
     #[command(flatten)]
     pub scene_look: SceneLook,
 }

@@ -16,7 +16,8 @@ pub fn run(arguments: &ExportArguments, console: &Console) -> Result<(), Failure
     if InputKind::of(project)? != InputKind::Project {
         return Err(Failure::bad(format!("{}: is no project (give a .fbrush file)", project.display())));
     }
-    let input = Input::open(project, console)?;
+    let mut input = Input::open(project, console)?;
+    input.follow_surface(&unwrap_options(None), console)?;
     console.warn(&input.warnings);
     let mut written = 0;
     let mut failures = Vec::new();

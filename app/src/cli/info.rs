@@ -7,7 +7,7 @@ use super::shot::{opened, unwrap_options};
 use lens::Camera;
 use progress::Unwatched;
 use project::{ProjectFile, camera_to_json};
-use scene::{Environment, Inspection, LoadOptions, MeshHealth, Scene, View};
+use scene::{EXTRAS_KEY, Environment, Inspection, LoadOptions, MeshHealth, Scene, SceneCamera, View};
 use serde_json::{Value, json};
 use session::{Input, InputKind, Modelled, RenderOptions};
 use std::sync::Arc;
@@ -68,6 +68,7 @@ pub fn run(arguments: &InfoArguments, console: &Console) -> Result<(), Failure> 
     }
     capture_lines(&input);
     scene_lines(&input.scene, &health);
+    lens_lines(&input.scene);
     if let Some(modelled) = &modelled {
         modelled_lines(modelled);
     }
@@ -284,6 +285,7 @@ fn scene_json(scene: &Scene) -> Value {
         "nodes": scene.nodes.iter().map(|node| &node.name).collect::<Vec<_>>(),
         "materials": scene.materials.iter().map(|material| &material.name).collect::<Vec<_>>(),
         "cameras": scene.cameras.iter().map(|camera| &camera.name).collect::<Vec<_>>(),
+        "camera_lenses": scene.cameras.iter().map(lens_json).collect::<Vec<_>>(),
         "camera_is_invented": scene.camera_is_invented,
         "image_based_light": own_light(scene),
         "variants": scene.variants,
@@ -291,6 +293,30 @@ fn scene_json(scene: &Scene) -> Value {
         "lights": scene.lights.len(),
         "picture": scene.picture.as_ref().map(|picture| &picture.origin),
     })
+}
+
+/// Fields of a camera file that glTF has.
+const OF_GLTF: [&str; 2] = ["yfov", "camera_to_world"];
+/// Fields that a file may say in `extras`, and that else are defaults (the focus distance: the first surface ahead).
+const OF_EXTRAS: [&str; 7] =
+    ["width", "height", "focus_distance", "aperture_radius", "sensor_height", "shift", "aperture"];
+
+/// Where each field of a camera of the scene comes from.
+fn lens_json(camera: &SceneCamera) -> Value {
+    let said = camera.lens.said();
+    let default: Vec<&str> = OF_EXTRAS.into_iter().filter(|field| !said.contains(field)).collect();
+    json!({ "name": camera.name, "gltf": OF_GLTF, "extras": said, "default": default })
+}
+
+fn lens_lines(scene: &Scene) {
+    for camera in scene.cameras.iter().filter(|_| !scene.camera_is_invented) {
+        let said = camera.lens.said();
+        let lens = match said.is_empty() {
+            true => "no lens in the file: the default one, focused on the first surface ahead".into(),
+            false => format!("from extras.{EXTRAS_KEY}: {}", said.join(", ")),
+        };
+        say(format!("  camera       {}: {lens}", camera.name));
+    }
 }
 
 fn bake_lines(camera: &Camera, scene: &Scene) {
@@ -319,9 +345,10 @@ fn bake_lines(camera: &Camera, scene: &Scene) {
 /// The least and greatest depth of vertices inside the picture.
 fn corners_ahead(camera: &Camera, scene: &Scene) -> Option<(f64, f64)> {
     let optics = camera.optics();
+    let [width, height] = [camera.width, camera.height].map(f64::from);
     let in_picture = scene.positions.iter().map(|&p| camera.camera_from_world(p)).filter(|p| {
-        let q = optics.chief(*p);
-        p.z > 0.0 && q.x.abs() <= camera.aspect() && q.y.abs() <= 1.0
+        let pixel = camera.pixel_from_q(optics.chief(*p));
+        p.z > 0.0 && (0.0..=width).contains(&pixel.x) && (0.0..=height).contains(&pixel.y)
     });
     in_picture.map(|p| p.z).fold(None, |range, z| {
         Some(range.map_or((z, z), |(near, far): (f64, f64)| (near.min(z), far.max(z))))

@@ -16,6 +16,7 @@ pub fn run(arguments: &NewArguments, console: &Console) -> Result<(), Failure> {
     let beginning = Beginning {
         camera: arguments.camera.as_ref(),
         focus: arguments.focus.as_deref(),
+        paint_from: arguments.paint_from.as_deref(),
         variant: arguments.scene_look.variant(),
     };
     let document = Document::begin(&arguments.scene, &beginning, &unwrap_options(None), console)?;

@@ -31,6 +31,7 @@ pub fn unwrap_options(arguments: Option<&AtlasArguments>) -> UnwrapOptions {
 pub fn opened(file: &Path, look: &SceneLook, steps: &dyn Steps) -> Result<Input, Failure> {
     let world = world(look)?;
     let mut input = Input::open_in(file, &look.variant(), steps)?;
+    input.follow_surface(&unwrap_options(None), steps)?;
     if let Some(back_faces) = look.back_faces {
         input.set_back_faces(back_faces);
     }

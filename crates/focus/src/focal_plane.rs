@@ -1,7 +1,7 @@
 //! A focal plane that is tilted as one likes, or curved: what lies in it is sharp, wherever the lens focuses.
 
 use crate::{Canvas, FocusMap};
-use glam::{DQuat, DVec3};
+use glam::{DQuat, DVec2, DVec3};
 use lens::{Camera, FocusOffset};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -45,9 +45,10 @@ impl FocalPlane {
     /// The ordinary plane of focus at a depth > 0 of a camera: across its axis, its points spread over the picture.
     pub fn facing(camera: &Camera, depth: f64) -> Self {
         let half_height = depth * (camera.yfov / 2.0).tan();
+        let [middle, half] = camera.frame_q();
         let places = [[-0.5, -0.4], [0.5, -0.4], [0.0, 0.5]];
         let place =
-            |[x, y]: [f64; 2]| DVec3::new(x * camera.aspect(), y, 0.0) * half_height + DVec3::Z * depth;
+            |at: [f64; 2]| ((middle + DVec2::from(at) * half) * half_height).extend(depth);
         Self { points: places.map(|at| camera.world_from_camera(place(at))), curvature: 0.0 }
     }
 

@@ -18,6 +18,9 @@ pub struct Camera {
     pub aperture_radius: f64,
     /// Height of the sensor: decides how much blur a focus offset means.
     pub sensor_height: f64,
+    /// How far the sensor is moved in its plane, in picture heights, right and up as the picture shows it: the picture is the part of the
+    /// image about this place instead of the axis. Perspective and depth stay those of the axis.
+    pub shift: DVec2,
     /// Pose, a rigid motion; glTF axes: the camera looks down −Z, +Y up.
     pub camera_to_world: DMat4,
     /// Radiance where no surface is, linear RGB, if one was chosen; else the scene's world decides.
@@ -36,6 +39,7 @@ impl Default for Camera {
             focus_distance: 3.0,
             aperture_radius: 0.0125,
             sensor_height: 0.024,
+            shift: DVec2::ZERO,
             camera_to_world: DMat4::IDENTITY,
             background: None,
             aperture: Aperture::default(),
@@ -46,6 +50,8 @@ impl Default for Camera {
 impl Camera {
     /// The widest picture side that is accepted, px.
     pub const LARGEST_SIDE_PX: u32 = 16384;
+    /// The farthest shift that is accepted, picture heights: what stands that far from the axis is seen at a grazing angle.
+    pub const LARGEST_SHIFT: f64 = 100.0;
 
     /// The first field that makes the camera unusable.
     pub fn validate(&self) -> Result<(), CameraError> {
@@ -62,6 +68,8 @@ impl Camera {
             "0 (a pinhole) or more, and finite",
         )?;
         require(positive(self.sensor_height), "sensor_height", "above 0 and finite")?;
+        let in_reach = self.shift.abs().max_element() <= Self::LARGEST_SHIFT;
+        require(self.shift.is_finite() && in_reach, "shift", "two numbers of picture heights, -100 to 100")?;
         require(
             self.background.iter().flatten().all(|c| *c >= 0.0 && c.is_finite()),
             "background",
@@ -131,16 +139,29 @@ impl Camera {
         self.width as f64 / self.height as f64
     }
 
+    /// Where the lens's axis meets the picture, px: its middle, unless the sensor is shifted.
+    pub fn principal_point_px(&self) -> DVec2 {
+        let [width, height] = [self.width, self.height].map(f64::from);
+        DVec2::new(width / 2.0 - self.shift.x * height, height / 2.0 + self.shift.y * height)
+    }
+
+    /// The picture's middle and half its extent, as q in half-heights.
+    pub fn frame_q(&self) -> [DVec2; 2] {
+        [2.0 * self.shift, DVec2::new(self.aspect(), 1.0)]
+    }
+
     /// The pixel position (x right, y down, (0, 0) the frame's upper left corner) of q in half-heights.
     pub fn pixel_from_q(&self, q: DVec2) -> DVec2 {
         let half_height = self.height as f64 / 2.0;
-        DVec2::new(self.width as f64 / 2.0 + q.x * half_height, half_height - q.y * half_height)
+        let axis = self.principal_point_px();
+        DVec2::new(axis.x + q.x * half_height, axis.y - q.y * half_height)
     }
 
     /// q in half-heights of a pixel position. Inverse of [`Self::pixel_from_q`].
     pub fn q_from_pixel(&self, pixel: DVec2) -> DVec2 {
         let half_height = self.height as f64 / 2.0;
-        DVec2::new((pixel.x - self.width as f64 / 2.0) / half_height, (half_height - pixel.y) / half_height)
+        let axis = self.principal_point_px();
+        DVec2::new((pixel.x - axis.x) / half_height, (axis.y - pixel.y) / half_height)
     }
 
     /// The f-number f/(2R).
@@ -159,7 +180,8 @@ mod tests {
             glam::DQuat::from_euler(glam::EulerRot::YXZ, 0.4, -0.3, 0.2),
             DVec3::new(1.0, -2.0, 3.0),
         );
-        let camera = Camera { camera_to_world: pose, ..Camera::default() };
+        let shift = DVec2::new(0.3, -1.25);
+        let camera = Camera { camera_to_world: pose, shift, ..Camera::default() };
         camera.validate().unwrap();
         let p = DVec3::new(0.3, -7.0, 2.0);
         assert!(camera.world_from_camera(camera.camera_from_world(p)).distance(p) < 1e-12);
@@ -167,6 +189,20 @@ mod tests {
         assert!(camera.pixel_from_q(camera.q_from_pixel(pixel)).distance(pixel) < 1e-12);
         let ahead = pose.transform_point3(DVec3::new(0.0, 0.0, -2.0));
         assert!(camera.camera_from_world(ahead).distance(DVec3::new(0.0, 0.0, 2.0)) < 1e-12);
+    }
+
+    #[test]
+    fn a_shifted_picture_is_a_part_of_a_larger_one() {
+        let shifted = Camera { width: 40, height: 30, shift: DVec2::new(0.5, 1.0 / 3.0), ..Camera::default() };
+        // The same lens over a picture of three times the size about the axis.
+        let tan = 3.0 * (shifted.yfov / 2.0).tan();
+        let whole = Camera { width: 120, height: 90, yfov: 2.0 * tan.atan(), ..Camera::default() };
+        let corner = DVec2::new(40.0 + 15.0, 30.0 - 10.0);
+        for point in [DVec3::new(0.2, 0.3, 2.0), DVec3::new(-4.0, 5.0, 9.0)] {
+            let [part, all] =
+                [&shifted, &whole].map(|camera| camera.pixel_from_q(camera.optics().chief(point)));
+            assert!((part + corner).distance(all) < 1e-9, "{part} {all}");
+        }
     }
 
     #[test]
@@ -178,6 +214,8 @@ mod tests {
             (Camera { focus_distance: 0.0, ..good.clone() }, "focus_distance"),
             (Camera { aperture_radius: -1.0, ..good.clone() }, "aperture_radius"),
             (Camera { sensor_height: f64::INFINITY, ..good.clone() }, "sensor_height"),
+            (Camera { shift: DVec2::new(0.0, f64::NAN), ..good.clone() }, "shift"),
+            (Camera { shift: DVec2::new(101.0, 0.0), ..good.clone() }, "shift"),
             (
                 Camera { camera_to_world: DMat4::from_scale(DVec3::splat(2.0)), ..good.clone() },
                 "camera_to_world",

@@ -2,32 +2,33 @@
 //!
 //! ```text
 //! {"width": 960, "height": 540, "yfov": 0.7, "focus_distance": 3.0 | "inf", "aperture_radius": 0.0125,
-//!  "sensor_height": 0.024, "camera_to_world": 4×4 rows, "background": [r, g, b],
+//!  "sensor_height": 0.024, "shift": [x, y], "camera_to_world": 4×4 rows, "background": [r, g, b],
 //!  "aperture": {"shape": "disc" | "polygon" | "square" | "mask", "blades": 6, "rotation": rad,
 //!               "roundness": 0..1, "ratio": 1.0, "mask": FILE | {"name": …, "rows": […]}}}
 //! ```
 //!
 //! yfov is the full angle in rad, lengths are scene units, focus_distance is axial, to the focus plane;
-//! camera_to_world has glTF axes (looks down −Z, +Y up). Any field may be missing.
+//! shift moves the sensor right and up, in picture heights (none: [0, 0]); camera_to_world has glTF axes (looks down −Z, +Y up). Any field may be missing.
 
 use crate::ProjectError;
 use crate::aperture_mask_file::read_aperture_mask;
 use crate::disk::write_bytes;
 use crate::json::{Field, Fields, Json};
 use crate::mask_rows::mask_from_json;
-use glam::{DMat4, DVec4};
+use glam::{DMat4, DVec2, DVec4};
 use lens::{Aperture, ApertureMask, ApertureShape, Camera};
 use serde_json::{Value, json};
 use std::path::Path;
 use std::sync::Arc;
 
-const FIELDS: [&str; 9] = [
+const FIELDS: [&str; 10] = [
     "width",
     "height",
     "yfov",
     "focus_distance",
     "aperture_radius",
     "sensor_height",
+    "shift",
     "camera_to_world",
     "background",
     "aperture",
@@ -78,6 +79,10 @@ fn from_json(
         },
         aperture_radius: number("aperture_radius", defaults.aperture_radius)?,
         sensor_height: number("sensor_height", defaults.sensor_height)?,
+        shift: match fields.get("shift") {
+            Some(field) => DVec2::from_array(field.numbers()?),
+            None => defaults.shift,
+        },
         camera_to_world: match fields.get("camera_to_world") {
             Some(field) => {
                 let [x, y, z, w] = field.rows::<4, 4>()?.map(DVec4::from_array);
@@ -161,6 +166,9 @@ pub fn camera_to_json(camera: &Camera) -> Value {
         "camera_to_world": rows,
         "aperture": aperture_to_json(&camera.aperture),
     });
+    if camera.shift != DVec2::ZERO {
+        json["shift"] = json!(camera.shift.to_array());
+    }
     if let Some(background) = camera.background {
         json["background"] = json!(background);
     }

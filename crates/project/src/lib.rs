@@ -37,6 +37,7 @@ mod recovery;
 mod scene_checksum;
 mod scene_path;
 mod strokes_file;
+mod surface_file;
 mod texel_bytes;
 mod texel_set;
 mod thumbnail;
@@ -59,6 +60,7 @@ pub use strokes_file::{
     RecordedFill, RecordedGradient, RecordedSelection, RecordedStep, RecordedStroke, SelectionShape,
     StrokeView, read_strokes, write_strokes,
 };
+pub use surface_file::{surface_from_bytes, surface_to_bytes};
 pub use texel_set::TexelSet;
 pub use thumbnail::Thumbnail;
 pub use world_file::{EnvironmentChoice, WorldFile};

@@ -36,6 +36,7 @@ use serde_json::Value;
 use std::path::{Path, PathBuf};
 
 const ATLAS: &str = "atlas.bin";
+const SURFACE: &str = "surface.bin";
 const FOCUS_MAP: &str = "focus.f32";
 const FOCUS_GLOSS: &str = "focus.gloss.f32";
 const SELECTION: &str = "selection.bits";
@@ -85,6 +86,8 @@ pub struct ProjectFile {
     pub view: Value,
     /// The unwrapping, as the atlas writes it; `None` if there is none yet.
     pub atlas: Option<Vec<u8>>,
+    /// The surface that was unwrapped ([`crate::surface_to_bytes`]): the scene's file may be another when it is opened again.
+    pub surface: Option<Vec<u8>>,
     /// The focus map; `None` if nothing is painted.
     pub focus_map: Option<FocusMap>,
     /// The layers that make the focus map; `None` where one plain layer does. The values of adjustment layers are
@@ -128,6 +131,7 @@ impl ProjectFile {
             brush: Brush::default(),
             view: Value::Null,
             atlas: None,
+            surface: None,
             focus_map: None,
             layers: None,
             selection: None,
@@ -226,6 +230,9 @@ impl ProjectFile {
         if let Some(atlas) = &self.atlas {
             entries.push((ATLAS.to_string(), atlas.clone()));
         }
+        if let Some(surface) = &self.surface {
+            entries.push((SURFACE.to_string(), surface.clone()));
+        }
         let focus_map = self.focus_map.as_ref().map(|map| {
             let texels = map.to_rows();
             let bytes = texels.iter().flatten().flat_map(|value| value.to_le_bytes()).collect();
@@ -320,6 +327,10 @@ impl ProjectFile {
             true => Some(manifest.entry(file, &mut container, ATLAS, LARGEST_ATLAS)?),
             false => None,
         };
+        let surface = match manifest.checksums.contains_key(SURFACE) {
+            true => Some(manifest.entry(file, &mut container, SURFACE, LARGEST_ATLAS)?),
+            false => None,
+        };
         let focus_map = match &manifest.focus_map {
             Some(entry) => Some(read_focus_map(file, entry, &manifest, &mut container, background_focus)?),
             None => None,
@@ -359,6 +370,7 @@ impl ProjectFile {
             brush: manifest.brush,
             view: manifest.view,
             atlas,
+            surface,
             focus_map,
             layers,
             selection,

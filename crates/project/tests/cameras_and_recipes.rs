@@ -5,7 +5,7 @@ mod shared_data;
 
 use damage::{damage, is_one_line};
 use focus::RecipeEntry;
-use glam::{DMat4, DQuat, DVec3};
+use glam::{DMat4, DQuat, DVec2, DVec3};
 use lens::{Aperture, ApertureMask, ApertureShape, Camera, FocusOffset};
 use project::{FocusFile, read_camera, read_focus, read_recipe, write_camera, write_rgb};
 use shared_data::shared;
@@ -28,6 +28,7 @@ fn odd_camera() -> Camera {
         focus_distance: f64::INFINITY,
         aperture_radius: 1.0 / 7.0,
         sensor_height: 0.027,
+        shift: DVec2::new(0.125, -0.3),
         camera_to_world: DMat4::from_rotation_translation(turn, DVec3::new(0.1, -1e-17, 1e10)),
         background: Some([0.1, 0.7, 3.0]),
         aperture: Aperture {

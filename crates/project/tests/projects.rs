@@ -46,6 +46,7 @@ fn document(folder: &Path) -> ProjectFile {
         brush: Brush { radius: 1.0 / 3.0, mode: BrushMode::Smooth, ..Brush::default() },
         view: serde_json::json!({"panels": [1, 2], "orbit": 0.1}),
         atlas: Some((0..=255).cycle().take(5000).collect()),
+        surface: Some(b"a surface".to_vec()),
         background_focus: map.background,
         focus_map: Some(map),
         thumbnail: Some(Thumbnail::of(2, 1, vec![[0.25; 3], [1.0, 0.0, 0.5]])),

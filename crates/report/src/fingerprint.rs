@@ -67,6 +67,7 @@ pub fn of_scene(scene: &Scene) -> String {
         let texels = match &image.texels {
             ImageLevel::Bits8(texels) => texels.as_slice(),
             ImageLevel::Bits16(texels) => bytemuck::cast_slice(texels),
+            ImageLevel::Float(texels) => bytemuck::cast_slice(texels),
         };
         fingerprint = fingerprint.add_debug(&[image.width, image.height]).add(texels);
     }

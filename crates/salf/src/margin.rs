@@ -77,13 +77,14 @@ fn nearest_depth_in_frustum(corners: [DVec3; 3], view: &View) -> Option<f64> {
     let optics = &view.optics;
     let (radius, inverse_s) = (optics.aperture_radius, optics.inverse_focus_distance);
     // Side planes: R + z·(slope·tanθ − R/s) − |y| ≥ 0.
-    let half = [view.camera.aspect() * optics.tan_half_yfov, optics.tan_half_yfov];
+    let [middle, half] = view.camera.frame_q().map(|q| (q * optics.tan_half_yfov).to_array());
     let mut polygon = corners.to_vec();
     clip(&mut polygon, |p| p.z);
     clip(&mut polygon, |p| 1.0 - p.z * inverse_s);
-    for (axis, half) in half.into_iter().enumerate() {
+    for axis in [0, 1] {
         for sign in [-1.0, 1.0] {
-            clip(&mut polygon, |p| radius + p.z * (half - radius * inverse_s) - sign * p[axis]);
+            let slope = half[axis] + sign * middle[axis];
+            clip(&mut polygon, |p| radius + p.z * (slope - radius * inverse_s) - sign * p[axis]);
         }
     }
     polygon.iter().map(|p| p.z).reduce(f64::min)

@@ -96,6 +96,7 @@ fn cube_map(document: &Document<'_>, light: &Object<'_>, intensity: f32) -> Resu
         let bytes = match &image.texels {
             ImageLevel::Bits8(_) => 4,
             ImageLevel::Bits16(_) => 8,
+            ImageLevel::Float(_) => 16,
         };
         document.budget.release(bytes * texels);
     }

@@ -107,7 +107,7 @@ impl Document<'_> {
     }
 
     /// How many texels an image of these sides has, if that is within the limits.
-    fn texels(&self, [width, height]: [u32; 2], bytes: usize, place: &str) -> Result<u64, Fault> {
+    pub(crate) fn texels(&self, [width, height]: [u32; 2], bytes: usize, place: &str) -> Result<u64, Fault> {
         let texels = u64::from(width) * u64::from(height);
         let limit = self.budget.options.max_texels;
         if texels > limit {

@@ -4,10 +4,11 @@ use crate::document::{Document, named};
 use crate::error::Fault;
 use crate::material_properties::Properties;
 use crate::material_textures::further_uv_sets;
+use crate::own_extras;
 use crate::texture_reader::TextureReader;
 use crate::{
     AlphaMode, Anisotropy, Clearcoat, DiffuseTransmission, Image, Iridescence, Material, Sheen, Volume,
-    Workflow,
+    TextureRef, Workflow,
 };
 use glam::{Vec3, Vec4};
 
@@ -54,6 +55,15 @@ impl<'a> MaterialReader<'a> {
         }
         extensions_are_sound(document, &format!("{place}/extensions"))?;
         let sets = further_uv_sets(document, Some(index));
+        if let Some(radiance) = self.radiance(index, &sets) {
+            return Ok(Material {
+                name,
+                double_sided: file.double_sided(),
+                base_color_texture: Some(radiance),
+                unlit: true,
+                ..Material::default()
+            });
+        }
         let (base_color, [section, texture]) = base_color(&file);
         let emissive = file.emissive_strength().unwrap_or(1.0) * Vec3::from_array(file.emissive_factor());
         if !base_color.is_finite() || !emissive.is_finite() {
@@ -89,6 +99,19 @@ impl<'a> MaterialReader<'a> {
             read_gloss(&mut material, &mut properties);
         }
         Ok(material)
+    }
+}
+
+impl MaterialReader<'_> {
+    /// The radiance that material `index` sends, where it brings that.
+    fn radiance(&mut self, index: usize, sets: &[u32]) -> Option<TextureRef> {
+        let document = self.textures.document;
+        let info = document.item("materials", index, "").and_then(|object| own_extras::radiance(document, &object));
+        let info = info.unwrap_or_else(|fault| {
+            document.warn(format!("{fault}; the light is left out"));
+            None
+        });
+        self.textures.radiance(&info?, sets)
     }
 }
 

@@ -7,6 +7,7 @@
 use crate::document::Document;
 use crate::error::Fault;
 use crate::json_object::Object;
+use crate::own_extras;
 use glam::{Mat3, Vec2, Vec3};
 
 /// Where a material's textures stand: in itself (""), in a part of it or in one of its extensions; and as what.
@@ -64,10 +65,15 @@ impl TextureInfo {
 
     /// [`TextureRef::uv_set`](crate::TextureRef::uv_set), where these are the further sets of the material.
     pub fn uv_set(&self, further: &[u32]) -> u8 {
-        match self.set {
-            set @ (0 | 1) => set as u8,
-            set => 2 + further.iter().position(|&other| other == set).unwrap_or(0) as u8,
-        }
+        uv_set(self.set, further)
+    }
+}
+
+/// [`TextureRef::uv_set`](crate::TextureRef::uv_set) of a TEXCOORD_n, where these are the further sets of the material.
+pub(crate) fn uv_set(set: u32, further: &[u32]) -> u8 {
+    match set {
+        set @ (0 | 1) => set as u8,
+        set => 2 + further.iter().position(|&other| other == set).unwrap_or(0) as u8,
     }
 }
 
@@ -112,6 +118,12 @@ pub(crate) fn further_uv_sets(document: &Document<'_>, material: Option<usize>) 
                 sets.push(info.set);
             }
         }
+    }
+    if let Ok(Some(radiance)) = own_extras::radiance(document, &material)
+        && radiance.set > 1
+        && !sets.contains(&radiance.set)
+    {
+        sets.push(radiance.set);
     }
     sets
 }

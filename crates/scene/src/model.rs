@@ -1,7 +1,7 @@
 //! The scene in memory: flat, world space, triangles only.
 
 use crate::picture_texture::PictureTexture;
-use crate::{BackFaces, Material, PhotoLookup, View, World};
+use crate::{BackFaces, CameraLens, Material, PhotoLookup, View, World};
 use glam::{DMat4, DVec3, Vec2, Vec3, Vec4};
 use std::ops::Range;
 use std::path::PathBuf;
@@ -117,13 +117,15 @@ pub struct Image {
     pub texels: ImageLevel,
 }
 
-/// The texels of an image, RGBA interleaved; colour is sRGB-encoded, opacity linear.
+/// The texels of an image, RGBA interleaved; colour of 8 or 16 bits is sRGB-encoded, opacity linear.
 #[derive(Clone, Debug)]
 pub enum ImageLevel {
     /// 8 bits a channel.
     Bits8(Vec<u8>),
     /// 16 bits a channel.
     Bits16(Vec<u16>),
+    /// Radiance: linear, any brightness, opacity 1.
+    Float(Vec<f32>),
 }
 
 /// A punctual light in world space (KHR_lights_punctual).
@@ -172,6 +174,8 @@ pub struct SceneCamera {
     pub aspect: Option<f64>,
     /// A focus distance that suits the scene: to the first surface ahead, or the middle of the scene.
     pub focus_distance: f64,
+    /// What the file says of its lens.
+    pub lens: CameraLens,
 }
 
 impl Scene {

@@ -2,7 +2,7 @@
 
 use crate::document::{Document, named};
 use crate::error::Fault;
-use crate::{Scene, SceneCamera};
+use crate::{CameraLens, Scene, SceneCamera, own_extras};
 use glam::{DMat3, DMat4, DQuat, DVec3};
 use gltf::camera::Projection;
 use gltf::json::camera::Type;
@@ -48,7 +48,8 @@ pub(crate) fn node_camera(
     let aspect = perspective.aspect_ratio().map(f64::from).filter(|&aspect| aspect > 0.0);
     let Some(camera_to_world) = rigid(world) else { return skip("its transform is singular") };
     let name = named(camera.name()).or(named(node.name())).unwrap_or_else(|| format!("camera {index}"));
-    Ok(Some(SceneCamera { name, camera_to_world, yfov, aspect, focus_distance: 1.0 }))
+    let lens = own_extras::camera_lens(document, index, yfov);
+    Ok(Some(SceneCamera { name, camera_to_world, yfov, aspect, focus_distance: 1.0, lens }))
 }
 
 /// The pose in a transform: where it looks (−Z) is kept, up as well as it goes, scale and mirroring are removed.
@@ -97,6 +98,7 @@ pub(crate) fn framing(scene: &Scene, upright: DQuat) -> SceneCamera {
         yfov: YFOV,
         aspect: None,
         focus_distance: (position - 0.5 * (low + high)).dot(back),
+        lens: CameraLens::default(),
     }
 }
 

@@ -68,6 +68,7 @@ impl Image {
                 let of = |k: usize| lut[t[k] as usize];
                 Vec4::new(of(0), of(1), of(2), f32::from(t[3]) * (1.0 / 65535.0))
             }
+            ImageLevel::Float(data) => Vec4::from_slice(&data[at..at + 4]),
         }
     }
 

@@ -3,8 +3,10 @@
 use crate::document::Document;
 use crate::error::Fault;
 use crate::json_object::integer;
-use crate::material_textures::TextureInfo;
+use crate::material_textures::{TextureInfo, uv_set};
+use crate::own_extras::RadianceInfo;
 use crate::{Image, TextureRef, Wrap};
+use glam::Mat3;
 use gltf::texture::{MagFilter, WrappingMode};
 use std::collections::HashMap;
 
@@ -14,11 +16,13 @@ pub(crate) struct TextureReader<'a> {
     /// By index in the file; `None` for one that cannot be read.
     known: HashMap<usize, Option<u32>>,
     pub images: Vec<Image>,
+    /// Pictures of radiance, by URI; `None` for one that cannot be read.
+    radiances: HashMap<String, Option<u32>>,
 }
 
 impl<'a> TextureReader<'a> {
     pub fn new(document: &'a Document<'a>) -> Self {
-        Self { document, known: HashMap::new(), images: Vec::new() }
+        Self { document, known: HashMap::new(), images: Vec::new(), radiances: HashMap::new() }
     }
 
     /// The texture at `place`; nothing (which is white) with a warning if its image cannot be had.
@@ -43,6 +47,30 @@ impl<'a> TextureReader<'a> {
             wrap: [sampler.wrap_s(), sampler.wrap_t()].map(wrap),
             nearest: sampler.mag_filter() == Some(MagFilter::Nearest),
         }))
+    }
+
+    /// The picture of a radiance as a texture; nothing, with a warning, if it cannot be had.
+    pub fn radiance(&mut self, info: &RadianceInfo<'_>, further_sets: &[u32]) -> Option<TextureRef> {
+        let image = match self.radiances.get(info.uri) {
+            Some(known) => *known,
+            None => {
+                let image = self.document.radiance(info).map(|image| {
+                    self.images.push(image);
+                    self.images.len() as u32 - 1
+                });
+                let image = image.map_err(|fault| self.document.warn(format!("{fault}; the light is left out"))).ok();
+                self.radiances.insert(info.uri.into(), image);
+                image
+            }
+        };
+        Some(TextureRef {
+            image: image?,
+            is_color: true,
+            uv_set: uv_set(info.set, further_sets),
+            transform: Mat3::IDENTITY,
+            wrap: [Wrap::Clamp; 2],
+            nearest: false,
+        })
     }
 
     /// The first of a texture's images that can be read: Basis Universal, WebP, then the plain one.

@@ -13,6 +13,7 @@
 //! session.preview()                                             // the last good picture, always
 //! ```
 
+mod carrying;
 mod commands;
 mod display;
 mod document;
@@ -28,6 +29,7 @@ mod session;
 #[path = "../tests/tiny_glb/mod.rs"]
 mod tiny_glb;
 
+pub use carrying::{CarriedNode, CarriedPaint};
 pub use baselines::{FirstHits, LayeredOptions, ScatterOptions, ViewsOptions};
 pub use commands::{COMMANDS, Command, CommandId, CommandInfo, Event, KeyMap, Menu, Shortcut};
 pub use display::{

@@ -356,21 +356,21 @@ fn a_malformed_file_is_told_in_one_line() {
     refused(&[&good[..], &[0]].concat(), "more bytes");
     // What a checksum does not tell: place and value, by what is wrong then.
     for (at, value, why) in [
-        (8, 6, "version 6"),
+        (8, 7, "version 7"),
         (12, 0xFF, "picture without a size"),
         (14, 0xFF, "a text of"),
         (24, 1, "triangle"),
         (28 + 2, 0xFF, "picture without a size"),
-        (28 + 200, 9, "aperture shape 9"),
-        (233 + 4, 1, "more samples than there can be"),
-        (233 + 3, 0x7F, "cut short"),
-        (233 + 48 + 3, 0x7F, "cut short"),
-        (289 + 3, 0x7F, "block 0"),
-        (317 + 1, 0x07, "makes no sense"),
-        (317 + 2, 9, "block 0"),
-        (317 + 10, 0xFF, "depth that is not finite"),
-        (385, 0, "block 0"),
-        (400 + 44, 2, "triangle"),
+        (28 + 216, 9, "aperture shape 9"),
+        (249 + 4, 1, "more samples than there can be"),
+        (249 + 3, 0x7F, "cut short"),
+        (249 + 48 + 3, 0x7F, "cut short"),
+        (305 + 3, 0x7F, "block 0"),
+        (333 + 1, 0x07, "makes no sense"),
+        (333 + 2, 9, "block 0"),
+        (333 + 10, 0xFF, "depth that is not finite"),
+        (401, 0, "block 0"),
+        (416 + 44, 2, "triangle"),
     ] {
         std::fs::write(&file, &good).unwrap();
         resealed(&file, |bytes| bytes[at] = value);

@@ -6,7 +6,7 @@ use crate::window::controls::{self, finish, format_number, proportional, row, ro
 use crate::window::view_settings::LARGEST_TOLERANCE_PX;
 use crate::window::{Action, ViewSettings};
 use egui::{Button, ComboBox, DragValue, Slider, Ui};
-use lens::Exposure;
+use lens::{Camera, Exposure};
 use project::{PresetKind, PresetShelf};
 use session::{CameraEdit, Command, CommandId, Document, Session, ToneCurve};
 
@@ -85,9 +85,27 @@ pub fn lens_panel(ui: &mut Ui, document: &Document, presets: &PresetShelf, actio
             actions.push(edit(CameraEdit::SensorHeight(sensor / 1e3)));
         }
         finish(&response, actions);
+        shift_rows(ui, camera, actions);
         preset_row(ui, presets, PresetKind::Bokeh, |preset| preset.is_of_camera(camera), actions);
         shape_panel(ui, camera, actions);
     });
+}
+
+fn shift_rows(ui: &mut Ui, camera: &Camera, actions: &mut Vec<Action>) {
+    let reach = 100.0 * Camera::LARGEST_SHIFT;
+    for (axis, label, way) in [(0, "Shift right", "to the right"), (1, "Shift up", "upwards")] {
+        let tip = format!("How far the sensor is moved {way}, in picture heights: what is seen moves, perspective stays.");
+        let mut percent = 100.0 * camera.shift[axis];
+        let response = row(ui, label, &tip, |ui| {
+            ui.add(DragValue::new(&mut percent).speed(0.2).range(-reach..=reach).suffix(" %").max_decimals(3))
+        });
+        if response.changed() {
+            let mut shift = camera.shift;
+            shift[axis] = percent / 100.0;
+            actions.push(Command::Camera(CameraEdit::Shift(shift)).into());
+        }
+        finish(&response, actions);
+    }
 }
 
 fn focus_distance_row(ui: &mut Ui, document: &Document, actions: &mut Vec<Action>) {

@@ -1,5 +1,6 @@
 //! The paint view's own camera: turns around a pivot, slides, and comes closer. Not part of the document.
 
+use focus::ViewFrame;
 use glam::{DMat4, DQuat, DVec2, DVec3, DVec4};
 use lens::Camera;
 use serde::{Deserialize, Serialize};
@@ -127,6 +128,11 @@ impl OrbitCamera {
         clip_from_view * world_from_view.inverse()
     }
 
+    /// What it shows in a view of this width over height.
+    pub fn view(&self, aspect: f64) -> ViewFrame {
+        ViewFrame { camera_to_world: self.pose(), yfov: self.yfov, aspect, shift: DVec2::ZERO }
+    }
+
     /// The pose of a camera that sees what this one sees.
     pub fn pose(&self) -> DMat4 {
         DMat4::from_rotation_translation(self.orientation, self.eye())
@@ -145,7 +151,7 @@ mod tests {
     #[test]
     fn ray_and_projection_invert() {
         let camera = camera();
-        let frame = focus::ViewFrame { camera_to_world: camera.pose(), yfov: camera.yfov, aspect: 1.5 };
+        let frame = camera.view(1.5);
         // (0.65, 0.85) of the way from the upper left corner is (0.3, −0.7) from the middle.
         let (origin, direction) = frame.ray(DVec2::new(0.65, 0.85));
         let found = camera.project(origin + direction * 7.0, 1.5).unwrap();

@@ -7,7 +7,7 @@ use super::graphics::{GraphicsError, guarded};
 use atlas::Atlas;
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Vec2, Vec3};
-use scene::{AlphaMode, Image, ImageLevel, Material, Scene, TextureRef, Wrap};
+use scene::{AlphaMode, Image, ImageLevel, Material, Scene, TextureRef, Wrap, srgb_from_linear};
 use std::collections::HashMap;
 use std::ops::Range;
 use wgpu::util::DeviceExt;
@@ -322,6 +322,9 @@ impl Level {
         let rgba = match &image.texels {
             ImageLevel::Bits8(texels) => texels.clone(),
             ImageLevel::Bits16(texels) => texels.iter().map(|t| (t >> 8) as u8).collect(),
+            ImageLevel::Float(texels) => {
+                texels.iter().map(|&light| (255.0 * srgb_from_linear(light.min(1.0))).round() as u8).collect()
+            }
         };
         Self { width: image.width, height: image.height, rgba }.fitting()
     }

@@ -14,7 +14,6 @@ use crate::window::pointer::StrokeInput;
 use crate::window::region_highlight::RegionHighlight;
 use crate::window::{Action, false_colour, theme};
 use egui::{Color32, Pos2, Rect, Response, Sense, Stroke, Ui, pos2, vec2};
-use focus::ViewFrame;
 use glam::{DVec2, DVec3};
 use lens::Camera;
 use session::{Document, PhotographLight, Session, SurfaceHit};
@@ -245,7 +244,10 @@ impl PaintView {
         let distance =
             if camera.focus_distance.is_finite() { camera.focus_distance } else { PIVOT_AT_INFINITY };
         self.camera = OrbitCamera::from_shot(camera, distance);
-        let room = FRAME_MARGIN * (camera.aspect() / aspect(self.rect)).max(1.0);
+        // The frame of a shifted sensor lies beside the axis, which this view looks along.
+        let [middle, half] = camera.frame_q();
+        let reach = middle.abs() + half;
+        let room = FRAME_MARGIN * (reach.x / aspect(self.rect)).max(reach.y);
         self.camera.yfov = 2.0 * ((camera.yfov / 2.0).tan() * room).atan();
         self.following = Some(self.camera);
     }
@@ -297,8 +299,7 @@ impl PaintView {
         self.follow_look(session, document, look, ui.ctx());
         self.navigate(ui, &response);
         self.draw(ui, document, look, actions);
-        let frame =
-            ViewFrame { camera_to_world: self.camera.pose(), yfov: self.camera.yfov, aspect: aspect(rect) };
+        let frame = self.camera.view(aspect(rect));
         let position = |at: Pos2| view_position(rect, at);
         let screen = |at: DVec2| screen_position(rect, at);
         let view = DragView { frame, position: &position, screen: &screen };
@@ -405,8 +406,10 @@ impl PaintView {
         let from_aside = self.camera.eye().distance(camera.position()) > 1e-3 * extent;
         let depth = if camera.focus_distance.is_finite() { camera.focus_distance } else { extent };
         let half = (camera.yfov / 2.0).tan() * depth;
+        let [middle, extent] = camera.frame_q();
         let corner = |x: f64, y: f64| {
-            camera.world_from_camera(DVec3::new(x * half * camera.aspect(), y * half, depth))
+            let at = middle + DVec2::new(x, y) * extent;
+            camera.world_from_camera((at * half).extend(depth))
         };
         let corners = [corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)];
         let frame = Stroke::new(1.0, Color32::from_white_alpha(120));

@@ -182,7 +182,7 @@ impl PictureView {
         let image = self.image;
         let shot = &document.camera;
         let frame =
-            ViewFrame { camera_to_world: shot.camera_to_world, yfov: shot.yfov, aspect: shot.aspect() };
+            ViewFrame::of(shot);
         let is_selecting = self.verify.is_selecting();
         let position = |at: Pos2| picture_position(image, at);
         let screen = |at: DVec2| image.min + vec2(at.x as f32, at.y as f32) * image.size();

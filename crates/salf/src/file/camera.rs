@@ -4,18 +4,19 @@ use super::SalfFileError;
 use super::little_endian::{
     FIRST_CAPACITY, bytes, read_f32s, read_f64s, read_text, write_f32s, write_f64s, write_text,
 };
-use glam::DMat4;
+use glam::{DMat4, DVec2};
 use lens::{Aperture, ApertureMask, ApertureShape, Camera};
 use std::io::{self, Read, Write};
 use std::sync::Arc;
 
-/// Width and height (u32); yfov, focus distance, aperture radius, sensor height, background (3; NaN if none was chosen), pose (16, by
+/// Width and height (u32); yfov, focus distance, aperture radius, sensor height, shift (2), background (3; NaN if none was chosen), pose (16, by
 /// columns), aperture ratio (f64); shape (u8): 0 disc, 1 polygon with blades (u32), rotation and roundness
 /// (f64), 2 square, 3 mask with width and height (u32), file (text) and a transmission a texel (f32).
 pub fn write_camera(to: &mut impl Write, camera: &Camera) -> io::Result<()> {
     to.write_all(&camera.width.to_le_bytes())?;
     to.write_all(&camera.height.to_le_bytes())?;
     write_f64s(to, &[camera.yfov, camera.focus_distance, camera.aperture_radius, camera.sensor_height])?;
+    write_f64s(to, &camera.shift.to_array())?;
     write_f64s(to, &camera.background.unwrap_or([f64::NAN; 3]))?;
     write_f64s(to, &camera.camera_to_world.to_cols_array())?;
     write_f64s(to, &[camera.aperture.ratio])?;
@@ -41,6 +42,7 @@ pub fn read_camera(from: &mut impl Read) -> Result<Camera, SalfFileError> {
     let width = u32::from_le_bytes(bytes(from)?);
     let height = u32::from_le_bytes(bytes(from)?);
     let [yfov, focus_distance, aperture_radius, sensor_height] = read_f64s(from)?;
+    let shift = DVec2::from_array(read_f64s(from)?);
     let background: [f64; 3] = read_f64s(from)?;
     let camera_to_world = DMat4::from_cols_array(&read_f64s(from)?);
     let [ratio] = read_f64s(from)?;
@@ -63,6 +65,7 @@ pub fn read_camera(from: &mut impl Read) -> Result<Camera, SalfFileError> {
         focus_distance,
         aperture_radius,
         sensor_height,
+        shift,
         camera_to_world,
         background: (!background.iter().all(|channel| channel.is_nan())).then_some(background),
         aperture: Aperture { shape, ratio },

@@ -3,7 +3,7 @@
 use std::io;
 
 /// The version of the format that is written, and the only one that is read.
-pub const VERSION: u32 = 5;
+pub const VERSION: u32 = 6;
 
 /// Why a `.salf` file cannot be used.
 #[derive(Debug, thiserror::Error)]

@@ -1,6 +1,6 @@
 //! A change of one thing of the camera.
 
-use glam::DMat4;
+use glam::{DMat4, DVec2};
 use lens::{Aperture, Camera};
 
 /// A change of one thing of the camera.
@@ -18,6 +18,8 @@ pub enum CameraEdit {
     YFov(f64),
     /// Height of the sensor.
     SensorHeight(f64),
+    /// How far the sensor is moved right and up, picture heights.
+    Shift(DVec2),
     /// Linear radiance where no surface is, or none of its own.
     Background(Option<[f64; 3]>),
     /// Picture width and height, px.
@@ -56,6 +58,10 @@ impl CameraEdit {
             Self::SensorHeight(height) => {
                 after.sensor_height = height;
                 "Sensor height"
+            }
+            Self::Shift(shift) => {
+                after.shift = shift;
+                "Sensor shift"
             }
             Self::Background(radiance) => {
                 after.background = radiance;

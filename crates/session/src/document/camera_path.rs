@@ -26,6 +26,7 @@ pub fn camera_between(from: &Camera, to: &Camera, share: f64) -> Camera {
         return Camera {
             yfov: to.yfov,
             focus_distance: to.focus_distance,
+            shift: to.shift,
             camera_to_world: to.camera_to_world,
             ..from.clone()
         };
@@ -37,6 +38,7 @@ pub fn camera_between(from: &Camera, to: &Camera, share: f64) -> Camera {
     Camera {
         yfov: 2.0 * (tangent(from).powf(1.0 - share) * tangent(to).powf(share)).atan(),
         focus_distance: 1.0 / mix(1.0 / from.focus_distance, 1.0 / to.focus_distance),
+        shift: from.shift.lerp(to.shift, share),
         camera_to_world: DMat4::from_rotation_translation(q.slerp(r, share), position),
         ..from.clone()
     }

@@ -10,7 +10,7 @@ use capture::{
     Capture, CaptureError, CaptureKind, CaptureOptions, DepthAs, DepthPictureOptions, LightFieldOptions,
     NearEnd,
 };
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use lens::Camera;
 use progress::Progress;
 use project::CaptureChoices;
@@ -161,6 +161,7 @@ pub fn camera_of_photograph(bounds: (DVec3, DVec3), view: &View, like: &Camera) 
         yfov: 2.0 * (0.5 * f64::from(height) / focal_px).atan(),
         focus_distance: if middle > 0.0 { middle } else { like.focus_distance },
         aperture_radius: 0.0,
+        shift: DVec2::ZERO,
         camera_to_world: view.camera_to_world,
         ..like.clone()
     }

@@ -8,6 +8,7 @@ use super::scene_camera::camera_of;
 use super::stage::Stage;
 use super::undo::{HistoryStep, Undo};
 use super::variant_choice::VariantChoice;
+use crate::carrying::CarriedPaint;
 use crate::error::{SessionError, file_name};
 use crate::jobs::Steps;
 use atlas::UnwrapOptions;
@@ -28,6 +29,8 @@ pub struct Beginning<'a> {
     pub camera: Option<&'a CameraChoice>,
     /// A recipe or a focus map; without one the ordinary lens.
     pub focus: Option<&'a Path>,
+    /// A project whose paint is carried over by surface.
+    pub paint_from: Option<&'a Path>,
     /// The scene's variant.
     pub variant: VariantChoice,
 }
@@ -57,6 +60,9 @@ pub struct Document {
     pub path: Option<PathBuf>,
     /// What is odd about its files but does no harm, a sentence each.
     pub warnings: Vec<String>,
+    /// How the paint came onto this surface, where it was painted on another. The step can be taken back; the project that it comes
+    /// from stays as it is.
+    pub carried: Option<CarriedPaint>,
     /// The view that the adjustment layers were evaluated for.
     pub(crate) adjusted_for: AdjustedView,
     /// What is saved beside the fields above.
@@ -96,7 +102,7 @@ impl Document {
             None => Input::open(path, steps)?,
         };
         let mut document = Self::of(input, unwrap, steps)?;
-        document.path = is_project.then(|| path.into());
+        document.path = (is_project && document.carried.is_none()).then(|| path.into());
         if is_recovered {
             document.note_recovery(path);
         }
@@ -124,7 +130,8 @@ impl Document {
     /// Opens a project as it was saved, whatever was left unsaved.
     pub fn open_saved(path: &Path, unwrap: &UnwrapOptions, steps: &dyn Steps) -> Result<Self, SessionError> {
         let input = Input::open_project(path, ProjectFile::load(path)?, &VariantChoice::AsSaved, steps)?;
-        Ok(Self { path: Some(path.into()), ..Self::of(input, unwrap, steps)? })
+        let document = Self::of(input, unwrap, steps)?;
+        Ok(Self { path: document.carried.is_none().then(|| path.into()), ..document })
     }
 
     /// Begins a document of a scene.
@@ -137,7 +144,11 @@ impl Document {
         if InputKind::of(scene)? != InputKind::Scene {
             return Err(SessionError::bad(scene, "is no scene (give a .glb or .gltf)"));
         }
-        Self::begin_with(Input::open_in(scene, &beginning.variant, steps)?, beginning, unwrap, steps)
+        let mut input = Input::open_in(scene, &beginning.variant, steps)?;
+        if let Some(project) = beginning.paint_from {
+            input.take_paint_of(project, unwrap, steps)?;
+        }
+        Self::begin_with(input, beginning, unwrap, steps)
     }
 
     /// Begins a document of a scene or capture that was read.
@@ -189,7 +200,8 @@ impl Document {
         self.warnings.push(format!("{}: {what}", path.display()));
     }
 
-    fn of(input: Input, unwrap: &UnwrapOptions, steps: &dyn Steps) -> Result<Self, SessionError> {
+    fn of(mut input: Input, unwrap: &UnwrapOptions, steps: &dyn Steps) -> Result<Self, SessionError> {
+        input.follow_surface(unwrap, steps)?;
         let (stage, map) = input.stage(unwrap, steps)?;
         let stored = input.project.as_ref().and_then(|project| project.layers.clone());
         let (layers, map) = match stored {
@@ -216,6 +228,13 @@ impl Document {
             }
         };
         let selection = template.selection.as_ref().and_then(|saved| selected_of(&stage, saved));
+        let mut undo = Undo::new(Self::UNDO_BUDGET_BYTES);
+        if input.carried.is_some() {
+            let [width, height] = map.size();
+            let mut blank = FocusMap::new(width, height, FocusOffset::STANDARD);
+            blank.background = map.background;
+            undo.push_layers("Carry paint over", LayerStack::of(blank), layers.clone(), None);
+        }
         Ok(Self {
             depth_strokes: stage.depth_strokes.clone(),
             stage: Arc::new(stage),
@@ -230,9 +249,10 @@ impl Document {
             path: None,
             warnings: input.warnings,
             template,
-            undo: Undo::new(Self::UNDO_BUDGET_BYTES),
+            undo,
             selection,
-            revision: 0,
+            revision: u64::from(input.carried.is_some()),
+            carried: input.carried,
             saved: 0,
         })
     }
@@ -251,6 +271,7 @@ impl Document {
         project.capture = self.capture();
         // That of a picture follows from it, and its depth may be repaired further than the stage's.
         project.atlas = scene.picture.is_none().then(|| self.stage.atlas.to_bytes());
+        project.surface = scene.picture.is_none().then(|| self.stage.surface_bytes().to_vec());
         project.background_focus = self.map.background;
         project.focus_map = Some(self.map.clone());
         project.selection = self.selection.as_ref().map(|selection| saved(&self.stage, selection));

@@ -52,8 +52,7 @@ mod tests {
     #[test]
     fn the_picture_seen_as_a_view_has_the_same_rays() {
         let camera = Camera { width: 321, height: 200, yfov: 0.9, ..Camera::default() };
-        let (camera_to_world, yfov, aspect) = (camera.camera_to_world, camera.yfov, camera.aspect());
-        let view = ViewFrame { camera_to_world, yfov, aspect };
+        let view = ViewFrame::of(&camera);
         for position in [DVec2::ZERO, DVec2::new(0.3, 0.9), DVec2::ONE] {
             let (a, b) = (chief_ray(&camera, position), view_ray(&view, position));
             assert!(a.origin == b.origin && a.direction.distance(b.direction) < 1e-12);

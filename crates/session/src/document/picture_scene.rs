@@ -19,7 +19,7 @@ use lens::Camera;
 use rayon::prelude::*;
 use relief::{Relief, TEXTURE_LAYERS};
 use scene::{
-    AlphaMode, Image, ImageLevel, Material, Node, Part, PictureTexture, Scene, SceneCamera, TextureRef,
+    AlphaMode, CameraLens, Image, ImageLevel, Material, Node, Part, PictureTexture, Scene, SceneCamera, TextureRef,
     Triangle, Wrap, srgb_from_linear,
 };
 use std::path::Path;
@@ -138,6 +138,7 @@ pub(super) fn picture_scene(
         yfov: 2.0 * (f64::from(middle.y) / space.focal_px).atan(),
         aspect: Some(f64::from(middle.x / middle.y)),
         focus_distance: 1.0 / space.inverse_depth(focus),
+        lens: CameraLens::default(),
     };
     Scene {
         path: named.path.into(),

@@ -65,6 +65,7 @@ pub(crate) fn light_hash(scene: &Scene) -> [u8; 32] {
         match &image.texels {
             ImageLevel::Bits8(texels) => lists.add(texels),
             ImageLevel::Bits16(texels) => lists.add(bytemuck::cast_slice(texels)),
+            ImageLevel::Float(texels) => lists.add(bytemuck::cast_slice(texels)),
         }
     }
     for world in scene.own_world.iter().chain(&scene.world) {

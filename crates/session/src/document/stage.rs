@@ -11,7 +11,7 @@ use atlas::{Atlas, AtlasError, TexelMap};
 use focus::Canvas;
 use glam::{DVec2, DVec3};
 use progress::Progress;
-use project::CaptureChoices;
+use project::{CaptureChoices, surface_to_bytes};
 use relief::DepthStroke;
 use scene::{BackFaces, LoadOptions, Scene, SceneError, World};
 use std::path::Path;
@@ -35,6 +35,7 @@ pub struct Stage {
     /// The strokes that repaired the depth that the surface was made from.
     pub depth_strokes: Arc<Vec<DepthStroke>>,
     light_hash: OnceLock<[u8; 32]>,
+    surface_bytes: OnceLock<Vec<u8>>,
 }
 
 impl From<SceneError> for SessionError {
@@ -93,6 +94,11 @@ impl Stage {
     /// A checksum of everything in the scene that gives, blocks or reflects light; the first call takes a while.
     pub(crate) fn light_hash(&self) -> &[u8; 32] {
         self.light_hash.get_or_init(|| light_hash(&self.scene))
+    }
+
+    /// The surface as a project holds it.
+    pub(crate) fn surface_bytes(&self) -> &[u8] {
+        self.surface_bytes.get_or_init(|| surface_to_bytes(&self.scene))
     }
 
     /// The same with faces seen from behind, or not.
@@ -163,7 +169,8 @@ impl Stage {
         keep_photographs_at(&tracer, &atlas);
         let (bounds, depth_strokes) = (self.bounds, self.depth_strokes.clone());
         let light_hash = OnceLock::new();
-        Ok(Self { scene, bounds, atlas, tracer, texels, canvas, depth_strokes, light_hash })
+        let surface_bytes = self.surface_bytes.clone();
+        Ok(Self { scene, bounds, atlas, tracer, texels, canvas, depth_strokes, light_hash, surface_bytes })
     }
 
     /// Prepares the scene of `tracer`, whose atlas is known, and whose depth is as it was found.
@@ -179,6 +186,7 @@ impl Stage {
         let canvas = Arc::new(Canvas::new(&scene, &atlas, &texels.texels, &gutters));
         progress.report(1.0);
         let (bounds, depth_strokes, light_hash) = (scene.bounds(), Arc::default(), OnceLock::new());
-        Ok(Self { bounds, scene, atlas, tracer, texels, canvas, depth_strokes, light_hash })
+        let surface_bytes = OnceLock::new();
+        Ok(Self { bounds, scene, atlas, tracer, texels, canvas, depth_strokes, light_hash, surface_bytes })
     }
 }

@@ -33,7 +33,7 @@ impl Painter {
         let is_recordable = view.is_some();
         let shot = &document.camera;
         let unseen =
-            ViewFrame { camera_to_world: shot.camera_to_world, yfov: shot.yfov, aspect: shot.aspect() };
+            ViewFrame::of(shot);
         let record = RecordedStroke {
             layer: layer.name.clone(),
             brush,

@@ -65,8 +65,9 @@ fn seen(tracer: &Tracer, camera: &Camera, margin_px: f64, texel: &AtlasTexel) ->
     let optics = camera.optics();
     let point = camera.camera_from_world(texel.centroid.position(tracer.scene()));
     let reach = 1.0 + margin_px / optics.half_height_px;
-    let position = optics.chief(point);
-    let is_inside = position.x.abs() <= camera.aspect() + reach - 1.0 && position.y.abs() <= reach;
+    let [middle, half] = camera.frame_q();
+    let position = optics.chief(point) - middle;
+    let is_inside = position.x.abs() <= half.x + reach - 1.0 && position.y.abs() <= reach;
     if !(point.z > 0.0 && is_inside) {
         return Seen::Nothing;
     }

@@ -424,6 +424,6 @@ impl Worker {
 
 /// Whether the two show the same view, whatever their lens and size.
 fn same_view(a: &Camera, b: &Camera) -> bool {
-    (a.yfov, a.camera_to_world) == (b.yfov, b.camera_to_world)
+    (a.yfov, a.shift, a.camera_to_world) == (b.yfov, b.shift, b.camera_to_world)
         && (a.aspect() - b.aspect()).abs() < 0.1 * b.aspect()
 }

@@ -69,7 +69,5 @@ pub fn stroke(session: &mut Session) {
 
 /// The picture as a view that is painted in.
 pub fn shot_view(session: &Session) -> focus::ViewFrame {
-    let camera = &session.document().unwrap().camera;
-    let (camera_to_world, yfov, aspect) = (camera.camera_to_world, camera.yfov, camera.aspect());
-    focus::ViewFrame { camera_to_world, yfov, aspect }
+    focus::ViewFrame::of(&session.document().unwrap().camera)
 }

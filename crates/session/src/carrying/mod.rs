@@ -1,0 +1,16 @@
+//! Paint that follows the surface when the scene's file is another: moved vertices, new UVs, another mesh of the same thing.
+//!
+//! ```text
+//! the surface that was painted ─▶ OldSurface (a node's triangles in a tree)
+//!   a texel of the new atlas ─▶ alignment (where the node was) ─▶ nearest point with a like normal ─▶ the old atlas ─▶ its paint
+//! ```
+//!
+//! What finds no partner keeps the ordinary lens, and is listed by node.
+
+mod alignment;
+mod carried_paint;
+mod old_surface;
+mod partners;
+
+pub use carried_paint::{CarriedNode, CarriedPaint};
+pub(crate) use carried_paint::carried;
