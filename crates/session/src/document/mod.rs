@@ -18,6 +18,7 @@ mod open_document;
 mod picking;
 mod picture_regions;
 mod picture_scene;
+mod picture_views;
 mod scene_camera;
 mod scene_hashes;
 mod stage;
