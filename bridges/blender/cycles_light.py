@@ -11,6 +11,7 @@ import sys
 from pathlib import Path
 
 import bpy
+import numpy as np
 
 from . import handover, meshes_back, program, world_light
 from .glb_file import Glb, atlas_set
@@ -27,7 +28,8 @@ def bake(scene, found, folder, side=2048, samples=256, project="scene.fbrush"):
     """Bakes the scene's light and writes the handover of a scene that has it; gives the manifest. The open scene is changed."""
     handover.check(scene)
     folder = Path(folder)
-    bpy.context.window.scene = scene if bpy.context.window else None
+    if bpy.context.window is not None:
+        bpy.context.window.scene = scene
     raw, unwrapped = folder / "unlit.glb", folder / "unwrapped.glb"
     told = handover.export_glb(scene, raw, only_seen_lights=True)
     program.run(found, "unwrap", raw, "--side", side, "-o", unwrapped)
@@ -72,6 +74,9 @@ def light_named(path, picture):
             if key not in shining:
                 shining[key] = _shining_material(glb, key[0], uv_set, picture)
             primitive["material"] = shining[key]
+            # glTF multiplies colours of vertices into what a material shows.
+            for name in [name for name in primitive["attributes"] if name.startswith("COLOR_")]:
+                del primitive["attributes"][name]
     used = set(glb.document.get("extensionsUsed", [])) | {UNLIT}
     glb.document["extensionsUsed"] = sorted(used)
     return glb
@@ -113,8 +118,6 @@ def _real_meshes(scene):
 
 def _atlas_object(scene, path):
     """All that was unwrapped, in the world, as one mesh with the atlas as its UV map."""
-    import numpy as np
-
     corners, uv = [], []
     for placed in meshes_back.placed_meshes(path):
         if not placed.object_name:
@@ -150,12 +153,8 @@ def _image_of(target, unwrapped, side):
 
 
 def _bake(scene, target, shading, samples):
-    from mathutils import Vector
-
-    corners = [vertex.co for vertex in target.data.vertices]
-    low = Vector(min(corner[axis] for corner in corners) for axis in range(3))
-    high = Vector(max(corner[axis] for corner in corners) for axis in range(3))
-    lift = LIFT * (high - low).length
+    corners = np.array([vertex.co for vertex in target.data.vertices])
+    lift = LIFT * float(np.linalg.norm(np.ptp(corners, axis=0)))
     scene.render.engine = "CYCLES"
     scene.cycles.samples = samples
     scene.render.bake.view_from = "ACTIVE_CAMERA"

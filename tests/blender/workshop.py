@@ -156,6 +156,53 @@ def sky(scene):
     return world
 
 
+def still(size, roughness, glass):
+    """A still life: checks of world coordinates on a floor of this roughness, noise on a ball, a ball of glass."""
+    scene = empty()
+    scene.render.resolution_x, scene.render.resolution_y = size
+    scene.cycles.pixel_filter_type = "BOX"
+    scene.cycles.use_denoising = False
+    scene.cycles.use_adaptive_sampling = False
+    scene.cycles.sample_clamp_indirect = 0
+    floor = plain("floor", (0.6, 0.6, 0.6), roughness)
+    nodes, links = floor.node_tree.nodes, floor.node_tree.links
+    shader = nodes["Principled BSDF"]
+    checks, place = nodes.new("ShaderNodeTexChecker"), nodes.new("ShaderNodeTexCoord")
+    checks.inputs["Scale"].default_value = 3.0
+    checks.inputs["Color1"].default_value, checks.inputs["Color2"].default_value = (0.6, 0.5, 0.35, 1), (0.12, 0.15, 0.2, 1)
+    links.new(place.outputs["Object"], checks.inputs["Vector"])
+    links.new(checks.outputs["Color"], shader.inputs["Base Color"])
+    ground = put(scene, "Floor", mesh_of("primitive_plane_add", "floor", size=3))
+    ground.data.materials.append(floor)
+    # Off the edges of the checks, which lie where z is 0.
+    ground.location.z = -0.011
+    rock = plain("rock", (0.5, 0.5, 0.5), max(roughness, 0.4))
+    noise = rock.node_tree.nodes.new("ShaderNodeTexNoise")
+    noise.inputs["Scale"].default_value = 4
+    rock.node_tree.links.new(noise.outputs["Color"], rock.node_tree.nodes["Principled BSDF"].inputs["Base Color"])
+    ball = mesh_of("primitive_uv_sphere_add", "ball", segments=32, ring_count=16, radius=0.35)
+    ball.shade_smooth()
+    ball.materials.append(rock)
+    stone = put(scene, "Rock", ball, (-0.45, 0.2, 0.35))
+    stone.modifiers.new("Subdivision", "SUBSURF").levels = 1
+    stone.modifiers["Subdivision"].render_levels = 1
+    if glass:
+        clear = plain("glass", (1, 1, 1), 0.0)
+        clear.node_tree.nodes["Principled BSDF"].inputs["Transmission Weight"].default_value = 1
+        drop = mesh_of("primitive_uv_sphere_add", "drop", segments=48, ring_count=24, radius=0.3)
+        drop.shade_smooth()
+        drop.materials.append(clear)
+        put(scene, "Drop", drop, (0.45, -0.1, 0.3))
+    lamp = bpy.data.lights.new("Panel", "AREA")
+    lamp.energy, lamp.size = 40, 1.5
+    put(scene, "Panel", lamp, (0.8, -0.5, 2.2), (0.3, 0.3, 0))
+    sky(scene)
+    dof = {"aperture_fstop": 0.7, "focus_distance": 2.6}
+    scene.camera = camera(scene, "Shot", (0.2, -2.6, 1.1), (0, 0, 0.25), lens=45, dof=dof)
+    bpy.context.view_layer.update()
+    return scene
+
+
 def render(scene, path, **settings):
     """Cycles' own picture, linear."""
     import numpy as np
@@ -179,56 +226,98 @@ def degrees(*values):
 
 
 def write_places(glb, focus):
-    """Writes a focus map whose three channels say where in Blender's world the middle of each texel lies, found from the file's
-    triangles; texels of none are left. In place of what a brush would have painted: the same file in the same form."""
+    """Writes a focus map whose three channels say where in Blender's world the middle of each texel lies."""
+    write_map(glb, focus, lambda places: places.T)
+
+
+def write_map(glb, focus, values_of):
+    """Writes a focus map over another of the same atlas: `values_of` gives t, anchor and, if it likes, gloss of places in Blender's
+    world. In place of what a brush would have painted: the same file in the same form."""
     import struct
 
     import numpy as np
 
-    meshes_back = importlib.import_module(f"{MODULE}.meshes_back")
     exr_file = importlib.import_module(f"{MODULE}.exr_file")
-    planes, _ = exr_file.read(focus)
-    height, width = planes["focus.t"].shape
-    places = np.zeros((3, height, width), np.float32)
+    height, width = exr_file.read(focus)[0]["focus.t"].shape
+    places, is_covered = _places(glb, width, height)
+    names = ["focus.t", "focus.anchor", "focus.gloss"]
+    found = values_of(places[is_covered])
+    values = {}
+    for name, painted, blank in zip(names, found, (1, 0, 0)):
+        values[name] = np.full((height, width), blank, np.float32)
+        values[name][is_covered] = painted
+    data = focus.read_bytes()
+    own = b"".join(_own_attributes(data))
+
+    def attribute(name, kind, content):
+        return name.encode() + b"\0" + kind.encode() + b"\0" + struct.pack("<I", len(content)) + content
+
+    channels = sorted(values)
+    listed = b"".join(name.encode() + b"\0" + struct.pack("<IB3xii", 2, 0, 1, 1) for name in channels) + b"\0"
+    window = struct.pack("<4i", 0, 0, width - 1, height - 1)
+    header = struct.pack("<II", exr_file.MAGIC, 2)
+    header += attribute("channels", "chlist", listed) + attribute("compression", "compression", b"\0")
+    header += attribute("dataWindow", "box2i", window) + attribute("displayWindow", "box2i", window) + own
+    header += attribute("lineOrder", "lineOrder", b"\0") + attribute("pixelAspectRatio", "float", struct.pack("<f", 1))
+    header += attribute("screenWindowCenter", "v2f", struct.pack("<ff", 0, 0)) + attribute("screenWindowWidth", "float", struct.pack("<f", 1))
+    header += b"\0"
+    row = 4 * len(channels) * width
+    first = len(header) + 8 * height
+    rows = b"".join(
+        struct.pack("<ii", y, row) + b"".join(values[name][y].astype("<f4").tobytes() for name in channels) for y in range(height)
+    )
+    focus.write_bytes(header + struct.pack(f"<{height}Q", *(first + y * (8 + row) for y in range(height))) + rows)
+
+
+def _own_attributes(data):
+    """The attributes of ours in the header of an EXR, as they stand there."""
+    import struct
+
+    at = 8
+    while data[at] != 0:
+        begin = at
+        name_end = data.index(b"\0", at)
+        at = data.index(b"\0", name_end + 1) + 1
+        at += 4 + struct.unpack_from("<I", data, at)[0]
+        if data[begin:name_end].startswith(b"focusBrush."):
+            yield data[begin:at]
+
+
+def _places(glb, width, height):
+    """Where in Blender's world the middle of each texel lies, and which texels a triangle touches: those near one, too, as its plane
+    goes on there."""
+    import numpy as np
+
+    meshes_back = importlib.import_module(f"{MODULE}.meshes_back")
+    places = np.zeros((height, width, 3))
+    nearness = np.full((height, width), np.inf)
     for placed in meshes_back.placed_meshes(glb):
         world = np.array(placed.world)
         corners = placed.corners @ world[:3, :3].T + world[:3, 3]
         uv = placed.uv * (width, -height) + (0, height)
         for (a, b, c), (p, q, r) in zip(corners, uv):
-            low = np.floor(np.minimum(np.minimum(p, q), r) - 1).astype(int)
-            high = np.ceil(np.maximum(np.maximum(p, q), r) + 1).astype(int)
+            low = np.maximum(np.floor(np.minimum(np.minimum(p, q), r) - 1.5), 0).astype(int)
+            high = np.minimum(np.ceil(np.maximum(np.maximum(p, q), r) + 1.5), (width, height)).astype(int)
             x, y = np.meshgrid(np.arange(low[0], high[0]) + 0.5, np.arange(low[1], high[1]) + 0.5)
             edge, other = q - p, r - p
             area = edge[0] * other[1] - edge[1] * other[0]
+            if area == 0 or x.size == 0:
+                continue
             s = ((x - p[0]) * other[1] - (y - p[1]) * other[0]) / area
             t = ((y - p[1]) * edge[0] - (x - p[0]) * edge[1]) / area
-            # Texels whose square may touch the triangle.
-            slack = 0.75 * np.abs(np.stack((other, edge))).sum(1) / abs(area)
-            near = (s > -slack[0]) & (t > -slack[1]) & (s + t < 1 + slack.sum())
-            at = a + s[near][:, None] * (b - a) + t[near][:, None] * (c - a)
-            rows, columns = (y[near] - 0.5).astype(int), (x[near] - 0.5).astype(int)
-            kept = (rows >= 0) & (rows < height) & (columns >= 0) & (columns < width)
-            inside = (s >= 0) & (t >= 0) & (s + t <= 1)
-            empty_or_inside = (places[:, rows[kept], columns[kept]] == 0).all(0) | inside[near][kept]
-            rows, columns, at = rows[kept][empty_or_inside], columns[kept][empty_or_inside], at[kept][empty_or_inside]
-            places[:, rows, columns] = at.T
-    channels = ["focus.anchor", "focus.gloss", "focus.t"]
-    values = {"focus.t": places[0], "focus.anchor": places[1], "focus.gloss": places[2]}
-    header = struct.pack("<II", exr_file.MAGIC, 2)
+            # How far outside of the triangle the texel's middle lies, in texels; 0 inside.
+            lengths = [np.hypot(*each) for each in (other, edge, r - q)]
+            outside = np.maximum.reduce([-s * abs(area) / lengths[0], -t * abs(area) / lengths[1], (s + t - 1) * abs(area) / lengths[2]])
+            outside = np.maximum(outside, 0)
+            box = (slice(low[1], high[1]), slice(low[0], high[0]))
+            nearer = (outside < nearness[box]) & (outside < 1.5)
+            at = a + s[..., None] * (b - a) + t[..., None] * (c - a)
+            places[box][nearer] = at[nearer]
+            nearness[box][nearer] = outside[nearer]
+    return places, np.isfinite(nearness)
 
-    def attribute(name, kind, content):
-        return name.encode() + b"\0" + kind.encode() + b"\0" + struct.pack("<I", len(content)) + content
 
-    listed = b"".join(name.encode() + b"\0" + struct.pack("<IB3xii", 2, 0, 1, 1) for name in channels) + b"\0"
-    window = struct.pack("<4i", 0, 0, width - 1, height - 1)
-    header += attribute("channels", "chlist", listed) + attribute("compression", "compression", b"\0")
-    header += attribute("dataWindow", "box2i", window) + attribute("displayWindow", "box2i", window)
-    header += attribute("lineOrder", "lineOrder", b"\0") + attribute("pixelAspectRatio", "float", struct.pack("<f", 1))
-    header += attribute("screenWindowCenter", "v2f", struct.pack("<ff", 0, 0)) + attribute("screenWindowWidth", "float", struct.pack("<f", 1))
-    header += b"\0"
-    size = 8 + 12 * width
-    first = len(header) + 8 * height
-    rows = b"".join(
-        struct.pack("<ii", y, 12 * width) + b"".join(values[name][y].astype("<f4").tobytes() for name in channels) for y in range(height)
-    )
-    focus.write_bytes(header + struct.pack(f"<{height}Q", *(first + y * size for y in range(height))) + rows)
+def said(program_path, *arguments):
+    """What a command says on both streams."""
+    done = subprocess.run([program_path, *map(str, arguments)], capture_output=True, text=True, check=True)
+    return done.stdout + done.stderr

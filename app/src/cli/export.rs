@@ -69,7 +69,7 @@ fn focus_map(input: &Input, path: &Path, console: &Console) -> Result<(), Failur
 fn glb(input: &Input, path: &Path, console: &Console) -> Result<(), Failure> {
     check_folder(path)?;
     let atlas = input.atlas(&unwrap_options(None), console)?;
-    Ok(write_unwrapped(path, &input.scene, &atlas, console)?)
+    Ok(write_unwrapped(path, &input.scene, &atlas, Some(&input.camera), console)?)
 }
 
 fn photograph(input: &Input, name: &str, path: &Path, console: &Console) -> Result<(), Failure> {

@@ -22,7 +22,7 @@ pub fn run(arguments: &UnwrapArguments, console: &Console) -> Result<(), Failure
     let unwrapping = Instant::now();
     let atlas = input.atlas(&unwrap_options(Some(&arguments.atlas)), console)?;
     let unwrap_seconds = unwrapping.elapsed().as_secs_f64();
-    write_unwrapped(&arguments.output, &input.scene, &atlas, console)?;
+    write_unwrapped(&arguments.output, &input.scene, &atlas, None, console)?;
     if arguments.json {
         say_json(&json!({
             "input": path_text(&arguments.scene),

@@ -13,6 +13,7 @@ use crate::placed_meshes::{self, Stop};
 use crate::{Atlas, AtlasError};
 use progress::{Progress, Stage};
 use scene::{LoadOptions, Scene, SceneError, Source};
+use serde_json::{Map, Value};
 use std::io::Write;
 use std::path::Path;
 
@@ -30,7 +31,21 @@ pub fn write_glb(
     path: &Path,
     progress: &dyn Progress,
 ) -> Result<(), AtlasError> {
-    let bytes = glb_bytes(scene, atlas, progress)?;
+    write_amended_glb(scene, atlas, path, &|_| {}, progress)
+}
+
+/// The same with a document that is amended before it is written.
+///
+/// # Errors
+/// Those of [`write_glb`].
+pub fn write_amended_glb(
+    scene: &Scene,
+    atlas: &Atlas,
+    path: &Path,
+    amend: &dyn Fn(&mut Map<String, Value>),
+    progress: &dyn Progress,
+) -> Result<(), AtlasError> {
+    let bytes = amended_glb_bytes(scene, atlas, amend, progress)?;
     progress.check()?;
     let write = || {
         let mut file = atomic_write_file::AtomicWriteFile::open(path)?;
@@ -45,6 +60,15 @@ pub fn write_glb(
 /// # Errors
 /// The scene's file cannot be read again, or is another one now; all is too large for a GLB, or the work was cancelled.
 pub fn glb_bytes(scene: &Scene, atlas: &Atlas, progress: &dyn Progress) -> Result<Vec<u8>, AtlasError> {
+    amended_glb_bytes(scene, atlas, &|_| {}, progress)
+}
+
+fn amended_glb_bytes(
+    scene: &Scene,
+    atlas: &Atlas,
+    amend: &dyn Fn(&mut Map<String, Value>),
+    progress: &dyn Progress,
+) -> Result<Vec<u8>, AtlasError> {
     let reading = Stage::new(progress, 0.0, READING_SHARE);
     let placing = Stage::new(progress, READING_SHARE, 1.0);
     scene::with_source(&scene.path, &LoadOptions::default(), &reading, |source| {
@@ -58,6 +82,7 @@ pub fn glb_bytes(scene: &Scene, atlas: &Atlas, progress: &dyn Progress) -> Resul
         };
         let mut glb = GlbDocument::of(source).map_err(|fault| stopped(fault.into()))?;
         placed_meshes::place(&mut glb, source, atlas, &placing).map_err(stopped)?;
+        amend(glb.root_mut());
         glb.into_bytes()
     })?
 }

@@ -32,6 +32,11 @@ impl GlbDocument {
         Ok(glb)
     }
 
+    /// The document.
+    pub fn root_mut(&mut self) -> &mut Map<String, Value> {
+        &mut self.root
+    }
+
     /// Joins the buffers. One whose data cannot be had stays what it was, behind the joint one.
     fn take_buffers(&mut self, source: &Source<'_>) -> Result<(), Fault> {
         let mut joint = None;

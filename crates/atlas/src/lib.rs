@@ -48,6 +48,6 @@ pub use atlas::{Atlas, Chart};
 pub use coverage::AtlasTexel;
 pub use dilation::{DILATION_RADIUS, Dilation};
 pub use error::AtlasError;
-pub use export_glb::{glb_bytes, write_glb};
+pub use export_glb::{glb_bytes, write_amended_glb, write_glb};
 pub use options::{Density, MAX_SIDE, MIN_GUTTER, UnwrapOptions, UvPolicy};
 pub use texel_map::{NO_TEXEL, TexelMap};

@@ -167,6 +167,8 @@ pub enum LightKind {
 pub struct SceneCamera {
     /// Its name, or its node's, or `camera N`.
     pub name: String,
+    /// Its index among the file's cameras; none of one that was made up.
+    pub index: Option<u32>,
     /// Rigid pose, glTF axes; scale of the node hierarchy removed.
     pub camera_to_world: DMat4,
     /// Full vertical angle of view, rad.

@@ -49,7 +49,8 @@ pub(crate) fn node_camera(
     let Some(camera_to_world) = rigid(world) else { return skip("its transform is singular") };
     let name = named(camera.name()).or(named(node.name())).unwrap_or_else(|| format!("camera {index}"));
     let lens = own_extras::camera_lens(document, index, yfov);
-    Ok(Some(SceneCamera { name, camera_to_world, yfov, aspect, focus_distance: 1.0, lens }))
+    let index = Some(index as u32);
+    Ok(Some(SceneCamera { name, index, camera_to_world, yfov, aspect, focus_distance: 1.0, lens }))
 }
 
 /// The pose in a transform: where it looks (−Z) is kept, up as well as it goes, scale and mirroring are removed.
@@ -94,6 +95,7 @@ pub(crate) fn framing(scene: &Scene, upright: DQuat) -> SceneCamera {
     let position = right * across + up * along + back * distance;
     SceneCamera {
         name: "framing".into(),
+        index: None,
         camera_to_world: DMat4::from_mat3_translation(DMat3::from_cols(right, up, back), position),
         yfov: YFOV,
         aspect: None,

@@ -5,17 +5,14 @@ use super::kept_atlas::unwrapped;
 use super::scene_camera::camera_of;
 use super::stage::{Stage, atlas_error, load_variant};
 use super::variant_choice::VariantChoice;
-use crate::carrying::{CarriedPaint, carried};
+use crate::carrying::CarriedPaint;
 use crate::error::SessionError;
 use crate::jobs::Steps;
 use crate::light_field::{is_photographed, keep_photographs_at};
 use atlas::{Atlas, UnwrapOptions};
 use focus::{Focus, FocusMap, FocusRecipe, RecipeEntry};
 use lens::{Camera, Exposure, FocusOffset};
-use project::{
-    CaptureChoices, FocusFile, ProjectError, ProjectFile, SceneState, read_camera, read_focus,
-    surface_from_bytes, surface_to_bytes,
-};
+use project::{CaptureChoices, FocusFile, ProjectError, ProjectFile, SceneState, read_camera, read_focus};
 use salf::{Salf, SalfFile};
 use scene::{BackFaces, Fault, PhotoLookup, Scene, SceneError, World};
 use std::fs::File;
@@ -223,62 +220,6 @@ impl Input {
         if back_faces != self.scene.back_faces {
             Arc::make_mut(&mut self.scene).back_faces = back_faces;
         }
-    }
-
-    /// Has the paint of a project follow the surface, if the project's scene is another one by now.
-    ///
-    /// # Errors
-    /// The project is damaged, the scene cannot be unwrapped, or the work was cancelled.
-    pub fn follow_surface(&mut self, unwrap: &UnwrapOptions, steps: &dyn Steps) -> Result<(), SessionError> {
-        let Some(project) = self.project.as_ref().filter(|project| project.capture.is_none()) else { return Ok(()) };
-        let Some(surface) = project.surface.as_ref().filter(|_| self.carried.is_none()) else { return Ok(()) };
-        if *surface == surface_to_bytes(&self.scene) {
-            return Ok(());
-        }
-        let old = surface_from_bytes(surface);
-        let old = old.ok_or_else(|| SessionError::bad(&self.path, "surface.bin is damaged (restore the file from a copy)"))?;
-        self.carry(&project.clone(), &old, unwrap, steps)
-    }
-
-    /// Takes over what is painted in a project, which may be on another surface; its world and brush come along.
-    ///
-    /// # Errors
-    /// The project cannot be read, or its surface is not known any more.
-    pub fn take_paint_of(&mut self, file: &Path, unwrap: &UnwrapOptions, steps: &dyn Steps) -> Result<(), SessionError> {
-        let mut project = ProjectFile::load(file)?;
-        let old = match project.surface.as_deref().map(surface_from_bytes) {
-            Some(Some(surface)) => surface,
-            None if project.capture.is_none() && project.scene_state() == SceneState::Same => {
-                Arc::unwrap_or_clone(load_variant(&project.scene, None, &*steps.begin("reading"))?)
-            }
-            _ => {
-                let what = "what it was painted on is not known any more (save it once with its scene as it was)";
-                return Err(SessionError::bad(file, what));
-            }
-        };
-        let world = project.world.as_ref().map(|world| world.load(&self.scene)).transpose()?;
-        self.set_world(world);
-        self.set_back_faces(project.back_faces);
-        let active = project.active_camera;
-        project.cameras[active].camera = self.camera.clone();
-        self.carry(&project, &old, unwrap, steps)
-    }
-
-    /// Gives the scene the paint of a project that was painted on `old`.
-    fn carry(
-        &mut self,
-        project: &ProjectFile,
-        old: &Scene,
-        unwrap: &UnwrapOptions,
-        steps: &dyn Steps,
-    ) -> Result<(), SessionError> {
-        let atlas = unwrapped(&self.scene, unwrap, &*steps.begin("unwrapping"));
-        let atlas = atlas.map_err(|error| atlas_error(&self.path, error))?;
-        steps.begin("carrying paint over").check()?;
-        let (project, carried) = carried(project, old, &self.scene, &atlas)?;
-        self.warnings.push(carried.told(&self.scene.path));
-        (self.project, self.carried) = (Some(project), Some(carried));
-        Ok(())
     }
 
     /// Gives the scene a world, whatever the project says; none: its own.

@@ -134,6 +134,7 @@ pub(super) fn picture_scene(
     };
     let camera = SceneCamera {
         name: "picture".into(),
+        index: None,
         camera_to_world: DMat4::IDENTITY,
         yfov: 2.0 * (f64::from(middle.y) / space.focal_px).atan(),
         aspect: Some(f64::from(middle.x / middle.y)),

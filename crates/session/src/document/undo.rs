@@ -124,6 +124,12 @@ impl Undo {
         Self { done: VecDeque::new(), undone: Vec::new(), run: false, budget_bytes, bytes: 0 }
     }
 
+    /// Sets the memory that the steps may keep alive.
+    pub fn set_budget(&mut self, budget_bytes: usize) {
+        self.budget_bytes = budget_bytes;
+        self.forget_beyond_budget();
+    }
+
     /// Takes up a change of the map of a layer.
     pub fn push_paint(&mut self, layer: usize, edit: Edit, record: Option<RecordedStep>) {
         self.push(Step::new(edit.name().into(), Change::Paint { layer, edit }, record));

@@ -9,6 +9,7 @@ mod photograph_picture;
 mod reference;
 mod render;
 mod renderer;
+mod shot_extras;
 mod stereo;
 mod thumbnail;
 mod unwrapped;

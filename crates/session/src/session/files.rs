@@ -114,7 +114,7 @@ impl Session {
     }
 
     /// Has the session polled again after `wait`, also when nobody touches the window.
-    fn wake_in(&self, wait: Duration) {
+    pub(super) fn wake_in(&self, wait: Duration) {
         let waker = self.options.waker.clone();
         let sleep = move || {
             std::thread::sleep(wait);
@@ -145,9 +145,10 @@ impl Session {
     }
 
     pub(super) fn export_scene(&mut self, path: PathBuf) -> Result<(), SessionError> {
-        let stage = self.opened()?.stage.clone();
+        let document = self.opened()?;
+        let (stage, camera) = (document.stage.clone(), document.camera.clone());
         self.start(format!("writing {}", file_name(&path)), move |progress| {
-            write_unwrapped(&path, &stage.scene, &stage.atlas, &JobSteps { progress })?;
+            write_unwrapped(&path, &stage.scene, &stage.atlas, Some(&camera), &JobSteps { progress })?;
             Ok(Outcome::Written(path, Vec::new()))
         })?;
         Ok(())

@@ -9,6 +9,7 @@ mod comparing;
 mod exporting;
 mod files;
 mod first_look;
+mod following;
 mod history;
 mod outcome;
 mod painting;

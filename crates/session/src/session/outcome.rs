@@ -10,6 +10,12 @@ use trace::truth::Estimate;
 /// What a finished job hands to the session.
 pub(super) enum Outcome {
     Opened(Box<Document>),
+    /// The document of this generation and revision, whose scene was written again.
+    Followed {
+        document: Box<Document>,
+        generation: u64,
+        revision: u64,
+    },
     /// A capture that does not open until somebody says which end of its depth map is near.
     AsksNear(Box<NearQuestion>),
     /// What is seen of a scene before it can be painted on.

@@ -5,7 +5,7 @@ use super::recovery::Recovery;
 use super::state::Session;
 use crate::commands::Event;
 use crate::display::stops_for;
-use crate::document::Undo;
+use crate::document::Document;
 use crate::error::SessionError;
 use progress::Progress;
 
@@ -57,6 +57,7 @@ impl Session {
         self.events.extend(moved.map(Event::Progress));
         self.reported = jobs;
         self.keep_unsaved_work();
+        self.watch_scene();
         if !self.map_changes.is_empty() {
             let rectangles = std::mem::take(&mut self.map_changes).into_values().collect();
             self.events.push(Event::MapChanged(rectangles));
@@ -64,34 +65,41 @@ impl Session {
         std::mem::take(&mut self.events)
     }
 
+    /// Shows a document that was opened.
+    pub(super) fn take_opened(&mut self, mut document: Document) {
+        document.undo.set_budget(self.options.undo_budget_bytes);
+        self.forget_recovery();
+        self.generation += 1;
+        (self.underway, self.preview, self.field) = (None, None, None);
+        self.references.clear();
+        self.map_changes.clear();
+        self.end_verification();
+        self.looked_through = None;
+        let camera = self.scaled_camera(&document.camera);
+        self.preview_camera = Some(camera.clone());
+        let stage = (document.stage.clone(), self.generation);
+        self.preview_thread.set_stage(stage, (document.map.clone(), self.map_serial), camera);
+        if self.document.is_some() {
+            self.screen.clear();
+        }
+        self.events.push(Event::Opened);
+        self.events.extend(document.selection.is_some().then_some(Event::SelectionChanged));
+        // What was restored is in its file already; a document as saved has none.
+        self.recovery = Recovery {
+            file: document.is_unsaved().then(|| document.recovery_path()),
+            kept: if document.carried.is_some() { document.saved } else { document.revision },
+            changed: None,
+        };
+        self.document = Some(document);
+        self.show_tone();
+        self.begin_watching();
+    }
+
     fn take(&mut self, outcome: Outcome) {
         match outcome {
-            Outcome::Opened(mut document) => {
-                document.undo = Undo::new(self.options.undo_budget_bytes);
-                self.forget_recovery();
-                self.generation += 1;
-                (self.underway, self.preview, self.field) = (None, None, None);
-                self.references.clear();
-                self.map_changes.clear();
-                self.end_verification();
-                self.looked_through = None;
-                let camera = self.scaled_camera(&document.camera);
-                self.preview_camera = Some(camera.clone());
-                let stage = (document.stage.clone(), self.generation);
-                self.preview_thread.set_stage(stage, (document.map.clone(), self.map_serial), camera);
-                if self.document.is_some() {
-                    self.screen.clear();
-                }
-                self.events.push(Event::Opened);
-                self.events.extend(document.selection.is_some().then_some(Event::SelectionChanged));
-                // What was restored is in its file already; a document as saved has none.
-                self.recovery = Recovery {
-                    file: document.is_unsaved().then(|| document.recovery_path()),
-                    kept: document.revision,
-                    changed: None,
-                };
-                self.document = Some(*document);
-                self.show_tone();
+            Outcome::Opened(document) => self.take_opened(*document),
+            Outcome::Followed { document, generation, revision } => {
+                self.take_followed(*document, [generation, revision]);
             }
             Outcome::AsksNear(question) => self.events.push(Event::AsksNear(question)),
             Outcome::Seen(picture) => self.take_seen(&picture),

@@ -1,5 +1,6 @@
 //! The state of a session, one document open at a time.
 
+use super::following::Watched;
 use super::outcome::Outcome;
 use super::recovery::Recovery;
 use crate::commands::Event;
@@ -90,6 +91,8 @@ pub struct Session {
     /// Counts changes of the map that were shown to the preview.
     pub(super) map_serial: u64,
     pub(super) recovery: Recovery,
+    /// The scene's file, where another program may write it again.
+    pub(super) watched: Option<Watched>,
     /// The pictures to compare with, one of a kind.
     pub(super) references: Vec<Reference>,
     /// Which of the jobs make such pictures.
@@ -136,6 +139,7 @@ impl Session {
             seen_preview: 0,
             map_serial: 0,
             recovery: Recovery::default(),
+            watched: None,
             references: Vec::new(),
             reference_jobs: Vec::new(),
             verification: None,

@@ -1,0 +1,110 @@
+//! Paint on a scene that is another by now: written again by another program, before the document was opened or while it is open.
+
+use super::input::Input;
+use super::kept_atlas::unwrapped;
+use super::open_document::Document;
+use super::scene_camera::camera_of;
+use super::stage::{atlas_error, load_variant};
+use super::variant_choice::VariantChoice;
+use crate::carrying::carried;
+use crate::error::SessionError;
+use crate::jobs::Steps;
+use atlas::UnwrapOptions;
+use lens::Camera;
+use project::{ProjectFile, SceneState, surface_from_bytes, surface_to_bytes};
+use scene::{Scene, SceneCamera};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+impl Input {
+    /// Has the paint of a project follow the surface, if the project's scene is another one by now.
+    ///
+    /// # Errors
+    /// The project is damaged, the scene cannot be unwrapped, or the work was cancelled.
+    pub fn follow_surface(&mut self, unwrap: &UnwrapOptions, steps: &dyn Steps) -> Result<(), SessionError> {
+        let Some(project) = self.project.as_ref().filter(|project| project.capture.is_none()) else { return Ok(()) };
+        let Some(surface) = project.surface.as_ref().filter(|_| self.carried.is_none()) else { return Ok(()) };
+        if *surface == surface_to_bytes(&self.scene) {
+            return Ok(());
+        }
+        let old = surface_from_bytes(surface);
+        let old = old.ok_or_else(|| SessionError::bad(&self.path, "surface.bin is damaged (restore the file from a copy)"))?;
+        self.carry(&project.clone(), &old, unwrap, steps)
+    }
+
+    /// Takes over what is painted in a project, which may be on another surface; its world and brush come along.
+    ///
+    /// # Errors
+    /// The project cannot be read, or its surface is not known any more.
+    pub fn take_paint_of(&mut self, file: &Path, unwrap: &UnwrapOptions, steps: &dyn Steps) -> Result<(), SessionError> {
+        let mut project = ProjectFile::load(file)?;
+        let old = match project.surface.as_deref().map(surface_from_bytes) {
+            Some(Some(surface)) => surface,
+            None if project.capture.is_none() && project.scene_state() == SceneState::Same => {
+                Arc::unwrap_or_clone(load_variant(&project.scene, None, &*steps.begin("reading"))?)
+            }
+            _ => {
+                let what = "what it was painted on is not known any more (save it once with its scene as it was)";
+                return Err(SessionError::bad(file, what));
+            }
+        };
+        let world = project.world.as_ref().map(|world| world.load(&self.scene)).transpose()?;
+        self.set_world(world);
+        self.set_back_faces(project.back_faces);
+        let active = project.active_camera;
+        project.cameras[active].camera = self.camera.clone();
+        self.carry(&project, &old, unwrap, steps)
+    }
+
+    /// Gives the scene the paint of a project that was painted on `old`.
+    fn carry(
+        &mut self,
+        project: &ProjectFile,
+        old: &Scene,
+        unwrap: &UnwrapOptions,
+        steps: &dyn Steps,
+    ) -> Result<(), SessionError> {
+        let atlas = unwrapped(&self.scene, unwrap, &*steps.begin("unwrapping"));
+        let atlas = atlas.map_err(|error| atlas_error(&self.path, error))?;
+        steps.begin("carrying paint over").check()?;
+        let (project, carried) = carried(project, old, &self.scene, &atlas)?;
+        self.warnings.insert(0, carried.told(&self.scene.path));
+        (self.project, self.carried) = (Some(project), Some(carried));
+        Ok(())
+    }
+}
+
+impl Document {
+    /// What was open, as `project`, on the scene as it is now; the paint follows the surface, and the shot camera the camera of the scene
+    /// that it was, of those in `before`, unless it was changed here. `path` is the document's own file.
+    ///
+    /// # Errors
+    /// The scene cannot be read or unwrapped, or the work was cancelled.
+    pub(crate) fn follow(
+        project: ProjectFile,
+        before: &[SceneCamera],
+        path: Option<PathBuf>,
+        unwrap: &UnwrapOptions,
+        steps: &dyn Steps,
+    ) -> Result<Self, SessionError> {
+        let told = path.clone().unwrap_or_else(|| project.scene.clone());
+        let mut input = Input::open_project(&told, project, &VariantChoice::AsSaved, steps)?;
+        let shot = &input.camera;
+        let was = before.iter().find(|camera| is_from(shot, camera));
+        let is = was.and_then(|was| input.scene.cameras.iter().find(|camera| camera.name == was.name));
+        if let Some(camera) = is {
+            input.camera = camera_of(camera, shot);
+        }
+        let mut document = Self::of(input, unwrap, steps)?;
+        (document.path, document.revision) = (path, 1);
+        Ok(document)
+    }
+}
+
+/// Whether a shot camera is as the scene's camera has it.
+fn is_from(shot: &Camera, camera: &SceneCamera) -> bool {
+    let own = camera_of(camera, shot);
+    // The focus distance of a camera without one is a proposal.
+    Camera { focus_distance: shot.focus_distance, ..own.clone() } == *shot
+        && camera.lens.focus_distance.is_none_or(|distance| distance == shot.focus_distance)
+}
