@@ -308,8 +308,8 @@ fn pictures_come_along() {
     let layer = |name: &str, x: usize, y: usize| picture.layers[name][y * 96 + x];
     // The card is 0.4 left of the middle at depth 2: 96 px are 2·tan(0.3)·2·1.5 wide there.
     let card = (48.0 - 0.4 / (2.0 * 0.3f64.tan() * 2.0 * 1.5) * 96.0) as usize;
-    assert!((layer("depth", card, 32) - 2.0).abs() < 1e-5);
-    assert!((layer("depth", 90, 60) - 4.0).abs() < 1e-5);
+    assert!((layer("depth.Z", card, 32) - 2.0).abs() < 1e-5);
+    assert!((layer("depth.Z", 90, 60) - 4.0).abs() < 1e-5);
     assert_eq!((layer("t", card, 32), layer("anchor", card, 32)), (1.2, 1.0));
     assert_eq!(layer("coc", 90, 60), 0.0, "the wall is painted sharp");
     // A·(t − 1)/d/tanθ half-heights, d = h/(2·tanθ): far defocus is positive.

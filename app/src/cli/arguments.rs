@@ -2,8 +2,9 @@
 
 use clap::builder::{OsStringValueParser, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, ValueEnum};
+use project::{ColorSpace, Compression};
 use scene::{BackFaces, PhotoLookup};
-use session::{Aov, CameraChoice, Renderer, VariantChoice};
+use session::{Aov, CameraChoice, CocConvention, Renderer, VariantChoice};
 use std::ffi::{OsStr, OsString};
 use std::path::PathBuf;
 
@@ -326,18 +327,34 @@ pub struct RenderArguments {
     /// Rays that `--renderer scatter` throws for each sample of the light field
     #[arg(long, value_name = "N", default_value_t = 256, value_parser = clap::value_parser!(u32).range(1..=1 << 16))]
     pub rays: u32,
-    /// Pictures that come along: coverage (the sum for a scene of radiance 1), coc (signed diameter of the circle of
-    /// confusion in px, negative when nearer than the focus), depth (axial; inf for the background), t (and anchor),
-    /// seen (of a capture: 1 photographed, 0 filled in), stderr (the ground truth's standard error: of radiance, luminance and
+    /// Pictures that come along: alpha (the share that is not background; the colours are multiplied by it), crypto (Cryptomatte of
+    /// objects and materials), pinhole (everything sharp, to be blurred by others), coverage (the sum for a scene of radiance 1),
+    /// coc (the circle of confusion), depth (axial, depth.Z; inf for the background), t (and anchor), seen (of a capture: 1 photographed, 0 filled in), stderr (the ground truth's standard error: of radiance, luminance and
     /// coverage, and of their ratios)
     #[arg(long, value_name = "NAMES", value_delimiter = ',', value_parser = aov)]
     pub aov: Vec<Aov>,
+    /// How coc is told: signed-px (its diameter, below 0 when nearer than the focus), or as nodes that blur by it want it: nuke
+    /// and magicdefocus (its radius, below 0 nearer or farther), flame (0.5 in focus, 0 nearest, 1 farthest)
+    #[arg(long, value_name = "NAME", default_value = "signed-px", value_parser = named(CocConvention::ALL))]
+    pub coc_convention: CocConvention,
+    /// Pixels that are computed around the frame on each side: an EXR's data window is that much larger than its display window
+    #[arg(long, value_name = "PX", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=4096))]
+    pub overscan: u32,
+    /// How an EXR is compressed; dwaa loses what is hardly seen of the colours
+    #[arg(long, value_name = "NAME", default_value = "zip", value_parser = named(Compression::ALL))]
+    pub compression: Compression,
+    /// Halves instead of floats in an EXR where that suffices: colours, alpha, coverage
+    #[arg(long)]
+    pub half: bool,
+    /// The linear colour space of an EXR
+    #[arg(long, value_name = "NAME", default_value = "rec709", value_parser = named(ColorSpace::ALL))]
+    pub color_space: ColorSpace,
     /// normalise keeps a white scene white; conserve is the model's energy as it is (default: the project's, or
     /// normalise)
     #[arg(long, value_enum)]
     pub exposure: Option<ExposureName>,
     /// Two pictures for two eyes, the lens's through two parts of its aperture: beside each other, or in red and cyan
-    #[arg(long, value_enum, value_name = "FORM", conflicts_with = "aov")]
+    #[arg(long, value_enum, value_name = "FORM", conflicts_with_all = ["aov", "overscan"])]
     pub stereo: Option<StereoName>,
     /// How far the eyes are apart, as a share of the aperture's diameter, at most 0.9375
     #[arg(long, value_name = "SHARE", default_value_t = 0.5, requires = "stereo")]
@@ -562,6 +579,16 @@ fn size(text: &str) -> Result<[u32; 2], String> {
     sides
         .and_then(|(width, height)| Some([side(width)?, side(height)?]))
         .ok_or_else(|| format!("WIDTHxHEIGHT in pixels, each 1 to {}", lens::Camera::LARGEST_SIDE_PX))
+}
+
+/// One of some values, by the names that they have.
+fn named<T: Copy + Send + Sync + 'static, const COUNT: usize>(
+    all: [(&'static str, T); COUNT],
+) -> impl TypedValueParser<Value = T> {
+    PossibleValuesParser::new(all.map(|(name, _)| name)).try_map(move |name| {
+        let found = all.iter().find(|(known, _)| *known == name);
+        found.map(|(_, value)| *value).ok_or("not one of them")
+    })
 }
 
 fn renderer_parser() -> impl TypedValueParser<Value = Renderer> {

@@ -5,7 +5,7 @@ use super::console::{Console, path_text, path_texts, say_json};
 use super::failure::Failure;
 use super::shot::{check_picture_output, opened, shot};
 use lens::Exposure;
-use project::{PictureOptions, write_picture};
+use project::{ColorSpace, Compression, PictureOptions, write_picture};
 use serde_json::json;
 use session::{
     Aov, LayeredOptions, RenderOptions, Rendered, Renderer, ScatterOptions, SessionError, Stereo,
@@ -37,6 +37,11 @@ pub fn run(arguments: &RenderArguments, console: &Console) -> Result<(), Failure
         (Some(_), _) => 1,
         (None, cells) => cells.unwrap_or(usual.cells_a_side),
     };
+    if input.salf.is_some() && arguments.overscan > 0 {
+        let what = "is baked for the frame alone (leave out --overscan, or give the scene or project)";
+        return Err(Failure::bad(format!("{}: {what}", arguments.file.display())));
+    }
+    let camera = camera.overscanned(arguments.overscan);
     let options = RenderOptions {
         cells_a_side,
         gpu,
@@ -46,6 +51,8 @@ pub fn run(arguments: &RenderArguments, console: &Console) -> Result<(), Failure
         views: ViewsOptions { views_a_side: arguments.views, ..ViewsOptions::default() },
         scatter: ScatterOptions { rays_a_sample: arguments.rays, seed: arguments.seed },
         aovs: arguments.aov.clone(),
+        coc: arguments.coc_convention,
+        overscan: arguments.overscan,
         ..usual
     };
     let exposure = match arguments.exposure {
@@ -53,7 +60,7 @@ pub fn run(arguments: &RenderArguments, console: &Console) -> Result<(), Failure
         Some(ExposureName::Conserve) => Exposure::Conserve,
         Some(ExposureName::Normalise) => Exposure::Normalise,
     };
-    let Rendered { picture, layers, cost, warnings } = match arguments.stereo {
+    let Rendered { picture, layers, attributes, cost, warnings } = match arguments.stereo {
         None => render_input(&input, &camera, &focus, &options, console)?,
         Some(form) => {
             let stereo =
@@ -68,8 +75,15 @@ pub fn run(arguments: &RenderArguments, console: &Console) -> Result<(), Failure
     }
 
     let writing = Instant::now();
-    let written = PictureOptions { exposure, half: false };
-    let files = write_picture(&arguments.output, &picture, &layers, written)?;
+    let written = PictureOptions {
+        exposure,
+        half: arguments.half,
+        compression: arguments.compression,
+        color_space: arguments.color_space,
+        overscan: arguments.overscan,
+        attributes,
+    };
+    let files = write_picture(&arguments.output, &picture, &layers, &written)?;
     let write_seconds = writing.elapsed().as_secs_f64();
     if arguments.json {
         say_json(&json!({
@@ -80,6 +94,7 @@ pub fn run(arguments: &RenderArguments, console: &Console) -> Result<(), Failure
             "adapter": card,
             "width": picture.width,
             "height": picture.height,
+            "overscan": arguments.overscan,
             "exposure": format!("{exposure:?}").to_lowercase(),
             "threads": rayon::current_num_threads(),
             "triangles": input.scene.triangles.len(),
@@ -152,5 +167,31 @@ fn check_output(arguments: &RenderArguments) -> Result<(), Failure> {
         let what = "--aov stderr: only the ground truth knows its standard error (use --renderer truth)";
         return Err(Failure::usage(what));
     }
-    check_picture_output(&arguments.output)
+    let needs_paths = |aov: &&Aov| aov.needs_paths() && !arguments.renderer.tells_paths();
+    if let Some((name, _)) = arguments.aov.iter().find(needs_paths).and_then(Aov::entry) {
+        let what = format!(
+            "--aov {name}: --renderer {} does not know it (use splat or truth)",
+            arguments.renderer.name()
+        );
+        return Err(Failure::usage(what));
+    }
+    if arguments.aov.contains(&Aov::Crypto) && !arguments.compression.is_lossless() {
+        let what = "--compression dwaa: Cryptomatte does not survive loss (use zips, zip or piz, or write crypto to another file)";
+        return Err(Failure::usage(what));
+    }
+    check_picture_output(&arguments.output)?;
+    let is_exr = arguments.output.extension().is_some_and(|e| e.eq_ignore_ascii_case("exr"));
+    let of_exr = [
+        ("--half", arguments.half),
+        ("--overscan", arguments.overscan > 0),
+        ("--compression", arguments.compression != Compression::default()),
+        ("--color-space", arguments.color_space != ColorSpace::default()),
+    ];
+    match of_exr.into_iter().find(|(_, is_asked)| *is_asked && !is_exr) {
+        Some((option, _)) => {
+            let what = format!("{}: {option} is of EXR alone (name an .exr)", arguments.output.display());
+            Err(Failure::usage(what))
+        }
+        None => Ok(()),
+    }
 }

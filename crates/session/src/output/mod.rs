@@ -4,7 +4,9 @@
 
 mod aov;
 mod blur_histogram;
+mod coc_convention;
 mod left_out;
+mod mattes;
 mod photograph_picture;
 mod reference;
 mod render;
@@ -17,6 +19,7 @@ mod verification;
 
 pub use aov::Aov;
 pub use blur_histogram::BlurHistogram;
+pub use coc_convention::CocConvention;
 pub use left_out::{LeftOut, LeftOutPicture, ToldBy};
 pub use reference::{Reference, ReferenceKind};
 pub use render::{MOST_CELLS_A_SIDE, RenderCost, RenderOptions, Rendered, render, render_input};
