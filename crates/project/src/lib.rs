@@ -4,6 +4,7 @@
 //! * [`read_recipe`]: focus by name, as JSON; [`read_focus`]: a recipe or a map, whichever the file is.
 //! * [`FocusMapFile`]: focus maps as EXR or 16-bit PNG.
 //! * [`write_picture`], [`read_picture`]: pictures as EXR, PNG and (reading only) HDR, with layers beside the colour.
+//! * [`seal_picture`], [`is_finished`]: whether a picture is whole, and which plan it was made by.
 //! * [`compare`]: how far two pictures are apart; [`write_error_map`]: where; [`z_test`]: whether
 //!   chance explains it.
 //! * [`Preset`]: a brush, lens or bokeh to be used again; [`PresetShelf`]: all that there are.
@@ -24,11 +25,13 @@ mod exr_header;
 mod exr_window;
 mod focus_map_file;
 mod json;
+mod keys_file;
 mod layer_entries;
 mod layer_rows;
 mod manifest;
 mod mask_rows;
 mod picture_file;
+mod picture_seal;
 mod png_file;
 mod presets;
 mod project_file;
@@ -49,7 +52,9 @@ pub use compare::{Comparison, ErrorMaps, compare, error_maps, psnr};
 pub use error::ProjectError;
 pub use error_map_file::{error_colours, write_error_map};
 pub use focus_map_file::{FocusMapFile, write_focus_map};
+pub use keys_file::{read_keys, write_keys};
 pub use picture_file::{Layer, LinearPicture, PictureOptions, read_picture, write_picture, write_rgb};
+pub use picture_seal::{is_finished, seal_picture};
 pub use presets::{LensPreset, Preset, PresetContent, PresetKind, PresetShelf, ShelfEntry};
 pub use project_file::{NamedCamera, ProjectFile, SceneState};
 pub use recipe::{FocusFile, read_focus, read_recipe};

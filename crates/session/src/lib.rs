@@ -23,6 +23,7 @@ mod kept_files;
 mod light_field;
 mod output;
 mod preview;
+mod sequence;
 mod session;
 #[cfg(test)]
 #[path = "../tests/tiny_glb/mod.rs"]
@@ -53,6 +54,10 @@ pub use output::{
 };
 pub use preview::{DrawingCosts, PictureTimes, Preview, PreviewActivity, PreviewKind, Quality};
 pub use relief::{DepthRepair, DepthStroke};
+pub use sequence::{
+    Baking, FrameFiles, FrameList, FrameOutcome, FrameReport, SequenceOptions, SequenceReport, Shard, Take,
+    TakeOptions, render_frames,
+};
 pub use session::{FullSize, Session, SessionOptions};
 pub use slf::PhotographLight;
 pub use trace::truth::Region;

@@ -6,7 +6,7 @@ use crate::document::Input;
 use crate::error::SessionError;
 use crate::jobs::Steps;
 use crate::light_field::{
-    LightQuality, bake, is_photographed, light, light_for_many_points, photograph_light, serves,
+    LightQuality, bake, bake_with, is_photographed, light, light_for_many_points, photograph_light, serves,
 };
 use baselines::{BaselineError, FirstHits, LayeredOptions, ScatterOptions, ViewsOptions};
 use focus::Focus;
@@ -98,6 +98,24 @@ impl RenderOptions {
         focus: &Focus,
         steps: &dyn Steps,
     ) -> Result<Salf, SessionError> {
+        let finer = self.finer(camera)?;
+        bake(tracer, &finer, focus, self.tolerance_px * f64::from(self.cells_a_side), steps)
+    }
+
+    /// The same for a margin, and light carried as finely, as `needed` says of the finer camera.
+    pub(crate) fn bake_as(
+        &self,
+        tracer: &Arc<Tracer>,
+        camera: &Camera,
+        needed: BakeOptions,
+        steps: &dyn Steps,
+    ) -> Result<Salf, SessionError> {
+        let tolerance_px = self.tolerance_px * f64::from(self.cells_a_side);
+        bake_with(tracer, &self.finer(camera)?, &BakeOptions { tolerance_px, ..needed }, steps)
+    }
+
+    /// The camera whose light field is baked for `camera`.
+    pub(crate) fn finer(&self, camera: &Camera) -> Result<Camera, SessionError> {
         let finer = camera.finer(self.cells_a_side);
         let tell = |error| {
             let n = self.cells_a_side;
@@ -106,7 +124,7 @@ impl RenderOptions {
             ))
         };
         finer.validate().map_err(tell)?;
-        bake(tracer, &finer, focus, self.tolerance_px * f64::from(self.cells_a_side), steps)
+        Ok(finer)
     }
 }
 
@@ -248,7 +266,7 @@ pub fn render_input(
 }
 
 /// What answers the rays of a camera that can be used.
-pub(super) fn tracer_of(input: &Input, camera: &Camera) -> Result<Arc<Tracer>, SessionError> {
+pub(crate) fn tracer_of(input: &Input, camera: &Camera) -> Result<Arc<Tracer>, SessionError> {
     camera.validate().map_err(|error| SessionError::bad(&input.path, error))?;
     let tracer = Arc::new(Tracer::new(input.scene.clone()));
     input.tell_atlas(&tracer)?;
@@ -290,21 +308,53 @@ fn draw_light_field(
     options: &RenderOptions,
     steps: &dyn Steps,
 ) -> Result<(Picture, RenderCost), SessionError> {
+    if options.renderer != Renderer::Scatter {
+        return splat(&mut splatter(salf, options), camera, focus, steps);
+    }
     let mut cost = RenderCost::default();
     cost.count(&salf);
     let start = Instant::now();
-    let picture = if options.renderer == Renderer::Scatter {
-        baselines::scatter(&salf, camera, focus, &options.scatter, &*steps.begin("scattering"))?
-    } else {
-        let mut splatter = Splatter::new(salf);
-        splatter.set_tolerance(options.splat_tolerance);
-        splatter.use_gpu(options.gpu.clone());
-        splatter.render(camera, focus, &*steps.begin("splatting"))?;
-        cost.is_on_gpu = splatter.gpu().is_some();
-        splatter.picture().clone()
-    };
+    let picture = baselines::scatter(&salf, camera, focus, &options.scatter, &*steps.begin("scattering"))?;
     cost.picture_seconds = start.elapsed().as_secs_f64();
     Ok((picture, cost))
+}
+
+/// What sums a light field.
+pub(crate) fn splatter(salf: Arc<Salf>, options: &RenderOptions) -> Splatter {
+    let mut splatter = Splatter::new(salf);
+    splatter.set_tolerance(options.splat_tolerance);
+    splatter.use_gpu(options.gpu.clone());
+    splatter
+}
+
+fn splat(
+    splatter: &mut Splatter,
+    camera: &Camera,
+    focus: &Focus,
+    steps: &dyn Steps,
+) -> Result<(Picture, RenderCost), SessionError> {
+    let mut cost = RenderCost::default();
+    cost.count(splatter.salf());
+    let start = Instant::now();
+    splatter.render(camera, focus, &*steps.begin("splatting"))?;
+    cost.is_on_gpu = splatter.gpu().is_some();
+    cost.picture_seconds = start.elapsed().as_secs_f64();
+    Ok((splatter.picture().clone(), cost))
+}
+
+/// Sums what [`RenderOptions::bake`] baked, for a camera that it serves, as often as one likes.
+pub(crate) fn sum_baked(
+    splatter: &mut Splatter,
+    tracer: &Arc<Tracer>,
+    camera: &Camera,
+    focus: &Focus,
+    options: &RenderOptions,
+    steps: &dyn Steps,
+) -> Result<Rendered, SessionError> {
+    let cells = options.cells_a_side;
+    let (drawn, cost) = splat(splatter, &camera.finer(cells), focus, steps)?;
+    let shot = Shot { tracer, camera, focus };
+    finish(shot, options, Drawn { picture: drawn.averaged(cells), estimate: None, cost }, steps)
 }
 
 /// What is rendered.
