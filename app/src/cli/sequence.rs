@@ -119,7 +119,7 @@ fn conclude(
     let written = report.count(|outcome| *outcome == FrameOutcome::Written);
     let skipped = report.count(|outcome| *outcome == FrameOutcome::Skipped);
     let failed = report.frames.len() - written - skipped;
-    let Baking { baked, kept, scenes, seconds } = report.baking;
+    let Baking { baked, kept, scenes, seconds, light_seconds } = report.baking;
     let saved = report.saved_seconds();
     if arguments.json {
         let frame = |frame: &FrameReport| json!({ "frame": frame.frame, "file": path_text(&frame.file), "state": state(&frame.outcome) });
@@ -130,7 +130,7 @@ fn conclude(
             "skipped": skipped,
             "failed": failed,
             "light_fields": { "baked": baked, "kept": kept, "seconds": seconds, "saved_seconds": saved },
-            "scenes_lit": scenes,
+            "light": { "scenes": scenes, "seconds": light_seconds },
             "seconds": start.elapsed().as_secs_f64(),
             "warnings": report.warnings,
         }));
@@ -140,6 +140,7 @@ fn conclude(
         line += &format!(", {failed} failed");
     }
     if baked > 0 {
+        line += &format!("; light of {scenes} scenes in {light_seconds:.1} s");
         line +=
             &format!("; {baked} light fields baked in {seconds:.1} s, {kept} frames used one that was there");
     }

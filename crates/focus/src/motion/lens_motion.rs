@@ -63,6 +63,11 @@ impl LensMotion {
             && self.f_number.is_valid(|number| *number > 0.0 && number.is_finite())
     }
 
+    /// Bytes in memory.
+    pub fn bytes(&self) -> usize {
+        size_of::<Self>() + size_of_val(self.focus.keys()) + size_of_val(self.f_number.keys())
+    }
+
     /// All times of keys.
     pub fn times(&self) -> impl Iterator<Item = f64> {
         let focus = self.focus.keys().iter().map(|key| key.seconds);
@@ -80,9 +85,13 @@ impl LensMotion {
         let mut moved = camera.clone();
         if let Some(around) = self.focus.around(seconds) {
             let [from, to] = [around.from, around.to].map(|target| target.inverse_depth(camera, position));
-            moved.focus_distance = 1.0 / mix(from, to, around.share);
+            moved.focus_distance = match around.from {
+                // What stands still is exactly what it was set to.
+                FocusTarget::Distance(distance) if around.from == around.to => *distance,
+                _ => 1.0 / mix(from, to, around.share),
+            };
         }
-        if let Some(number) = self.f_number(seconds) {
+        if let Some(number) = self.f_number(seconds).filter(|number| *number != moved.f_number()) {
             moved.aperture_radius = moved.optics().focal_length() / (2.0 * number);
         }
         moved

@@ -7,6 +7,7 @@
 use super::take::{Instant, Take};
 use crate::error::SessionError;
 use crate::jobs::Steps;
+use crate::light_field::{LightQuality, light};
 use crate::output::{RenderOptions, Rendered, Renderer, render, splatter, sum_baked};
 use lens::Camera;
 use salf::{BakeOptions, Carried};
@@ -41,6 +42,8 @@ pub struct Baking {
     pub scenes: u32,
     /// Seconds that baking took.
     pub seconds: f64,
+    /// Seconds that light was waited for before.
+    pub light_seconds: f64,
 }
 
 /// What the keys need of a place: scene and camera.
@@ -119,13 +122,16 @@ impl<'a> FrameBaker<'a> {
             // Two light fields at once would need the memory of both.
             self.last = None;
             let start = std::time::Instant::now();
+            let _ = light(tracer, &field.camera, LightQuality::Fine, &*steps.begin("light"))?;
+            let light_seconds = start.elapsed().as_secs_f64();
             let need =
                 BakeOptions { margin_px: field.margin_px, carried: field.carried, ..BakeOptions::default() };
             let salf = self.options.bake_as(tracer, &field.camera, need, steps)?;
             self.last = Some((field.clone(), splatter(Arc::new(salf), self.options)));
             bake_seconds = start.elapsed().as_secs_f64();
             self.baking.baked += 1;
-            self.baking.seconds += bake_seconds;
+            self.baking.seconds += bake_seconds - light_seconds;
+            self.baking.light_seconds += light_seconds;
         }
         let Some((_, splatter)) = &mut self.last else { return Err(SessionError::Cancelled) };
         let mut rendered = sum_baked(splatter, tracer, &at.camera, &at.focus, self.options, steps)?;
