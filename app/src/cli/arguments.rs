@@ -1,5 +1,6 @@
 //! What can be typed.
 
+use super::sequence_arguments::SequenceArguments;
 use clap::builder::{OsStringValueParser, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, ValueEnum};
 use project::{ColorSpace, Compression};
@@ -365,9 +366,23 @@ pub struct RenderArguments {
     /// Seed of the ground truth's rays, and of scattered ones
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub seed: u32,
+    #[command(flatten)]
+    pub sequence: SequenceArguments,
+    /// What is told on stderr meanwhile; json is a line of JSON a step
+    #[arg(long, value_enum, value_name = "FORM", default_value_t = ProgressName::Text)]
+    pub progress: ProgressName,
     /// Write timings and counts as JSON to stdout
     #[arg(long)]
     pub json: bool,
+}
+
+/// How progress is told.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum ProgressName {
+    /// Bars on a terminal, else plain lines
+    Text,
+    /// A line of JSON a step
+    Json,
 }
 
 /// A place of a picture.
@@ -547,7 +562,7 @@ pub enum ExposureName {
 }
 
 /// A name inside a file, which is UTF-8 there: other bytes make a name that nothing has.
-fn name_parser() -> impl TypedValueParser<Value = String> {
+pub(super) fn name_parser() -> impl TypedValueParser<Value = String> {
     OsStringValueParser::new().map(|text| text.to_string_lossy().into_owned())
 }
 
@@ -613,7 +628,7 @@ fn aov(name: &str) -> Result<Aov, String> {
     })
 }
 
-fn positive(text: &str) -> Result<f64, String> {
+pub(super) fn positive(text: &str) -> Result<f64, String> {
     let number = text.parse().ok().filter(|x: &f64| *x > 0.0 && x.is_finite());
     number.ok_or_else(|| "a number above 0".into())
 }

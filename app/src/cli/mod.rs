@@ -2,6 +2,7 @@
 //!
 //! * `arguments`: what can be typed. One file a subcommand does it: `info`, `new`, `import`, `replay`, `unwrap`, `bake`, `render`,
 //!   `compare`, `report`, `export`, `presets`, `thumbnail`, `doctor`.
+//! * `sequence`: `render` of frames. `stopping`: what a signal to end does.
 //! * `console`: progress on stderr, results on stdout. `failure`: errors and exit codes.
 
 mod arguments;
@@ -18,7 +19,10 @@ mod presets;
 mod render;
 mod replay;
 mod report;
+mod sequence;
+mod sequence_arguments;
 mod shot;
+mod stopping;
 mod thumbnail;
 mod unwrap;
 
@@ -80,7 +84,7 @@ fn dispatch(command: Subcommand) -> Result<(), Failure> {
         }
         Subcommand::Render(arguments) => {
             keep_work();
-            render::run(&arguments, &console)
+            render::run(&arguments, &Console::telling(arguments.progress))
         }
         Subcommand::Compare(arguments) => compare::run(&arguments),
         Subcommand::Report(arguments) => report::run(&arguments, &console),

@@ -3,12 +3,13 @@
 use super::arguments::{BackendName, EstimatorName, ExposureName, RenderArguments, SamplerName};
 use super::console::{Console, path_text, path_texts, say_json};
 use super::failure::Failure;
+use super::sequence;
 use super::shot::{check_picture_output, opened, shot};
 use lens::Exposure;
 use project::{ColorSpace, Compression, PictureOptions, write_picture};
 use serde_json::json;
 use session::{
-    Aov, LayeredOptions, RenderOptions, Rendered, Renderer, ScatterOptions, SessionError, Stereo,
+    Aov, Input, LayeredOptions, RenderOptions, Rendered, Renderer, ScatterOptions, SessionError, Stereo,
     ViewsOptions, render_input, render_stereo,
 };
 use splat::Gpu;
@@ -17,6 +18,9 @@ use trace::truth::{Estimator, Sampler, TruthOptions};
 
 /// Renders a picture and writes it.
 pub fn run(arguments: &RenderArguments, console: &Console) -> Result<(), Failure> {
+    if arguments.sequence.is_asked_for() {
+        return sequence::run(arguments, console);
+    }
     let renderer = arguments.renderer;
     let gpu = gpu(arguments)?;
     let card = gpu.as_ref().map(|gpu| gpu.name().to_owned());
@@ -28,38 +32,9 @@ pub fn run(arguments: &RenderArguments, console: &Console) -> Result<(), Failure
     let (camera, focus) = shot(&input, &arguments.shot, console)?;
     let open_seconds = start.elapsed().as_secs_f64();
 
-    let usual = arguments.tolerance.map_or_else(RenderOptions::default, RenderOptions::at_tolerance);
-    let cells_a_side = match (&input.salf, arguments.cells) {
-        (Some(_), Some(cells)) if cells > 1 => {
-            let what = "is baked already, a cell a pixel (leave out --cells, or give the scene or project)";
-            return Err(Failure::bad(format!("{}: {what}", arguments.file.display())));
-        }
-        (Some(_), _) => 1,
-        (None, cells) => cells.unwrap_or(usual.cells_a_side),
-    };
-    if input.salf.is_some() && arguments.overscan > 0 {
-        let what = "is baked for the frame alone (leave out --overscan, or give the scene or project)";
-        return Err(Failure::bad(format!("{}: {what}", arguments.file.display())));
-    }
+    let options = options(arguments, &input, gpu)?;
     let camera = camera.overscanned(arguments.overscan);
-    let options = RenderOptions {
-        cells_a_side,
-        gpu,
-        renderer,
-        truth: truth_options(arguments),
-        layered: LayeredOptions { layers: arguments.layers },
-        views: ViewsOptions { views_a_side: arguments.views, ..ViewsOptions::default() },
-        scatter: ScatterOptions { rays_a_sample: arguments.rays, seed: arguments.seed },
-        aovs: arguments.aov.clone(),
-        coc: arguments.coc_convention,
-        overscan: arguments.overscan,
-        ..usual
-    };
-    let exposure = match arguments.exposure {
-        None => input.exposure(),
-        Some(ExposureName::Conserve) => Exposure::Conserve,
-        Some(ExposureName::Normalise) => Exposure::Normalise,
-    };
+    let (cells_a_side, exposure) = (options.cells_a_side, exposure(arguments, &input));
     let Rendered { picture, layers, attributes, cost, warnings } = match arguments.stereo {
         None => render_input(&input, &camera, &focus, &options, console)?,
         Some(form) => {
@@ -75,14 +50,7 @@ pub fn run(arguments: &RenderArguments, console: &Console) -> Result<(), Failure
     }
 
     let writing = Instant::now();
-    let written = PictureOptions {
-        exposure,
-        half: arguments.half,
-        compression: arguments.compression,
-        color_space: arguments.color_space,
-        overscan: arguments.overscan,
-        attributes,
-    };
+    let written = PictureOptions { attributes, ..written(arguments, exposure) };
     let files = write_picture(&arguments.output, &picture, &layers, &written)?;
     let write_seconds = writing.elapsed().as_secs_f64();
     if arguments.json {
@@ -126,8 +94,63 @@ pub fn run(arguments: &RenderArguments, console: &Console) -> Result<(), Failure
     Ok(())
 }
 
+/// How it is rendered.
+pub fn options(
+    arguments: &RenderArguments,
+    input: &Input,
+    gpu: Option<Gpu>,
+) -> Result<RenderOptions, Failure> {
+    let usual = arguments.tolerance.map_or_else(RenderOptions::default, RenderOptions::at_tolerance);
+    let cells_a_side = match (&input.salf, arguments.cells) {
+        (Some(_), Some(cells)) if cells > 1 => {
+            let what = "is baked already, a cell a pixel (leave out --cells, or give the scene or project)";
+            return Err(Failure::bad(format!("{}: {what}", arguments.file.display())));
+        }
+        (Some(_), _) => 1,
+        (None, cells) => cells.unwrap_or(usual.cells_a_side),
+    };
+    if input.salf.is_some() && arguments.overscan > 0 {
+        let what = "is baked for the frame alone (leave out --overscan, or give the scene or project)";
+        return Err(Failure::bad(format!("{}: {what}", arguments.file.display())));
+    }
+    Ok(RenderOptions {
+        cells_a_side,
+        gpu,
+        renderer: arguments.renderer,
+        truth: truth_options(arguments),
+        layered: LayeredOptions { layers: arguments.layers },
+        views: ViewsOptions { views_a_side: arguments.views, ..ViewsOptions::default() },
+        scatter: ScatterOptions { rays_a_sample: arguments.rays, seed: arguments.seed },
+        aovs: arguments.aov.clone(),
+        coc: arguments.coc_convention,
+        overscan: arguments.overscan,
+        ..usual
+    })
+}
+
+/// How the picture is written; what its layers have to say is not yet there.
+pub fn written(arguments: &RenderArguments, exposure: Exposure) -> PictureOptions {
+    PictureOptions {
+        exposure,
+        half: arguments.half,
+        compression: arguments.compression,
+        color_space: arguments.color_space,
+        overscan: arguments.overscan,
+        ..PictureOptions::default()
+    }
+}
+
+/// How the sum becomes the picture.
+pub fn exposure(arguments: &RenderArguments, input: &Input) -> Exposure {
+    match arguments.exposure {
+        None => input.exposure(),
+        Some(ExposureName::Conserve) => Exposure::Conserve,
+        Some(ExposureName::Normalise) => Exposure::Normalise,
+    }
+}
+
 /// The graphics card to sum on; none for the processor.
-fn gpu(arguments: &RenderArguments) -> Result<Option<Gpu>, Failure> {
+pub fn gpu(arguments: &RenderArguments) -> Result<Option<Gpu>, Failure> {
     let is_asked_for = arguments.backend == BackendName::Gpu || arguments.adapter.is_some();
     if arguments.renderer != Renderer::Splat {
         let message = format!(
@@ -162,7 +185,7 @@ fn truth_options(arguments: &RenderArguments) -> TruthOptions {
 }
 
 /// What would only be noticed after the work.
-fn check_output(arguments: &RenderArguments) -> Result<(), Failure> {
+pub fn check_output(arguments: &RenderArguments) -> Result<(), Failure> {
     if arguments.aov.contains(&Aov::StandardError) && arguments.renderer != Renderer::Truth {
         let what = "--aov stderr: only the ground truth knows its standard error (use --renderer truth)";
         return Err(Failure::usage(what));

@@ -5,6 +5,7 @@
 //! * [`FocusMapFile`]: focus maps as EXR or 16-bit PNG.
 //! * [`write_picture`], [`read_picture`]: pictures as EXR, PNG and (reading only) HDR, with layers beside the colour.
 //! * [`Cryptomatte`]: which things each pixel shows, as layers.
+//! * [`seal_picture`], [`is_finished`]: whether a picture is whole, and which plan it was made by.
 //! * [`compare`]: how far two pictures are apart; [`write_error_map`]: where; [`z_test`]: whether
 //!   chance explains it.
 //! * [`Preset`]: a brush, lens or bokeh to be used again; [`PresetShelf`]: all that there are.
@@ -28,6 +29,7 @@ mod exr_header;
 mod exr_window;
 mod focus_map_file;
 mod json;
+mod keys_file;
 mod layer;
 mod layer_entries;
 mod layer_rows;
@@ -35,6 +37,7 @@ mod manifest;
 mod mask_rows;
 mod picture_file;
 mod picture_output;
+mod picture_seal;
 mod png_file;
 mod presets;
 mod project_file;
@@ -60,9 +63,11 @@ pub use error::ProjectError;
 pub use error_map_file::{error_colours, write_error_map};
 pub use exr_form::Compression;
 pub use focus_map_file::{FocusMapFile, write_focus_map};
+pub use keys_file::{read_keys, write_keys};
 pub use layer::Layer;
 pub use picture_file::{LinearPicture, read_picture};
 pub use picture_output::{PictureOptions, write_picture, write_rgb};
+pub use picture_seal::{is_finished, seal_picture};
 pub use presets::{LensPreset, Preset, PresetContent, PresetKind, PresetShelf, ShelfEntry};
 pub use project_file::{NamedCamera, ProjectFile, SceneState};
 pub use recipe::{FocusFile, read_focus, read_recipe};

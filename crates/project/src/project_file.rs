@@ -29,7 +29,7 @@ use crate::texel_bytes::{bytes_of, floats, pairs};
 use crate::texel_set::TexelSet;
 use crate::thumbnail::{THUMBNAIL, Thumbnail};
 use crate::{ProjectError, WorldFile};
-use focus::{Brush, FocusLayer, FocusMap, LayerStack};
+use focus::{Brush, FocusLayer, FocusMap, LayerStack, LensMotion};
 use lens::{ApertureMask, ApertureShape, Camera, Exposure, FocusOffset};
 use scene::BackFaces;
 use serde_json::Value;
@@ -93,6 +93,8 @@ pub struct ProjectFile {
     /// The layers that make the focus map; `None` where one plain layer does. The values of adjustment layers are
     /// not saved: they follow from curve and camera ([`LayerStack::evaluate`]).
     pub layers: Option<LayerStack>,
+    /// How the lens moves over time; how layers do, they know themselves.
+    pub lens_motion: LensMotion,
     /// What may be painted; `None` for everything.
     pub selection: Option<TexelSet>,
     /// The background's focus where there is no focus map; else the map's own counts.
@@ -134,6 +136,7 @@ impl ProjectFile {
             surface: None,
             focus_map: None,
             layers: None,
+            lens_motion: LensMotion::default(),
             selection: None,
             background_focus: FocusOffset::STANDARD,
             thumbnail: None,
@@ -199,6 +202,9 @@ impl ProjectFile {
         }
         if let Some(problem) = self.brush.problem() {
             return Err(error(format!("brush: {problem}")));
+        }
+        if !self.lens_motion.is_valid() {
+            return Err(error("the lens has keys that cannot be used".to_string()));
         }
         let layers = self.layers.iter().flat_map(LayerStack::layers);
         let size = self.focus_map.as_ref().map(FocusMap::size);
@@ -276,6 +282,7 @@ impl ProjectFile {
             focus_map,
             layers,
             selection,
+            lens_motion: self.lens_motion.clone(),
             checksums: entries.iter().map(|(name, bytes)| (name.clone(), sha256_hex(bytes))).collect(),
         };
         let manifest =
@@ -319,6 +326,9 @@ impl ProjectFile {
             return Err(error(format!("brush: {problem}")));
         }
         let [t, anchor] = manifest.background_focus;
+        if !manifest.lens_motion.is_valid() {
+            return Err(error("lens_motion has keys that cannot be used".to_string()));
+        }
         let background_focus = FocusOffset::new(t, anchor).with_gloss(manifest.background_gloss);
         if !background_focus.is_valid() {
             return Err(error("background_focus cannot be used".to_string()));
@@ -373,6 +383,7 @@ impl ProjectFile {
             surface,
             focus_map,
             layers,
+            lens_motion: manifest.lens_motion,
             selection,
             background_focus,
             thumbnail,

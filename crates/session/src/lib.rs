@@ -24,13 +24,14 @@ mod kept_files;
 mod light_field;
 mod output;
 mod preview;
+mod sequence;
 mod session;
 #[cfg(test)]
 #[path = "../tests/tiny_glb/mod.rs"]
 mod tiny_glb;
 
-pub use carrying::{CarriedNode, CarriedPaint};
 pub use baselines::{FirstHits, LayeredOptions, ScatterOptions, ViewsOptions};
+pub use carrying::{CarriedNode, CarriedPaint};
 pub use commands::{COMMANDS, Command, CommandId, CommandInfo, Event, KeyMap, Menu, Shortcut};
 pub use display::{
     Display, LivePicture, Screen, ScreenPixel, Thumbnail, ThumbnailResult, Thumbnails, Tone, ToneCurve,
@@ -55,6 +56,10 @@ pub use output::{
 };
 pub use preview::{DrawingCosts, PictureTimes, Preview, PreviewActivity, PreviewKind, Quality};
 pub use relief::{DepthRepair, DepthStroke};
+pub use sequence::{
+    Baking, FrameFiles, FrameList, FrameOutcome, FrameReport, SequenceOptions, SequenceReport, Shard, Take,
+    TakeOptions, render_frames,
+};
 pub use session::{FullSize, Session, SessionOptions};
 pub use slf::PhotographLight;
 pub use trace::truth::Region;

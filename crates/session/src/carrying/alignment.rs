@@ -38,7 +38,9 @@ pub fn aligned(old: &OldSurface, new: &Sampled, told: &[DMat4], middles: [DVec3;
         return best.0;
     }
     // Turned about the middle: by quarters, as where axes were exchanged, each bettered.
-    let turns = quarters().map(|turn| DMat4::from_translation(middles[0]) * DMat4::from_mat3(turn) * DMat4::from_translation(-middles[1]));
+    let turns = quarters().map(|turn| {
+        DMat4::from_translation(middles[0]) * DMat4::from_mat3(turn) * DMat4::from_translation(-middles[1])
+    });
     turns.map(|turn| bettered(old, new, turn, extent)).fold(best, better).0
 }
 

@@ -23,7 +23,9 @@ struct Group {
 pub fn partners(old: &Scene, old_atlas: &Atlas, new: &Scene, texels: &TexelMap) -> Vec<Option<DVec2>> {
     let has_name = |scene: &Scene, name: &str| scene.nodes.iter().any(|node| node.name == name);
     let by_name = new.nodes.iter().any(|node| has_name(old, &node.name));
-    let called = |scene: &Scene, node: u32| if by_name { scene.nodes[node as usize].name.clone() } else { String::new() };
+    let called = |scene: &Scene, node: u32| {
+        if by_name { scene.nodes[node as usize].name.clone() } else { String::new() }
+    };
 
     let groups = groups(old, &called);
     let node_of = |texel: usize| new.part_of(texels.texels[texel].centroid.triangle).node;
@@ -63,7 +65,8 @@ fn groups(old: &Scene, called: &dyn Fn(&Scene, u32) -> String) -> HashMap<String
     }
     let group = |(name, (triangles, worlds)): (String, (Vec<u32>, Vec<DMat4>))| {
         let corners = triangles.iter().flat_map(|&triangle| old.corners(triangle));
-        let bounds = corners.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)));
+        let bounds =
+            corners.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)));
         (name, Group { surface: OldSurface::new(old, triangles.into_iter()), bounds, worlds })
     };
     triangles.into_iter().filter(|(_, (triangles, _))| !triangles.is_empty()).map(group).collect()
@@ -72,7 +75,8 @@ fn groups(old: &Scene, called: &dyn Fn(&Scene, u32) -> String) -> HashMap<String
 /// The motion, old world from new, of a node's texels.
 fn motion(group: &Group, texels: &TexelMap, of_node: &[usize], told: Option<DMat4>) -> DMat4 {
     let bounds = of_node.iter().map(|&texel| texels.positions[texel]);
-    let (low, high) = bounds.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)));
+    let (low, high) =
+        bounds.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)));
     let step = of_node.len().div_ceil(ASKED).max(1);
     let sampled: Vec<_> = (of_node.iter().step_by(step))
         .map(|&texel| (texels.positions[texel], texels.normals[texel].as_dvec3()))

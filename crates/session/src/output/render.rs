@@ -8,7 +8,7 @@ use crate::document::Input;
 use crate::error::SessionError;
 use crate::jobs::Steps;
 use crate::light_field::{
-    LightQuality, bake, is_photographed, light, light_for_many_points, photograph_light, serves,
+    LightQuality, bake, bake_with, is_photographed, light, light_for_many_points, photograph_light, serves,
 };
 use baselines::{BaselineError, FirstHits, LayeredOptions, ScatterOptions, ViewsOptions};
 use focus::Focus;
@@ -118,6 +118,24 @@ impl RenderOptions {
         focus: &Focus,
         steps: &dyn Steps,
     ) -> Result<Salf, SessionError> {
+        let finer = self.finer(camera)?;
+        bake(tracer, &finer, focus, self.tolerance_px * f64::from(self.cells_a_side), steps)
+    }
+
+    /// The same for a margin, and light carried as finely, as `needed` says of the finer camera.
+    pub(crate) fn bake_as(
+        &self,
+        tracer: &Arc<Tracer>,
+        camera: &Camera,
+        needed: BakeOptions,
+        steps: &dyn Steps,
+    ) -> Result<Salf, SessionError> {
+        let tolerance_px = self.tolerance_px * f64::from(self.cells_a_side);
+        bake_with(tracer, &self.finer(camera)?, &BakeOptions { tolerance_px, ..needed }, steps)
+    }
+
+    /// The camera whose light field is baked for `camera`.
+    pub(crate) fn finer(&self, camera: &Camera) -> Result<Camera, SessionError> {
         let finer = camera.finer(self.cells_a_side);
         let tell = |error| {
             let n = self.cells_a_side;
@@ -126,7 +144,7 @@ impl RenderOptions {
             ))
         };
         finer.validate().map_err(tell)?;
-        bake(tracer, &finer, focus, self.tolerance_px * f64::from(self.cells_a_side), steps)
+        Ok(finer)
     }
 }
 
@@ -276,7 +294,7 @@ pub fn render_input(
 }
 
 /// What answers the rays of a camera that can be used.
-pub(super) fn tracer_of(input: &Input, camera: &Camera) -> Result<Arc<Tracer>, SessionError> {
+pub(crate) fn tracer_of(input: &Input, camera: &Camera) -> Result<Arc<Tracer>, SessionError> {
     camera.validate().map_err(|error| SessionError::bad(&input.path, error))?;
     let tracer = Arc::new(Tracer::new(input.scene.clone()));
     input.tell_atlas(&tracer)?;
@@ -329,9 +347,7 @@ fn draw_light_field(
     } else {
         let scene = tracer.scene();
         let wanted = options.wanted_mattes().map(|wanted| (wanted, Shown::of(&salf, scene)));
-        let mut splatter = Splatter::new(salf);
-        splatter.set_tolerance(options.splat_tolerance);
-        splatter.use_gpu(options.gpu.clone());
+        let mut splatter = splatter(salf, options);
         if let Some((_, shown)) = wanted.as_ref().filter(|_| options.asks_for(Aov::Alpha)) {
             splatter.blacken(|sample| shown.part(sample).is_none());
         }
@@ -346,6 +362,39 @@ fn draw_light_field(
     };
     cost.picture_seconds = start.elapsed().as_secs_f64();
     Ok(Drawn { picture: picture.averaged(cells_a_side), estimate: None, mattes, cost })
+}
+
+/// What sums a light field.
+pub(crate) fn splatter(salf: Arc<Salf>, options: &RenderOptions) -> Splatter {
+    let mut splatter = Splatter::new(salf);
+    splatter.set_tolerance(options.splat_tolerance);
+    splatter.use_gpu(options.gpu.clone());
+    splatter
+}
+
+/// Sums what [`RenderOptions::bake`] baked, for a camera that it serves, as often as one likes.
+pub(crate) fn sum_baked(
+    splatter: &mut Splatter,
+    tracer: &Arc<Tracer>,
+    camera: &Camera,
+    focus: &Focus,
+    options: &RenderOptions,
+    steps: &dyn Steps,
+) -> Result<Rendered, SessionError> {
+    let (shot, cells) = (Shot { tracer, camera, focus }, options.cells_a_side);
+    if options.wanted_mattes().is_some() {
+        // Of whom light is, is told by a sum of its own.
+        let drawn = draw_light_field(splatter.salf().clone(), shot, cells, options, steps)?;
+        return finish(shot, options, drawn, steps);
+    }
+    let mut cost = RenderCost::default();
+    cost.count(splatter.salf());
+    let start = Instant::now();
+    splatter.render(&camera.finer(cells), focus, &*steps.begin("splatting"))?;
+    cost.is_on_gpu = splatter.gpu().is_some();
+    cost.picture_seconds = start.elapsed().as_secs_f64();
+    let picture = splatter.picture().averaged(cells);
+    finish(shot, options, Drawn { picture, estimate: None, mattes: None, cost }, steps)
 }
 
 /// What is rendered.

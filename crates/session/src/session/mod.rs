@@ -19,6 +19,7 @@ mod restaged;
 mod restaging;
 mod showing;
 mod state;
+mod timeline;
 mod verifying;
 
 pub use exporting::FullSize;
