@@ -4,6 +4,10 @@ import bpy
 from bpy.props import BoolProperty, EnumProperty, IntProperty, PointerProperty, StringProperty
 
 
+# From 4.5 on Blender wants to be told which paths may begin with "//".
+RELATIVE = {"PATH_SUPPORTS_BLEND_RELATIVE"} if bpy.app.version >= (4, 5, 0) else set()
+
+
 class FocusBrushPreferences(bpy.types.AddonPreferences):
     bl_idname = __package__
 
@@ -23,6 +27,7 @@ class FocusBrushSettings(bpy.types.PropertyGroup):
         description="Where scene, project and manifest are written",
         subtype="DIR_PATH",
         default="//focus-brush",
+        options=RELATIVE,
     )
     light: EnumProperty(
         name="Light",

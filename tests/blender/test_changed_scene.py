@@ -66,6 +66,13 @@ def moved(each):
     each.matrix_world = MOTION @ each.matrix_basis
 
 
+def all_at_once(each):
+    solid_floor_remeshed(each)
+    subdivided(each)
+    decimated(each)
+    moved(each)
+
+
 def moved_in_its_vertices(each):
     """The transform stays, and the mesh moves below it."""
     each.data = each.data.copy()
@@ -150,6 +157,9 @@ class ChangedScene(unittest.TestCase):
 
     def test_moved_in_its_vertices(self):
         self.followed("vertices", moved_in_its_vertices, MOTION.inverted())
+
+    def test_all_at_once(self):
+        self.followed("all", all_at_once, MOTION.inverted())
 
     def test_unpainted_is_told_apart(self):
         """Without paint, few points have the right t by chance: the count can fail."""

@@ -15,8 +15,8 @@ cycles_light, exr_file, handover, program, world_light = (
 )
 
 SIZE = (96, 60)
-SIDE = 640
-BAKED, DRAWN = 64, 400
+SIDE = 448
+BAKED, DRAWN = 24, 256
 world_light.WIDTH = 256
 
 

@@ -4,6 +4,7 @@ import importlib
 import json
 import math
 import shutil
+import time
 import unittest
 
 import workshop
@@ -14,9 +15,9 @@ from bpy_extras.object_utils import world_to_camera_view  # noqa: E402
 from mathutils import Matrix, Vector  # noqa: E402
 
 workshop.install()
-camera_lens, exr_file, focus_back, glb_file, handover, meshes_back, names, program = (
+camera_lens, exr_file, focus_back, glb_file, handover, live, meshes_back, names, program = (
     importlib.import_module(f"{workshop.MODULE}.{name}")
-    for name in ("camera_lens", "exr_file", "focus_back", "glb_file", "handover", "meshes_back", "names", "program")
+    for name in ("camera_lens", "exr_file", "focus_back", "glb_file", "handover", "live", "meshes_back", "names", "program")
 )
 
 
@@ -164,6 +165,50 @@ class OverAndBack(unittest.TestCase):
         p, q, r = (Vector((layer[loop].uv.x * width, layer[loop].uv.y * height)) for loop in triangle.loops)
         area = abs((q - p).cross(r - p))
         return math.sqrt((b - a).cross(c - a).length / area)
+
+    def test_the_buttons_say_what_is_wrong(self):
+        chosen = bpy.context.scene.focus_brush
+        preferences = bpy.context.preferences.addons[workshop.MODULE].preferences
+        chosen.folder = "//focus-brush"
+        with self.assertRaisesRegex(RuntimeError, "not saved yet"):
+            bpy.ops.focus_brush.write()
+        chosen.folder = str(PLACE / "empty")
+        with self.assertRaisesRegex(RuntimeError, "Open in Focus Brush first"):
+            bpy.ops.focus_brush.fetch()
+        preferences.program = str(PLACE / "nothing")
+        try:
+            with self.assertRaisesRegex(RuntimeError, "Preferences"):
+                bpy.ops.focus_brush.open()
+        finally:
+            preferences.program = PROGRAM
+
+    def test_live_shows_what_was_saved_there(self):
+        folder = PLACE / "live"
+        shutil.copytree(self.folder, folder)
+        chosen = bpy.context.scene.focus_brush
+        chosen.folder, chosen.live, chosen.picture = str(folder), True, False
+        live.look()
+        project = folder / self.manifest["project"]
+        recipe = folder / "recipe.json"
+        recipe.write_text('{"nodes": {"Box": {"t": 1.25, "anchor": 1}}}')
+        program.run(PROGRAM, "new", folder / "scene.glb", "--focus", recipe, "-o", project)
+        begun = time.monotonic()
+        while not self.has_t(1.25) and time.monotonic() - begun < 60:
+            live.look()
+            time.sleep(0.1)
+        chosen.live = False
+        self.assertTrue(self.has_t(1.25))
+
+    def has_t(self, t):
+        box = bpy.data.objects["Box"].data.attributes.get("focus_t")
+        return box is not None and all(abs(each.value - t) < 1e-6 for each in box.data)
+
+    def test_the_addon_goes_and_comes(self):
+        package = importlib.import_module(workshop.MODULE)
+        package.unregister()
+        self.assertFalse(hasattr(bpy.types.Scene, "focus_brush"))
+        package.register()
+        self.assertTrue(hasattr(bpy.context.scene, "focus_brush"))
 
     def test_a_program_that_is_not_there_says_how_to_set_it(self):
         with self.assertRaisesRegex(names.BridgeError, "Preferences"):

@@ -24,7 +24,7 @@ impl Place {
         std::fs::write(place.scene(), tiny_glb::glb(&QUADS)).unwrap();
         let mut session = opened(&place.scene());
         stroke(&mut session);
-        session.apply(Command::EndStroke).unwrap();
+        session.apply(Command::CommitStroke).unwrap();
         session.apply(Command::SaveAs(place.project())).unwrap();
         settle(&mut session);
         place

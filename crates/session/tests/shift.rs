@@ -12,7 +12,7 @@ use session::{Input, RenderOptions, Renderer, render_input};
 const PART: [u32; 2] = [48, 32];
 
 /// The middle of the part, px right and up from that of a picture of three times the size: whole blocks of samples.
-const MOVED: [i32; 2] = [32, -16];
+const MOVED: [i32; 2] = [-32, 16];
 
 fn part() -> Camera {
     let [width, height] = PART;

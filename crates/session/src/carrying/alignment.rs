@@ -19,13 +19,14 @@ const ON_EACH_OTHER: f64 = 1e-5;
 const CLOSE: f64 = 0.01;
 
 /// Rounds in which a motion is bettered by the pairs of nearest points that it makes.
-const ROUNDS: usize = 24;
+const ROUNDS: usize = 60;
 
 /// Points of a surface: where they are and which way they look.
 pub type Sampled = [(DVec3, DVec3)];
 
-/// The motion, old world from new, among the identity, `told` and what follows from the extents. `extent` is the length of the diagonal.
-pub fn aligned(old: &OldSurface, new: &Sampled, told: &[DMat4], middles: [DVec3; 2], extent: f64) -> DMat4 {
+/// The motion, old world from new, among the identity, those of `proposed`, in this order, and what follows from the extents. `middles` are
+/// those of the old and the new surface, `extent` is the length of the old one's diagonal.
+pub fn aligned(old: &OldSurface, new: &Sampled, proposed: &[DMat4], middles: [DVec3; 2], extent: f64) -> DMat4 {
     let onto = DMat4::from_translation(middles[0] - middles[1]);
     let mut best = (DMat4::IDENTITY, gap(old, new, &DMat4::IDENTITY, extent));
     let better = |best: (DMat4, f64), motion: DMat4| {
@@ -33,7 +34,7 @@ pub fn aligned(old: &OldSurface, new: &Sampled, told: &[DMat4], middles: [DVec3;
         let is_better = best.1 > ON_EACH_OTHER * extent && found < MUCH_CLOSER * best.1;
         if is_better { (motion, found) } else { best }
     };
-    best = told.iter().copied().chain([onto]).fold(best, better);
+    best = proposed.iter().copied().chain([onto]).fold(best, better);
     if best.1 <= CLOSE * extent {
         return best.0;
     }
