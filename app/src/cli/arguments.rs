@@ -1,6 +1,6 @@
 //! What can be typed.
 
-use super::sequence_arguments::SequenceArguments;
+use super::sequence_arguments::{KeysArguments, SequenceArguments};
 use clap::builder::{OsStringValueParser, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, ValueEnum};
 use project::{ColorSpace, Compression};
@@ -49,6 +49,8 @@ pub enum Subcommand {
     Import(ImportArguments),
     /// Paint what was recorded (`Export strokes…` in the window writes it) on a project or a scene
     Replay(ReplayArguments),
+    /// Set keys of a project's lens and layers, or list them
+    Keys(KeysArguments),
     /// Write a scene with the atlas as its second UV set (TEXCOORD_1)
     Unwrap(UnwrapArguments),
     /// Bake the light field of a scene or project into a file

@@ -1,6 +1,6 @@
 //! The command line: a thin layer over the `session` crate.
 //!
-//! * `arguments`: what can be typed. One file a subcommand does it: `info`, `new`, `import`, `replay`, `unwrap`, `bake`, `render`,
+//! * `arguments`: what can be typed. One file a subcommand does it: `info`, `new`, `import`, `replay`, `keys`, `unwrap`, `bake`, `render`,
 //!   `compare`, `report`, `export`, `presets`, `thumbnail`, `doctor`.
 //! * `sequence`: `render` of frames. `stopping`: what a signal to end does.
 //! * `console`: progress on stderr, results on stdout. `failure`: errors and exit codes.
@@ -14,6 +14,7 @@ mod export;
 mod failure;
 mod import;
 mod info;
+mod keys;
 mod new;
 mod presets;
 mod render;
@@ -77,6 +78,7 @@ fn dispatch(command: Subcommand) -> Result<(), Failure> {
             import::run(&arguments, &console)
         }
         Subcommand::Replay(arguments) => replay::run(&arguments, &console),
+        Subcommand::Keys(arguments) => keys::run(&arguments, &console),
         Subcommand::Unwrap(arguments) => unwrap::run(&arguments, &console),
         Subcommand::Bake(arguments) => {
             keep_work();

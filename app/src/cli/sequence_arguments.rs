@@ -2,6 +2,7 @@
 
 use super::arguments::{name_parser, positive};
 use clap::Args;
+use focus::Ease;
 use session::{FrameList, Shard};
 use std::path::PathBuf;
 
@@ -41,4 +42,64 @@ fn shard(text: &str) -> Result<Shard, String> {
         "env" => Shard::of_environment(&|name| std::env::var(name).ok()),
         _ => text.parse(),
     }
+}
+
+/// `keys`.
+#[derive(Debug, Args)]
+pub struct KeysArguments {
+    /// The project (.fbrush)
+    pub project: PathBuf,
+    /// Where to write the project with its new keys; without it the keys that there are go to stdout as JSON
+    #[arg(short, long, value_name = "OUT.fbrush")]
+    pub output: Option<PathBuf>,
+    /// All keys of the lens from a file, instead of those that there are
+    #[arg(long, value_name = "KEYS.json", requires = "output")]
+    pub set: Option<PathBuf>,
+    /// Focuses the lens on what is seen at a place of the picture (px), from a time (s) on; wherever that moves
+    #[arg(long, value_name = "X,Y@SECONDS", value_parser = place_at, requires = "output")]
+    pub point: Vec<(glam::DVec2, f64)>,
+    /// Focuses the lens at a distance (or inf), from a time (s) on
+    #[arg(long, value_name = "DISTANCE@SECONDS", value_parser = number_at, requires = "output")]
+    pub distance: Vec<(f64, f64)>,
+    /// Sets the f-number at a time (s)
+    #[arg(long, value_name = "N@SECONDS", value_parser = number_at, requires = "output")]
+    pub f_number: Vec<(f64, f64)>,
+    /// Sets the opacity of a layer, by name, at a time (s)
+    #[arg(long, value_name = "LAYER=OPACITY@SECONDS", value_parser = layer_at, requires = "output")]
+    pub opacity: Vec<(String, f64, f64)>,
+    /// How the new keys go over into the next
+    #[arg(long, value_name = "hold|linear|smooth", default_value = "smooth", value_parser = ease)]
+    pub ease: Ease,
+}
+
+fn ease(text: &str) -> Result<Ease, String> {
+    Ease::named(text).ok_or_else(|| "hold, linear or smooth".into())
+}
+
+/// A number that is none is told later, with what it is for.
+fn number_at(text: &str) -> Result<(f64, f64), String> {
+    let parts =
+        text.rsplit_once('@').and_then(|(value, at)| Some((value.trim().parse().ok()?, seconds(at)?)));
+    parts.ok_or_else(|| "VALUE@SECONDS".into())
+}
+
+fn place_at(text: &str) -> Result<(glam::DVec2, f64), String> {
+    let place = |text: &str| {
+        let (x, y) = text.split_once(',')?;
+        let place = glam::DVec2::new(x.trim().parse().ok()?, y.trim().parse().ok()?);
+        place.is_finite().then_some(place)
+    };
+    let parts = text.rsplit_once('@').and_then(|(value, at)| Some((place(value)?, seconds(at)?)));
+    parts.ok_or_else(|| "X,Y@SECONDS".into())
+}
+
+fn layer_at(text: &str) -> Result<(String, f64, f64), String> {
+    let parts = text.rsplit_once('=');
+    let parts =
+        parts.and_then(|(layer, value)| number_at(value).ok().map(|(value, at)| (layer.into(), value, at)));
+    parts.ok_or_else(|| "LAYER=OPACITY@SECONDS".into())
+}
+
+fn seconds(text: &str) -> Option<f64> {
+    text.trim().parse().ok().filter(|seconds: &f64| seconds.is_finite())
 }

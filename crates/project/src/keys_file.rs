@@ -8,8 +8,19 @@
 
 use crate::ProjectError;
 use crate::disk::{read_text, write_bytes};
-use focus::LensMotion;
+use focus::{FocusTarget, Keys, LensMotion};
+use serde::Deserialize;
 use std::path::Path;
+
+/// The file; what stands there that is nothing of it is a mistake.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Form {
+    #[serde(default)]
+    focus: Keys<FocusTarget>,
+    #[serde(default)]
+    f_number: Keys<f64>,
+}
 
 /// Reads keys of the lens.
 ///
@@ -17,8 +28,9 @@ use std::path::Path;
 /// The file cannot be read, is in another form, or has keys that cannot be used.
 pub fn read_keys(file: &Path) -> Result<LensMotion, ProjectError> {
     let cure = "see docs/sequences.md for its form";
-    let motion: LensMotion = serde_json::from_str(&read_text(file)?)
+    let Form { focus, f_number } = serde_json::from_str(&read_text(file)?)
         .map_err(|error| ProjectError::content(file, format!("holds no keys of a lens: {error}"), cure))?;
+    let motion = LensMotion { focus, f_number };
     match motion.is_valid() {
         true => Ok(motion),
         false => Err(ProjectError::content(

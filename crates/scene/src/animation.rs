@@ -11,12 +11,13 @@ mod track;
 use crate::document::{Document, named};
 use crate::error::Fault;
 use crate::json_object::Object;
+use serde::Serialize;
 use serde_json::Value;
 use target::Target;
 use track::Track;
 
 /// An animation of a file.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Animation {
     /// Its name, or `animation N`.
     pub name: String,

@@ -474,6 +474,7 @@ fn inspection(document: &Document<'_>, hierarchy: &Hierarchy, scene: &Scene) -> 
         lights: document.len("lights"),
         skins: document.len("skins"),
         animations: document.len("animations"),
+        animation_list: animation::list(document),
         triangles: scene.triangles.len(),
         extensions_used: extension::used(document).map(String::from).collect(),
         extensions_required: extension::required(document).map(String::from).collect(),
