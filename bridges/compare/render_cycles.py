@@ -10,7 +10,7 @@ out is the picture of the ordinary lens. To compare with it:
     focus-brush render garden.glb --camera camera.json --world sky.hdr --back-faces show -o ours.exr
     focus-brush compare ours.exr cycles.exr
 
-Needs the module bpy 4.2 to 5.x (`pip install bpy`), or Blender itself. Materials are what Blender's glTF importer makes of
+Needs the module bpy, 4.2 to 5.x (4.2.23, 4.5.15 and 5.0.1 were tried; `pip install bpy`), or Blender itself. Materials are what Blender's glTF importer makes of
 the file. Made alike for both:
 
 - the camera: pose, angle of view, focus distance, aperture radius, polygon of blades and anamorphic ratio. Cycles' polygon

@@ -104,7 +104,7 @@ def blur_by_depth():
         figure.text(left - 8, y_of(px) + 4, f"{px}", anchor="end", size=15)
     figure.text((left + right) / 2, bottom + 38, "depth z, log scale; the lens is focused at 2", size=16)
     figure.text(left + 6, top + 16, "far, px", FAR, "start", 16)
-    figure.text(left + 6, bottom - 8, "near, px", NEAR, "start", 16)
+    figure.text(x_of(1) + 6, bottom - 8, "near, px", NEAR, "start", 16)
     for t, a, colour, dash, name in (
         (1.0, 0.0, INK, None, "t 1, anchor 0: the lens"),
         (1.0, 0.5, "#7a4bb0", None, "t 1, anchor ½"),

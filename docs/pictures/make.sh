@@ -20,8 +20,8 @@ else
     trap 'rm -rf "$work"' EXIT
     cd "$work"
 fi
-caption=(-font DejaVu-Sans -pointsize 13 -fill '#222' -background white)
-sheet() { montage "${caption[@]}" -geometry '+4+4' "$@"; }
+# Pictures in rows, with captions of so many pixels, which can be read on a narrow screen, too: `sheet 28 -tile 2x2 …`.
+sheet() { montage -font DejaVu-Sans -pointsize "$1" -fill '#222' -background white -geometry '+4+4' "${@:2}"; }
 
 python3 "$here/figures.py" "$here"
 
@@ -40,7 +40,7 @@ for anchor in point lens; do
     draw --focus "$here/tower-by-$anchor.focus.json" -o "$anchor-fox.png"
     draw --camera near.json --focus "$here/tower-by-$anchor.focus.json" -o "$anchor-near.png"
 done
-sheet -tile 2x2 \
+sheet 26 -tile 2x2 \
     -label 'by point, lens focused on the fox' point-fox.png -label 'by lens, lens focused on the fox' lens-fox.png \
     -label 'by point, lens focused nearer' point-near.png -label 'by lens, lens focused nearer' lens-near.png \
     -quality 88 "$here/anchor.jpg"
@@ -52,7 +52,7 @@ for stop in "f/9.4 0.0025" "f/4.7 0.005" "f/2.3 0.01" "f/1.1 0.0205"; do
     draw --aperture-radius "$2" -o "stop-$2.png"
     stops+=(-label "$1" "stop-$2.png")
 done
-sheet -tile 2x2 "${stops[@]}" -quality 88 "$here/stops.jpg"
+sheet 26 -tile 2x2 "${stops[@]}" -quality 88 "$here/stops.jpg"
 
 # Shapes: the lights at the upper left, and one of them in near blur.
 lights=260x200+380+20
@@ -62,13 +62,13 @@ for shape in "Round" "Hexagon" "Star" "Heart" "Ring (mirror lens)" "Anamorphic 2
     convert whole.png -crop "$lights" +repage "shape-${#labels[@]}.png"
     labels+=(-label "$shape" "shape-${#labels[@]}.png")
 done
-sheet -tile 3x2 "${labels[@]}" -quality 88 "$here/bokeh.jpg"
+sheet 20 -tile 3x2 "${labels[@]}" -quality 88 "$here/bokeh.jpg"
 
 draw --bokeh Heart -o whole.png
 convert whole.png -crop "$lights" +repage far.png
 draw --bokeh Heart --focus "$here/lights-in-near-blur.focus.json" -o whole.png
 convert whole.png -crop "$lights" +repage turned.png
-sheet -tile 2x1 -label 'far blur' far.png -label 'the same lights, painted near' turned.png -quality 88 "$here/near-and-far.jpg"
+sheet 16 -tile 2x1 -label 'far blur' far.png -label 'painted near' turned.png -quality 88 "$here/near-and-far.jpg"
 
 # Beside Cycles, and how far two pictures of Cycles are from each other.
 if [ -n "${PYTHON_WITH_BPY:-}" ]; then
@@ -80,6 +80,6 @@ if [ -n "${PYTHON_WITH_BPY:-}" ]; then
     echo "ours, Cycles" && "$program" compare ours.exr cycles-0.exr --error-map map.png
     echo "Cycles, Cycles of another seed" && "$program" compare cycles-1.exr cycles-0.exr
     for picture in ours cycles-0; do convert "$picture.exr" -colorspace sRGB "$picture.png"; done
-    sheet -tile 3x1 -label 'Focus Brush' ours.png -label 'Cycles' cycles-0.png -label 'where they differ (FLIP)' map.png -quality 88 \
+    sheet 30 -tile 3x1 -label 'Focus Brush' ours.png -label 'Cycles' cycles-0.png -label 'FLIP' map.png -quality 88 \
         "$here/cycles.jpg"
 fi
