@@ -11,7 +11,11 @@ fn python() -> Option<PathBuf> {
     let named = std::env::var_os("FOCUS_BRUSH_BPY").map(PathBuf::from);
     let known = ["python3", "python3.11"].map(PathBuf::from);
     named.into_iter().chain(known).find(|python| {
-        let asked = Command::new(python).args(["-c", "import bpy"]).stdout(Stdio::null()).stderr(Stdio::null()).status();
+        let asked = Command::new(python)
+            .args(["-c", "import bpy"])
+            .stdout(Stdio::null())
+            .stderr(Stdio::null())
+            .status();
         asked.is_ok_and(|status| status.success())
     })
 }
@@ -20,7 +24,9 @@ fn passes(script: &str) {
     let Some(python) = python() else {
         eprintln!();
         eprintln!("*** NOT TRIED: {script}. No Python here has bpy. To try the add-on for Blender:");
-        eprintln!("***     python3.11 -m venv bpy && bpy/bin/pip install bpy==4.5.15 && export FOCUS_BRUSH_BPY=$PWD/bpy/bin/python");
+        eprintln!(
+            "***     python3.11 -m venv bpy && bpy/bin/pip install bpy==4.5.15 && export FOCUS_BRUSH_BPY=$PWD/bpy/bin/python"
+        );
         eprintln!();
         return;
     };
@@ -31,12 +37,17 @@ fn passes(script: &str) {
         .current_dir(&folder)
         .env("FOCUS_BRUSH", env!("CARGO_BIN_EXE_focus-brush"))
         .env("PYTHONDONTWRITEBYTECODE", "1")
-        .envs(["XDG_CONFIG_HOME", "XDG_DATA_HOME", "XDG_CACHE_HOME", "XDG_STATE_HOME"].map(|name| (name, place.path())))
+        .envs(
+            ["XDG_CONFIG_HOME", "XDG_DATA_HOME", "XDG_CACHE_HOME", "XDG_STATE_HOME"]
+                .map(|name| (name, place.path())),
+        )
         .output()
         .unwrap();
     let said = [done.stdout, done.stderr].map(|bytes| String::from_utf8_lossy(&bytes).into_owned()).concat();
     assert!(done.status.success(), "{script}:\n{said}");
-    said.lines().filter(|line| line.contains(" dB") || line.contains(" within ") || line.contains("% of")).for_each(|line| println!("{line}"));
+    said.lines()
+        .filter(|line| line.contains(" dB") || line.contains(" within ") || line.contains("% of"))
+        .for_each(|line| println!("{line}"));
 }
 
 #[test]

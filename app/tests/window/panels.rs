@@ -215,7 +215,12 @@ fn a_recording_is_played_in_the_window_and_timed() {
     let folder = tempfile::tempdir().unwrap();
     let (file, trace) = (folder.path().join("wall.glb"), folder.path().join("trace.json"));
     small_scene::write(&file);
-    let view = focus::ViewFrame { camera_to_world: glam::DMat4::IDENTITY, yfov: 0.7, aspect: 1.5, shift: glam::DVec2::ZERO };
+    let view = focus::ViewFrame {
+        camera_to_world: glam::DMat4::IDENTITY,
+        yfov: 0.7,
+        aspect: 1.5,
+        shift: glam::DVec2::ZERO,
+    };
     let brush = focus::Brush { radius: 0.2, target: FocusOffset::new(1.02, 1.0), ..Default::default() };
     let points = (0..40).map(|k| [0.5 + 0.01 * k as f64, 0.8, 1.0]).collect();
     let stroke = RecordedStroke { layer: "Paint".into(), brush, view: view.into(), points };

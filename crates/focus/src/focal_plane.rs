@@ -47,8 +47,7 @@ impl FocalPlane {
         let half_height = depth * (camera.yfov / 2.0).tan();
         let [middle, half] = camera.frame_q();
         let places = [[-0.5, -0.4], [0.5, -0.4], [0.0, 0.5]];
-        let place =
-            |at: [f64; 2]| ((middle + DVec2::from(at) * half) * half_height).extend(depth);
+        let place = |at: [f64; 2]| ((middle + DVec2::from(at) * half) * half_height).extend(depth);
         Self { points: places.map(|at| camera.world_from_camera(place(at))), curvature: 0.0 }
     }
 

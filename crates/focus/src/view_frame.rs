@@ -59,7 +59,11 @@ impl ViewFrame {
     /// Whether it can be looked through.
     pub fn is_valid(&self) -> bool {
         let angle = self.yfov > 0.0 && self.yfov < std::f64::consts::PI;
-        angle && self.aspect > 0.0 && self.aspect.is_finite() && self.camera_to_world.is_finite() && self.shift.is_finite()
+        angle
+            && self.aspect > 0.0
+            && self.aspect.is_finite()
+            && self.camera_to_world.is_finite()
+            && self.shift.is_finite()
     }
 }
 
@@ -72,7 +76,14 @@ mod tests {
     fn a_point_on_a_ray_appears_where_the_ray_goes_through() {
         let pose = DMat4::from_rotation_translation(DQuat::from_rotation_y(0.7), DVec3::new(1.0, 2.0, 3.0));
         let shift = DVec2::new(0.4, -0.3);
-        let camera = Camera { width: 1600, height: 1000, yfov: 0.8, shift, camera_to_world: pose, ..Camera::default() };
+        let camera = Camera {
+            width: 1600,
+            height: 1000,
+            yfov: 0.8,
+            shift,
+            camera_to_world: pose,
+            ..Camera::default()
+        };
         let view = ViewFrame::of(&camera);
         for at in [DVec2::ZERO, DVec2::new(0.3, 0.9), DVec2::new(1.4, -0.2)] {
             let (eye, direction) = view.ray(at);

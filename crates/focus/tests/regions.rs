@@ -63,7 +63,12 @@ fn gradients_run_evenly_across_charts_in_world_and_on_screen() {
 
     // Seen from 4 in front of its middle, half the view's height is 4 tan(yfov / 2).
     let pose = DMat4::from_translation(DVec3::new(2.0, 0.5, 4.0));
-    let view = ViewFrame { camera_to_world: pose, yfov: 2.0 * 0.25f64.atan(), aspect: 2.0, shift: glam::DVec2::ZERO };
+    let view = ViewFrame {
+        camera_to_world: pose,
+        yfov: 2.0 * 0.25f64.atan(),
+        aspect: 2.0,
+        shift: glam::DVec2::ZERO,
+    };
     let ends = [1.0, 3.0].map(|x| view.position(DVec3::new(x, 0.5, 0.0)).unwrap());
     assert_eq!(ends, [DVec2::new(0.25, 0.5), DVec2::new(0.75, 0.5)]);
     let on_screen = drawn(&Gradient { line: GradientLine::View(view, ends), ..WORLD });

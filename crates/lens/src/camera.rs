@@ -193,7 +193,8 @@ mod tests {
 
     #[test]
     fn a_shifted_picture_is_a_part_of_a_larger_one() {
-        let shifted = Camera { width: 40, height: 30, shift: DVec2::new(0.5, 1.0 / 3.0), ..Camera::default() };
+        let shifted =
+            Camera { width: 40, height: 30, shift: DVec2::new(0.5, 1.0 / 3.0), ..Camera::default() };
         // The same lens over a picture of three times the size about the axis.
         let tan = 3.0 * (shifted.yfov / 2.0).tan();
         let whole = Camera { width: 120, height: 90, yfov: 2.0 * tan.atan(), ..Camera::default() };

@@ -29,7 +29,9 @@ pub fn surface_to_bytes(scene: &Scene) -> Vec<u8> {
         bytes.extend((node.name.len() as u32).to_le_bytes());
         bytes.extend(node.name.as_bytes());
     }
-    bytes.extend(scene.parts.iter().flat_map(|part| [part.node, part.triangles.end]).flat_map(u32::to_le_bytes));
+    bytes.extend(
+        scene.parts.iter().flat_map(|part| [part.node, part.triangles.end]).flat_map(u32::to_le_bytes),
+    );
     let positions = scene.positions.iter().map(|position| (position - origin).as_vec3());
     bytes.extend(positions.flat_map(|position| position.to_array()).flat_map(f32::to_le_bytes));
     bytes.extend(scene.triangles.iter().flat_map(|triangle| triangle.vertices).flat_map(u32::to_le_bytes));
@@ -44,8 +46,12 @@ pub fn surface_from_bytes(bytes: &[u8]) -> Option<Scene> {
         rest = left;
         Some(taken)
     };
-    let words = |bytes: &[u8]| bytes.as_chunks::<4>().0.iter().map(|word| u32::from_le_bytes(*word)).collect::<Vec<_>>();
-    let numbers = |bytes: &[u8]| bytes.as_chunks::<8>().0.iter().map(|word| f64::from_le_bytes(*word)).collect::<Vec<_>>();
+    let words = |bytes: &[u8]| {
+        bytes.as_chunks::<4>().0.iter().map(|word| u32::from_le_bytes(*word)).collect::<Vec<_>>()
+    };
+    let numbers = |bytes: &[u8]| {
+        bytes.as_chunks::<8>().0.iter().map(|word| f64::from_le_bytes(*word)).collect::<Vec<_>>()
+    };
     let counts = words(take(16)?);
     let [nodes, parts, vertices, triangles] = counts.as_slice() else { return None };
     let origin = DVec3::from_slice(&numbers(take(24)?));
@@ -60,7 +66,13 @@ pub fn surface_from_bytes(bytes: &[u8]) -> Option<Scene> {
     for row in words(take(usize::try_from(*parts).ok()?.checked_mul(8)?)?).chunks_exact(2) {
         let (node, end) = (row[0], row[1]);
         let is_sound = node < *nodes && start <= end && end <= *triangles;
-        scene.parts.push(Part { node, material: 0, triangles: start..end, has_uv: [false; 2], mirrored: false });
+        scene.parts.push(Part {
+            node,
+            material: 0,
+            triangles: start..end,
+            has_uv: [false; 2],
+            mirrored: false,
+        });
         start = is_sound.then_some(end)?;
     }
     let positions = words(take((*vertices as usize).checked_mul(12)?)?);
@@ -76,7 +88,8 @@ pub fn surface_from_bytes(bytes: &[u8]) -> Option<Scene> {
             scene.triangles.push(Triangle { vertices, part: part as u32 });
         }
     }
-    let is_within = scene.triangles.iter().flat_map(|triangle| triangle.vertices).all(|vertex| vertex < *vertices);
+    let is_within =
+        scene.triangles.iter().flat_map(|triangle| triangle.vertices).all(|vertex| vertex < *vertices);
     let is_finite = scene.positions.iter().all(|position| position.is_finite());
     (rest.is_empty() && start == *triangles && is_within && is_finite).then_some(scene)
 }
@@ -86,8 +99,13 @@ mod tests {
     use super::*;
 
     fn two_parts() -> Scene {
-        let node = |name: &str, at: f64| Node { name: name.into(), index: 0, world: DMat4::from_translation(DVec3::splat(at)) };
-        let part = |node: u32, triangles| Part { node, material: 0, triangles, has_uv: [false; 2], mirrored: false };
+        let node = |name: &str, at: f64| Node {
+            name: name.into(),
+            index: 0,
+            world: DMat4::from_translation(DVec3::splat(at)),
+        };
+        let part =
+            |node: u32, triangles| Part { node, material: 0, triangles, has_uv: [false; 2], mirrored: false };
         Scene {
             positions: (0..5).map(|k| DVec3::new(1e6 + f64::from(k), f64::from(k * k), 0.5)).collect(),
             triangles: [([0, 1, 2], 0), ([1, 2, 3], 0), ([2, 3, 4], 1)]

@@ -142,7 +142,12 @@ fn files_of_the_first_version_are_read() {
 
 #[test]
 fn a_view_looks_where_its_pose_says() {
-    let view = ViewFrame { camera_to_world: DMat4::IDENTITY, yfov: std::f64::consts::FRAC_PI_2, aspect: 2.0, shift: glam::DVec2::ZERO };
+    let view = ViewFrame {
+        camera_to_world: DMat4::IDENTITY,
+        yfov: std::f64::consts::FRAC_PI_2,
+        aspect: 2.0,
+        shift: glam::DVec2::ZERO,
+    };
     let toward = |x, y| view.ray(DVec2::new(x, y)).1;
     assert!(toward(0.5, 0.5).distance(DVec3::NEG_Z) < 1e-12);
     assert!(toward(0.0, 0.0).distance(DVec3::new(-2.0, 1.0, -1.0)) < 1e-12);

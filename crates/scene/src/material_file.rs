@@ -7,8 +7,8 @@ use crate::material_textures::further_uv_sets;
 use crate::own_extras;
 use crate::texture_reader::TextureReader;
 use crate::{
-    AlphaMode, Anisotropy, Clearcoat, DiffuseTransmission, Image, Iridescence, Material, Sheen, Volume,
-    TextureRef, Workflow,
+    AlphaMode, Anisotropy, Clearcoat, DiffuseTransmission, Image, Iridescence, Material, Sheen, TextureRef,
+    Volume, Workflow,
 };
 use glam::{Vec3, Vec4};
 
@@ -106,7 +106,8 @@ impl MaterialReader<'_> {
     /// The radiance that material `index` sends, where it brings that.
     fn radiance(&mut self, index: usize, sets: &[u32]) -> Option<TextureRef> {
         let document = self.textures.document;
-        let info = document.item("materials", index, "").and_then(|object| own_extras::radiance(document, &object));
+        let info =
+            document.item("materials", index, "").and_then(|object| own_extras::radiance(document, &object));
         let info = info.unwrap_or_else(|fault| {
             document.warn(format!("{fault}; the light is left out"));
             None

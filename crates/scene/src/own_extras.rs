@@ -108,7 +108,12 @@ pub(crate) fn camera_lens(document: &Document<'_>, index: usize, yfov: f64) -> C
     let lens = told(document, read());
     let place = || format!("/cameras/{index}/extras/{EXTRAS_KEY}");
     usable(lens, yfov).unwrap_or_else(|error| {
-        document.warn(format!("{}/{}: it must be {}; the lens is left out", place(), error.field, error.must));
+        document.warn(format!(
+            "{}/{}: it must be {}; the lens is left out",
+            place(),
+            error.field,
+            error.must
+        ));
         CameraLens::default()
     })
 }
@@ -160,7 +165,10 @@ pub(crate) struct RadianceInfo<'a> {
 }
 
 /// The radiance of a material, if it has one.
-pub(crate) fn radiance<'a>(document: &Document<'_>, material: &Object<'a>) -> Result<Option<RadianceInfo<'a>>, Fault> {
+pub(crate) fn radiance<'a>(
+    document: &Document<'_>,
+    material: &Object<'a>,
+) -> Result<Option<RadianceInfo<'a>>, Fault> {
     let Some(own) = entry(document, material)? else { return Ok(None) };
     let Some(radiance) = own.object("radiance")? else { return Ok(None) };
     let Some(uri) = radiance.text("uri")? else { return Err(radiance.malformed("uri", "is missing")) };

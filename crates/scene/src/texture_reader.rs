@@ -58,7 +58,8 @@ impl<'a> TextureReader<'a> {
                     self.images.push(image);
                     self.images.len() as u32 - 1
                 });
-                let image = image.map_err(|fault| self.document.warn(format!("{fault}; the light is left out"))).ok();
+                let image =
+                    image.map_err(|fault| self.document.warn(format!("{fault}; the light is left out"))).ok();
                 self.radiances.insert(info.uri.into(), image);
                 image
             }

@@ -11,7 +11,8 @@ use serde_json::{Value, json};
 fn with_lens(lens: Value) -> Scene {
     let mut glb = Glb::triangle();
     glb.json["cameras"] = json!([{"type": "perspective", "perspective": {"yfov": 0.5, "znear": 0.1}, "extras": {"focus_brush": lens, "other": 3}}]);
-    glb.json["nodes"] = json!([{"name": "tri", "mesh": 0}, {"name": "shot", "camera": 0, "translation": [0, 0, 5]}]);
+    glb.json["nodes"] =
+        json!([{"name": "tri", "mesh": 0}, {"name": "shot", "camera": 0, "translation": [0, 0, 5]}]);
     glb.json["scenes"] = json!([{"nodes": [0, 1]}]);
     glb.load().unwrap()
 }

@@ -29,8 +29,8 @@ mod session;
 #[path = "../tests/tiny_glb/mod.rs"]
 mod tiny_glb;
 
-pub use carrying::{CarriedNode, CarriedPaint};
 pub use baselines::{FirstHits, LayeredOptions, ScatterOptions, ViewsOptions};
+pub use carrying::{CarriedNode, CarriedPaint};
 pub use commands::{COMMANDS, Command, CommandId, CommandInfo, Event, KeyMap, Menu, Shortcut};
 pub use display::{
     Display, LivePicture, Screen, ScreenPixel, Thumbnail, ThumbnailResult, Thumbnails, Tone, ToneCurve,

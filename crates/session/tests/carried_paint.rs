@@ -53,14 +53,16 @@ fn halved() -> Vec<Quad> {
 /// t at a place of the world on the wall, of whatever mesh.
 fn t_at(document: &Document, [x, y]: [f64; 2]) -> f64 {
     let from = DVec3::new(x, y, -3.95);
-    let ray = trace::Ray { origin: from, direction: DVec3::NEG_Z, t_min: 0.0, t_max: f64::INFINITY, skip: None };
+    let ray =
+        trace::Ray { origin: from, direction: DVec3::NEG_Z, t_min: 0.0, t_max: f64::INFINITY, skip: None };
     let hit = document.stage.tracer.first_hit(&ray).expect("the wall");
     document.map.sample(document.stage.atlas.position_of(hit.point)).t
 }
 
 /// How far t is from that of another document, over a grid on the wall; and how many of the places are painted there.
 fn compared(before: &Document, after: &Document, moved: [f64; 2]) -> (f64, usize) {
-    let places = (0..40).flat_map(|i| (0..30).map(move |j| [f64::from(i) * 0.15 - 2.9, f64::from(j) * 0.15 - 2.2]));
+    let places =
+        (0..40).flat_map(|i| (0..30).map(move |j| [f64::from(i) * 0.15 - 2.9, f64::from(j) * 0.15 - 2.2]));
     let pairs: Vec<[f64; 2]> =
         places.map(|at| [t_at(before, at), t_at(after, [at[0] + moved[0], at[1] + moved[1]])]).collect();
     let off = pairs.iter().filter(|[a, b]| (a - b).abs() > 0.01).count();
@@ -114,7 +116,8 @@ fn paint_follows_what_was_moved_as_a_whole_and_told_is_what_has_no_partner() {
     assert_eq!((carried.gaps[0].name.as_str(), carried.gaps[0].share), ("new", 1.0));
     let selected = after.selection.as_ref().expect("what has no partner is selected");
     let texels = &after.stage.texels.texels;
-    let of_new = texels.iter().filter(|texel| after.scene().part_of(texel.centroid.triangle).node == 3).count();
+    let of_new =
+        texels.iter().filter(|texel| after.scene().part_of(texel.centroid.triangle).node == 3).count();
     assert_eq!(selected.count(), of_new);
 }
 

@@ -17,7 +17,15 @@ const MOVED: [i32; 2] = [-32, 16];
 fn part() -> Camera {
     let [width, height] = PART;
     let shift = DVec2::new(f64::from(MOVED[0]), f64::from(MOVED[1])) / f64::from(height);
-    Camera { width, height, yfov: 0.2, focus_distance: 2.6, aperture_radius: 0.06, shift, ..Camera::default() }
+    Camera {
+        width,
+        height,
+        yfov: 0.2,
+        focus_distance: 2.6,
+        aperture_radius: 0.06,
+        shift,
+        ..Camera::default()
+    }
 }
 
 fn whole() -> Camera {
@@ -53,7 +61,8 @@ fn difference(renderer: Renderer, beside: i32) -> f32 {
     let pixels = (0..PART[1]).flat_map(|y| (0..PART[0]).map(move |x| (x, y)));
     let square = |(x, y): (u32, u32)| {
         let one = part.radiance[(y * part.width + x) as usize];
-        let other = whole.radiance[((y as i32 + corner[1]) as u32 * whole.width + (x as i32 + corner[0]) as u32) as usize];
+        let other = whole.radiance
+            [((y as i32 + corner[1]) as u32 * whole.width + (x as i32 + corner[0]) as u32) as usize];
         one.iter().zip(other).map(|(a, b)| (a - b).powi(2)).sum::<f32>() / 3.0
     };
     pixels.map(square).sum::<f32>() / (PART[0] * PART[1]) as f32

@@ -94,7 +94,9 @@ pub fn lens_panel(ui: &mut Ui, document: &Document, presets: &PresetShelf, actio
 fn shift_rows(ui: &mut Ui, camera: &Camera, actions: &mut Vec<Action>) {
     let reach = 100.0 * Camera::LARGEST_SHIFT;
     for (axis, label, way) in [(0, "Shift right", "to the right"), (1, "Shift up", "upwards")] {
-        let tip = format!("How far the sensor is moved {way}, in picture heights: what is seen moves, perspective stays.");
+        let tip = format!(
+            "How far the sensor is moved {way}, in picture heights: what is seen moves, perspective stays."
+        );
         let mut percent = 100.0 * camera.shift[axis];
         let response = row(ui, label, &tip, |ui| {
             ui.add(DragValue::new(&mut percent).speed(0.2).range(-reach..=reach).suffix(" %").max_decimals(3))

@@ -181,8 +181,7 @@ impl PictureView {
         self.ask_for_pictures(session, actions);
         let image = self.image;
         let shot = &document.camera;
-        let frame =
-            ViewFrame::of(shot);
+        let frame = ViewFrame::of(shot);
         let is_selecting = self.verify.is_selecting();
         let position = |at: Pos2| picture_position(image, at);
         let screen = |at: DVec2| image.min + vec2(at.x as f32, at.y as f32) * image.size();

@@ -26,7 +26,13 @@ pub type Sampled = [(DVec3, DVec3)];
 
 /// The motion, old world from new, among the identity, those of `proposed`, in this order, and what follows from the extents. `middles` are
 /// those of the old and the new surface, `extent` is the length of the old one's diagonal.
-pub fn aligned(old: &OldSurface, new: &Sampled, proposed: &[DMat4], middles: [DVec3; 2], extent: f64) -> DMat4 {
+pub fn aligned(
+    old: &OldSurface,
+    new: &Sampled,
+    proposed: &[DMat4],
+    middles: [DVec3; 2],
+    extent: f64,
+) -> DMat4 {
     let onto = DMat4::from_translation(middles[0] - middles[1]);
     let mut best = (DMat4::IDENTITY, gap(old, new, &DMat4::IDENTITY, extent));
     let better = |best: (DMat4, f64), motion: DMat4| {
@@ -39,7 +45,9 @@ pub fn aligned(old: &OldSurface, new: &Sampled, proposed: &[DMat4], middles: [DV
         return best.0;
     }
     // Turned about the middle: by quarters, as where axes were exchanged, each bettered.
-    let turns = quarters().map(|turn| DMat4::from_translation(middles[0]) * DMat4::from_mat3(turn) * DMat4::from_translation(-middles[1]));
+    let turns = quarters().map(|turn| {
+        DMat4::from_translation(middles[0]) * DMat4::from_mat3(turn) * DMat4::from_translation(-middles[1])
+    });
     turns.map(|turn| bettered(old, new, turn, extent)).fold(best, better).0
 }
 

@@ -32,7 +32,8 @@ impl CarriedPaint {
     /// A sentence about the file at `scene`.
     pub fn told(&self, scene: &Path) -> String {
         const LISTED: usize = 8;
-        let percent = |share: f64| if share >= 0.995 { "all".into() } else { format!("{:.1} %", 100.0 * share) };
+        let percent =
+            |share: f64| if share >= 0.995 { "all".into() } else { format!("{:.1} %", 100.0 * share) };
         let named: Vec<_> = (self.gaps.iter().take(LISTED))
             .map(|gap| format!("{} of \"{}\"", percent(gap.share), gap.name))
             .collect();
@@ -55,7 +56,8 @@ pub(crate) fn carried(
     atlas: &Atlas,
 ) -> Result<(ProjectFile, CarriedPaint), SessionError> {
     let bad = |what: String| SessionError::bad(&project.scene, what);
-    let stored = project.atlas.as_ref().ok_or_else(|| bad("its project has no atlas (paint it anew)".into()))?;
+    let stored =
+        project.atlas.as_ref().ok_or_else(|| bad("its project has no atlas (paint it anew)".into()))?;
     let old_atlas = Atlas::from_bytes(stored, old).map_err(|error| bad(error.to_string()))?;
     let texels = atlas.texel_map(new);
     let places = partners(old, &old_atlas, new, &texels);
@@ -63,7 +65,8 @@ pub(crate) fn carried(
 
     let focus_map = project.focus_map.as_ref().map(|map| onto.map(map));
     let layers = project.layers.as_ref().and_then(|layers| {
-        let moved = layers.layers().iter().map(|layer| FocusLayer { map: onto.map(&layer.map), ..layer.clone() });
+        let moved =
+            layers.layers().iter().map(|layer| FocusLayer { map: onto.map(&layer.map), ..layer.clone() });
         LayerStack::new(moved.collect(), layers.active_index())
     });
     let project = ProjectFile {
@@ -132,8 +135,9 @@ impl Onto<'_> {
             *without += if place.is_none() { texel.area } else { 0.0 };
         }
         let of_node = scene.nodes.iter().zip(&areas).filter(|(_, [_, without])| *without > 0.0);
-        let mut gaps: Vec<CarriedNode> =
-            of_node.map(|(node, [all, without])| CarriedNode { name: node.name.clone(), share: without / all }).collect();
+        let mut gaps: Vec<CarriedNode> = of_node
+            .map(|(node, [all, without])| CarriedNode { name: node.name.clone(), share: without / all })
+            .collect();
         gaps.sort_by(|a, b| b.share.total_cmp(&a.share));
         let [all, without] = areas.iter().fold([0.0; 2], |[a, b], [c, d]| [a + c, b + d]);
         CarriedPaint { gaps, share: if all > 0.0 { 1.0 - without / all } else { 1.0 } }

@@ -49,8 +49,9 @@ fn bounds_of(points: impl Iterator<Item = DVec3>) -> (DVec3, DVec3) {
 pub fn partners(old: &Scene, old_atlas: &Atlas, new: &Scene, texels: &TexelMap) -> Vec<Option<DVec2>> {
     let has_name = |scene: &Scene, name: &str| scene.nodes.iter().any(|node| node.name == name);
     let by_name = new.nodes.iter().any(|node| has_name(old, &node.name));
-    let called =
-        |scene: &Scene, node: u32| if by_name { scene.nodes[node as usize].name.clone() } else { String::new() };
+    let called = |scene: &Scene, node: u32| {
+        if by_name { scene.nodes[node as usize].name.clone() } else { String::new() }
+    };
 
     let groups = groups(old, &called);
     let node_of = |texel: usize| new.part_of(texels.texels[texel].centroid.triangle).node;

@@ -22,13 +22,19 @@ impl Input {
     /// # Errors
     /// The project is damaged, the scene cannot be unwrapped, or the work was cancelled.
     pub fn follow_surface(&mut self, unwrap: &UnwrapOptions, steps: &dyn Steps) -> Result<(), SessionError> {
-        let Some(project) = self.project.as_ref().filter(|project| project.capture.is_none()) else { return Ok(()) };
-        let Some(surface) = project.surface.as_ref().filter(|_| self.carried.is_none()) else { return Ok(()) };
+        let Some(project) = self.project.as_ref().filter(|project| project.capture.is_none()) else {
+            return Ok(());
+        };
+        let Some(surface) = project.surface.as_ref().filter(|_| self.carried.is_none()) else {
+            return Ok(());
+        };
         if *surface == surface_to_bytes(&self.scene) {
             return Ok(());
         }
         let old = surface_from_bytes(surface);
-        let old = old.ok_or_else(|| SessionError::bad(&self.path, "surface.bin is damaged (restore the file from a copy)"))?;
+        let old = old.ok_or_else(|| {
+            SessionError::bad(&self.path, "surface.bin is damaged (restore the file from a copy)")
+        })?;
         self.carry(&project.clone(), &old, unwrap, steps)
     }
 
@@ -36,7 +42,12 @@ impl Input {
     ///
     /// # Errors
     /// The project cannot be read, or its surface is not known any more.
-    pub fn take_paint_of(&mut self, file: &Path, unwrap: &UnwrapOptions, steps: &dyn Steps) -> Result<(), SessionError> {
+    pub fn take_paint_of(
+        &mut self,
+        file: &Path,
+        unwrap: &UnwrapOptions,
+        steps: &dyn Steps,
+    ) -> Result<(), SessionError> {
         let mut project = ProjectFile::load(file)?;
         let old = match project.surface.as_deref().map(surface_from_bytes) {
             Some(Some(surface)) => surface,
@@ -44,7 +55,8 @@ impl Input {
                 Arc::unwrap_or_clone(load_variant(&project.scene, None, &*steps.begin("reading"))?)
             }
             _ => {
-                let what = "what it was painted on is not known any more (save it once with its scene as it was)";
+                let what =
+                    "what it was painted on is not known any more (save it once with its scene as it was)";
                 return Err(SessionError::bad(file, what));
             }
         };

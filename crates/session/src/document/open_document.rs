@@ -200,7 +200,11 @@ impl Document {
         self.warnings.push(format!("{}: {what}", path.display()));
     }
 
-    pub(super) fn of(mut input: Input, unwrap: &UnwrapOptions, steps: &dyn Steps) -> Result<Self, SessionError> {
+    pub(super) fn of(
+        mut input: Input,
+        unwrap: &UnwrapOptions,
+        steps: &dyn Steps,
+    ) -> Result<Self, SessionError> {
         input.follow_surface(unwrap, steps)?;
         let (stage, map) = input.stage(unwrap, steps)?;
         let stored = input.project.as_ref().and_then(|project| project.layers.clone());

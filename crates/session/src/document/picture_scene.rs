@@ -18,8 +18,8 @@ use lens::Camera;
 use rayon::prelude::*;
 use relief::{Relief, TEXTURE_LAYERS};
 use scene::{
-    AlphaMode, CameraLens, Image, ImageLevel, Material, Node, Part, PictureTexture, Scene, SceneCamera, TextureRef,
-    Triangle, Wrap, srgb_from_linear,
+    AlphaMode, CameraLens, Image, ImageLevel, Material, Node, Part, PictureTexture, Scene, SceneCamera,
+    TextureRef, Triangle, Wrap, srgb_from_linear,
 };
 use std::path::Path;
 

@@ -32,8 +32,7 @@ impl Painter {
         };
         let is_recordable = view.is_some();
         let shot = &document.camera;
-        let unseen =
-            ViewFrame::of(shot);
+        let unseen = ViewFrame::of(shot);
         let record = RecordedStroke {
             layer: layer.name.clone(),
             brush,

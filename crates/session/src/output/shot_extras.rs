@@ -18,7 +18,8 @@ const OF_GLTF: [&str; 3] = ["yfov", "camera_to_world", "background"];
 pub fn tell_lens(root: &mut Map<String, Value>, scene: &Scene, shot: &Camera) {
     let own = scene.cameras.iter().find(|camera| is_at(camera, shot)).and_then(|camera| camera.index);
     let index = own.map_or_else(|| added(root, shot), |index| index as usize);
-    let camera = root.get_mut("cameras").and_then(|cameras| cameras.get_mut(index)).and_then(Value::as_object_mut);
+    let camera =
+        root.get_mut("cameras").and_then(|cameras| cameras.get_mut(index)).and_then(Value::as_object_mut);
     let Some(camera) = camera else { return };
     let extras = camera.entry("extras").or_insert_with(|| json!({}));
     // Extras may be anything; what is no object has no room for a key.
@@ -30,7 +31,8 @@ pub fn tell_lens(root: &mut Map<String, Value>, scene: &Scene, shot: &Camera) {
 /// Whether a camera of the scene shows what the shot camera shows, as far as 32 bits tell.
 fn is_at(camera: &SceneCamera, shot: &Camera) -> bool {
     let scale = 1.0 + shot.position().length();
-    camera.camera_to_world.abs_diff_eq(shot.camera_to_world, 1e-6 * scale) && (camera.yfov - shot.yfov).abs() < 1e-6
+    camera.camera_to_world.abs_diff_eq(shot.camera_to_world, 1e-6 * scale)
+        && (camera.yfov - shot.yfov).abs() < 1e-6
 }
 
 fn lens_json(shot: &Camera) -> Value {
@@ -62,7 +64,8 @@ fn added(root: &mut Map<String, Value>, shot: &Camera) -> usize {
     let node = json!({"name": NAME, "camera": index, "matrix": shot.camera_to_world.to_cols_array()});
     let node = push("nodes", node);
     let scene = root.get("scene").and_then(Value::as_u64).unwrap_or(0) as usize;
-    let scene = root.get_mut("scenes").and_then(|scenes| scenes.get_mut(scene)).and_then(Value::as_object_mut);
+    let scene =
+        root.get_mut("scenes").and_then(|scenes| scenes.get_mut(scene)).and_then(Value::as_object_mut);
     if let (Some(scene), Some(node)) = (scene, node)
         && let Some(nodes) = scene.entry("nodes").or_insert_with(|| json!([])).as_array_mut()
     {

@@ -38,7 +38,12 @@ impl Watched {
     /// The file at `scene`, if a bridge wrote it.
     fn of(scene: &Path) -> Option<Self> {
         let is_bridged = scene.parent()?.join(MANIFEST).is_file();
-        is_bridged.then(|| Self { scene: scene.into(), read: stamp(scene), changed: None, looked: Instant::now() })
+        is_bridged.then(|| Self {
+            scene: scene.into(),
+            read: stamp(scene),
+            changed: None,
+            looked: Instant::now(),
+        })
     }
 
     /// Whether it has changed, and stayed so from one look to the next.
@@ -75,7 +80,10 @@ impl Session {
     /// Looks at the scene's file when it is time to. Called at every poll.
     pub(super) fn watch_scene(&mut self) {
         let is_busy = self.is_painting() || !self.jobs.is_empty();
-        let Some(watched) = self.watched.as_mut().filter(|watched| watched.looked.elapsed() >= LOOKED_EVERY) else { return };
+        let Some(watched) = self.watched.as_mut().filter(|watched| watched.looked.elapsed() >= LOOKED_EVERY)
+        else {
+            return;
+        };
         let is_another = !is_busy && watched.is_another();
         if is_busy {
             watched.looked = Instant::now();
