@@ -2,6 +2,7 @@
 
 mod program;
 #[path = "../../crates/session/tests/tiny_glb/mod.rs"]
+#[allow(dead_code, reason = "the scene is one of its own")]
 mod tiny_glb;
 
 use program::{done, run};
