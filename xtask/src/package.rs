@@ -10,37 +10,16 @@
 
 mod deb;
 mod layout;
+mod release;
 mod source;
 mod staging;
 mod tarball;
 
-use crate::chore::{Failure, cargo, execute, output_of, repository};
+use crate::chore::{Failure, cargo, execute};
 use crate::packages::{TO_BUILD, TO_PACKAGE, install_missing};
+use release::{Release, target};
 use std::ffi::OsString;
 use std::path::PathBuf;
-use std::process::Command;
-
-/// What is packaged.
-struct Release {
-    version: String,
-    /// Seconds since 1970 that everything in archives is as old as: the commit's.
-    time: String,
-    /// Where packages go.
-    output: PathBuf,
-}
-
-impl Release {
-    fn of_commit() -> Result<Self, Failure> {
-        let output = target().join("package");
-        std::fs::create_dir_all(&output).map_err(|e| Failure::new(format!("{}: {e}", output.display())))?;
-        let time = output_of(git().args(["log", "-1", "--format=%ct"]))?;
-        Ok(Self {
-            version: env!("CARGO_PKG_VERSION").into(),
-            time: String::from_utf8_lossy(&time).trim().into(),
-            output,
-        })
-    }
-}
 
 /// Makes the packages that are named, `deb`, `tarball` or `source`; all of them where none is.
 pub fn package(kinds: &[OsString]) -> Result<(), Failure> {
@@ -74,14 +53,4 @@ pub fn package(kinds: &[OsString]) -> Result<(), Failure> {
 fn told(package: PathBuf) {
     let size = std::fs::metadata(&package).map_or(0, |data| data.len());
     println!("{} ({} MiB)", package.display(), size.div_ceil(1 << 20));
-}
-
-fn git() -> Command {
-    let mut command = Command::new("git");
-    command.arg("-C").arg(repository());
-    command
-}
-
-fn target() -> PathBuf {
-    std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| repository().join("target"), PathBuf::from)
 }

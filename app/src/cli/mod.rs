@@ -26,6 +26,7 @@ mod shot;
 mod stopping;
 mod thumbnail;
 mod unwrap;
+mod values;
 
 use crate::window;
 use arguments::{Arguments, Subcommand};
@@ -86,7 +87,11 @@ fn dispatch(command: Subcommand) -> Result<(), Failure> {
         }
         Subcommand::Render(arguments) => {
             keep_work();
-            render::run(&arguments, &Console::telling(arguments.progress))
+            let console = Console::telling(arguments.progress);
+            match arguments.sequence.is_asked_for() {
+                true => sequence::run(&arguments, &console),
+                false => render::run(&arguments, &console),
+            }
         }
         Subcommand::Compare(arguments) => compare::run(&arguments),
         Subcommand::Report(arguments) => report::run(&arguments, &console),

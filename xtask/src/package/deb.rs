@@ -1,7 +1,7 @@
 //! The package for Debian and its kin.
 
-use super::Release;
 use super::layout::PROGRAM;
+use super::release::Release;
 use super::staging::{copy, empty_folder, lay_out, set_rights, write};
 use crate::chore::{Failure, execute, output_of, repository};
 use crate::packages::{TO_RUN, names};

@@ -1,7 +1,7 @@
 //! The source archive: this commit, and the crates that it needs, so that it builds without a network.
 
+use super::release::{Release, git};
 use super::staging::{empty_folder, failed, pack, set_rights, write};
-use super::{Release, git};
 use crate::chore::{Failure, execute, output_of};
 use std::path::PathBuf;
 use std::process::Command;

@@ -1,7 +1,7 @@
 //! The tree that a package holds, laid out on disk before it is packed.
 
-use super::Release;
 use super::layout::{Installed, PROGRAM, SHARED};
+use super::release::Release;
 use crate::chore::{Failure, execute, repository};
 use std::path::{Path, PathBuf};
 use std::process::Command;

@@ -1,6 +1,6 @@
 //! The archive that runs from wherever it is unpacked.
 
-use super::Release;
+use super::release::Release;
 use super::staging::{empty_folder, lay_out, pack, set_rights, write};
 use crate::chore::Failure;
 use std::path::{Path, PathBuf};

@@ -21,6 +21,7 @@ mod showing;
 mod state;
 mod timeline;
 mod verifying;
+mod watched;
 
 pub use exporting::FullSize;
 pub use state::{Session, SessionOptions};
