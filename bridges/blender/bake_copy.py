@@ -30,15 +30,16 @@ def main(arguments):
         bridge.bake(bpy.data.scenes[scene], found, folder, int(side), int(samples))
     except errors.BridgeError as error:
         Path(folder, "bake-error.txt").write_text(f"{error}\n", encoding="utf-8")
-        sys.exit(3)
+        return 3
+    return 0
 
 
 if __name__ == "__main__":
     if "--" in sys.argv:
-        main(sys.argv[sys.argv.index("--") + 1:])
+        sys.exit(main(sys.argv[sys.argv.index("--") + 1:]))
     else:
         bpy.ops.wm.open_mainfile(filepath=sys.argv[1])
-        main(sys.argv[2:])
+        code = main(sys.argv[2:])
         # bpy 4.2 fails while it ends after its glTF exporter ran; all is written by now.
         sys.stdout.flush()
-        os._exit(0)
+        os._exit(code)
