@@ -48,6 +48,22 @@ class CyclesLight(unittest.TestCase):
     def test_a_lens_before_rough_things(self):
         self.assertGreaterEqual(compared("lens", workshop.still(SIZE, 0.3, glass=False), aperture=True), 34)
 
+    def test_a_copy_is_baked_in_the_background(self):
+        """As the button does it: the open scene stays as it is, and what fails is said in one line."""
+        scene = workshop.still((16, 10), 0.5, glass=False)
+        before = sorted(each.name for each in bpy.data.objects)
+        folder = PLACE / "background"
+        folder.mkdir()
+        done = cycles_light.in_background(PROGRAM, folder, 64, 1, PLACE / "copy.blend")
+        code, told = done.wait(300), folder / "bake-error.txt"
+        self.assertEqual(code, 0, told.read_text() if told.is_file() else "")
+        self.assertEqual(handover.read(folder)["light"], "cycles")
+        self.assertTrue((folder / "light.exr").is_file())
+        self.assertEqual(sorted(each.name for each in bpy.data.objects), before)
+        failed = cycles_light.in_background(str(PLACE / "nothing"), folder, 64, 1, PLACE / "copy.blend")
+        self.assertEqual(failed.wait(300), 3)
+        self.assertRegex((folder / "bake-error.txt").read_text(), "nothing: cannot be started")
+
     def test_another_light_is_told_apart(self):
         """The comparison fails where it must: a picture against the same one at another place."""
         scene = workshop.still(SIZE, 0.3, glass=False)

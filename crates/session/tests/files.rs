@@ -96,6 +96,30 @@ fn the_unwrapped_scene_is_written_in_the_background_or_not_at_all() {
 }
 
 #[test]
+fn a_scene_that_is_written_has_the_lens_of_the_shot_camera() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = folder.path().join("quads.glb");
+    tiny_glb::write(&scene);
+    let input = session::Input::open(&scene, &progress::Unwatched).unwrap();
+    let atlas = input.atlas(&Default::default(), &progress::Unwatched).unwrap();
+    let own =
+        lens::Camera { shift: glam::DVec2::new(0.25, -0.5), aperture_radius: 0.03, ..input.camera.clone() };
+    let elsewhere = lens::Camera { yfov: 0.9, ..own.clone() };
+    for (shot, count) in [(own, 1), (elsewhere, 2)] {
+        let file = folder.path().join("written.glb");
+        session::write_unwrapped(&file, &input.scene, &atlas, Some(&shot), &progress::Unwatched).unwrap();
+        let again = session::Input::open(&file, &progress::Unwatched).unwrap();
+        assert_eq!(again.scene.cameras.len(), count);
+        let camera = &again.scene.cameras[count - 1];
+        assert_eq!(camera.lens.of(input.camera.clone()).shift, shot.shift);
+        assert_eq!(camera.lens.aperture_radius, Some(0.03));
+        assert!((camera.yfov - shot.yfov).abs() < 1e-6);
+        let first = &again.scene.cameras[0];
+        assert_eq!(first.lens.said().is_empty(), count == 2, "only one camera has the lens");
+    }
+}
+
+#[test]
 fn a_template_begins_a_document_without_a_file() {
     let folder = tempfile::tempdir().unwrap();
     let scene = folder.path().join("quads.glb");

@@ -92,7 +92,7 @@ fn camera(document: &Document) -> Camera {
 
 /// A stroke along the wall, over all of its strips: 200 dabs, a hundredth of a radius here and there.
 fn stroke(camera: &Camera) -> RecordedStroke {
-    let view = ViewFrame::of(&camera);
+    let view = ViewFrame::of(camera);
     let target = FocusOffset::new(1.02, 1.0);
     let brush = Brush { radius: 0.2, hardness: 0.3, target, ..Brush::default() };
     // The picture is 3.02 m wide at the wall's depth.
@@ -139,7 +139,7 @@ fn places(document: &Document, camera: &Camera) -> Vec<DVec2> {
 
 /// κ at places of the picture.
 fn kappas(document: &Document, map: &FocusMap, camera: &Camera, places: &[DVec2]) -> Vec<f64> {
-    let view = ViewFrame::of(&camera);
+    let view = ViewFrame::of(camera);
     let kappa = |&at: &DVec2| {
         let hit =
             session::pick(&document.stage.tracer, &view_ray(&view, at)).expect("the wall fills the picture");
