@@ -155,6 +155,31 @@ mod tests {
     }
 
     #[test]
+    fn a_text_is_put_in_and_found_and_chunks_move_along() {
+        let [a, b] = [attribute("a", b"\0\0"), attribute("b", b"12")];
+        for (flags, parts) in
+            [(0, vec![&[a.clone(), b.clone()][..]]), (SEVERAL_PARTS, vec![&[a.clone()][..], &[b.clone()]])]
+        {
+            let mut whole = file(flags, &parts);
+            whole.truncate(whole.len() - b"pixels".len());
+            let end = whole.len() as u64 + 16;
+            whole.extend([end, end + 6].iter().flat_map(|offset| offset.to_le_bytes()));
+            whole.extend(b"chunk1chunk2");
+            let longer = with_text(&whole, "told", b"so").unwrap();
+            assert_eq!(&longer[value(&longer, "told").unwrap()], b"so");
+            assert_eq!(value(&whole, "told"), None);
+            let moved = (longer.len() - whole.len()) as u64;
+            let table = longer.len() - 12 - 16;
+            let offset = |at: usize| u64::from_le_bytes(longer[at..at + 8].try_into().unwrap());
+            assert_eq!([offset(table), offset(table + 8)], [end + moved, end + 6 + moved]);
+            assert_eq!(&longer[offset(table + 8) as usize..], b"chunk2");
+            for length in 0..whole.len() - 12 {
+                assert_eq!(with_text(&whole[..length], "told", b"so"), None, "cut at {length}");
+            }
+        }
+    }
+
+    #[test]
     fn bytes_that_are_cut_short_stay_as_they_are() {
         let whole = file(SEVERAL_PARTS, &[&[window("dataWindow", [9, 0, 0, 9]), attribute("b", b"12")]]);
         for length in 0..whole.len() - b"\0pixels".len() {

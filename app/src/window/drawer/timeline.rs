@@ -167,7 +167,7 @@ impl Timeline {
 
     fn buttons(&mut self, ui: &mut Ui, document: &Document, actions: &mut Vec<Action>) {
         ui.horizontal(|ui| {
-            let label = if self.playing.is_some() { "⏸" } else { "▶" };
+            let label = if self.playing.is_some() { "Stop" } else { "Play" };
             let play = ui.button(label).on_hover_text(keys::tip(ui.ctx(), CommandId::PlayTimeline));
             controls::named(&play, "Play");
             if play.clicked() {
