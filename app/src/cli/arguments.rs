@@ -1,5 +1,6 @@
 //! What can be typed.
 
+use super::parsers::{name_parser, positive};
 use super::sequence_arguments::{KeysArguments, SequenceArguments};
 use clap::builder::{OsStringValueParser, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, ValueEnum};
@@ -527,11 +528,6 @@ pub enum ExposureName {
     Normalise,
 }
 
-/// A name inside a file, which is UTF-8 there: other bytes make a name that nothing has.
-pub(super) fn name_parser() -> impl TypedValueParser<Value = String> {
-    OsStringValueParser::new().map(|text| text.to_string_lossy().into_owned())
-}
-
 fn camera_parser() -> impl TypedValueParser<Value = CameraChoice> {
     OsStringValueParser::new().map(|text| camera_choice(&text))
 }
@@ -582,11 +578,6 @@ fn aov(name: &str) -> Result<Aov, String> {
         let known: Vec<_> = Aov::ALL.iter().map(|(name, _)| *name).collect();
         format!("one of {}", known.join(", "))
     })
-}
-
-pub(super) fn positive(text: &str) -> Result<f64, String> {
-    let number = text.parse().ok().filter(|x: &f64| *x > 0.0 && x.is_finite());
-    number.ok_or_else(|| "a number above 0".into())
 }
 
 fn not_negative(text: &str) -> Result<f64, String> {

@@ -16,6 +16,7 @@ mod import;
 mod info;
 mod keys;
 mod new;
+mod parsers;
 mod presets;
 mod render;
 mod replay;
@@ -85,7 +86,11 @@ fn dispatch(command: Subcommand) -> Result<(), Failure> {
         }
         Subcommand::Render(arguments) => {
             keep_work();
-            render::run(&arguments, &Console::telling(arguments.progress))
+            let console = Console::telling(arguments.progress);
+            match arguments.sequence.is_asked_for() {
+                true => sequence::run(&arguments, &console),
+                false => render::run(&arguments, &console),
+            }
         }
         Subcommand::Compare(arguments) => compare::run(&arguments),
         Subcommand::Report(arguments) => report::run(&arguments, &console),

@@ -3,7 +3,6 @@
 use super::arguments::{BackendName, EstimatorName, ExposureName, RenderArguments, SamplerName};
 use super::console::{Console, path_text, path_texts, say_json};
 use super::failure::Failure;
-use super::sequence;
 use super::shot::{check_picture_output, opened, shot};
 use lens::Exposure;
 use project::{PictureOptions, write_picture};
@@ -18,9 +17,6 @@ use trace::truth::{Estimator, Sampler, TruthOptions};
 
 /// Renders a picture and writes it.
 pub fn run(arguments: &RenderArguments, console: &Console) -> Result<(), Failure> {
-    if arguments.sequence.is_asked_for() {
-        return sequence::run(arguments, console);
-    }
     let renderer = arguments.renderer;
     let gpu = gpu(arguments)?;
     let card = gpu.as_ref().map(|gpu| gpu.name().to_owned());
