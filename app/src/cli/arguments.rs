@@ -1,7 +1,7 @@
 //! What can be typed.
 
+use super::parsers::{name_parser, positive};
 use super::sequence_arguments::{KeysArguments, SequenceArguments};
-use super::values::{name_parser, positive};
 use clap::builder::{OsStringValueParser, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, ValueEnum};
 use project::{ColorSpace, Compression};

@@ -16,6 +16,7 @@ mod import;
 mod info;
 mod keys;
 mod new;
+mod parsers;
 mod presets;
 mod render;
 mod replay;
@@ -26,7 +27,6 @@ mod shot;
 mod stopping;
 mod thumbnail;
 mod unwrap;
-mod values;
 
 use crate::window;
 use arguments::{Arguments, Subcommand};

@@ -1,6 +1,6 @@
 //! What can be typed about frames.
 
-use super::values::{name_parser, positive};
+use super::parsers::{name_parser, positive};
 use clap::Args;
 use focus::Ease;
 use session::{FrameList, Shard};

@@ -76,7 +76,7 @@ fn keys_are_set_gone_to_moved_and_saved() {
     assert_eq!((person.document().seconds, person.document().camera.focus_distance), (0.0, 2.0));
     // A drag of a key moves it, as one step.
     let key = person.window.get_by_label("Focus key at 2.00 s").rect().center();
-    let timeline = person.window.get_by_label("Timeline").rect();
+    let timeline = person.window.get_by_label("Keys over time").rect();
     let to = egui::pos2(key.x + timeline.width() * 0.2, key.y);
     person.paints(&[key, egui::pos2((key.x + to.x) / 2.0, key.y), to]);
     let moved = person.focus_keys()[1];

@@ -93,7 +93,8 @@ pub(crate) fn with_text(bytes: &[u8], name: &str, text: &[u8]) -> Option<Vec<u8>
     let attribute = [name.as_bytes(), b"\0string\0", &size, text].concat();
     // The table ends where the first chunk begins, which is that of its first entry.
     let offset = |at: usize| Some(u64::from_le_bytes(bytes.get(at..at + 8)?.try_into().ok()?));
-    let end = usize::try_from(offset(table)?).ok().filter(|end| *end > table && (end - table) % 8 == 0)?;
+    let end =
+        usize::try_from(offset(table)?).ok().filter(|end| *end > table && (end - table).is_multiple_of(8))?;
     let mut changed = Vec::with_capacity(bytes.len() + attribute.len());
     changed.extend([bytes.get(..at)?, &attribute, bytes.get(at..table)?].concat());
     for entry in (table..end).step_by(8) {
@@ -127,6 +128,7 @@ pub(crate) fn empty_window(bytes: &[u8]) -> Option<&'static str> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::slice::from_ref;
 
     fn attribute(name: &str, value: &[u8]) -> Vec<u8> {
         let length = (value.len() as i32).to_le_bytes();
@@ -152,6 +154,31 @@ mod tests {
         let mut two = file(SEVERAL_PARTS, &[&[b.clone(), a.clone()], &[c.clone(), b.clone()]]);
         sort_attributes(&mut two);
         assert_eq!(two, file(SEVERAL_PARTS, &[&[a, b.clone()], &[b, c]]));
+    }
+
+    #[test]
+    fn a_text_is_put_in_and_found_and_chunks_move_along() {
+        let [a, b] = [attribute("a", b"\0\0"), attribute("b", b"12")];
+        for (flags, parts) in
+            [(0, vec![&[a.clone(), b.clone()][..]]), (SEVERAL_PARTS, vec![from_ref(&a), from_ref(&b)])]
+        {
+            let mut whole = file(flags, &parts);
+            whole.truncate(whole.len() - b"pixels".len());
+            let end = whole.len() as u64 + 16;
+            whole.extend([end, end + 6].iter().flat_map(|offset| offset.to_le_bytes()));
+            whole.extend(b"chunk1chunk2");
+            let longer = with_text(&whole, "told", b"so").unwrap();
+            assert_eq!(&longer[value(&longer, "told").unwrap()], b"so");
+            assert_eq!(value(&whole, "told"), None);
+            let moved = (longer.len() - whole.len()) as u64;
+            let table = longer.len() - 12 - 16;
+            let offset = |at: usize| u64::from_le_bytes(longer[at..at + 8].try_into().unwrap());
+            assert_eq!([offset(table), offset(table + 8)], [end + moved, end + 6 + moved]);
+            assert_eq!(&longer[offset(table + 8) as usize..], b"chunk2");
+            for length in 0..whole.len() - 12 {
+                assert_eq!(with_text(&whole[..length], "told", b"so"), None, "cut at {length}");
+            }
+        }
     }
 
     #[test]

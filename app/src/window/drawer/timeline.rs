@@ -133,7 +133,7 @@ impl Timeline {
         let height = RULER + Row::ALL.len() as f32 * ROW;
         let (all, response) =
             ui.allocate_exact_size(vec2(ui.available_width(), height), Sense::click_and_drag());
-        controls::named(&response, "Timeline");
+        controls::named(&response, "Keys over time");
         let scale = Scale { rect: all.with_min_x(all.left() + NAMES).shrink2(vec2(KEY, 0.0)), seconds };
         self.scrub(&response, &scale, actions);
         ruler(ui, &scale, all);
@@ -167,7 +167,7 @@ impl Timeline {
 
     fn buttons(&mut self, ui: &mut Ui, document: &Document, actions: &mut Vec<Action>) {
         ui.horizontal(|ui| {
-            let label = if self.playing.is_some() { "⏸" } else { "▶" };
+            let label = if self.playing.is_some() { "Stop" } else { "Play" };
             let play = ui.button(label).on_hover_text(keys::tip(ui.ctx(), CommandId::PlayTimeline));
             controls::named(&play, "Play");
             if play.clicked() {

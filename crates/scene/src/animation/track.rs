@@ -31,7 +31,7 @@ impl<'a> Track<'a> {
         let interpolation = Interpolation::named(name)
             .ok_or_else(|| sampler.malformed("interpolation", "is none of STEP, LINEAR, CUBICSPLINE"))?;
         let parts = times.count.saturating_mul(interpolation.values_a_key());
-        let elements = if parts == 0 { 0 } else { values.count / parts };
+        let elements = values.count.checked_div(parts).unwrap_or(0);
         if elements == 0 || values.count != elements * parts || values.shape.is_matrix() {
             let what = format!("has {} values for {} times", values.count, times.count);
             return Err(sampler.malformed("output", what));

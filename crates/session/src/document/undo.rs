@@ -369,6 +369,7 @@ mod tests {
         undo: Undo,
         layers: LayerStack,
         camera: Camera,
+        lens_motion: LensMotion,
         selection: Option<Selection>,
         depth_strokes: Arc<Vec<DepthStroke>>,
     }
@@ -376,18 +377,25 @@ mod tests {
     impl State {
         fn new() -> Self {
             let layers = LayerStack::of(FocusMap::new(4, 4, FocusOffset::STANDARD));
-            let (selection, depth_strokes) = (None, Arc::default());
-            Self { undo: Undo::new(1 << 20), layers, camera: focused(3.0), selection, depth_strokes }
+            let (lens_motion, selection, depth_strokes) = (LensMotion::default(), None, Arc::default());
+            Self {
+                undo: Undo::new(1 << 20),
+                layers,
+                camera: focused(3.0),
+                lens_motion,
+                selection,
+                depth_strokes,
+            }
         }
 
         fn undo(&mut self) -> Option<Undone> {
-            let Self { undo, layers, camera, selection, depth_strokes } = self;
-            undo.undo(Undoable { layers, camera, selection, depth_strokes })
+            let Self { undo, layers, camera, lens_motion, selection, depth_strokes } = self;
+            undo.undo(Undoable { layers, camera, lens_motion, selection, depth_strokes })
         }
 
         fn redo(&mut self) -> Option<Undone> {
-            let Self { undo, layers, camera, selection, depth_strokes } = self;
-            undo.redo(Undoable { layers, camera, selection, depth_strokes })
+            let Self { undo, layers, camera, lens_motion, selection, depth_strokes } = self;
+            undo.redo(Undoable { layers, camera, lens_motion, selection, depth_strokes })
         }
 
         fn focuses(&mut self, at: f64) {

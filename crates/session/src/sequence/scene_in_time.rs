@@ -143,3 +143,56 @@ fn posed_atlas(rest: &Atlas, scene: &Scene, at_rest: &[Option<RestTriangle>]) ->
     let atlas = Atlas::new([rest.width, rest.height], corners, chart_of, &part_of_chart, rest.density);
     Atlas { hash: rest.hash.clone(), ..atlas }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::document::load_scene;
+    use atlas::UnwrapOptions;
+    use progress::Unwatched;
+    use scene::{LoadOptions, SurfaceField};
+
+    #[test]
+    fn every_point_keeps_its_paint_wherever_it_is() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("moving.glb");
+        // What is hidden later stands first, so that all that follows has another number then.
+        let [wall, card, dot] = crate::tiny_glb::QUADS;
+        std::fs::write(&file, crate::tiny_glb::moving(&[wall, card, dot, wall])).unwrap();
+        let rest = load_scene(&file, &Unwatched).unwrap();
+        let atlas = Arc::new(Atlas::unwrap(&rest, &UnwrapOptions::default(), &Unwatched).unwrap());
+        let mut map = FocusMap::new(atlas.width, atlas.height, FocusOffset::STANDARD);
+        for y in 0..atlas.height {
+            (0..atlas.width).for_each(|x| map.set(x, y, [x as f32 * 0.01, y as f32 / atlas.height as f32]));
+        }
+        let painted = Focus::painted(rest.clone(), atlas.clone(), Arc::new(map));
+        let moving = MovingScene::of(rest.clone(), &LoadOptions::default(), &Unwatched).unwrap();
+        let moment = Moment { animation: None, seconds: 0.75 };
+        let now = SceneInTime::moved(&moving, &moment, &Unwatched).unwrap();
+        assert_eq!((rest.triangles.len(), now.scene.triangles.len()), (8, 6), "the dot is hidden");
+        let focus = now.focus(&painted, None);
+        let at_rest = now.at_rest.clone().unwrap();
+        let mut moved = 0;
+        for (triangle, known) in (0..).zip(at_rest) {
+            for barycentric in [[0.2, 0.3], [0.0, 0.0], [0.9, 0.05]].map(DVec2::from_array) {
+                let here = SurfacePoint { triangle, barycentric };
+                let there = SurfacePoint { triangle: known.unwrap().triangle, barycentric };
+                assert_eq!(focus.at(here), painted.at(there));
+                assert_eq!(now.position(there), Some(here.position(&now.scene)));
+                moved += u32::from(here.position(&now.scene) != there.position(&rest));
+            }
+        }
+        assert_eq!(moved, 6, "the card's points, and no others");
+        let of_dot = SurfacePoint { triangle: 4, barycentric: DVec2::ZERO };
+        assert_eq!(now.position(of_dot), None);
+        // Its texels are where the surface is: a curve over depth follows the card.
+        let canvas = now.canvas(&atlas);
+        let depth = |part: u32, canvas: &Canvas| {
+            let of_part = canvas.texels().iter().filter(|texel| texel.part == part);
+            of_part.map(|texel| texel.position.x).fold(f64::NEG_INFINITY, f64::max)
+        };
+        let still = SceneInTime::at_rest(Arc::new(Tracer::new(rest)));
+        let way = depth(1, canvas) - depth(1, still.canvas(&atlas));
+        assert!((way - 0.375).abs() < 0.05, "{way}");
+    }
+}

@@ -1,4 +1,4 @@
-//! Values that several commands take.
+//! How values that several commands take are read.
 
 use clap::builder::{OsStringValueParser, TypedValueParser};
 
@@ -7,7 +7,7 @@ pub fn name_parser() -> impl TypedValueParser<Value = String> {
     OsStringValueParser::new().map(|text| text.to_string_lossy().into_owned())
 }
 
-/// A number above 0.
+/// A finite number above 0.
 pub fn positive(text: &str) -> Result<f64, String> {
     let number = text.parse().ok().filter(|x: &f64| *x > 0.0 && x.is_finite());
     number.ok_or_else(|| "a number above 0".into())
