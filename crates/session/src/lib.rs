@@ -31,8 +31,8 @@ mod tiny_glb;
 pub use baselines::{FirstHits, LayeredOptions, ScatterOptions, ViewsOptions};
 pub use commands::{COMMANDS, Command, CommandId, CommandInfo, Event, KeyMap, Menu, Shortcut};
 pub use display::{
-    Display, LivePicture, Screen, ScreenPixel, Thumbnail, ThumbnailResult, Thumbnails, Tone, ToneCurve,
-    to_screen,
+    Display, LivePicture, OcioViews, Screen, ScreenPixel, Thumbnail, ThumbnailResult, Thumbnails, Tone,
+    ToneCurve, to_screen,
 };
 pub use document::{
     Beginning, CameraChoice, CameraEdit, Document, HistoryStep, Input, InputKind, NearQuestion, Stage,
