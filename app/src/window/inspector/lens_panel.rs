@@ -211,6 +211,7 @@ pub fn picture_panel(
             let combo = ComboBox::from_id_salt("tone mapping").selected_text(settings.tone_curve.name());
             combo
                 .width(110.0)
+                .truncate()
                 .show_ui(ui, |ui| {
                     for curve in ToneCurve::ALL {
                         ui.selectable_value(&mut settings.tone_curve, curve, curve.name());

@@ -153,7 +153,8 @@ impl Table {
     /// What it has at a colour; what is no number is black.
     fn at(&self, rgb: [f32; 3]) -> [f32; 3] {
         let scale = (PLACES - 1) as f32 / (1.0 + BRIGHTEST / DARKEST).log2();
-        let places = rgb.map(|c| (1.0 + c.max(0.0).min(BRIGHTEST) / DARKEST).log2() * scale);
+        let light = rgb.map(|c| if c > 0.0 { c.min(BRIGHTEST) } else { 0.0 });
+        let places = light.map(|c| (1.0 + c / DARKEST).log2() * scale);
         let first = places.map(|place| (place as usize).min(PLACES - 2));
         let beyond = [0, 1, 2].map(|c| places[c] - first[c] as f32);
         // From the lower corner to the upper one, along the colours in the order of how far they are beyond.
