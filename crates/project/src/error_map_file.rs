@@ -30,7 +30,7 @@ pub fn write_error_map(file: &Path, a: &LinearPicture, b: &LinearPicture) -> Res
             let mut channels: BTreeMap<_, _> = color_channels(&maps.difference).into();
             channels.insert("flip".to_string(), maps.flip);
             let image = ExrImage { width, height, channels, ..ExrImage::default() };
-            write_exr(file, &image, ExrForm::default())
+            write_exr(file, image, ExrForm::default())
         }
         _ => {
             Err(ProjectError::content(file, "error maps are not written in this form", "name a .png or .exr"))

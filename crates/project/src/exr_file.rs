@@ -58,7 +58,7 @@ pub(crate) fn read_exr(file: &Path, absent: fn(&str) -> f32) -> Result<ExrImage,
 }
 
 /// Writes an image.
-pub(crate) fn write_exr(file: &Path, image: &ExrImage, form: ExrForm) -> Result<(), ProjectError> {
+pub(crate) fn write_exr(file: &Path, image: ExrImage, form: ExrForm) -> Result<(), ProjectError> {
     let bytes = encode(image, form).map_err(|error| ProjectError::Write {
         file: file.to_owned(),
         source: std::io::Error::other(error),
@@ -159,17 +159,17 @@ fn attribute(value: &AttributeValue) -> Option<ExrAttribute> {
     }
 }
 
-fn encode(image: &ExrImage, form: ExrForm) -> Result<Vec<u8>, String> {
-    let channel = |(name, values): (&String, &Vec<f32>)| {
+fn encode(image: ExrImage, form: ExrForm) -> Result<Vec<u8>, String> {
+    let channel = |(name, values): (String, Vec<f32>)| {
         let data = match form.samples {
-            ExrSamples::HalfIf(suffices) if suffices(name) => {
-                ox::FlatSamples::F16(values.iter().map(|&value| half_of(value)).collect())
+            ExrSamples::HalfIf(suffices) if suffices(&name) => {
+                ox::FlatSamples::F16(values.into_iter().map(half_of).collect())
             }
-            _ => ox::FlatSamples::F32(values.clone()),
+            _ => ox::FlatSamples::F32(values),
         };
         ox::AnyChannel::new(name.as_str(), data)
     };
-    let channels = ox::AnyChannels::sort(image.channels.iter().map(channel).collect());
+    let channels = ox::AnyChannels::sort(image.channels.into_iter().map(channel).collect());
     let around = form.overscan as i32;
     let mut attributes = ox::LayerAttributes {
         software_name: Some(Text::from("Focus Brush")),

@@ -121,7 +121,7 @@ impl FocusMapFile {
 pub fn write_focus_map(file: &Path, map: &FocusMapFile) -> Result<Vec<String>, ProjectError> {
     match extension(file).as_str() {
         "exr" => {
-            write_exr(file, &to_exr(map), ExrForm::default())?;
+            write_exr(file, to_exr(map), ExrForm::default())?;
             Ok(Vec::new())
         }
         "png" => to_png(file, map),

@@ -11,7 +11,7 @@ use lens::{Exposure, Picture};
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// The linear value of an sRGB-encoded one, both in [0, 1]. Inverse of [`srgb_from_linear`].
+/// The linear value of an sRGB-encoded one, both in [0, 1]. Inverse of [`srgb_from_linear`](scene::srgb_from_linear).
 pub(crate) fn linear_from_srgb(c: f32) -> f32 {
     if c <= 0.04045 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) }
 }
@@ -32,7 +32,7 @@ pub struct LinearPicture {
 }
 
 impl LinearPicture {
-    /// A picture under an exposure, as [`write_picture`] followed by [`read_picture`] would give it.
+    /// A picture under an exposure, as [`write_picture`](crate::write_picture) followed by [`read_picture`] would give it.
     pub fn of(picture: &Picture, exposure: Exposure) -> Self {
         let layers = [("coverage".to_string(), picture.coverage.clone())].into();
         let rgb = picture.exposed(exposure);

@@ -25,7 +25,8 @@ use std::path::{Path, PathBuf};
 pub struct PictureOptions {
     /// How the sum becomes the picture.
     pub exposure: Exposure,
-    /// Whether an EXR's colours, alpha, coverage and what was photographed are half instead of float. The rest stays float.
+    /// Whether an EXR's colours, alpha, coverage and what was photographed are half instead of float. The rest stays float, and alpha
+    /// where Cryptomatte's shares sum to it.
     pub half: bool,
     /// How an EXR's pixels are compressed.
     pub compression: Compression,
@@ -43,10 +44,15 @@ pub(crate) const EXPOSURE: &str = "focusBrush.exposure";
 pub(crate) const EXPOSURES: [(Exposure, &str); 2] =
     [(Exposure::Conserve, "conserve"), (Exposure::Normalise, "normalise")];
 
-/// Whether a channel loses nothing that is seen as half.
+/// Whether a channel loses nothing that is seen as half, where no shares have to sum to alpha.
 fn half_suffices(channel: &str) -> bool {
+    channel == Layer::ALPHA || half_suffices_beside_mattes(channel)
+}
+
+/// The same where they do.
+fn half_suffices_beside_mattes(channel: &str) -> bool {
     let layer = channel.split('.').next().unwrap_or(channel);
-    ["R", "G", "B", Layer::ALPHA, Layer::PINHOLE, "coverage", "seen"].contains(&layer)
+    ["R", "G", "B", Layer::PINHOLE, "coverage", "seen"].contains(&layer)
 }
 
 /// Writes a picture as EXR or PNG, by extension, with further layers. Returns the files that were written,
@@ -66,7 +72,8 @@ pub fn write_picture(
     let size = [picture.width, picture.height];
     match extension(file).as_str() {
         "exr" => {
-            if !options.compression.is_lossless() && layers.iter().any(|layer| is_cryptomatte(&layer.name)) {
+            let has_mattes = layers.iter().any(|layer| is_cryptomatte(&layer.name));
+            if has_mattes && !options.compression.is_lossless() {
                 let problem = "Cryptomatte does not survive compression with loss";
                 return Err(ProjectError::content(
                     file,
@@ -85,8 +92,12 @@ pub fn write_picture(
                 attributes: attributes(options, Some(exposure)),
                 ..ExrImage::default()
             };
-            let samples = if options.half { ExrSamples::HalfIf(half_suffices) } else { ExrSamples::Float };
-            write_exr(file, &image, form(options, samples))?;
+            let samples = match (options.half, has_mattes) {
+                (false, _) => ExrSamples::Float,
+                (true, false) => ExrSamples::HalfIf(half_suffices),
+                (true, true) => ExrSamples::HalfIf(half_suffices_beside_mattes),
+            };
+            write_exr(file, image, form(options, samples))?;
             Ok(vec![file.to_owned()])
         }
         "png" => {
@@ -102,7 +113,7 @@ pub fn write_picture(
                 let attributes = if group == "crypto" { attributes(options, None) } else { BTreeMap::new() };
                 let image =
                     ExrImage { width: size[0], height: size[1], channels, attributes, ..ExrImage::default() };
-                write_exr(&beside, &image, ExrForm::default())?;
+                write_exr(&beside, image, ExrForm::default())?;
                 files.push(beside);
             }
             Ok(files)
@@ -155,7 +166,7 @@ pub fn write_rgb(file: &Path, width: u32, height: u32, rgb: &[[f32; 3]]) -> Resu
         "exr" => {
             let channels = color_channels(rgb).into();
             let image = ExrImage { width, height, channels, ..ExrImage::default() };
-            write_exr(file, &image, ExrForm::default())
+            write_exr(file, image, ExrForm::default())
         }
         "png" => write_png(file, [width, height], rgb, None, &[]),
         _ => Err(unknown_form(file)),

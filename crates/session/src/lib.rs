@@ -34,8 +34,8 @@ pub use baselines::{FirstHits, LayeredOptions, ScatterOptions, ViewsOptions};
 pub use carrying::{CarriedNode, CarriedPaint};
 pub use commands::{COMMANDS, Command, CommandId, CommandInfo, Event, KeyMap, Menu, Shortcut};
 pub use display::{
-    Display, LivePicture, Screen, ScreenPixel, Thumbnail, ThumbnailResult, Thumbnails, Tone, ToneCurve,
-    to_screen,
+    Display, LivePicture, OcioViews, Screen, ScreenPixel, Thumbnail, ThumbnailResult, Thumbnails, Tone,
+    ToneCurve, to_screen,
 };
 pub use document::{
     Beginning, CameraChoice, CameraEdit, Document, HistoryStep, Input, InputKind, NearQuestion, Stage,

@@ -41,7 +41,7 @@ impl Tally {
         }
     }
 
-    /// The things of each pixel by rank, their shares made to sum to alpha: as many ranks as are needed. And the most that is left
+    /// The things of each pixel by rank, their shares made to sum to alpha: as many ranks as are needed, one at least. And the most that is left
     /// out of a pixel, if it is more than negligible.
     pub fn ranks(self, alpha: &[f32]) -> (Vec<Vec<Ranked>>, f32) {
         let width = self.width;
@@ -71,7 +71,7 @@ impl Tally {
             (row, needed, left_out)
         });
         let rows: Vec<_> = ranked.collect();
-        let needed = rows.iter().map(|(_, needed, _)| *needed).max().unwrap_or(0);
+        let needed = rows.iter().map(|(_, needed, _)| *needed).max().unwrap_or(0).max(1);
         let left_out = rows.iter().map(|(.., left_out)| *left_out).fold(0.0, f32::max);
         let mut ranks = vec![vec![Ranked::NONE; alpha.len()]; needed];
         for (y, (row, ..)) in rows.into_iter().enumerate() {
@@ -106,6 +106,11 @@ mod tests {
         assert!((of(0).iter().map(|(_, share)| share).sum::<f32>() - 1.0).abs() < 1e-6);
         assert_eq!(of(1)[0].0, Some(7));
         assert!((of(1)[0].1 - 0.75).abs() < 1e-6, "{:?}", of(1));
+    }
+
+    #[test]
+    fn what_shows_nothing_has_a_rank_of_nothing() {
+        assert_eq!(Tally::new([3, 2]).ranks(&[0.0; 6]), (vec![vec![Ranked::NONE; 6]], 0.0));
     }
 
     #[test]
