@@ -93,7 +93,8 @@ pub(crate) fn with_text(bytes: &[u8], name: &str, text: &[u8]) -> Option<Vec<u8>
     let attribute = [name.as_bytes(), b"\0string\0", &size, text].concat();
     // The table ends where the first chunk begins, which is that of its first entry.
     let offset = |at: usize| Some(u64::from_le_bytes(bytes.get(at..at + 8)?.try_into().ok()?));
-    let end = usize::try_from(offset(table)?).ok().filter(|end| *end > table && (end - table) % 8 == 0)?;
+    let end =
+        usize::try_from(offset(table)?).ok().filter(|end| *end > table && (end - table).is_multiple_of(8))?;
     let mut changed = Vec::with_capacity(bytes.len() + attribute.len());
     changed.extend([bytes.get(..at)?, &attribute, bytes.get(at..table)?].concat());
     for entry in (table..end).step_by(8) {
@@ -127,6 +128,7 @@ pub(crate) fn empty_window(bytes: &[u8]) -> Option<&'static str> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::slice::from_ref;
 
     fn attribute(name: &str, value: &[u8]) -> Vec<u8> {
         let length = (value.len() as i32).to_le_bytes();
@@ -158,7 +160,7 @@ mod tests {
     fn a_text_is_put_in_and_found_and_chunks_move_along() {
         let [a, b] = [attribute("a", b"\0\0"), attribute("b", b"12")];
         for (flags, parts) in
-            [(0, vec![&[a.clone(), b.clone()][..]]), (SEVERAL_PARTS, vec![&[a.clone()][..], &[b.clone()]])]
+            [(0, vec![&[a.clone(), b.clone()][..]]), (SEVERAL_PARTS, vec![from_ref(&a), from_ref(&b)])]
         {
             let mut whole = file(flags, &parts);
             whole.truncate(whole.len() - b"pixels".len());

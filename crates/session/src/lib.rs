@@ -56,7 +56,7 @@ pub use preview::{DrawingCosts, PictureTimes, Preview, PreviewActivity, PreviewK
 pub use relief::{DepthRepair, DepthStroke};
 pub use sequence::{
     Baking, FrameFiles, FrameList, FrameOutcome, FrameReport, SequenceOptions, SequenceReport, Shard, Take,
-    TakeOptions, render_frames,
+    TakeOptions, WritePicture, render_frames,
 };
 pub use session::{FullSize, Session, SessionOptions};
 pub use slf::PhotographLight;

@@ -12,6 +12,9 @@ use project::is_finished;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
+/// Writes a picture to a file, and in it the plan that it was made by; returns all files that it wrote.
+pub type WritePicture<'a> = dyn Fn(&Path, &Rendered, [u8; 32]) -> Result<Vec<PathBuf>, SessionError> + 'a;
+
 /// What frames are rendered as, and where to.
 pub struct SequenceOptions<'a> {
     /// How each is rendered.
@@ -21,7 +24,7 @@ pub struct SequenceOptions<'a> {
     /// All of how a picture is written that its bytes depend on, in words.
     pub written: String,
     /// Writes a picture, and in it the plan that it was made by; returns the files.
-    pub write: &'a dyn Fn(&Path, &Rendered, [u8; 32]) -> Result<Vec<PathBuf>, SessionError>,
+    pub write: &'a WritePicture<'a>,
     /// Is told of every frame.
     pub tell: &'a dyn Fn(&FrameReport),
     /// Whether the work is to end: asked before each frame.
