@@ -44,9 +44,10 @@ pub(crate) fn list(document: &Document<'_>) -> Vec<Animation> {
     let of = |index| {
         let animation = document.item("animations", index, "").ok()?;
         let channels = animation.objects("channels").unwrap_or_default();
+        let samplers = animation.objects("samplers").unwrap_or_default();
         let mut seconds = 0.0_f64;
         for channel in channels.iter().take(MOST_CHANNELS) {
-            if let Ok(Some(track)) = track(document, &animation, channel)
+            if let Ok(Some(track)) = track(document, &samplers, channel)
                 && track.end().is_finite()
             {
                 seconds = seconds.max(track.end());
@@ -80,8 +81,9 @@ pub(crate) fn played(document: &Document<'_>, moment: &Moment) -> Result<Played,
     if channels.len() > MOST_CHANNELS {
         return Err(animation.malformed("channels", format!("has more than {MOST_CHANNELS}")));
     }
+    let samplers = animation.objects("samplers")?;
     for channel in &channels {
-        let value = match value(document, &animation, channel, moment.seconds) {
+        let value = match value(document, &samplers, channel, moment.seconds) {
             Ok(Some(value)) => value,
             Ok(None) => continue,
             Err(fault @ Fault::TooBig { .. }) => return Err(fault),
@@ -126,12 +128,12 @@ fn chosen<'a>(document: &'a Document<'_>, moment: &Moment) -> Result<Option<Obje
 /// What a channel animates, and its value at a time; nothing for what no picture depends on.
 fn value(
     document: &Document<'_>,
-    animation: &Object<'_>,
+    samplers: &[Object<'_>],
     channel: &Object<'_>,
     seconds: f64,
 ) -> Result<Option<(Target, Vec<f64>)>, Fault> {
     let Some(target) = Target::read(document, channel)? else { return Ok(None) };
-    let Some(track) = track(document, animation, channel)? else { return Ok(None) };
+    let Some(track) = track(document, samplers, channel)? else { return Ok(None) };
     let numbers = track.at(document, seconds, target.is_rotation())?;
     if let Some(expected) = target.numbers().filter(|&expected| expected != numbers.len()) {
         let what =
@@ -146,11 +148,10 @@ fn value(
 
 fn track<'a>(
     document: &'a Document<'_>,
-    animation: &Object<'_>,
+    samplers: &[Object<'_>],
     channel: &Object<'_>,
 ) -> Result<Option<Track<'a>>, Fault> {
     let Some(index) = channel.index("sampler")? else { return Ok(None) };
-    let samplers = animation.objects("samplers")?;
     let sampler = samplers.get(index);
     let sampler =
         sampler.ok_or_else(|| channel.malformed("sampler", "refers to a sampler that does not exist"))?;
