@@ -254,9 +254,9 @@ pub(super) fn draw_baked(
     options: &RenderOptions,
     steps: &dyn Steps,
 ) -> Result<Rendered, SessionError> {
-    let drawn =
-        draw_light_field(salf.clone(), Shot { tracer, camera, focus }, options.cells_a_side, options, steps)?;
-    finish(Shot { tracer, camera, focus }, options, drawn, steps)
+    let shot = Shot { tracer, camera, focus };
+    let drawn = draw_light_field(salf.clone(), shot, options.cells_a_side, options, steps)?;
+    finish(shot, options, drawn, steps)
 }
 
 /// Renders what was opened: a scene, a project, or (where the renderer draws one) a light field.
@@ -325,8 +325,7 @@ pub(crate) fn sum_light_field(
     steps: &dyn Steps,
 ) -> Result<Rendered, SessionError> {
     let shot = Shot { tracer, camera, focus };
-    let drawn = draw_light_field(salf, shot, 1, options, steps)?;
-    finish(shot, options, drawn, steps)
+    finish(shot, options, draw_light_field(salf, shot, 1, options, steps)?, steps)
 }
 
 /// The picture of a light field of so many cells a pixel's side, what it shows, and what it cost.
