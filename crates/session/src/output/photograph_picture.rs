@@ -18,7 +18,7 @@ use trace::{Radiance, Tracer};
 pub(super) const SEEN: f32 = 0.5;
 
 impl Input {
-    /// The photograph of a capture as its camera ([`camera_of_photograph`]) would show it, and the layer `seen`: 1 where others have
+    /// The photograph of a capture as its camera (`camera_of_photograph`) would show it, and the layer `seen`: 1 where others have
     /// photographed the surface, 0 where they have not, and beside what the photograph shows. The exposure of one that was left out is
     /// fitted afterwards, a gain a channel; it feeds nothing else. The views of a light field are as they were taken.
     ///
@@ -42,7 +42,7 @@ impl Input {
     }
 }
 
-/// The photograph `view` as `camera` ([`camera_of_photograph`] of it) shows it, beside light from others or itself too; none of a surface
+/// The photograph `view` as `camera` (`camera_of_photograph` of it) shows it, beside light from others or itself too; none of a surface
 /// that was made from a picture.
 pub(crate) fn photograph_picture(
     view: &View,
