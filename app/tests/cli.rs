@@ -308,8 +308,8 @@ fn pictures_come_along() {
     let layer = |name: &str, x: usize, y: usize| picture.layers[name][y * 96 + x];
     // The card is 0.4 left of the middle at depth 2: 96 px are 2·tan(0.3)·2·1.5 wide there.
     let card = (48.0 - 0.4 / (2.0 * 0.3f64.tan() * 2.0 * 1.5) * 96.0) as usize;
-    assert!((layer("depth", card, 32) - 2.0).abs() < 1e-5);
-    assert!((layer("depth", 90, 60) - 4.0).abs() < 1e-5);
+    assert!((layer("depth.Z", card, 32) - 2.0).abs() < 1e-5);
+    assert!((layer("depth.Z", 90, 60) - 4.0).abs() < 1e-5);
     assert_eq!((layer("t", card, 32), layer("anchor", card, 32)), (1.2, 1.0));
     assert_eq!(layer("coc", 90, 60), 0.0, "the wall is painted sharp");
     // A·(t − 1)/d/tanθ half-heights, d = h/(2·tanθ): far defocus is positive.
@@ -593,4 +593,31 @@ fn strokes_are_replayed_onto_a_new_project() {
     let lost = project::RecordedStroke { layer: "nowhere".into(), ..stroke };
     project::write_strokes(&place.path("lost.json"), &recorded(&lost)).unwrap();
     place.fails("replay quads.fbrush lost.json -o x.fbrush", 3, &["lost.json", "step 1", "nowhere"]);
+}
+
+#[test]
+fn file_managers_see_what_is_in_a_file() {
+    let place = Workplace::new();
+    let project = place.paint("painted.fbrush");
+    place.fails("thumbnail painted.fbrush -o small.png", 3, &["painted.fbrush", "without a picture"]);
+    let shown = project::Thumbnail::of(640, 320, vec![[0.25, 0.5, 1.0]; 640 * 320]);
+    let saved = ProjectFile { thumbnail: Some(shown), ..ProjectFile::load(&project).unwrap() };
+    saved.save(&project).unwrap();
+    // They name the file as they like.
+    place.done("thumbnail painted.fbrush --size 128 -o small");
+    std::fs::rename(place.path("small"), place.path("small.png")).unwrap();
+    let small = read_picture(&place.path("small.png")).unwrap();
+    assert_eq!((small.width, small.height), (107, 54));
+    assert!(small.rgb.iter().all(|rgb| (rgb[1] - 0.5).abs() < 0.01), "{:?}", small.rgb[0]);
+    // A light field is drawn, though its scene is out of reach.
+    place.done(&format!("render quads.glb {SHOT} -o whole.png"));
+    place.done("bake quads.glb --camera camera.json -o field.salf");
+    std::fs::rename(place.path("quads.glb"), place.path("away.glb")).unwrap();
+    place.done("thumbnail field.salf --size 512 -o field.png");
+    let (whole, field) =
+        (read_picture(&place.path("whole.png")).unwrap(), read_picture(&place.path("field.png")).unwrap());
+    assert_eq!((whole.width, whole.height), (field.width, field.height));
+    assert!(field.rgb.iter().any(|rgb| rgb[0] > 0.1), "it shows something");
+    place.fails("thumbnail away.glb -o x.png", 3, &["away.glb", "no picture of itself"]);
+    place.fails("thumbnail nothing.fbrush -o x.png", 3, &["nothing.fbrush"]);
 }

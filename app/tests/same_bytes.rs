@@ -15,9 +15,10 @@ const RECIPE: &str = r#"{"background": {"t": 0.9, "anchor": 0.5},
 const STROKES: &str = r#"{"format": "focus-brush strokes", "version": 3, "steps": [
     {"fill": {"layer": "Paint", "targets": [{"node": 1}], "focus": {"t": 1.1, "anchor": 0.5}}}]}"#;
 
-const COMMANDS: [&str; 12] = [
+const COMMANDS: [&str; 13] = [
     "render scene.glb --camera camera.json --focus recipe.json -o picture.exr --aov coverage,coc,depth,t",
     "render scene.glb --camera camera.json --focus recipe.json -o picture.png --aov coc",
+    "render scene.glb --camera camera.json --focus recipe.json -o layers.exr --aov alpha,crypto,pinhole --overscan 3 --half",
     "render scene.glb --camera camera.json -o truth.exr --renderer truth --spp 32 --aov stderr,coverage,depth",
     "render scene.glb --camera camera.json -o scatter.exr --renderer scatter",
     "new scene.glb --camera camera.json --focus recipe.json -o project.fbrush",

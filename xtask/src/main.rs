@@ -6,6 +6,7 @@
 //! * `window` acts on the real window by mouse and keys, under Xvfb.
 //! * `circles [CRATE…]` names the modules of a crate that use one another; there must be none.
 //! * `ci` is everything that must be green: crate directions, circles of modules, licences, formatting, lints, docs, tests.
+//! * `package` makes what people install who have no compiler, and a source archive that builds without a network.
 //! * `demo` makes the demo scene in `assets/demo` anew.
 //!
 //! Pure Rust without build scripts of its own, so that it runs where only Rust and a C linker are.
@@ -16,6 +17,7 @@ mod crate_directions;
 mod demo;
 mod licences;
 mod module_circles;
+mod package;
 mod packages;
 mod run;
 mod shared_build;
@@ -28,6 +30,9 @@ usage: cargo xtask CHORE
   run [FILE…]   install what is missing, build focus-brush and open it
                 (with no display: render the demo to a picture)
   test [ARG…]   install what is missing and run all tests; ARGs go to cargo test
+  package [deb|tarball|source…]
+                packages to install, a folder that runs from anywhere, a source archive that
+                builds without a network; in target/package
   demo          make the demo scene in assets/demo anew
   window [ARG…] act on the real window under Xvfb, with a screenshot of every step
   circles [CRATE…]
@@ -48,6 +53,7 @@ fn main() -> std::process::ExitCode {
         "test" => run::test(&rest),
         "window" => run::window(&rest),
         "circles" => module_circles::circles(&rest),
+        "package" => package::package(&rest),
         "ci" => ci::ci(),
         "demo" => demo::demo(sky_rays(&rest)),
         "" | "help" | "-h" | "--help" => {

@@ -36,6 +36,10 @@ pub const TO_RUN: &[Package] = &[
     package("libxkbcommon-x11-0"),
 ];
 
+/// To make packages for Debian and its kin.
+pub const TO_PACKAGE: &[Package] =
+    &[Package { name: "dpkg-dev", provides: Some("dpkg-shlibdeps") }, package("xz-utils"), package("git")];
+
 /// To act on the real window without a person: a display, mouse and keys, screenshots.
 pub const TO_ACT: &[Package] = &[package("xvfb"), package("xdotool"), package("imagemagick")];
 
@@ -52,7 +56,7 @@ pub fn install_missing(wanted: &[&[Package]]) -> Result<(), Failure> {
         let missing: Vec<_> =
             wanted.filter(|p| p.provides.is_some_and(|program| !has_program(program))).collect();
         if !missing.is_empty() {
-            eprintln!("note: these may be missing here: {}", names(missing.iter().copied()));
+            eprintln!("note: these may be missing here: {}", joined(missing.iter().copied()));
         }
         return Ok(());
     }
@@ -60,7 +64,7 @@ pub fn install_missing(wanted: &[&[Package]]) -> Result<(), Failure> {
     if missing.is_empty() {
         return Ok(());
     }
-    let names = names(missing.iter().copied());
+    let names = joined(missing.iter().copied());
     let by_hand = format!("sudo apt-get install --no-install-recommends {names}");
     let Some(mut prefix) = privilege() else {
         return Err(Failure::new(format!("packages are missing (install them: {by_hand})")));
@@ -95,7 +99,12 @@ pub fn install_missing(wanted: &[&[Package]]) -> Result<(), Failure> {
     apt(&install).map_err(|failure| Failure::new(format!("{failure} (install them: {by_hand})")))
 }
 
-fn names<'a>(packages: impl Iterator<Item = &'a Package>) -> String {
+/// Their names, between blanks.
+pub fn names(packages: &[Package]) -> String {
+    joined(packages.iter())
+}
+
+fn joined<'a>(packages: impl Iterator<Item = &'a Package>) -> String {
     packages.map(|p| p.name).collect::<Vec<_>>().join(" ")
 }
 

@@ -1,9 +1,12 @@
 //! What can be typed.
 
+use super::parsers::{name_parser, positive};
+use super::sequence_arguments::{KeysArguments, SequenceArguments};
 use clap::builder::{OsStringValueParser, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, ValueEnum};
+use project::{ColorSpace, Compression};
 use scene::{BackFaces, PhotoLookup};
-use session::{Aov, CameraChoice, Renderer, VariantChoice};
+use session::{Aov, CameraChoice, CocConvention, Renderer, VariantChoice};
 use std::ffi::{OsStr, OsString};
 use std::path::PathBuf;
 
@@ -47,6 +50,8 @@ pub enum Subcommand {
     Import(ImportArguments),
     /// Paint what was recorded (`Export strokes…` in the window writes it) on a project or a scene
     Replay(ReplayArguments),
+    /// Set keys of a project's lens and layers, or list them
+    Keys(KeysArguments),
     /// Write a scene with the atlas as its second UV set (TEXCOORD_1)
     Unwrap(UnwrapArguments),
     /// Bake the light field of a scene or project into a file
@@ -61,6 +66,8 @@ pub enum Subcommand {
     Export(ExportArguments),
     /// The presets of brushes, lenses and bokeh
     Presets(PresetsArguments),
+    /// The small picture of a project or a light field, as file managers show it
+    Thumbnail(ThumbnailArguments),
     /// Adapters, libraries, what is missing and how to get it
     Doctor(DoctorArguments),
 }
@@ -324,18 +331,34 @@ pub struct RenderArguments {
     /// Rays that `--renderer scatter` throws for each sample of the light field
     #[arg(long, value_name = "N", default_value_t = 256, value_parser = clap::value_parser!(u32).range(1..=1 << 16))]
     pub rays: u32,
-    /// Pictures that come along: coverage (the sum for a scene of radiance 1), coc (signed diameter of the circle of
-    /// confusion in px, negative when nearer than the focus), depth (axial; inf for the background), t (and anchor),
-    /// seen (of a capture: 1 photographed, 0 filled in), stderr (the ground truth's standard error: of radiance, luminance and
+    /// Pictures that come along: alpha (the share that is not background; the colours are multiplied by it), crypto (Cryptomatte of
+    /// objects and materials), pinhole (everything sharp, to be blurred by others), coverage (the sum for a scene of radiance 1),
+    /// coc (the circle of confusion), depth (axial, depth.Z; inf for the background), t (and anchor), seen (of a capture: 1 photographed, 0 filled in), stderr (the ground truth's standard error: of radiance, luminance and
     /// coverage, and of their ratios)
     #[arg(long, value_name = "NAMES", value_delimiter = ',', value_parser = aov)]
     pub aov: Vec<Aov>,
+    /// How coc is told: signed-px (its diameter, below 0 when nearer than the focus), or as nodes that blur by it want it: nuke
+    /// and magicdefocus (its radius, below 0 nearer or farther), flame (0.5 in focus, 0 nearest, 1 farthest)
+    #[arg(long, value_name = "NAME", default_value = "signed-px", value_parser = named(CocConvention::ALL))]
+    pub coc_convention: CocConvention,
+    /// Pixels that are computed around the frame on each side: an EXR's data window is that much larger than its display window
+    #[arg(long, value_name = "PX", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=4096))]
+    pub overscan: u32,
+    /// How an EXR is compressed; dwaa loses what is hardly seen of the colours
+    #[arg(long, value_name = "NAME", default_value = "zip", value_parser = named(Compression::ALL))]
+    pub compression: Compression,
+    /// Halves instead of floats in an EXR where that suffices: colours, alpha, coverage
+    #[arg(long)]
+    pub half: bool,
+    /// The linear colour space of an EXR
+    #[arg(long, value_name = "NAME", default_value = "rec709", value_parser = named(ColorSpace::ALL))]
+    pub color_space: ColorSpace,
     /// normalise keeps a white scene white; conserve is the model's energy as it is (default: the project's, or
     /// normalise)
     #[arg(long, value_enum)]
     pub exposure: Option<ExposureName>,
     /// Two pictures for two eyes, the lens's through two parts of its aperture: beside each other, or in red and cyan
-    #[arg(long, value_enum, value_name = "FORM", conflicts_with = "aov")]
+    #[arg(long, value_enum, value_name = "FORM", conflicts_with_all = ["aov", "overscan"])]
     pub stereo: Option<StereoName>,
     /// How far the eyes are apart, as a share of the aperture's diameter, at most 0.9375
     #[arg(long, value_name = "SHARE", default_value_t = 0.5, requires = "stereo")]
@@ -346,9 +369,23 @@ pub struct RenderArguments {
     /// Seed of the ground truth's rays, and of scattered ones
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub seed: u32,
+    #[command(flatten)]
+    pub sequence: SequenceArguments,
+    /// What is told on stderr meanwhile; json is a line of JSON a step
+    #[arg(long, value_enum, value_name = "FORM", default_value_t = ProgressName::Text)]
+    pub progress: ProgressName,
     /// Write timings and counts as JSON to stdout
     #[arg(long)]
     pub json: bool,
+}
+
+/// How progress is told.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum ProgressName {
+    /// Bars on a terminal, else plain lines
+    Text,
+    /// A line of JSON a step
+    Json,
 }
 
 /// A place of a picture.
@@ -458,6 +495,19 @@ pub struct PresetsArguments {
     pub json: bool,
 }
 
+/// `thumbnail`.
+#[derive(Debug, Args)]
+pub struct ThumbnailArguments {
+    /// A project (.fbrush), which holds what it looked like when it was saved, or a light field (.salf), which is drawn
+    pub file: PathBuf,
+    /// Where to write it
+    #[arg(short, long, value_name = "PNG")]
+    pub output: PathBuf,
+    /// Its longer side in pixels, at most
+    #[arg(long, value_name = "PX", default_value_t = 256, value_parser = clap::value_parser!(u32).range(1..=512))]
+    pub size: u32,
+}
+
 /// `doctor`.
 #[derive(Debug, Args)]
 pub struct DoctorArguments {
@@ -514,11 +564,6 @@ pub enum ExposureName {
     Normalise,
 }
 
-/// A name inside a file, which is UTF-8 there: other bytes make a name that nothing has.
-fn name_parser() -> impl TypedValueParser<Value = String> {
-    OsStringValueParser::new().map(|text| text.to_string_lossy().into_owned())
-}
-
 fn camera_parser() -> impl TypedValueParser<Value = CameraChoice> {
     OsStringValueParser::new().map(|text| camera_choice(&text))
 }
@@ -549,6 +594,16 @@ fn size(text: &str) -> Result<[u32; 2], String> {
         .ok_or_else(|| format!("WIDTHxHEIGHT in pixels, each 1 to {}", lens::Camera::LARGEST_SIDE_PX))
 }
 
+/// One of some values, by the names that they have.
+fn named<T: Copy + Send + Sync + 'static, const COUNT: usize>(
+    all: [(&'static str, T); COUNT],
+) -> impl TypedValueParser<Value = T> {
+    PossibleValuesParser::new(all.map(|(name, _)| name)).try_map(move |name| {
+        let found = all.iter().find(|(known, _)| *known == name);
+        found.map(|(_, value)| *value).ok_or("not one of them")
+    })
+}
+
 fn renderer_parser() -> impl TypedValueParser<Value = Renderer> {
     let names = PossibleValuesParser::new(Renderer::ALL.map(|(name, _)| name));
     names.try_map(|name| Renderer::named(&name).ok_or("not a renderer"))
@@ -569,11 +624,6 @@ fn aov(name: &str) -> Result<Aov, String> {
         let known: Vec<_> = Aov::ALL.iter().map(|(name, _)| *name).collect();
         format!("one of {}", known.join(", "))
     })
-}
-
-fn positive(text: &str) -> Result<f64, String> {
-    let number = text.parse().ok().filter(|x: &f64| *x > 0.0 && x.is_finite());
-    number.ok_or_else(|| "a number above 0".into())
 }
 
 fn not_negative(text: &str) -> Result<f64, String> {

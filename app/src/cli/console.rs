@@ -1,8 +1,10 @@
 //! Progress on stderr, results on stdout.
 
+use super::arguments::ProgressName;
+use super::stopping;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use progress::Progress;
-use serde_json::Value;
+use serde_json::{Value, json};
 use session::Steps;
 use std::borrow::Cow;
 use std::io::{IsTerminal, Write};
@@ -15,24 +17,60 @@ const REPORT_EVERY: Duration = Duration::from_secs(5);
 
 /// Where commands tell what they do.
 pub struct Console {
-    is_terminal: bool,
+    form: Form,
+}
+
+/// How it is told.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Form {
+    Bars,
+    Lines,
+    Json,
 }
 
 impl Console {
     /// The console of this process.
     pub fn new() -> Self {
-        Self { is_terminal: std::io::stderr().is_terminal() }
+        Self { form: if std::io::stderr().is_terminal() { Form::Bars } else { Form::Lines } }
+    }
+
+    /// The same, which tells progress in this form.
+    pub fn telling(form: ProgressName) -> Self {
+        match form {
+            ProgressName::Text => Self::new(),
+            ProgressName::Json => Self { form: Form::Json },
+        }
     }
 
     /// Tells what is odd but does no harm.
     pub fn warn<'a>(&self, warnings: impl IntoIterator<Item = &'a String>) {
-        warnings.into_iter().for_each(|warning| eprintln!("warning: {}", warning.replace('\n', " ")));
+        for warning in warnings {
+            match self.form {
+                Form::Json => tell_json(&json!({ "warning": warning })),
+                _ => eprintln!("warning: {}", warning.replace('\n', " ")),
+            }
+        }
     }
 
     /// Tells on stderr what was done.
     pub fn note(&self, line: &str) {
-        eprintln!("{line}");
+        match self.form {
+            Form::Json => tell_json(&json!({ "note": line })),
+            _ => eprintln!("{line}"),
+        }
     }
+
+    /// Tells on stderr what a script wants to know: as `line`, or as JSON where that is asked for.
+    pub fn event(&self, line: &str, event: &Value) {
+        match self.form {
+            Form::Json => tell_json(event),
+            _ => eprintln!("{line}"),
+        }
+    }
+}
+
+fn tell_json(value: &Value) {
+    let _ = writeln!(std::io::stderr(), "{value}");
 }
 
 /// A line of the result on stdout. A reader that has gone is no error.
@@ -57,7 +95,10 @@ pub fn say_json(value: &Value) {
 
 impl Steps for Console {
     fn begin(&self, label: &str) -> Box<dyn Progress + '_> {
-        if self.is_terminal {
+        if self.form == Form::Json {
+            return Box::new(Events::begin(label));
+        }
+        if self.form == Form::Bars {
             let style = ProgressStyle::with_template("{msg:12} {bar:32} {percent:>3} % {elapsed}");
             let bar = ProgressBar::with_draw_target(Some(1000), ProgressDrawTarget::stderr_with_hz(10));
             bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
@@ -70,7 +111,15 @@ impl Steps for Console {
     }
 
     fn tell(&self, sentence: &str) {
-        eprintln!("{sentence}");
+        self.note(sentence);
+    }
+}
+
+/// Whoever asks only whether to go on.
+impl Progress for Console {
+    fn report(&self, _fraction: f32) {}
+    fn cancelled(&self) -> bool {
+        stopping::is_asked_for()
     }
 }
 
@@ -85,7 +134,7 @@ impl Progress for Bar {
         }
     }
     fn cancelled(&self) -> bool {
-        false
+        stopping::is_asked_for()
     }
 }
 
@@ -111,6 +160,41 @@ impl Progress for Lines {
         }
     }
     fn cancelled(&self) -> bool {
-        false
+        stopping::is_asked_for()
+    }
+}
+
+/// A line of JSON at the beginning of a step, now and then while it goes on, and at its end.
+struct Events {
+    label: String,
+    last: Mutex<(Instant, f32)>,
+}
+
+impl Events {
+    fn begin(label: &str) -> Self {
+        tell_json(&json!({ "step": label, "done": 0.0 }));
+        Self { label: label.to_owned(), last: Mutex::new((Instant::now(), 0.0)) }
+    }
+}
+
+impl Progress for Events {
+    fn report(&self, fraction: f32) {
+        const EVERY: Duration = Duration::from_secs(1);
+        let Ok(mut last) = self.last.try_lock() else { return };
+        if fraction > last.1 && last.0.elapsed() >= EVERY {
+            *last = (Instant::now(), fraction);
+            tell_json(&json!({ "step": self.label, "done": fraction }));
+        }
+    }
+    fn cancelled(&self) -> bool {
+        stopping::is_asked_for()
+    }
+}
+
+impl Drop for Events {
+    fn drop(&mut self) {
+        if !stopping::is_asked_for() {
+            tell_json(&json!({ "step": self.label, "done": 1.0 }));
+        }
     }
 }

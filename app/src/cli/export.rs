@@ -75,7 +75,12 @@ fn glb(input: &Input, path: &Path, console: &Console) -> Result<(), Failure> {
 fn photograph(input: &Input, name: &str, path: &Path, console: &Console) -> Result<(), Failure> {
     check_folder(path)?;
     let (picture, layers) = input.photograph_picture(name, console)?;
-    write_picture(path, &picture, &layers, PictureOptions { exposure: input.exposure(), half: false })?;
+    write_picture(
+        path,
+        &picture,
+        &layers,
+        &PictureOptions { exposure: input.exposure(), ..PictureOptions::default() },
+    )?;
     Ok(())
 }
 
@@ -85,11 +90,16 @@ fn layers(input: &Input, path: &Path, console: &Console) -> Result<(), Failure> 
     }
     check_folder(path)?;
     let focus = input.focus(None, &unwrap_options(None), console)?;
-    let aovs = Aov::ALL.iter().map(|(_, aov)| *aov).collect();
+    let aovs = vec![Aov::Coverage, Aov::CircleOfConfusion, Aov::Depth, Aov::Focus, Aov::Seen];
     let options = RenderOptions { aovs, ..RenderOptions::default() };
     let Rendered { picture, layers, warnings, .. } =
         render_input(input, &input.camera, &focus, &options, console)?;
     console.warn(&warnings);
-    write_picture(path, &picture, &layers, PictureOptions { exposure: input.exposure(), half: false })?;
+    write_picture(
+        path,
+        &picture,
+        &layers,
+        &PictureOptions { exposure: input.exposure(), ..PictureOptions::default() },
+    )?;
     Ok(())
 }

@@ -57,6 +57,11 @@ impl Failure {
         Self::new(TRY_AGAIN, message)
     }
 
+    /// A signal came to end.
+    pub fn stopped() -> Self {
+        Self::try_again("stopped: what is finished stays (run it again to go on)")
+    }
+
     /// A fault of the program.
     pub fn fault(message: impl Into<String>) -> Self {
         Self { is_fault: true, ..Self::new(BAD_INPUT, message) }
@@ -70,10 +75,10 @@ impl From<SessionError> for Failure {
             SessionError::TryAgain(_) => Self::try_again(message),
             SessionError::GpuAbsent(_) => Self::new(NO_GPU, message),
             SessionError::Internal(_) => Self::fault(message),
-            SessionError::NothingOpen
-            | SessionError::BadInput(_)
-            | SessionError::NearUnknown { .. }
-            | SessionError::Cancelled => Self::bad(message),
+            SessionError::Cancelled => Self::stopped(),
+            SessionError::NothingOpen | SessionError::BadInput(_) | SessionError::NearUnknown { .. } => {
+                Self::bad(message)
+            }
         }
     }
 }

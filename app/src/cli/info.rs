@@ -7,7 +7,9 @@ use super::shot::{opened, unwrap_options};
 use lens::Camera;
 use progress::Unwatched;
 use project::{ProjectFile, camera_to_json};
-use scene::{EXTRAS_KEY, Environment, Inspection, LoadOptions, MeshHealth, Scene, SceneCamera, View};
+use scene::{
+    Animation, EXTRAS_KEY, Environment, Inspection, LoadOptions, MeshHealth, Scene, SceneCamera, View,
+};
 use serde_json::{Value, json};
 use session::{Input, InputKind, Modelled, RenderOptions};
 use std::sync::Arc;
@@ -136,6 +138,9 @@ fn contents(inspection: &Inspection) {
     }
     say(format!("  file         {nodes} nodes, {meshes} meshes, {materials} materials, {images} images"));
     say(format!("               {cameras} cameras, {lights} lights, {skins} skins, {animations} animations"));
+    for Animation { name, seconds, channels } in &inspection.animation_list {
+        say(format!("  animation    {name:?}: {seconds:.3} s, {channels} channels"));
+    }
     let modes = inspection.primitives.iter().zip(MODES).filter(|(count, _)| **count > 0);
     let modes: Vec<_> = modes.map(|(count, mode)| format!("{count} × {mode}")).collect();
     say(format!("  primitives   {}", if modes.is_empty() { "none".into() } else { modes.join(", ") }));

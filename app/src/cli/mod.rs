@@ -1,7 +1,8 @@
 //! The command line: a thin layer over the `session` crate.
 //!
-//! * `arguments`: what can be typed. One file a subcommand does it: `info`, `new`, `import`, `replay`, `unwrap`, `bake`, `render`,
-//!   `compare`, `report`, `export`, `presets`, `doctor`.
+//! * `arguments`: what can be typed. One file a subcommand does it: `info`, `new`, `import`, `replay`, `keys`, `unwrap`, `bake`, `render`,
+//!   `compare`, `report`, `export`, `presets`, `thumbnail`, `doctor`.
+//! * `sequence`: `render` of frames. `stopping`: what a signal to end does.
 //! * `console`: progress on stderr, results on stdout. `failure`: errors and exit codes.
 
 mod arguments;
@@ -13,12 +14,18 @@ mod export;
 mod failure;
 mod import;
 mod info;
+mod keys;
 mod new;
+mod parsers;
 mod presets;
 mod render;
 mod replay;
 mod report;
+mod sequence;
+mod sequence_arguments;
 mod shot;
+mod stopping;
+mod thumbnail;
 mod unwrap;
 
 use crate::window;
@@ -72,6 +79,7 @@ fn dispatch(command: Subcommand) -> Result<(), Failure> {
             import::run(&arguments, &console)
         }
         Subcommand::Replay(arguments) => replay::run(&arguments, &console),
+        Subcommand::Keys(arguments) => keys::run(&arguments, &console),
         Subcommand::Unwrap(arguments) => unwrap::run(&arguments, &console),
         Subcommand::Bake(arguments) => {
             keep_work();
@@ -79,7 +87,11 @@ fn dispatch(command: Subcommand) -> Result<(), Failure> {
         }
         Subcommand::Render(arguments) => {
             keep_work();
-            render::run(&arguments, &console)
+            let console = Console::telling(arguments.progress);
+            match arguments.sequence.is_asked_for() {
+                true => sequence::run(&arguments, &console),
+                false => render::run(&arguments, &console),
+            }
         }
         Subcommand::Compare(arguments) => compare::run(&arguments),
         Subcommand::Report(arguments) => report::run(&arguments, &console),
@@ -88,6 +100,7 @@ fn dispatch(command: Subcommand) -> Result<(), Failure> {
             export::run(&arguments, &console)
         }
         Subcommand::Presets(arguments) => presets::run(&arguments),
+        Subcommand::Thumbnail(arguments) => thumbnail::run(&arguments, &console),
         Subcommand::Doctor(arguments) => doctor::run(&arguments),
     }
 }

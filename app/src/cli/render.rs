@@ -5,17 +5,17 @@ use super::console::{Console, path_text, path_texts, say_json};
 use super::failure::Failure;
 use super::shot::{check_picture_output, opened, shot};
 use lens::Exposure;
-use project::{PictureOptions, write_picture};
+use project::{ColorSpace, Compression, PictureOptions, write_picture};
 use serde_json::json;
 use session::{
-    Aov, LayeredOptions, RenderOptions, Rendered, Renderer, ScatterOptions, SessionError, Stereo,
+    Aov, Input, LayeredOptions, RenderOptions, Rendered, Renderer, ScatterOptions, SessionError, Stereo,
     ViewsOptions, render_input, render_stereo,
 };
 use splat::Gpu;
 use std::time::Instant;
 use trace::truth::{Estimator, Sampler, TruthOptions};
 
-/// Renders a picture and writes it.
+/// Renders one picture and writes it.
 pub fn run(arguments: &RenderArguments, console: &Console) -> Result<(), Failure> {
     let renderer = arguments.renderer;
     let gpu = gpu(arguments)?;
@@ -28,32 +28,10 @@ pub fn run(arguments: &RenderArguments, console: &Console) -> Result<(), Failure
     let (camera, focus) = shot(&input, &arguments.shot, console)?;
     let open_seconds = start.elapsed().as_secs_f64();
 
-    let usual = arguments.tolerance.map_or_else(RenderOptions::default, RenderOptions::at_tolerance);
-    let cells_a_side = match (&input.salf, arguments.cells) {
-        (Some(_), Some(cells)) if cells > 1 => {
-            let what = "is baked already, a cell a pixel (leave out --cells, or give the scene or project)";
-            return Err(Failure::bad(format!("{}: {what}", arguments.file.display())));
-        }
-        (Some(_), _) => 1,
-        (None, cells) => cells.unwrap_or(usual.cells_a_side),
-    };
-    let options = RenderOptions {
-        cells_a_side,
-        gpu,
-        renderer,
-        truth: truth_options(arguments),
-        layered: LayeredOptions { layers: arguments.layers },
-        views: ViewsOptions { views_a_side: arguments.views, ..ViewsOptions::default() },
-        scatter: ScatterOptions { rays_a_sample: arguments.rays, seed: arguments.seed },
-        aovs: arguments.aov.clone(),
-        ..usual
-    };
-    let exposure = match arguments.exposure {
-        None => input.exposure(),
-        Some(ExposureName::Conserve) => Exposure::Conserve,
-        Some(ExposureName::Normalise) => Exposure::Normalise,
-    };
-    let Rendered { picture, layers, cost, warnings } = match arguments.stereo {
+    let options = options(arguments, &input, gpu)?;
+    let camera = camera.overscanned(arguments.overscan);
+    let (cells_a_side, exposure) = (options.cells_a_side, exposure(arguments, &input));
+    let Rendered { picture, layers, attributes, cost, warnings } = match arguments.stereo {
         None => render_input(&input, &camera, &focus, &options, console)?,
         Some(form) => {
             let stereo =
@@ -68,8 +46,8 @@ pub fn run(arguments: &RenderArguments, console: &Console) -> Result<(), Failure
     }
 
     let writing = Instant::now();
-    let written = PictureOptions { exposure, half: false };
-    let files = write_picture(&arguments.output, &picture, &layers, written)?;
+    let written = PictureOptions { attributes, ..written(arguments, exposure) };
+    let files = write_picture(&arguments.output, &picture, &layers, &written)?;
     let write_seconds = writing.elapsed().as_secs_f64();
     if arguments.json {
         say_json(&json!({
@@ -80,6 +58,7 @@ pub fn run(arguments: &RenderArguments, console: &Console) -> Result<(), Failure
             "adapter": card,
             "width": picture.width,
             "height": picture.height,
+            "overscan": arguments.overscan,
             "exposure": format!("{exposure:?}").to_lowercase(),
             "threads": rayon::current_num_threads(),
             "triangles": input.scene.triangles.len(),
@@ -111,8 +90,63 @@ pub fn run(arguments: &RenderArguments, console: &Console) -> Result<(), Failure
     Ok(())
 }
 
+/// How it is rendered.
+pub fn options(
+    arguments: &RenderArguments,
+    input: &Input,
+    gpu: Option<Gpu>,
+) -> Result<RenderOptions, Failure> {
+    let usual = arguments.tolerance.map_or_else(RenderOptions::default, RenderOptions::at_tolerance);
+    let cells_a_side = match (&input.salf, arguments.cells) {
+        (Some(_), Some(cells)) if cells > 1 => {
+            let what = "is baked already, a cell a pixel (leave out --cells, or give the scene or project)";
+            return Err(Failure::bad(format!("{}: {what}", arguments.file.display())));
+        }
+        (Some(_), _) => 1,
+        (None, cells) => cells.unwrap_or(usual.cells_a_side),
+    };
+    if input.salf.is_some() && arguments.overscan > 0 {
+        let what = "is baked for the frame alone (leave out --overscan, or give the scene or project)";
+        return Err(Failure::bad(format!("{}: {what}", arguments.file.display())));
+    }
+    Ok(RenderOptions {
+        cells_a_side,
+        gpu,
+        renderer: arguments.renderer,
+        truth: truth_options(arguments),
+        layered: LayeredOptions { layers: arguments.layers },
+        views: ViewsOptions { views_a_side: arguments.views, ..ViewsOptions::default() },
+        scatter: ScatterOptions { rays_a_sample: arguments.rays, seed: arguments.seed },
+        aovs: arguments.aov.clone(),
+        coc: arguments.coc_convention,
+        overscan: arguments.overscan,
+        ..usual
+    })
+}
+
+/// How the picture is written; what its layers have to say is not yet there.
+pub fn written(arguments: &RenderArguments, exposure: Exposure) -> PictureOptions {
+    PictureOptions {
+        exposure,
+        half: arguments.half,
+        compression: arguments.compression,
+        color_space: arguments.color_space,
+        overscan: arguments.overscan,
+        ..PictureOptions::default()
+    }
+}
+
+/// How the sum becomes the picture.
+pub fn exposure(arguments: &RenderArguments, input: &Input) -> Exposure {
+    match arguments.exposure {
+        None => input.exposure(),
+        Some(ExposureName::Conserve) => Exposure::Conserve,
+        Some(ExposureName::Normalise) => Exposure::Normalise,
+    }
+}
+
 /// The graphics card to sum on; none for the processor.
-fn gpu(arguments: &RenderArguments) -> Result<Option<Gpu>, Failure> {
+pub fn gpu(arguments: &RenderArguments) -> Result<Option<Gpu>, Failure> {
     let is_asked_for = arguments.backend == BackendName::Gpu || arguments.adapter.is_some();
     if arguments.renderer != Renderer::Splat {
         let message = format!(
@@ -147,10 +181,36 @@ fn truth_options(arguments: &RenderArguments) -> TruthOptions {
 }
 
 /// What would only be noticed after the work.
-fn check_output(arguments: &RenderArguments) -> Result<(), Failure> {
+pub fn check_output(arguments: &RenderArguments) -> Result<(), Failure> {
     if arguments.aov.contains(&Aov::StandardError) && arguments.renderer != Renderer::Truth {
         let what = "--aov stderr: only the ground truth knows its standard error (use --renderer truth)";
         return Err(Failure::usage(what));
     }
-    check_picture_output(&arguments.output)
+    let needs_paths = |aov: &&Aov| aov.needs_paths() && !arguments.renderer.tells_paths();
+    if let Some((name, _)) = arguments.aov.iter().find(needs_paths).and_then(Aov::entry) {
+        let what = format!(
+            "--aov {name}: --renderer {} does not know it (use splat or truth)",
+            arguments.renderer.name()
+        );
+        return Err(Failure::usage(what));
+    }
+    if arguments.aov.contains(&Aov::Crypto) && !arguments.compression.is_lossless() {
+        let what = "--compression dwaa: Cryptomatte does not survive loss (use zips, zip or piz, or write crypto to another file)";
+        return Err(Failure::usage(what));
+    }
+    check_picture_output(&arguments.output)?;
+    let is_exr = arguments.output.extension().is_some_and(|e| e.eq_ignore_ascii_case("exr"));
+    let of_exr = [
+        ("--half", arguments.half),
+        ("--overscan", arguments.overscan > 0),
+        ("--compression", arguments.compression != Compression::default()),
+        ("--color-space", arguments.color_space != ColorSpace::default()),
+    ];
+    match of_exr.into_iter().find(|(_, is_asked)| *is_asked && !is_exr) {
+        Some((option, _)) => {
+            let what = format!("{}: {option} is of EXR alone (name an .exr)", arguments.output.display());
+            Err(Failure::usage(what))
+        }
+        None => Ok(()),
+    }
 }

@@ -20,6 +20,8 @@ pub enum Action {
     ChooseEnvironment,
     /// Shows what of the aperture a point sees.
     Inspect(SurfaceHit),
+    /// The next point of a rack focus.
+    RackPoint(SurfaceHit),
     /// Puts a panel elsewhere.
     Place(Pane, Placing),
     /// Something with a preset.

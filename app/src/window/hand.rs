@@ -85,6 +85,7 @@ pub fn click(
 ) -> Option<Action> {
     let command = match tool {
         Tool::Inspect => return Some(Action::Inspect(hit)),
+        Tool::RackFocus => return Some(Action::RackPoint(hit)),
         Tool::SharpHere => Command::Fill(region(tool)?(hit), FocusOffset::SHARP.with_gloss(target.gloss)),
         Tool::FillObject | Tool::FillMaterial | Tool::FillChart => Command::Fill(region(tool)?(hit), target),
         Tool::SelectObject | Tool::SelectMaterial | Tool::SelectChart => {

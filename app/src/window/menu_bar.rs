@@ -114,6 +114,9 @@ pub fn is_possible(id: CommandId, state: &MenuState<'_>) -> bool {
         RemoveLayer | RaiseLayer | LowerLayer | LayerAbove | LayerBelow | AddMask | RemoveMask => {
             state.document.is_some_and(|document| is_layer_command_possible(id, document))
         }
+        RemoveKeys => state
+            .document
+            .is_some_and(|document| document.lens_motion.times().any(|seconds| seconds == document.seconds)),
         _ => state.document.is_some(),
     }
 }

@@ -70,10 +70,12 @@ pub use view_settings::ViewSettings;
 
 /// Opens the window and stays until it is closed.
 pub fn run(options: WindowOptions) -> anyhow::Result<()> {
+    let icon = eframe::icon_data::from_png_bytes(include_bytes!("../../../assets/desktop/focus-brush.png"))?;
     let native = eframe::NativeOptions {
         viewport: egui::ViewportBuilder::default()
             .with_title("Focus Brush")
             .with_app_id("focus-brush")
+            .with_icon(icon)
             .with_inner_size([1440.0, 860.0])
             .with_min_inner_size([800.0, 500.0]),
         wgpu_options: graphics::graphics(),

@@ -9,6 +9,7 @@
 
 mod commands;
 mod document;
+mod keying;
 mod presets;
 mod views;
 
@@ -37,7 +38,9 @@ use super::{Action, Tool, ViewSettings, graphics, keys, soft_painter, theme};
 use eframe::{CreationContext, Frame, Storage};
 use egui::{CentralPanel, Context, Panel, Ui, ViewportCommand};
 use project::{Preset, PresetShelf};
-use session::{CameraEdit, Command, CommandId, Event, ReferenceKind, Session, SessionError, SessionOptions};
+use session::{
+    CameraEdit, Command, CommandId, Event, ReferenceKind, Session, SessionError, SessionOptions, SurfaceHit,
+};
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -70,6 +73,8 @@ pub struct Shell {
     preset_name: PresetName,
     /// The preset that a file is asked for.
     exported_preset: Option<Preset>,
+    /// The first point of a rack focus, until the second is clicked.
+    rack_from: Option<SurfaceHit>,
     /// What waits for a save to end well.
     after_save: Option<Next>,
     /// Whether the window may close without a question.
@@ -124,6 +129,7 @@ impl Shell {
             picture: PictureView::new(blitter),
             inspector: Inspector::default(),
             drawer: Drawer::default(),
+            rack_from: None,
             toasts: Toasts::default(),
             palette: Palette::default(),
             help: Help::default(),
@@ -355,6 +361,7 @@ impl Shell {
                     self.drawer.inspect(hit);
                     self.layout.open(Pane::Aperture);
                 }
+                Action::RackPoint(hit) => self.rack_point(hit),
                 Action::Place(pane, Placing::Enlarge) => self.layout.toggle_enlarged(pane),
                 Action::Place(pane, Placing::Float) => self.layout.toggle_floating(pane),
                 Action::Place(pane, Placing::Close) => self.layout.close(pane),

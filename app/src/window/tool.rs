@@ -56,6 +56,8 @@ pub enum Tool {
     SelectDepth,
     /// A click focuses the lens there.
     FocusHere,
+    /// Two clicks have the lens go from one to the other.
+    RackFocus,
     /// A click takes the focus from there.
     Pick,
     /// A click looks at the aperture from there.
@@ -81,7 +83,7 @@ impl Tool {
             Tool::SelectFacing,
             Tool::SelectDepth,
         ],
-        &[Tool::FocusHere],
+        &[Tool::FocusHere, Tool::RackFocus],
         &[Tool::Pick, Tool::Inspect],
     ];
 
@@ -112,6 +114,7 @@ impl Tool {
             Tool::SelectFacing => CommandId::SelectFacing,
             Tool::SelectDepth => CommandId::SelectDepth,
             Tool::FocusHere => CommandId::FocusHere,
+            Tool::RackFocus => CommandId::RackFocus,
             Tool::Pick => CommandId::Pick,
             Tool::Inspect => CommandId::Inspect,
         }

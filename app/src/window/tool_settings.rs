@@ -1,6 +1,6 @@
 //! What the tools are set to. Kept between runs, not part of any document.
 
-use focus::GradientShape;
+use focus::{Ease, GradientShape};
 use lens::FocusOffset;
 use serde::{Deserialize, Serialize};
 
@@ -14,11 +14,34 @@ pub struct ToolSettings {
     pub select_through: bool,
     /// The largest angle between normals that face alike, degrees.
     pub facing_degrees: f64,
+    /// How a rack focus goes.
+    pub rack: RackSettings,
+}
+
+/// How a rack focus goes.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct RackSettings {
+    /// How long it takes, s.
+    pub seconds: f64,
+    /// How it begins and ends.
+    pub ease: Ease,
+}
+
+impl Default for RackSettings {
+    fn default() -> Self {
+        Self { seconds: 1.0, ease: Ease::Smooth }
+    }
 }
 
 impl Default for ToolSettings {
     fn default() -> Self {
-        Self { gradient: GradientSettings::default(), select_through: false, facing_degrees: 30.0 }
+        Self {
+            gradient: GradientSettings::default(),
+            select_through: false,
+            facing_degrees: 30.0,
+            rack: RackSettings::default(),
+        }
     }
 }
 

@@ -51,6 +51,7 @@ fn every_control_has_a_name_whatever_is_open() {
         CommandId::ShowAperture,
         CommandId::ShowHistogram,
         CommandId::ShowPhotographs,
+        CommandId::ShowTimeline,
         CommandId::Wipe,
         CommandId::Palette,
         CommandId::Shortcuts,

@@ -15,6 +15,7 @@ struct State {
     layers: LayerStack,
     map: focus::FocusMap,
     camera: Camera,
+    lens_motion: focus::LensMotion,
     selection: Option<Selection>,
 }
 
@@ -27,6 +28,7 @@ fn state(person: &Person) -> State {
         layers,
         map: document.map.clone(),
         camera: document.camera.clone(),
+        lens_motion: document.lens_motion.clone(),
         selection: document.selection.clone(),
     }
 }
@@ -71,6 +73,11 @@ fn every_command_runs_and_is_undone_or_has_nothing_to_undo() {
         if id == CommandId::CameraFromView {
             let context = person.window.ctx.clone();
             person.window.state_mut().run(CommandId::FrameAll, &context);
+        }
+        // Keys that are not there cannot be taken away.
+        if id == CommandId::RemoveKeys {
+            let context = person.window.ctx.clone();
+            person.window.state_mut().run(CommandId::KeyLens, &context);
         }
         let (before, count) = (state(&person), steps(&person));
         let context = person.window.ctx.clone();

@@ -35,6 +35,7 @@ fn saved_and_reopened_is_the_same() {
     assert_eq!(person.document().camera, camera);
     assert_eq!(difference(&person.picture(), &picture), 0.0);
     assert!(!person.document().is_unsaved());
+    assert!(project::Thumbnail::read(&project).unwrap().is_some(), "it holds what it looks like");
 }
 
 #[test]

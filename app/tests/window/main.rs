@@ -21,6 +21,7 @@ mod panels;
 mod presets;
 mod quality;
 mod small_scene;
+mod timeline;
 #[allow(dead_code, reason = "shared by several tests")]
 #[path = "../../../crates/session/tests/tiny_glb/mod.rs"]
 mod tiny_glb;

@@ -1,6 +1,6 @@
 //! One layer of focus.
 
-use crate::{Adjustment, Blend, Canvas, FocusMap};
+use crate::{Adjustment, Blend, Canvas, FocusMap, LayerMotion};
 use lens::Camera;
 
 /// A layer: its values, how much each counts, and how they join what lies beneath.
@@ -19,13 +19,16 @@ pub struct FocusLayer {
     pub map: FocusMap,
     /// The rule of an adjustment layer.
     pub adjustment: Option<Adjustment>,
+    /// How much it counts over time.
+    pub motion: LayerMotion,
 }
 
 impl FocusLayer {
     /// A layer of the values of a map.
     pub fn painted(name: impl Into<String>, map: FocusMap) -> Self {
         let (is_visible, opacity, blend) = (true, 1.0, Blend::Set);
-        Self { name: name.into(), is_visible, opacity, blend, map, adjustment: None }
+        let (adjustment, motion) = (None, LayerMotion::default());
+        Self { name: name.into(), is_visible, opacity, blend, map, adjustment, motion }
     }
 
     /// An adjustment layer.
@@ -55,10 +58,25 @@ impl FocusLayer {
         }
     }
 
+    /// The layer as it is at a time, without motion. What counts by depth is looked up where `canvas` says that the surface is, as
+    /// `camera` sees it.
+    pub(crate) fn at(&self, seconds: f64, canvas: Option<&Canvas>, camera: &Camera) -> Self {
+        let mut still = Self { motion: LayerMotion::default(), ..self.clone() };
+        if let Some(opacity) = self.motion.opacity.around(seconds) {
+            still.opacity = opacity.number();
+        }
+        if let Some(canvas) = canvas {
+            self.motion.mask(seconds, &mut still.map, canvas, camera);
+            still.evaluate(canvas, camera);
+        }
+        still
+    }
+
     /// Whether all its numbers are usable.
     pub fn is_valid(&self) -> bool {
         (0.0..=1.0).contains(&self.opacity)
             && self.map.is_valid()
             && self.adjustment.as_ref().is_none_or(Adjustment::is_valid)
+            && self.motion.is_valid()
     }
 }

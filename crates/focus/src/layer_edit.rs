@@ -1,7 +1,8 @@
 //! A change of the layers of focus.
 
 use crate::{
-    Adjustment, Blend, Canvas, DepthCurve, FocalPlane, FocusError, FocusLayer, FocusMap, LayerStack,
+    Adjustment, Blend, Canvas, DepthCurve, FocalPlane, FocusError, FocusLayer, FocusMap, LayerMotion,
+    LayerStack,
 };
 use lens::Camera;
 use serde::{Deserialize, Serialize};
@@ -40,6 +41,8 @@ pub enum LayerEdit {
     Curve(usize, DepthCurve),
     /// Another focal plane for a layer that has one.
     Plane(usize, FocalPlane),
+    /// Other keys over time.
+    Motion(usize, LayerMotion),
     /// Gives a layer without mask one that counts everywhere.
     AddMask(usize),
     /// Makes a mask count where it did not, and the other way round; a layer without one then counts nowhere.
@@ -64,6 +67,7 @@ impl LayerEdit {
             Self::Shift { .. } => "Move layer",
             Self::Curve(..) => "Depth curve",
             Self::Plane(..) => "Focal plane",
+            Self::Motion(..) => "Layer keys",
             Self::AddMask(_) => "Add mask",
             Self::InvertMask(_) => "Invert mask",
             Self::RemoveMask(_) => "Remove mask",
@@ -128,6 +132,9 @@ impl LayerEdit {
             Self::Plane(_, ref plane) if !plane.is_valid() => {
                 return bad("the three points lie in one line (choose them further apart)");
             }
+            Self::Motion(_, ref motion) if !motion.is_valid() => {
+                return bad("its keys cannot be used (times must ascend, opacities be in [0, 1])");
+            }
             _ => {}
         }
         let index = match &self {
@@ -137,6 +144,7 @@ impl LayerEdit {
             | Self::Blend(index, _)
             | Self::Curve(index, _)
             | Self::Plane(index, _)
+            | Self::Motion(index, _)
             | Self::AddMask(index)
             | Self::InvertMask(index)
             | Self::RemoveMask(index) => *index,
@@ -147,6 +155,7 @@ impl LayerEdit {
             Self::Rename(_, name) => layer.name = name,
             Self::Visible(_, visible) => layer.is_visible = visible,
             Self::Opacity(_, opacity) => layer.opacity = opacity,
+            Self::Motion(_, motion) => layer.motion = motion,
             Self::Blend(_, blend) => layer.blend = blend,
             Self::Curve(_, curve) => {
                 let Some(Adjustment::Curve(own)) = &mut layer.adjustment else {

@@ -75,7 +75,8 @@ impl LayerStack {
 
     /// Whether there is nothing but one plain layer, as in a document that never had another.
     pub fn is_single(&self) -> bool {
-        self.layers.len() == 1 && self.layers[0].is_plain() && self.layers[0].adjustment.is_none()
+        let only = &self.layers[0];
+        self.layers.len() == 1 && only.is_plain() && only.adjustment.is_none() && only.motion.is_empty()
     }
 
     /// Puts a layer above the active one and makes it active. False where there are too many already.
@@ -120,6 +121,23 @@ impl LayerStack {
     /// Whether any layer depends on where the shot camera stands.
     pub fn follows_camera(&self) -> bool {
         self.layers.iter().any(|layer| layer.adjustment.is_some())
+    }
+
+    /// Whether any layer counts for more or less over time.
+    pub fn moves(&self) -> bool {
+        self.layers.iter().any(|layer| !layer.motion.is_empty())
+    }
+
+    /// Whether what the layers make depends on where the surface is before the camera.
+    pub fn depends_on_depth(&self) -> bool {
+        self.follows_camera() || self.layers.iter().any(|layer| !layer.motion.mask.is_empty())
+    }
+
+    /// The layers as they are at a time, without motion. What follows depth is evaluated for `camera` and the surface where `canvas` says
+    /// it is; it stays as it was where there is no canvas, which only [`Self::depends_on_depth`] needs.
+    pub fn at(&self, seconds: f64, canvas: Option<&Canvas>, camera: &Camera) -> Self {
+        let layers = self.layers.iter().map(|layer| layer.at(seconds, canvas, camera)).collect();
+        Self { layers, active: self.active }
     }
 
     /// The same with nothing in adjustment layers but their rules and masks: what is small, and says all.

@@ -7,6 +7,7 @@
 //! * [`Brush`] and [`Stroke`]: painting with spheres along a path on the surface, as one transaction.
 //! * [`FocusLayer`] and [`LayerStack`]: maps with masks, joined by a [`Blend`]; an [`Adjustment`] (a [`DepthCurve`], a tilted
 //!   or curved [`FocalPlane`]) makes an adjustment layer. What they make together is a map again, and that is what is rendered.
+//! * [`Keys`]: values at times; of the lens ([`LensMotion`]) and of layers ([`LayerMotion`], [`LayerStack::at`]).
 //! * [`LayerEdit`]: a change of the layers, as data.
 //! * [`fill`]: the same value over a node, part, material or chart. [`Gradient`]: one that changes along a line.
 //! * [`Selection`]: what may be painted. [`Symmetry`]: where else everything is painted.
@@ -31,6 +32,7 @@ mod gradient;
 mod layer;
 mod layer_edit;
 mod layer_stack;
+mod motion;
 mod recipe;
 mod selection;
 mod smooth;
@@ -60,6 +62,7 @@ pub use gradient::{Gradient, GradientLine, GradientShape, draw_gradient};
 pub use layer::FocusLayer;
 pub use layer_edit::LayerEdit;
 pub use layer_stack::LayerStack;
+pub use motion::{Between, Ease, FocusTarget, Key, Keys, LayerMotion, LensMotion};
 pub use recipe::{FocusRecipe, RecipeEntry};
 pub use selection::{Combine, Selection, SelectionResult};
 pub use source::{Focus, FocusSource};

@@ -90,6 +90,22 @@ impl Camera {
         Self { width, height, ..self.clone() }
     }
 
+    /// The same camera with `px` more pixels of the same picture on each side: its lens and what it shows of a focus offset stay,
+    /// sensor and angle of view grow.
+    pub fn overscanned(&self, px: u32) -> Self {
+        let grown = |side: u32| side.saturating_add(px.saturating_mul(2));
+        let factor = f64::from(grown(self.height)) / f64::from(self.height);
+        Self {
+            width: grown(self.width),
+            height: grown(self.height),
+            yfov: 2.0 * (factor * (self.yfov / 2.0).tan()).atan(),
+            sensor_height: factor * self.sensor_height,
+            // In heights of the larger picture.
+            shift: self.shift / factor,
+            ..self.clone()
+        }
+    }
+
     /// The numbers of the optics.
     pub fn optics(&self) -> Optics {
         let tan_half_yfov = (self.yfov / 2.0).tan();
@@ -204,6 +220,24 @@ mod tests {
                 [&shifted, &whole].map(|camera| camera.pixel_from_q(camera.optics().chief(point)));
             assert!((part + corner).distance(all) < 1e-9, "{part} {all}");
         }
+    }
+
+    #[test]
+    fn overscan_shows_more_of_the_same_picture() {
+        let shift = DVec2::new(0.25, -0.5);
+        let camera = Camera { width: 100, height: 60, shift, ..Camera::default() };
+        let larger = camera.overscanned(20);
+        assert_eq!((larger.width, larger.height), (140, 100));
+        larger.validate().unwrap();
+        assert!((larger.optics().image_distance / camera.optics().image_distance - 1.0).abs() < 1e-12);
+        let kappa = 0.3;
+        let radii = [&camera, &larger].map(|camera| camera.optics().splat_radius_px(kappa));
+        assert!((radii[0] / radii[1] - 1.0).abs() < 1e-12, "{radii:?}");
+        // A point of the frame lies as much further from the corner.
+        let slope = |camera: &Camera, pixel| camera.q_from_pixel(pixel) * (camera.yfov / 2.0).tan();
+        let pixel = DVec2::new(17.0, 41.5);
+        assert!(slope(&camera, pixel).distance(slope(&larger, pixel + 20.0)) < 1e-12);
+        assert_eq!(camera.overscanned(0).optics(), camera.optics());
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! How far two pictures are apart.
 
-use crate::picture_file::srgb_bytes;
+use crate::picture_output::srgb_bytes;
 use crate::{LinearPicture, ProjectError};
 use nv_flip::{FlipImageRgb8, FlipPool};
 use serde::Serialize;

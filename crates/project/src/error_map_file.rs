@@ -5,8 +5,9 @@
 
 use crate::compare::{ErrorMaps, error_maps};
 use crate::disk::{extension, write_bytes};
-use crate::exr_file::{ExrImage, ExrSamples, write_exr};
-use crate::picture_file::color_channels;
+use crate::exr_file::{ExrImage, write_exr};
+use crate::exr_form::ExrForm;
+use crate::layer::color_channels;
 use crate::png_file::encode_rgb8;
 use crate::{LinearPicture, ProjectError};
 use nv_flip::FlipImageFloat;
@@ -29,7 +30,7 @@ pub fn write_error_map(file: &Path, a: &LinearPicture, b: &LinearPicture) -> Res
             let mut channels: BTreeMap<_, _> = color_channels(&maps.difference).into();
             channels.insert("flip".to_string(), maps.flip);
             let image = ExrImage { width, height, channels, ..ExrImage::default() };
-            write_exr(file, &image, ExrSamples::Float)
+            write_exr(file, image, ExrForm::default())
         }
         _ => {
             Err(ProjectError::content(file, "error maps are not written in this form", "name a .png or .exr"))

@@ -1,7 +1,9 @@
 //! OpenEXR files as named channels of floats.
 
 use crate::ProjectError;
+use crate::color_space::Chromaticities;
 use crate::disk::{read_bytes, write_bytes};
+use crate::exr_form::{ExrForm, ExrSamples, stored, told};
 use crate::exr_header;
 use crate::exr_window::Window;
 use exr::meta::attribute::{AttributeValue, Text};
@@ -32,6 +34,8 @@ pub(crate) struct ExrImage {
     pub channels: BTreeMap<String, Vec<f32>>,
     /// The attributes that are no part of the format, as far as they are text or numbers.
     pub attributes: BTreeMap<String, ExrAttribute>,
+    /// Which red, green, blue and white its colours mean, as far as a file that is read says.
+    pub chromaticities: Option<Chromaticities>,
 }
 
 /// An attribute of an image.
@@ -39,13 +43,6 @@ pub(crate) struct ExrImage {
 pub(crate) enum ExrAttribute {
     Text(String),
     Number(f64),
-}
-
-/// How samples are stored.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum ExrSamples {
-    Float,
-    Half,
 }
 
 /// Reads an image by its display window: what the file holds outside of it is left out, and where the file holds
@@ -60,9 +57,9 @@ pub(crate) fn read_exr(file: &Path, absent: fn(&str) -> f32) -> Result<ExrImage,
     })
 }
 
-/// Writes an image, losslessly compressed.
-pub(crate) fn write_exr(file: &Path, image: &ExrImage, samples: ExrSamples) -> Result<(), ProjectError> {
-    let bytes = encode(image, samples).map_err(|error| ProjectError::Write {
+/// Writes an image.
+pub(crate) fn write_exr(file: &Path, image: ExrImage, form: ExrForm) -> Result<(), ProjectError> {
+    let bytes = encode(image, form).map_err(|error| ProjectError::Write {
         file: file.to_owned(),
         source: std::io::Error::other(error),
     })?;
@@ -87,7 +84,9 @@ fn decode_unguarded(bytes: &[u8], absent: fn(&str) -> f32) -> Result<ExrImage, S
     let read = reader.all_attributes().non_parallel().from_buffered(Cursor::new(bytes)).map_err(text)?;
     let display = Window::of(read.attributes.display_window);
     let [width, height] = display.size;
-    let mut image = ExrImage { width: width as u32, height: height as u32, ..ExrImage::default() };
+    let chromaticities = read.attributes.chromaticities.map(told);
+    let (width, height) = (width as u32, height as u32);
+    let mut image = ExrImage { width, height, chromaticities, ..ExrImage::default() };
     let of_parts = read.layer_data.iter().flat_map(|part| &part.attributes.other);
     for (name, value) in read.attributes.other.iter().chain(of_parts) {
         if let Some(value) = attribute(value) {
@@ -160,29 +159,60 @@ fn attribute(value: &AttributeValue) -> Option<ExrAttribute> {
     }
 }
 
-fn encode(image: &ExrImage, samples: ExrSamples) -> Result<Vec<u8>, String> {
-    let channel = |(name, values): (&String, &Vec<f32>)| {
-        let data = match samples {
-            ExrSamples::Float => ox::FlatSamples::F32(values.clone()),
-            ExrSamples::Half => ox::FlatSamples::F16(values.iter().map(|&v| f16::from_f32(v)).collect()),
+fn encode(image: ExrImage, form: ExrForm) -> Result<Vec<u8>, String> {
+    let channel = |(name, values): (String, Vec<f32>)| {
+        let data = match form.samples {
+            ExrSamples::HalfIf(suffices) if suffices(&name) => {
+                ox::FlatSamples::F16(values.into_iter().map(half_of).collect())
+            }
+            _ => ox::FlatSamples::F32(values),
         };
         ox::AnyChannel::new(name.as_str(), data)
     };
-    let channels = ox::AnyChannels::sort(image.channels.iter().map(channel).collect());
-    let software_name = Some(Text::from("Focus Brush"));
-    let mut attributes = ox::LayerAttributes { software_name, ..ox::LayerAttributes::default() };
+    let channels = ox::AnyChannels::sort(image.channels.into_iter().map(channel).collect());
+    let around = form.overscan as i32;
+    let mut attributes = ox::LayerAttributes {
+        software_name: Some(Text::from("Focus Brush")),
+        layer_position: ox::Vec2(-around, -around),
+        ..ox::LayerAttributes::default()
+    };
+    let mut write = |name: &str, value| attributes.other.insert(Text::from(name), value);
     for (name, value) in &image.attributes {
         let value = match value {
-            ExrAttribute::Text(text) => AttributeValue::Text(Text::from(text.as_str())),
+            ExrAttribute::Text(value) => AttributeValue::Text(text(name, value)?),
             ExrAttribute::Number(number) => AttributeValue::F64(*number),
         };
-        attributes.other.insert(Text::from(name.as_str()), value);
+        write(name, value);
     }
-    let size = (image.width as usize, image.height as usize);
-    let layer = ox::Layer::new(size, attributes, ox::Encoding::SMALL_LOSSLESS, channels);
+    if let Some(space) = form.color_space {
+        write("colorInteropID", AttributeValue::Text(Text::from(space.interop_id())));
+    }
+    let size = [image.width, image.height];
+    let frame = size.map(|side| side.saturating_sub(2 * form.overscan) as usize);
+    let layer = ox::Layer::new(
+        (size[0] as usize, size[1] as usize),
+        attributes,
+        form.compression.encoding(),
+        channels,
+    );
+    let chromaticities = form.color_space.map(|space| stored(space.chromaticities()));
+    let attributes =
+        ox::ImageAttributes { chromaticities, ..ox::ImageAttributes::with_size((frame[0], frame[1])) };
     let mut bytes = Cursor::new(Vec::new());
-    ox::Image::from_layer(layer).write().to_buffered(&mut bytes).map_err(|error| error.to_string())?;
+    let written = ox::Image::new(attributes, layer).write().to_buffered(&mut bytes);
+    written.map_err(|error| error.to_string())?;
     let mut bytes = bytes.into_inner();
     exr_header::sort_attributes(&mut bytes);
     Ok(bytes)
+}
+
+/// The value of an attribute, whose characters the format has bytes for.
+fn text(name: &str, value: &str) -> Result<Text, String> {
+    Text::new_or_none(value).ok_or_else(|| format!("attribute {name} has a character beyond U+00FF"))
+}
+
+/// The nearest half; light that none holds is as bright as one can be.
+fn half_of(value: f32) -> f16 {
+    let most = f16::MAX.to_f32();
+    f16::from_f32(if value.is_finite() { value.clamp(-most, most) } else { value })
 }

@@ -66,6 +66,49 @@ pub(crate) fn sort_attributes(bytes: &mut [u8]) {
     bytes[FIRST_ATTRIBUTE..][..sorted.len()].copy_from_slice(&sorted);
 }
 
+/// Where the value of an attribute of the first part is, behind its length.
+pub(crate) fn value(bytes: &[u8], wanted: &str) -> Option<std::ops::Range<usize>> {
+    let mut at = FIRST_ATTRIBUTE;
+    let parts = parts(bytes)?;
+    for attribute in parts.first()? {
+        if name(attribute) == wanted.as_bytes() {
+            let kind = fields(attribute).nth(1)?;
+            return Some(at + wanted.len() + 1 + kind.len() + 1 + 4..at + attribute.len());
+        }
+        at += attribute.len();
+    }
+    None
+}
+
+/// The file with a further attribute at the end of its first part, a text. The offsets of the chunks of pixels, which follow the header, are
+/// moved along.
+pub(crate) fn with_text(bytes: &[u8], name: &str, text: &[u8]) -> Option<Vec<u8>> {
+    let parts = parts(bytes)?;
+    let length =
+        |attributes: &Vec<&[u8]>| attributes.iter().map(|attribute| attribute.len()).sum::<usize>() + 1;
+    let at = FIRST_ATTRIBUTE + length(parts.first()?) - 1;
+    let several = u32::from_le_bytes(bytes[4..FIRST_ATTRIBUTE].try_into().ok()?) & SEVERAL_PARTS != 0;
+    let table = FIRST_ATTRIBUTE + parts.iter().map(length).sum::<usize>() + usize::from(several);
+    let size = i32::try_from(text.len()).ok()?.to_le_bytes();
+    let attribute = [name.as_bytes(), b"\0string\0", &size, text].concat();
+    // The table ends where the first chunk begins, which is that of its first entry.
+    let offset = |at: usize| Some(u64::from_le_bytes(bytes.get(at..at + 8)?.try_into().ok()?));
+    let end =
+        usize::try_from(offset(table)?).ok().filter(|end| *end > table && (end - table).is_multiple_of(8))?;
+    let mut changed = Vec::with_capacity(bytes.len() + attribute.len());
+    changed.extend([bytes.get(..at)?, &attribute, bytes.get(at..table)?].concat());
+    for entry in (table..end).step_by(8) {
+        let chunk = offset(entry)?;
+        // An order of chunks in which the first is not that of the first entry would show here.
+        if chunk < end as u64 || chunk >= bytes.len() as u64 {
+            return None;
+        }
+        changed.extend((chunk + attribute.len() as u64).to_le_bytes());
+    }
+    changed.extend(&bytes[end..]);
+    Some(changed)
+}
+
 /// The first window of any part whose upper left corner does not lie above and left of its lower right one: it holds
 /// no pixel. The decoder takes it for one that is turned about.
 pub(crate) fn empty_window(bytes: &[u8]) -> Option<&'static str> {
@@ -85,6 +128,7 @@ pub(crate) fn empty_window(bytes: &[u8]) -> Option<&'static str> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::slice::from_ref;
 
     fn attribute(name: &str, value: &[u8]) -> Vec<u8> {
         let length = (value.len() as i32).to_le_bytes();
@@ -110,6 +154,31 @@ mod tests {
         let mut two = file(SEVERAL_PARTS, &[&[b.clone(), a.clone()], &[c.clone(), b.clone()]]);
         sort_attributes(&mut two);
         assert_eq!(two, file(SEVERAL_PARTS, &[&[a, b.clone()], &[b, c]]));
+    }
+
+    #[test]
+    fn a_text_is_put_in_and_found_and_chunks_move_along() {
+        let [a, b] = [attribute("a", b"\0\0"), attribute("b", b"12")];
+        for (flags, parts) in
+            [(0, vec![&[a.clone(), b.clone()][..]]), (SEVERAL_PARTS, vec![from_ref(&a), from_ref(&b)])]
+        {
+            let mut whole = file(flags, &parts);
+            whole.truncate(whole.len() - b"pixels".len());
+            let end = whole.len() as u64 + 16;
+            whole.extend([end, end + 6].iter().flat_map(|offset| offset.to_le_bytes()));
+            whole.extend(b"chunk1chunk2");
+            let longer = with_text(&whole, "told", b"so").unwrap();
+            assert_eq!(&longer[value(&longer, "told").unwrap()], b"so");
+            assert_eq!(value(&whole, "told"), None);
+            let moved = (longer.len() - whole.len()) as u64;
+            let table = longer.len() - 12 - 16;
+            let offset = |at: usize| u64::from_le_bytes(longer[at..at + 8].try_into().unwrap());
+            assert_eq!([offset(table), offset(table + 8)], [end + moved, end + 6 + moved]);
+            assert_eq!(&longer[offset(table + 8) as usize..], b"chunk2");
+            for length in 0..whole.len() - 12 {
+                assert_eq!(with_text(&whole[..length], "told", b"so"), None, "cut at {length}");
+            }
+        }
     }
 
     #[test]

@@ -11,7 +11,8 @@
 
 use crate::ProjectError;
 use crate::disk::{extension, with_suffix, write_bytes};
-use crate::exr_file::{ExrAttribute, ExrImage, ExrSamples, read_exr, write_exr};
+use crate::exr_file::{ExrAttribute, ExrImage, read_exr, write_exr};
+use crate::exr_form::ExrForm;
 use crate::json::{Field, Json};
 use crate::png_file::{encode_rgb16, read_png16};
 use atlas::Atlas;
@@ -120,7 +121,7 @@ impl FocusMapFile {
 pub fn write_focus_map(file: &Path, map: &FocusMapFile) -> Result<Vec<String>, ProjectError> {
     match extension(file).as_str() {
         "exr" => {
-            write_exr(file, &to_exr(map), ExrSamples::Float)?;
+            write_exr(file, to_exr(map), ExrForm::default())?;
             Ok(Vec::new())
         }
         "png" => to_png(file, map),
@@ -156,7 +157,7 @@ fn to_exr(map: &FocusMapFile) -> ExrImage {
             put("backgroundGloss", ExrAttribute::Number(background.gloss));
         }
     }
-    ExrImage { width: map.image.width, height: map.image.height, channels, attributes }
+    ExrImage { width: map.image.width, height: map.image.height, channels, attributes, ..ExrImage::default() }
 }
 
 /// What a channel has where the file has no texel: the focus of the ordinary lens.

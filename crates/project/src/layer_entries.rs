@@ -45,6 +45,7 @@ pub(crate) fn write(layers: &LayerStack, entries: &mut Vec<(String, Vec<u8>)>) -
             background_gloss,
             gloss,
             mask,
+            motion: layer.motion.clone(),
         }
     };
     LayerRows { active: layers.active_index(), layers: layers.layers().iter().enumerate().map(row).collect() }
@@ -93,6 +94,7 @@ pub(crate) fn read(
             blend: row.blend,
             map,
             adjustment: row.adjustment(),
+            motion: row.motion.clone(),
         });
     }
     LayerStack::new(layers, rows.active)

@@ -1,6 +1,6 @@
 //! What the manifest of a project says of the layers of focus.
 
-use focus::{Adjustment, Blend, DepthCurve, FocalPlane};
+use focus::{Adjustment, Blend, DepthCurve, FocalPlane, LayerMotion};
 use serde::{Deserialize, Serialize};
 
 /// Whether a number may be left out.
@@ -42,6 +42,9 @@ pub(crate) struct LayerRow {
     /// Entry of the mask: a number a texel.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub mask: Option<String>,
+    /// How much it counts over time; where that changes.
+    #[serde(default, skip_serializing_if = "LayerMotion::is_empty")]
+    pub motion: LayerMotion,
 }
 
 impl LayerRow {

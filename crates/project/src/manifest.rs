@@ -5,7 +5,7 @@ use crate::capture_choices::CaptureRow;
 use crate::container::{Container, DAMAGED_CURE};
 use crate::layer_rows::{LayerRow, LayerRows, is_zero};
 use crate::scene_path::{ScenePath, hex};
-use focus::Brush;
+use focus::{Brush, LensMotion};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use sha2::{Digest, Sha256};
@@ -74,6 +74,9 @@ pub(crate) struct Manifest {
     /// What may be painted, where that is not everything. A program that does not know it lets everything be painted.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub selection: Option<MapEntry>,
+    /// How the lens moves, where it does. A program that does not know it shows the still picture.
+    #[serde(default, skip_serializing_if = "LensMotion::is_empty")]
+    pub lens_motion: LensMotion,
     /// Checksum of every other entry by its name: hex SHA-256 of its unpacked bytes.
     #[serde(default)]
     pub checksums: BTreeMap<String, String>,

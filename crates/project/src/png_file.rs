@@ -23,9 +23,14 @@ pub(crate) fn read_image(file: &Path) -> Result<DynamicImage, ProjectError> {
             "write it again, or take another copy",
         )
     };
+    decode(&bytes).map_err(error)
+}
+
+/// What the bytes of a picture's file show, or why they show nothing.
+pub(crate) fn decode(bytes: &[u8]) -> Result<DynamicImage, String> {
     let decoded = std::panic::catch_unwind(|| {
         let mut reader =
-            ImageReader::new(Cursor::new(&bytes)).with_guessed_format().map_err(|e| e.to_string())?;
+            ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(|e| e.to_string())?;
         let mut limits = Limits::default();
         limits.max_image_width = Some(LARGEST_SIDE);
         limits.max_image_height = Some(LARGEST_SIDE);
@@ -33,7 +38,7 @@ pub(crate) fn read_image(file: &Path) -> Result<DynamicImage, ProjectError> {
         reader.limits(limits);
         reader.decode().map_err(|e| e.to_string())
     });
-    decoded.unwrap_or_else(|_| Err("its content contradicts itself".to_string())).map_err(error)
+    decoded.unwrap_or_else(|_| Err("its content contradicts itself".to_string()))
 }
 
 /// Columns, rows and the stored red, green and blue of a picture, in [0, 1], not decoded from sRGB.
@@ -56,7 +61,18 @@ pub(crate) fn encode_rgb8(
     rgb: &[u8],
     text: &[(&str, String)],
 ) -> Result<Vec<u8>, String> {
-    encode(width, height, BitDepth::Eight, rgb, text, true)
+    encode_8bit([width, height], rgb, false, text)
+}
+
+/// The same with or without alpha.
+pub(crate) fn encode_8bit(
+    size: [u32; 2],
+    data: &[u8],
+    has_alpha: bool,
+    text: &[(&str, String)],
+) -> Result<Vec<u8>, String> {
+    let color = if has_alpha { ColorType::Rgba } else { ColorType::Rgb };
+    encode(size, (color, BitDepth::Eight), data, text, true)
 }
 
 /// The bytes of a 16-bit RGB PNG without a colour profile.
@@ -67,20 +83,19 @@ pub(crate) fn encode_rgb16(
     text: &[(&str, String)],
 ) -> Result<Vec<u8>, String> {
     let bytes: Vec<u8> = rgb.iter().flat_map(|c| c.to_be_bytes()).collect();
-    encode(width, height, BitDepth::Sixteen, &bytes, text, false)
+    encode([width, height], (ColorType::Rgb, BitDepth::Sixteen), &bytes, text, false)
 }
 
 fn encode(
-    width: u32,
-    height: u32,
-    depth: BitDepth,
+    [width, height]: [u32; 2],
+    (color, depth): (ColorType, BitDepth),
     data: &[u8],
     text: &[(&str, String)],
     is_srgb: bool,
 ) -> Result<Vec<u8>, String> {
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, width, height);
-    encoder.set_color(ColorType::Rgb);
+    encoder.set_color(color);
     encoder.set_depth(depth);
     if is_srgb {
         encoder.set_source_srgb(png::SrgbRenderingIntent::RelativeColorimetric);

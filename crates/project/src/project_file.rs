@@ -11,6 +11,7 @@
 //! | `focus.gloss.f32` | how far gloss obeys them, the same way; where it does |
 //! | `layers/N.f32`, `layers/N.gloss.f32`, `layers/N.mask.f32` | the same of one layer, and its mask; where there are layers |
 //! | `selection.bits` | what may be painted, a bit a texel; where that is not everything |
+//! | `thumbnail.png` | what the picture looked like when it was saved, for file managers; where one was shown |
 //! | `masks/N.f32` | the aperture mask of camera N: width and height as u32, then transmissions as f32 |
 //!
 //! The scene itself stays where it is; its path is kept relative to the project, so that both may be moved
@@ -26,8 +27,9 @@ use crate::scene_checksum::scene_checksum;
 use crate::scene_path::ScenePath;
 use crate::texel_bytes::{bytes_of, floats, pairs};
 use crate::texel_set::TexelSet;
+use crate::thumbnail::{THUMBNAIL, Thumbnail};
 use crate::{ProjectError, WorldFile};
-use focus::{Brush, FocusLayer, FocusMap, LayerStack};
+use focus::{Brush, FocusLayer, FocusMap, LayerStack, LensMotion};
 use lens::{ApertureMask, ApertureShape, Camera, Exposure, FocusOffset};
 use scene::BackFaces;
 use serde_json::Value;
@@ -91,10 +93,14 @@ pub struct ProjectFile {
     /// The layers that make the focus map; `None` where one plain layer does. The values of adjustment layers are
     /// not saved: they follow from curve and camera ([`LayerStack::evaluate`]).
     pub layers: Option<LayerStack>,
+    /// How the lens moves over time; how layers do, they know themselves.
+    pub lens_motion: LensMotion,
     /// What may be painted; `None` for everything.
     pub selection: Option<TexelSet>,
     /// The background's focus where there is no focus map; else the map's own counts.
     pub background_focus: FocusOffset,
+    /// What its picture looked like when it was saved.
+    pub thumbnail: Option<Thumbnail>,
 }
 
 /// Whether the scene is still the one that the document was made for.
@@ -130,8 +136,10 @@ impl ProjectFile {
             surface: None,
             focus_map: None,
             layers: None,
+            lens_motion: LensMotion::default(),
             selection: None,
             background_focus: FocusOffset::STANDARD,
+            thumbnail: None,
         })
     }
 
@@ -195,6 +203,9 @@ impl ProjectFile {
         if let Some(problem) = self.brush.problem() {
             return Err(error(format!("brush: {problem}")));
         }
+        if !self.lens_motion.is_valid() {
+            return Err(error("the lens has keys that cannot be used".to_string()));
+        }
         let layers = self.layers.iter().flat_map(LayerStack::layers);
         let size = self.focus_map.as_ref().map(FocusMap::size);
         if self.layers.as_ref().is_some_and(|layers| Some(layers.size()) != size) {
@@ -245,6 +256,9 @@ impl ProjectFile {
             let [width, height] = selection.size();
             MapEntry { entry: SELECTION.to_string(), width, height, gloss: None }
         });
+        if let Some(Thumbnail(png)) = &self.thumbnail {
+            entries.push((THUMBNAIL.to_string(), png.clone()));
+        }
 
         let manifest = Manifest {
             format: Manifest::FORMAT.to_string(),
@@ -268,6 +282,7 @@ impl ProjectFile {
             focus_map,
             layers,
             selection,
+            lens_motion: self.lens_motion.clone(),
             checksums: entries.iter().map(|(name, bytes)| (name.clone(), sha256_hex(bytes))).collect(),
         };
         let manifest =
@@ -311,6 +326,9 @@ impl ProjectFile {
             return Err(error(format!("brush: {problem}")));
         }
         let [t, anchor] = manifest.background_focus;
+        if !manifest.lens_motion.is_valid() {
+            return Err(error("lens_motion has keys that cannot be used".to_string()));
+        }
         let background_focus = FocusOffset::new(t, anchor).with_gloss(manifest.background_gloss);
         if !background_focus.is_valid() {
             return Err(error("background_focus cannot be used".to_string()));
@@ -343,6 +361,7 @@ impl ProjectFile {
         {
             return Err(error("has a selection of another size than its focus map".to_string()));
         }
+        let thumbnail = Thumbnail::from_container(file, &manifest, &mut container)?;
         let scene = manifest.scene.path.from(file);
         let capture = match &manifest.capture {
             Some(row) => Some(row.choices(file).map_err(|what| error(what.to_string()))?),
@@ -364,8 +383,10 @@ impl ProjectFile {
             surface,
             focus_map,
             layers,
+            lens_motion: manifest.lens_motion,
             selection,
             background_focus,
+            thumbnail,
         })
     }
 }

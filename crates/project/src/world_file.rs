@@ -329,7 +329,7 @@ mod tests {
             channels: channels.collect(),
             ..Default::default()
         };
-        crate::exr_file::write_exr(&file, &exr, crate::exr_file::ExrSamples::Float).unwrap();
+        crate::exr_file::write_exr(&file, exr, crate::exr_form::ExrForm::default()).unwrap();
         let World { environment: Environment::Map(map), .. } =
             WorldFile::of_environment(&file).load(&Scene::default()).unwrap()
         else {

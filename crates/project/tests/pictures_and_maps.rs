@@ -38,15 +38,15 @@ fn exr_keeps_every_bit_and_its_layers() {
     let depth = Layer { name: "depth".into(), values: noise(37 * 29, 2) };
     let layers = [Layer::coverage(&picture), depth.clone()];
     for exposure in [Exposure::Conserve, Exposure::Normalise] {
-        let options = PictureOptions { exposure, half: false };
-        assert_eq!(write_picture(&file, &picture, &layers, options).unwrap(), std::slice::from_ref(&file));
+        let options = PictureOptions { exposure, ..PictureOptions::default() };
+        assert_eq!(write_picture(&file, &picture, &layers, &options).unwrap(), std::slice::from_ref(&file));
         let read = read_picture(&file).unwrap();
         assert_eq!(read.rgb, picture.exposed(exposure));
         assert_eq!(read.layers["coverage"], picture.coverage);
         assert_eq!(read.layers["depth"], depth.values);
     }
-    let half = PictureOptions { half: true, exposure: Exposure::Conserve };
-    write_picture(&file, &picture, &[], half).unwrap();
+    let half = PictureOptions { half: true, exposure: Exposure::Conserve, ..PictureOptions::default() };
+    write_picture(&file, &picture, &[], &half).unwrap();
     let read = read_picture(&file).unwrap();
     for (a, b) in read.rgb.iter().flatten().zip(picture.radiance.iter().flatten()) {
         assert!((a - b).abs() <= b.abs() / 2048.0 + 1e-7, "{a} {b}");
@@ -61,8 +61,8 @@ fn png_is_srgb_and_its_layers_lie_beside_it() {
     let mut picture = Picture::black(3, 1);
     picture.radiance = vec![[0.0, 1.0, 9.0], [-1.0, 0.0031308, f32::NAN], [0.2140411, 0.5, 1.0]];
     picture.coverage = vec![1.0, 2.0, 0.5];
-    let options = PictureOptions { exposure: Exposure::Conserve, half: false };
-    let files = write_picture(&file, &picture, &[Layer::coverage(&picture)], options).unwrap();
+    let options = PictureOptions { exposure: Exposure::Conserve, ..PictureOptions::default() };
+    let files = write_picture(&file, &picture, &[Layer::coverage(&picture)], &options).unwrap();
     assert_eq!(files, [file.clone(), folder.path().join("picture.coverage.exr")]);
     let stored = image::open(&file).unwrap().into_rgb8();
     assert_eq!(stored.as_raw(), &[0, 255, 255, 0, 10, 0, 127, 188, 255]);

@@ -6,7 +6,7 @@ use damage::{damage, is_one_line};
 use focus::{Brush, BrushMode, FocusMap};
 use lens::{Aperture, ApertureMask, ApertureShape, Camera, Exposure, FocusOffset};
 use project::{
-    CaptureChoices, NamedCamera, ProjectError, ProjectFile, SceneState, TexelSet, find_recovery,
+    CaptureChoices, NamedCamera, ProjectError, ProjectFile, SceneState, TexelSet, Thumbnail, find_recovery,
     recovery_path_for, remove_recovery, unsaved_recovery_path,
 };
 use relief::{DepthRepair, DepthStroke};
@@ -49,6 +49,7 @@ fn document(folder: &Path) -> ProjectFile {
         surface: Some(b"a surface".to_vec()),
         background_focus: map.background,
         focus_map: Some(map),
+        thumbnail: Some(Thumbnail::of(2, 1, vec![[0.25; 3], [1.0, 0.0, 0.5]])),
         ..ProjectFile::new(&scene, cameras.into()).unwrap()
     }
 }

@@ -1,7 +1,7 @@
 //! How a light field is baked.
 
 use crate::carried::Carried;
-use crate::margin::painted_margin_px;
+use crate::margin::{painted_margin_px, standard_margin_px};
 use crate::view::View;
 use lens::{Camera, FocusOffset};
 use scene::SurfaceField;
@@ -42,5 +42,21 @@ impl BakeOptions {
         let view = View::new(camera, Self::TOLERANCE_PX);
         let margin_px = painted_margin_px(tracer, &view, focus);
         Self { margin_px, carried: Carried::of(focus), ..Self::default() }
+    }
+
+    /// The same as all of these need that look from one place at different times: of each its lens and its focus.
+    pub fn for_all<'a>(
+        tracer: &Tracer,
+        shots: impl IntoIterator<Item = (&'a Camera, &'a dyn SurfaceField<FocusOffset>)>,
+    ) -> Self {
+        shots.into_iter().fold(Self::default(), |all, (camera, focus)| {
+            let own = Self::for_focus(tracer, camera, focus);
+            let standard = standard_margin_px(tracer.scene(), &View::new(camera, Self::TOLERANCE_PX));
+            Self {
+                margin_px: all.margin_px.max(own.margin_px).max(standard),
+                carried: all.carried.max(own.carried),
+                ..all
+            }
+        })
     }
 }

@@ -231,6 +231,12 @@ impl<'a> Accessor<'a> {
         }
     }
 
+    /// The same as the number it stands for, normalised if the accessor says so.
+    pub fn number(&self, index: usize, component: usize) -> f64 {
+        let stored = self.stored(index, component);
+        if self.normalized { normalized(self.component, stored) } else { stored }
+    }
+
     /// The bytes from the start of an element on, or nothing if it is zero; `index` must be below `count`.
     pub fn element(&self, index: usize) -> Option<&'a [u8]> {
         if let Some(values) = &self.values {

@@ -24,8 +24,16 @@ const VERTEX_BYTES: u64 = 2 * (24 + 12 + 8 + 8 + 16);
 /// The same of a further UV set.
 const UV_BYTES: u64 = 2 * 8;
 
-/// Appends `primitive` as a part of scene node `node` with scene material `material`, and says which of its vertices the
-/// part has; none if there is nothing to see.
+/// What of a primitive a part of the scene shows.
+#[derive(Default)]
+pub(crate) struct Shown {
+    /// Its vertices, by their numbers in the primitive; none if there is nothing to see.
+    pub vertices: Vec<u32>,
+    /// Its triangles, the same way; nothing where it shows all of them.
+    pub triangles: Option<Vec<u32>>,
+}
+
+/// Appends `primitive` as a part of scene node `node` with scene material `material`, and says what of it the part shows.
 pub(crate) fn append(
     scene: &mut Scene,
     document: &Document<'_>,
@@ -33,7 +41,7 @@ pub(crate) fn append(
     placement: &Placement<'_>,
     node: u32,
     material: u32,
-) -> Result<Vec<u32>, Fault> {
+) -> Result<Shown, Fault> {
     let vertices = primitive.positions.len();
     let passing = vertices as u64 * if matches!(placement, Placement::Skinned(_)) { 128 + 32 } else { 32 };
     let further_sets = scene.further_uv.len().max(primitive.further_uv.len());
@@ -78,7 +86,7 @@ pub(crate) fn append(
     };
     if triangles.is_empty() {
         document.budget.release(passing + lasting);
-        return Ok(Vec::new());
+        return Ok(Shown::default());
     }
 
     let mirrors = |matrix: &DMat4| matrix.determinant() < 0.0;
@@ -122,7 +130,9 @@ pub(crate) fn append(
         mirrored,
     });
     document.budget.release(passing);
-    Ok(used)
+    let all = is_kept.iter().all(|&is_kept| is_kept);
+    let numbers = || (0..).zip(&is_kept).filter(|(_, is_kept)| **is_kept).map(|(number, _)| number).collect();
+    Ok(Shown { vertices: used, triangles: (!all).then(numbers) })
 }
 
 /// Appends an attribute of the used vertices, or its default. An attribute that no part has so far stays empty.

@@ -14,6 +14,8 @@ use std::path::{Path, PathBuf};
 /// A glTF document.
 pub(crate) struct Document<'a> {
     root: Value,
+    /// What the root takes in memory, bytes at most.
+    root_bytes: u64,
     typed: gltf::Document,
     faults: Faults,
     /// The binary chunk of a .glb.
@@ -46,6 +48,7 @@ impl<'a> Document<'a> {
         let mut warn = |warning| warnings.push(warning);
         let Container { json, chunk, is_glb } = container::split(bytes, &mut warn)?;
         let root = json_text::parse(json, is_glb, &budget, &mut warn)?;
+        let root_bytes = json_text::parsed_size(json);
         if !root.is_object() {
             return Err(Fault::NotGltf("its JSON is not an object".into()));
         }
@@ -53,8 +56,18 @@ impl<'a> Document<'a> {
         let (typed, faults) = mending::typed(&root, &budget)?;
         let buffers = (0..mending::len(&root, "buffers")).map(|_| OnceCell::new()).collect();
         let (warnings_so_far, decoded) = (RefCell::default(), Default::default());
-        let document =
-            Self { root, typed, faults, chunk, folder, budget, warnings: warnings_so_far, buffers, decoded };
+        let document = Self {
+            root,
+            root_bytes,
+            typed,
+            faults,
+            chunk,
+            folder,
+            budget,
+            warnings: warnings_so_far,
+            buffers,
+            decoded,
+        };
         for warning in warnings {
             document.warn(warning);
         }
@@ -82,6 +95,13 @@ impl<'a> Document<'a> {
             buffers.push(serde_json::json!({ "byteLength": bytes.len() }));
             self.buffers.push(OnceCell::from(bytes));
         }
+        (self.typed, self.faults) = mending::typed(&root, &self.budget)?;
+        self.root = root;
+        Ok(self)
+    }
+
+    /// The same with another text, in which numbers differ.
+    pub fn with_numbers_of(mut self, root: Value) -> Result<Self, Fault> {
         (self.typed, self.faults) = mending::typed(&root, &self.budget)?;
         self.root = root;
         Ok(self)
@@ -136,6 +156,12 @@ impl<'a> Document<'a> {
     /// The outermost value.
     pub fn value(&self) -> &Value {
         &self.root
+    }
+
+    /// A copy of it.
+    pub fn value_to_change(&self) -> Result<Value, Fault> {
+        self.budget.memory(self.root_bytes, "the document in motion")?;
+        Ok(self.root.clone())
     }
 
     /// How many entries a collection such as `meshes` has.

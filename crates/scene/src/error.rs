@@ -76,6 +76,14 @@ pub enum Fault {
         /// The names that there are, in words.
         known: String,
     },
+    /// It does not have the animation that was asked for.
+    #[error("no animation is called {name:?} ({known})")]
+    NoAnimation {
+        /// What was asked for.
+        name: String,
+        /// The names that there are, in words.
+        known: String,
+    },
     /// A limit of [`crate::LoadOptions`] was passed.
     #[error("{what} (simplify the scene or raise the limit)")]
     TooBig {

@@ -1,9 +1,10 @@
 //! What a file holds, triangles or not.
 
+use crate::Animation;
 use serde::Serialize;
 
 /// Counts of a glTF file, for `info`.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Inspection {
     /// What wrote the file, as it says.
     pub generator: Option<String>,
@@ -27,8 +28,10 @@ pub struct Inspection {
     pub lights: usize,
     /// Skins of the file.
     pub skins: usize,
-    /// Animations of the file (ignored).
+    /// Animations of the file.
     pub animations: usize,
+    /// What they are.
+    pub animation_list: Vec<Animation>,
     /// Triangles that the scene shows, instances counted each.
     pub triangles: usize,
     /// Extensions that the file uses.

@@ -127,7 +127,7 @@ fn is_no_number(word: &[u8]) -> bool {
 }
 
 /// An upper estimate of the bytes that the parsed document takes.
-fn parsed_size(json: &[u8]) -> u64 {
+pub(crate) fn parsed_size(json: &[u8]) -> u64 {
     // A map allocates room for eleven entries of key and value with its first; an element of an array is one
     // value, the array grown by doubling; strings are copied.
     const MAP: u64 = 700;

@@ -2,6 +2,7 @@
 //!
 //! * [`load`] reads a file; [`inspect`] says what is in one, even if it has no triangle;
 //!   [`with_source`] gives it as it is, to be written again.
+//! * [`MovingScene`]: the scene of a file with animations, at any [`Moment`] of them.
 //! * [`Scene`]: what everything else works on; [`Scene::of_mesh`] makes one of a [`SurfaceMesh`] that comes from elsewhere.
 //! * [`SurfacePoint`]: an address on the surface: triangle and barycentrics. What the surface looks like there:
 //!   [`Scene::base_color`], [`Scene::emitted`], [`Scene::opacity`], [`Scene::shading_normal`], [`Scene::bumped_normal`].
@@ -17,9 +18,11 @@
 //!
 //! The road of a file: `container` (GLB chunks), `json_text` → `mending` (typed by the `gltf` crate) → `document` → `hierarchy` (which nodes, where) →
 //! `primitive` (checked `accessor`s to triangles, morphed) → `assembly` (instances and skins into the world) →
-//! `variants`, `material_textures`, `texture_reader`, `material_properties`, `material_file` (materials, images) → `scene_cameras`, `punctual_light`, `image_based_light` (what is missing is made up). `flaws` tells authors what else is out of order.
+//! `variants`, `material_textures`, `texture_reader`, `material_properties`, `material_file` (materials, images) → `scene_cameras`, `punctual_light`, `image_based_light` (what is missing is made up). A scene in motion
+//! takes the same road with the numbers that an `animation` gives (`pose`: which of its triangles was which at rest). `flaws` tells authors what else is out of order.
 
 mod accessor;
+mod animation;
 mod assembly;
 mod attribute_name;
 mod back_faces;
@@ -53,6 +56,7 @@ mod own_world;
 mod percent_encoding;
 mod photographed;
 mod picture_texture;
+mod pose;
 mod primitive;
 mod punctual_light;
 mod radiance_file;
@@ -73,10 +77,11 @@ mod variants;
 mod views;
 mod world;
 
+pub use animation::{Animation, Moment};
 pub use back_faces::BackFaces;
 pub use error::{Fault, SceneError};
 pub use inspection::Inspection;
-pub use load::{inspect, load, with_source};
+pub use load::{MovingScene, inspect, load, with_source};
 pub use load_options::LoadOptions;
 pub use material::{
     AlphaMode, Anisotropy, Clearcoat, DiffuseTransmission, Iridescence, Material, NormalMap, Scalar, Sheen,
@@ -86,6 +91,7 @@ pub use mesh_health::MeshHealth;
 pub use model::{Image, ImageLevel, Light, LightKind, Node, Part, Scene, SceneCamera, Triangle};
 pub use own_extras::{CameraLens, EXTRAS_KEY, EXTRAS_VERSION};
 pub use picture_texture::PictureTexture;
+pub use pose::{Posed, RestTriangle};
 pub use source::{PartSource, Source, StoredElements};
 pub use surface_mesh::SurfaceMesh;
 pub use surface_point::{SurfaceField, SurfacePoint};

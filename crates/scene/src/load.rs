@@ -1,10 +1,12 @@
 //! From a file to a scene: the story of reading one, from top to bottom.
 
+use crate::animation::{self, Animation, Moment};
 use crate::assembly::{Placement, append};
 use crate::document::{Document, named};
 use crate::error::{Fault, Stop};
 use crate::hierarchy::Hierarchy;
 use crate::material_file::{MaterialReader, default_material};
+use crate::pose::{Posed, RestParts};
 use crate::primitive::Primitive;
 use crate::source::{PartSource, Source};
 use crate::triangulation::MODE_NAMES;
@@ -18,6 +20,7 @@ use progress::{Progress, Unwatched};
 use std::collections::HashMap;
 use std::panic::AssertUnwindSafe;
 use std::path::Path;
+use std::sync::Arc;
 
 /// Reads a .glb or .gltf file, and what it refers to inside its folder.
 ///
@@ -74,6 +77,111 @@ pub fn with_source<T>(
         let (scene, ..) = geometry(path, &document, &variants, &mut parts, progress)?;
         Ok(work(&Source { document: &document, scene, parts: parts.unwrap_or_default() }))
     })
+}
+
+/// The scene of a file at any moment of its animations.
+pub struct MovingScene {
+    rest: Arc<Scene>,
+    options: LoadOptions,
+    animations: Vec<Animation>,
+    parts: RestParts,
+    /// The materials of the file that it shows at rest.
+    materials: Vec<usize>,
+}
+
+impl MovingScene {
+    /// Looks at the file of a scene that was read with these options, but for the variant, which is the scene's.
+    ///
+    /// # Errors
+    /// As [`load`]; and the file is another than the scene was read from.
+    pub fn of(rest: Arc<Scene>, options: &LoadOptions, progress: &dyn Progress) -> Result<Self, SceneError> {
+        let options = LoadOptions { variant: rest.variant.clone(), ..options.clone() };
+        let path = rest.path.clone();
+        guarded(&path, || {
+            let bytes = read_file(&path, &options)?;
+            let document = parse(&path, &bytes, &options)?;
+            let variants = Variants::read(&document, options.variant.as_deref())?;
+            let mut sources = Some(Vec::new());
+            let (scene, _, used) = geometry(&path, &document, &variants, &mut sources, progress)?;
+            if scene.positions != rest.positions || scene.triangles != rest.triangles {
+                return Err(changed().into());
+            }
+            let parts = RestParts::of(&scene, &sources.unwrap_or_default());
+            let materials = used.by.into_keys().collect();
+            Ok(Self { rest, options, animations: animation::list(&document), parts, materials })
+        })
+    }
+
+    /// The scene at rest.
+    pub fn rest(&self) -> &Arc<Scene> {
+        &self.rest
+    }
+
+    /// The animations of the file.
+    pub fn animations(&self) -> &[Animation] {
+        &self.animations
+    }
+
+    /// The scene at a moment. Its cameras have the focus distances of those at rest, its world and how it is looked at are those of
+    /// the scene at rest.
+    ///
+    /// # Errors
+    /// As [`load`], but that nothing may be shown; and it has no such animation.
+    pub fn at(&self, moment: &Moment, progress: &dyn Progress) -> Result<Posed, SceneError> {
+        let (rest, path) = (&self.rest, &self.rest.path);
+        guarded(path, || {
+            let bytes = read_file(path, &self.options)?;
+            let document = parse(path, &bytes, &self.options)?;
+            let played = animation::played(&document, moment)?;
+            let document = document.with_numbers_of(played.root)?;
+            let variants = Variants::read(&document, self.options.variant.as_deref())?;
+            let mut sources = Some(Vec::new());
+            let (mut scene, _, used) = geometry(path, &document, &variants, &mut sources, progress)?;
+            let is_known = used.by.keys().all(|material| self.materials.contains(material));
+            if !is_known || played.changes_materials || used.uses_default && !self.has_default(&document) {
+                let mut materials = MaterialReader::new(&document);
+                used.fill(&mut scene, &document, &mut materials)?;
+                scene.images = materials.into_images();
+            } else {
+                (scene.materials, scene.images) = (rest.materials.clone(), rest.images.clone());
+            }
+            scene.normals.iter_mut().for_each(|normal| *normal = normal.normalize_or_zero());
+            self.see_as_at_rest(&mut scene);
+            let at_rest =
+                self.parts.of_triangles(&scene, &sources.unwrap_or_default()).ok_or_else(changed)?;
+            let mut warnings = document.warnings();
+            warnings.retain(|warning| !rest.warnings.contains(warning));
+            scene.warnings = warnings;
+            Ok(Posed { scene, at_rest })
+        })
+    }
+
+    /// Whether the scene at rest has glTF's default material.
+    fn has_default(&self, document: &Document<'_>) -> bool {
+        self.rest.materials.len() > document.len("materials")
+    }
+
+    /// Gives a scene what does not move.
+    fn see_as_at_rest(&self, scene: &mut Scene) {
+        let rest = &self.rest;
+        scene.variant = rest.variant.clone();
+        scene.variants = rest.variants.clone();
+        scene.own_world = rest.own_world.clone();
+        scene.world = rest.world.clone();
+        scene.back_faces = rest.back_faces;
+        scene.single_scattering = rest.single_scattering;
+        if rest.camera_is_invented {
+            (scene.cameras, scene.camera_is_invented) = (rest.cameras.clone(), true);
+        } else if scene.cameras.len() == rest.cameras.len() {
+            for (camera, at_rest) in scene.cameras.iter_mut().zip(&rest.cameras) {
+                camera.focus_distance = at_rest.focus_distance;
+            }
+        }
+    }
+}
+
+fn changed() -> Fault {
+    Fault::NotGltf("it has changed since it was opened".into())
 }
 
 /// Reads a file.
@@ -269,13 +377,15 @@ impl MeshNode<'_> {
                 };
                 let node_of_scene = scene.nodes.len() as u32;
                 let shown = append(scene, document, primitive, &placement, node_of_scene, *material)?;
-                if let Some(sources) = sources.as_mut().filter(|_| !shown.is_empty()) {
+                if let Some(sources) = sources.as_mut().filter(|_| !shown.vertices.is_empty()) {
+                    let elements = shown.vertices.iter().map(|&v| primitive.elements[v as usize]);
                     sources.push(PartSource {
                         node: node.index(),
                         instance: is_instanced.then_some((i, instance)),
                         mesh: mesh.index(),
                         primitive: *index,
-                        vertices: shown.iter().map(|&v| primitive.elements[v as usize]).collect(),
+                        vertices: elements.collect(),
+                        triangles: shown.triangles,
                     });
                 }
             }
@@ -364,6 +474,7 @@ fn inspection(document: &Document<'_>, hierarchy: &Hierarchy, scene: &Scene) -> 
         lights: document.len("lights"),
         skins: document.len("skins"),
         animations: document.len("animations"),
+        animation_list: animation::list(document),
         triangles: scene.triangles.len(),
         extensions_used: extension::used(document).map(String::from).collect(),
         extensions_required: extension::required(document).map(String::from).collect(),

@@ -61,7 +61,8 @@ pub struct Scene {
     pub views: Vec<View>,
     /// Where the light of photographs is looked up.
     pub photo_lookup: PhotoLookup,
-    /// Photographs that are only compared with: no light is made of them.
+    /// Photographs that are looked through and compared with, no light is made of them: those left out, and the views of a light field,
+    /// whose light the texture has.
     pub left_out: Vec<View>,
     /// Of a surface that was made from a picture: the picture as its texture.
     pub picture: Option<PictureTexture>,

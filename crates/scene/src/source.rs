@@ -34,6 +34,8 @@ pub struct PartSource {
     pub primitive: usize,
     /// Which element of the primitive's accessors each vertex of the part is, in the scene's order.
     pub vertices: Vec<u32>,
+    /// Which of the primitive's shown triangles it has; nothing where it has them all.
+    pub triangles: Option<Vec<u32>>,
 }
 
 /// Elements of an accessor, as they are stored.

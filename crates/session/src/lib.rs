@@ -24,6 +24,7 @@ mod kept_files;
 mod light_field;
 mod output;
 mod preview;
+mod sequence;
 mod session;
 #[cfg(test)]
 #[path = "../tests/tiny_glb/mod.rs"]
@@ -33,8 +34,8 @@ pub use baselines::{FirstHits, LayeredOptions, ScatterOptions, ViewsOptions};
 pub use carrying::{CarriedNode, CarriedPaint};
 pub use commands::{COMMANDS, Command, CommandId, CommandInfo, Event, KeyMap, Menu, Shortcut};
 pub use display::{
-    Display, LivePicture, Screen, ScreenPixel, Thumbnail, ThumbnailResult, Thumbnails, Tone, ToneCurve,
-    to_screen,
+    Display, LivePicture, OcioViews, Screen, ScreenPixel, Thumbnail, ThumbnailResult, Thumbnails, Tone,
+    ToneCurve, to_screen,
 };
 pub use document::{
     Beginning, CameraChoice, CameraEdit, Document, HistoryStep, Input, InputKind, NearQuestion, Stage,
@@ -49,12 +50,16 @@ pub use light_field::{
     TexelStatistics, bake, bake_unpacked, write_salf,
 };
 pub use output::{
-    Aov, BlurHistogram, LeftOut, LeftOutPicture, MOST_CELLS_A_SIDE, Reference, ReferenceKind, RenderCost,
-    RenderOptions, Rendered, Renderer, Stereo, StereoForm, ToldBy, Verification, VerifiedError, render,
-    render_input, render_stereo, write_unwrapped,
+    Aov, BlurHistogram, CocConvention, LeftOut, LeftOutPicture, MOST_CELLS_A_SIDE, Reference, ReferenceKind,
+    RenderCost, RenderOptions, Rendered, Renderer, Stereo, StereoForm, ToldBy, Verification, VerifiedError,
+    render, render_input, render_stereo, thumbnail, write_unwrapped,
 };
 pub use preview::{DrawingCosts, PictureTimes, Preview, PreviewActivity, PreviewKind, Quality};
 pub use relief::{DepthRepair, DepthStroke};
+pub use sequence::{
+    Baking, FrameFiles, FrameList, FrameOutcome, FrameReport, SequenceOptions, SequenceReport, Shard, Take,
+    TakeOptions, WritePicture, render_frames,
+};
 pub use session::{FullSize, Session, SessionOptions};
 pub use slf::PhotographLight;
 pub use trace::truth::Region;

@@ -39,4 +39,4 @@ mod widest;
 pub use gpu::{AdapterDescription, BackendChoice, Gpu, GpuAbsent, PictureOnCard, adapters};
 pub use lens_in_use::Tolerance;
 pub use nodes::QUANTUM;
-pub use splatter::{SplatError, Splatter};
+pub use splatter::{Mattes, SETS, SplatError, Splatter};

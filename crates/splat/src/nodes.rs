@@ -31,6 +31,12 @@ impl Scale {
     /// Bits that are given up when a pixel is covered more often.
     const STEP: i32 = 8;
 
+    /// What a quantum of a node's light weighs among those of other nodes: of levels and sums of their own.
+    fn weight_of_quantum(self, node: &SplatNode) -> f32 {
+        let bits = if node.is_bright { self.bright_bits } else { self.dim_bits };
+        4f32.powi(node.level.into()) * (-bits as f32).exp2()
+    }
+
     /// For light that converges more.
     pub fn coarser(self) -> Option<Self> {
         let dim_bits = self.dim_bits - Self::STEP;
@@ -98,6 +104,9 @@ fn contrast(node: &Node) -> u8 {
     let octaves = (share / least).log2() / 2.0;
     (octaves * CONTRASTS_AN_OCTAVE as f32).round().clamp(0.0, (CONTRASTS - 1) as f32) as u8
 }
+
+/// Red, green and blue.
+pub type Rgb = [f32; 3];
 
 /// What a node sees of the aperture: rows of 16 cells, row 0 at v = −1, column 0 (u = −1) the lowest bit.
 pub type Cells = [u16; 16];
@@ -218,6 +227,43 @@ impl Nodes {
             node.light = node.light.map(|value| value * factor);
         }
         self.scale = scale;
+    }
+
+    /// Gives samples other light: `light_of` tells red, green and blue of a sample, whose light is told to it, in shares of a pixel's
+    /// coverage. Nodes that stand for several have what these have together. Coverage, and what is drawn, stays as it is.
+    pub fn relight(&mut self, light_of: &(impl Fn(u32, Rgb) -> Rgb + Sync)) {
+        let mut rest = self.nodes.as_mut_slice();
+        let mut blocks = Vec::with_capacity(self.blocks.len());
+        for block in &self.blocks {
+            let (nodes, after) = std::mem::take(&mut rest).split_at_mut(block.len());
+            blocks.push((nodes, block.start));
+            rest = after;
+        }
+        let (samples, scale) = (&self.sample_of_node, self.scale);
+        blocks.into_par_iter().for_each(|(nodes, first)| {
+            // Those that a node stands for come after it.
+            for index in (0..nodes.len()).rev() {
+                let node = nodes[index];
+                let [.., coverage] = node.light;
+                if coverage <= 0.0 {
+                    continue;
+                }
+                let rgb = if node.is_leaf() {
+                    let own = [0, 1, 2].map(|c| node.light[c] / coverage);
+                    light_of(samples[first as usize + index], own)
+                } else {
+                    let children = node.children().start - first..node.children().end - first;
+                    let mut sum = [0.0; 4];
+                    for child in &nodes[children.start as usize..children.end as usize] {
+                        let weight = scale.weight_of_quantum(child);
+                        (0..4).for_each(|c| sum[c] += weight * child.light[c]);
+                    }
+                    [0, 1, 2].map(|c| if sum[3] > 0.0 { sum[c] / sum[3] } else { 0.0 })
+                };
+                let [r, g, b] = rgb.map(|c| c * coverage);
+                nodes[index].light = [r, g, b, coverage];
+            }
+        });
     }
 
     /// The light that a bright node adds to the sum of ordinary ones: its coverage.

@@ -3,11 +3,13 @@
 mod aperture_in_use;
 mod card;
 mod error;
+mod mattes;
 mod on_card;
 mod resolver;
 mod wanted;
 
 pub use error::SplatError;
+pub use mattes::{Mattes, SETS};
 
 use crate::bands::Pace;
 use crate::drawn::{BlockList, Changes};

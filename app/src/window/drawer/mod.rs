@@ -1,11 +1,12 @@
 //! The panels that are folded away at first, in tabs beneath the views: the atlas, the aperture as one point sees it, how
-//! blurred the picture is, the photographs of a capture.
+//! blurred the picture is, the photographs of a capture, the timeline.
 
 mod aperture_pad;
 mod aperture_view;
 mod atlas_view;
 mod histogram_view;
 mod photograph_strip;
+mod timeline;
 
 use super::Action;
 use super::hand::Hand;
@@ -16,6 +17,7 @@ use egui::Ui;
 use histogram_view::HistogramView;
 use photograph_strip::PhotographStrip;
 use session::{Session, SurfaceHit};
+use timeline::Timeline;
 
 /// The drawer's state between frames.
 #[derive(Default)]
@@ -24,6 +26,7 @@ pub struct Drawer {
     aperture: ApertureView,
     histogram: HistogramView,
     photographs: PhotographStrip,
+    timeline: Timeline,
 }
 
 impl Drawer {
@@ -47,6 +50,11 @@ impl Drawer {
         self.aperture.has_point()
     }
 
+    /// Plays the timeline, or stops it.
+    pub fn toggle_playing(&mut self) {
+        self.timeline.toggle_playing();
+    }
+
     /// Where the atlas is on screen.
     pub fn atlas_rect(&self) -> egui::Rect {
         self.atlas.rect()
@@ -68,6 +76,7 @@ impl Drawer {
             Pane::Aperture => self.aperture.ui(ui, session, actions),
             Pane::Histogram => self.histogram.ui(ui, session),
             Pane::Photographs => self.photographs.ui(ui, session, actions),
+            Pane::Timeline => self.timeline.ui(ui, session, actions),
             Pane::Paint | Pane::Picture | Pane::Inspector => {}
         }
     }

@@ -83,7 +83,7 @@ impl PhotographStrip {
             return;
         }
         let picture = rect.with_max_y(rect.bottom() - NAME_HEIGHT);
-        let is_left_out = number >= scene.views.len();
+        let is_left_out = number >= scene.views.len() && scene.picture.is_none();
         let why_not = self.paint(ui, picture, number, is_left_out);
         let is_end = self.path.as_ref().is_some_and(|path| [path.from, path.to].contains(&number));
         let visuals = ui.visuals();

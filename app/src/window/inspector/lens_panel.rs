@@ -8,7 +8,7 @@ use crate::window::{Action, ViewSettings};
 use egui::{Button, ComboBox, DragValue, Slider, Ui};
 use lens::{Camera, Exposure};
 use project::{PresetKind, PresetShelf};
-use session::{CameraEdit, Command, CommandId, Document, Session, ToneCurve};
+use session::{CameraEdit, Command, CommandId, Document, OcioViews, Session, ToneCurve};
 
 /// Full stops that the f-number's menu offers.
 const STOPS: [f64; 9] = [0.7, 1.0, 1.4, 2.0, 2.8, 4.0, 5.6, 8.0, 16.0];
@@ -226,14 +226,22 @@ pub fn picture_panel(
             ui.add(value.suffix(" stops").max_decimals(2))
         });
 
-        let tip = "What becomes of light brighter than white on the screen; exported pictures do not change.";
+        let tip = "What becomes of light brighter than white on the screen, or a view of the configuration that $OCIO names; exported EXRs do not change.";
         row(ui, "Tone mapping", tip, |ui| {
             let combo = ComboBox::from_id_salt("tone mapping").selected_text(settings.tone_curve.name());
             combo
                 .width(110.0)
+                .truncate()
                 .show_ui(ui, |ui| {
                     for curve in ToneCurve::ALL {
                         ui.selectable_value(&mut settings.tone_curve, curve, curve.name());
+                    }
+                    let views = OcioViews::of_environment();
+                    for curve in (0..views.len() as u16).map(ToneCurve::Ocio) {
+                        ui.selectable_value(&mut settings.tone_curve, curve, curve.name());
+                    }
+                    if let Some(problem) = &views.problem {
+                        ui.label(problem);
                     }
                 })
                 .response

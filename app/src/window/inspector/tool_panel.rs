@@ -5,12 +5,12 @@ use crate::window::keys;
 use crate::window::tool_settings::{GradientEnd, ToolSettings};
 use crate::window::{Action, Tool};
 use egui::{Button, ComboBox, DragValue, Ui};
-use focus::GradientShape;
+use focus::{Ease, GradientShape};
 use session::{CommandId, Document};
 
 /// Whether the tool has anything to set here.
 pub fn has_settings(tool: Tool) -> bool {
-    tool == Tool::Gradient || tool.selects()
+    matches!(tool, Tool::Gradient | Tool::RackFocus) || tool.selects()
 }
 
 /// Gradients: shape, space, end. Selections: how they reach, and what is selected.
@@ -23,6 +23,10 @@ pub fn tool_panel(
 ) {
     if tool == Tool::Gradient {
         rows(ui, "gradient", |ui| gradient_rows(ui, settings));
+        return;
+    }
+    if tool == Tool::RackFocus {
+        rows(ui, "rack focus", |ui| rack_rows(ui, settings));
         return;
     }
     rows(ui, "selection", |ui| {
@@ -58,6 +62,36 @@ pub fn selected(document: &Document) -> String {
             let share = selection.count() as f64 / all.max(1) as f64 * 100.0;
             format!("{} % of all texels", controls::significant(share))
         }
+    }
+}
+
+fn rack_rows(ui: &mut Ui, settings: &mut ToolSettings) {
+    let rack = &mut settings.rack;
+    let tip = "How long the lens takes from what was clicked first to what was clicked second.";
+    row(ui, "Takes", tip, |ui| {
+        ui.add(
+            DragValue::new(&mut rack.seconds).range(0.01..=3600.0).speed(0.02).suffix(" s").max_decimals(2),
+        )
+    });
+    let tip = "How it goes: at an even pace, slowly at both ends, or at once when its time is over.";
+    row(ui, "Goes", tip, |ui| {
+        let combo = ComboBox::from_id_salt("rack ease").selected_text(ease_name(rack.ease)).width(130.0);
+        combo
+            .show_ui(ui, |ui| {
+                for (_, ease) in Ease::ALL {
+                    ui.selectable_value(&mut rack.ease, ease, ease_name(ease));
+                }
+            })
+            .response
+    });
+}
+
+/// What an ease is called.
+pub fn ease_name(ease: Ease) -> &'static str {
+    match ease {
+        Ease::Hold => "at once",
+        Ease::Linear => "evenly",
+        Ease::Smooth => "smoothly",
     }
 }
 

@@ -49,10 +49,11 @@ impl Default for Layout {
     fn default() -> Self {
         let mut tiles = Tiles::default();
         let mut pane = |pane| tiles.insert_pane(pane);
-        let [paint, picture, inspector, atlas, aperture, histogram, photographs] = Pane::ALL.map(&mut pane);
+        let [paint, picture, inspector, atlas, aperture, histogram, photographs, timeline] =
+            Pane::ALL.map(&mut pane);
         let views = Linear::new_binary(LinearDir::Horizontal, [paint, picture], PAINT_SHARE);
         let views = tiles.insert_container(views);
-        let drawer = tiles.insert_tab_tile(vec![atlas, aperture, histogram, photographs]);
+        let drawer = tiles.insert_tab_tile(vec![atlas, aperture, histogram, photographs, timeline]);
         tiles.set_visible(drawer, false);
         let drawer_share = DRAWER_HEIGHT / NOMINAL[1];
         let left = Linear::new_binary(LinearDir::Vertical, [views, drawer], 1.0 - drawer_share);

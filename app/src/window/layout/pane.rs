@@ -20,11 +20,13 @@ pub enum Pane {
     Histogram,
     /// The photographs of a capture.
     Photographs,
+    /// The keys over time.
+    Timeline,
 }
 
 impl Pane {
     /// All.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 8] = [
         Self::Paint,
         Self::Picture,
         Self::Inspector,
@@ -32,6 +34,7 @@ impl Pane {
         Self::Aperture,
         Self::Histogram,
         Self::Photographs,
+        Self::Timeline,
     ];
 
     /// What it is called.
@@ -44,6 +47,7 @@ impl Pane {
             Self::Aperture => "Aperture view",
             Self::Histogram => "Blur histogram",
             Self::Photographs => "Photographs",
+            Self::Timeline => "Timeline",
         }
     }
 
@@ -56,6 +60,7 @@ impl Pane {
             Self::Aperture => Some(CommandId::ShowAperture),
             Self::Histogram => Some(CommandId::ShowHistogram),
             Self::Photographs => Some(CommandId::ShowPhotographs),
+            Self::Timeline => Some(CommandId::ShowTimeline),
         }
     }
 

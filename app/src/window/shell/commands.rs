@@ -77,6 +77,7 @@ impl Shell {
             }
             CommandId::ShowHistogram => self.layout.toggle(Pane::Histogram),
             CommandId::ShowPhotographs => self.layout.toggle(Pane::Photographs),
+            CommandId::ShowTimeline => self.layout.toggle(Pane::Timeline),
             CommandId::NextToneCurve => self.settings.tone_curve = self.settings.tone_curve.next(),
             CommandId::LightOrDark => self.settings.light_theme = !self.settings.light_theme,
             CommandId::ScaleUp => self.rescale(1),
@@ -108,6 +109,7 @@ impl Shell {
             | CommandId::SelectFacing
             | CommandId::SelectDepth
             | CommandId::FocusHere
+            | CommandId::RackFocus
             | CommandId::Pick
             | CommandId::Inspect => self.choose(id),
             CommandId::SelectAll => {
@@ -190,6 +192,13 @@ impl Shell {
                 let toggled = self.looking_round.toggle(&mut self.session, context);
                 self.report(toggled);
             }
+            CommandId::KeyLens => self.key_lens(),
+            CommandId::KeyLayer => self.key_layer(),
+            CommandId::RemoveKeys => self.remove_keys(),
+            CommandId::PlayTimeline => {
+                self.layout.open(Pane::Timeline);
+                self.drawer.toggle_playing();
+            }
             CommandId::Normalise => {
                 if let Some(document) = self.session.document() {
                     let other = match document.exposure {
@@ -240,6 +249,7 @@ impl Shell {
         let mode = tool.mode(if own { document.brush.mode } else { BrushMode::Set });
         self.edit_brush(|brush, _| brush.mode = mode);
         self.tool = tool;
+        self.rack_from = None;
     }
 
     /// Changes the layer that is painted on.

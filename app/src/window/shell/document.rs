@@ -151,6 +151,7 @@ impl Shell {
         self.tool = Tool::Brush;
         self.picture.opened();
         self.drawer.opened();
+        self.rack_from = None;
         let opening = self.opening.take();
         if let Some(document) = self.session.document() {
             self.paint.opened(document, context);

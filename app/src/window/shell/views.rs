@@ -184,7 +184,12 @@ impl Panes for Contents<'_> {
         match pane {
             Pane::Paint => self.paint.ui(ui, session, hand, settings.look(), actions),
             Pane::Picture => picture.ui(ui, session, hand, settings.display(), actions),
-            Pane::Inspector | Pane::Atlas | Pane::Aperture | Pane::Histogram | Pane::Photographs => {
+            Pane::Inspector
+            | Pane::Atlas
+            | Pane::Aperture
+            | Pane::Histogram
+            | Pane::Photographs
+            | Pane::Timeline => {
                 ui.spacing_mut().item_spacing.y = spacing;
                 let frame = egui::Frame::new().inner_margin(egui::Margin::symmetric(8, 2));
                 frame.show(ui, |ui| match pane {

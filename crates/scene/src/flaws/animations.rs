@@ -1,4 +1,4 @@
-//! Animations. They are not played; their flaws are told all the same.
+//! Animations. Their flaws are told, whether they are played or not.
 
 use crate::accessor::{Accessor, Component};
 use crate::document::Document;

@@ -1,5 +1,7 @@
 //! Where the shared test data lies, and what is in it.
 
+#![allow(dead_code, reason = "each file of tests needs a part of it")]
+
 use std::path::{Path, PathBuf};
 
 /// A folder of the shared test data; says so loudly if it is absent.

@@ -5,7 +5,7 @@ use crate::document::{CameraEdit, SurfaceHit};
 use crate::editing::{FillRegion, StrokePoint};
 use crate::jobs::JobId;
 use crate::output::ReferenceKind;
-use focus::{Brush, Combine, Gradient, LayerEdit};
+use focus::{Brush, Combine, Ease, Gradient, LayerEdit, LensMotion};
 use glam::DVec2;
 use lens::{Exposure, FocusOffset};
 use project::{CaptureChoices, RecordedStep, SelectionShape};
@@ -53,6 +53,19 @@ pub enum Command {
     Camera(CameraEdit),
     /// Ends a run of edits (a slider was let go): the next one is a step of undo of its own.
     FinishEdit,
+    /// Shows the document at a time, s: lens and layers as their keys say. No step of undo.
+    GoToTime(f64),
+    /// Gives the lens other keys, as a step of undo of this name.
+    SetLensMotion(&'static str, LensMotion),
+    /// Has the lens go from one point of the surface to another.
+    Rack {
+        /// The points.
+        points: [SurfaceHit; 2],
+        /// When it leaves the first and when it is at the second, s.
+        seconds: [f64; 2],
+        /// How it goes.
+        ease: Ease,
+    },
     /// Layout and viewpoint, to be saved with the document; any JSON.
     SetView(serde_json::Value),
     /// How the sum becomes the picture.

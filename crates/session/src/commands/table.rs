@@ -43,6 +43,7 @@ pub enum CommandId {
     ShowAperture,
     ShowHistogram,
     ShowPhotographs,
+    ShowTimeline,
     ShowInspector,
     EnlargePanel,
     FloatPanel,
@@ -73,6 +74,7 @@ pub enum CommandId {
     PlaceFocalPlane,
     SharpHere,
     FocusHere,
+    RackFocus,
     Pick,
     Inspect,
     ResetMap,
@@ -111,6 +113,10 @@ pub enum CommandId {
     SaveLensPreset,
     SaveBokehPreset,
     LookRound,
+    KeyLens,
+    KeyLayer,
+    RemoveKeys,
+    PlayTimeline,
     Normalise,
     Wipe,
     Verify,
@@ -281,6 +287,7 @@ pub const COMMANDS: &[CommandInfo] = &[
     row(CommandId::ShowAperture, Menu::View, Shortcut::key("F8"), "Aperture view", "Show what of the aperture a point of the scene sees; or fold it away."),
     row(CommandId::ShowHistogram, Menu::View, Shortcut::key("F9"), "Blur histogram", "Show how much of the picture has which circle of confusion; or fold it away."),
     row(CommandId::ShowPhotographs, Menu::View, Shortcut::key("F10"), "Photographs", "Show the photographs of a capture, to look through one or on the way between two; or fold them away."),
+    row(CommandId::ShowTimeline, Menu::View, Shortcut::key("F4"), "Timeline", "Show the keys of lens and layer over time, to scrub and play; or fold them away."),
     row(CommandId::ShowInspector, Menu::View, Shortcut::key("F6"), "Inspector", "Show the panels of lens, focus, layers and brush; or fold them away."),
     row(CommandId::EnlargePanel, Menu::View, Shortcut::command("Space"), "Enlarge panel", "Show the panel that the pointer was over last alone, or all panels again."),
     row(CommandId::FloatPanel, Menu::View, None, "Float panel", "Let the panel that the pointer was over last float over the others, or put it back."),
@@ -311,6 +318,7 @@ pub const COMMANDS: &[CommandInfo] = &[
     row(CommandId::PlaceFocalPlane, Menu::Focus, Shortcut::shift("D"), "Place focal plane", "Click three places in either view: the focal plane of the layer runs through the last three. Drag a point to move it."),
     row(CommandId::SharpHere, Menu::Focus, Shortcut::shift("H"), "Make sharp", "Click an object in either view to make it sharp; everything else stays as it is."),
     row(CommandId::FocusHere, Menu::Focus, Shortcut::key("H"), "Focus here", "Click in either view to focus the lens there."),
+    row(CommandId::RackFocus, Menu::Focus, Shortcut::shift("K"), "Rack focus", "Click in either view what is sharp now, then what becomes sharp: the lens goes from one to the other over time."),
     row(CommandId::Pick, Menu::Focus, Shortcut::key("I"), "Pick", "Click in either view to take the brush's focus from there."),
     row(CommandId::Inspect, Menu::Focus, Shortcut::key("Q"), "Aperture from here", "Click in either view to see what of the aperture that point sees, and what it sends there."),
     row(CommandId::ResetMap, Menu::Focus, None, "Reset all paint", "Return the whole scene to the ordinary lens."),
@@ -349,6 +357,10 @@ pub const COMMANDS: &[CommandInfo] = &[
     row(CommandId::SaveLensPreset, Menu::Lens, None, "Save lens preset…", "Keep focal length, f-number and sensor under a name."),
     row(CommandId::SaveBokehPreset, Menu::Lens, None, "Save bokeh preset…", "Keep the aperture's shape under a name, a mask with it."),
     row(CommandId::LookRound, Menu::Lens, Shortcut::key("J"), "Look round the aperture", "Show the picture through one point of the aperture that runs round its rim; again or Esc ends it."),
+    row(CommandId::KeyLens, Menu::Lens, Shortcut::key("Y"), "Key lens", "Keep focus distance and f-number as they are for this time of the timeline."),
+    row(CommandId::KeyLayer, Menu::Layer, Shortcut::shift("Y"), "Key layer", "Keep the opacity of this layer as it is for this time of the timeline."),
+    row(CommandId::RemoveKeys, Menu::Lens, Shortcut::alt("Y"), "Remove lens keys", "Take away the keys that the lens has at this time of the timeline."),
+    row(CommandId::PlayTimeline, Menu::Lens, Shortcut::alt("P"), "Play", "Let lens and layers move as their keys say, again and again; or stop there."),
     row(CommandId::Normalise, Menu::Render, Shortcut::key("N"), "Normalise exposure", "Keep a white scene white, or show the conserved energy of the model."),
     row(CommandId::Bake, Menu::Render, Shortcut::key("F5"), "Bake again", "Bake the light field anew."),
     row(CommandId::RenderTruth, Menu::Render, Shortcut::key("F12"), "Render ground truth", "Ray trace the picture, to compare the preview with."),
@@ -385,6 +397,9 @@ impl CommandId {
                 | FocusNearer
                 | FocusFarther
                 | CameraFromView
+                | KeyLens
+                | KeyLayer
+                | RemoveKeys
         )
     }
 

@@ -4,6 +4,7 @@
 
 mod glare;
 mod live_picture;
+mod ocio_views;
 mod picture_ring;
 mod screen;
 mod thumbnails;
@@ -11,6 +12,7 @@ mod tone;
 mod tone_curve;
 
 pub use live_picture::LivePicture;
+pub use ocio_views::OcioViews;
 pub use screen::Screen;
 pub use thumbnails::{Thumbnail, ThumbnailResult, Thumbnails};
 pub use tone::{Display, ScreenPixel, Tone, to_screen};

@@ -1,5 +1,7 @@
 //! Tone mapping: bright radiance brought within what a screen can show.
 
+use super::ocio_views::OcioViews;
+use scene::linear_from_srgb;
 use serde::{Deserialize, Serialize};
 
 /// How radiance beyond white is brought to the screen. All take and give linear RGB with Rec. 709 primaries.
@@ -12,10 +14,12 @@ pub enum ToneCurve {
     Neutral,
     /// AgX: everything rolls off, bright colours pale as on film.
     Agx,
+    /// A view of the configuration that `$OCIO` names, by its number ([`OcioViews`]); what another configuration has no view for is clipped.
+    Ocio(u16),
 }
 
 impl ToneCurve {
-    /// All, as a menu offers them.
+    /// All but those of `$OCIO`, as a menu offers them.
     pub const ALL: [Self; 3] = [Self::Clip, Self::Neutral, Self::Agx];
 
     /// What it is called.
@@ -24,6 +28,7 @@ impl ToneCurve {
             Self::Clip => "None",
             Self::Neutral => "PBR Neutral",
             Self::Agx => "AgX",
+            Self::Ocio(view) => OcioViews::of_environment().name(view).unwrap_or("None"),
         }
     }
 
@@ -39,6 +44,10 @@ impl ToneCurve {
             Self::Clip => rgb,
             Self::Neutral => neutral(rgb.map(|c| c.max(0.0))),
             Self::Agx => agx(rgb.map(|c| c.max(0.0))),
+            // As a screen of sRGB's encoding shows what the display of the view is sent.
+            Self::Ocio(view) => OcioViews::of_environment()
+                .shown(view, rgb)
+                .map_or(rgb, |sent| sent.map(|c| linear_from_srgb(c.into()))),
         }
     }
 }

@@ -11,7 +11,7 @@ use capture::{
     NearEnd,
 };
 use glam::{DVec2, DVec3};
-use lens::Camera;
+use lens::{Camera, Intrinsics};
 use progress::Progress;
 use project::CaptureChoices;
 use scene::{LoadOptions, Scene, View};
@@ -148,11 +148,12 @@ fn names(views: &[View]) -> String {
     }
 }
 
-/// The camera of a photograph without its lens's distortion: a pinhole, what its axis meets in the middle of the picture. Sensor and
-/// background are those of `like`. `bounds` are the scene's, lowest and highest corner.
+/// The camera of a photograph without its lens's distortion: a pinhole, its sensor shifted as far as the lens's axis meets the picture beside
+/// its middle. Sensor height and background are those of `like`. `bounds` are the scene's, lowest and highest corner.
 pub fn camera_of_photograph(bounds: (DVec3, DVec3), view: &View, like: &Camera) -> Camera {
     let [width, height] = view.lens.size_px();
-    let [_, focal_px] = view.lens.intrinsics().focal_px;
+    let Intrinsics { focal_px: [_, focal_px], principal_px: [x, y], .. } = *view.lens.intrinsics();
+    let shift = (DVec2::new(0.5 * f64::from(width) - x, y - 0.5 * f64::from(height))) / f64::from(height);
     let along = |point: DVec3| (point - view.position()).dot(view.forward());
     let middle = along(0.5 * (bounds.0 + bounds.1));
     Camera {
@@ -161,7 +162,7 @@ pub fn camera_of_photograph(bounds: (DVec3, DVec3), view: &View, like: &Camera) 
         yfov: 2.0 * (0.5 * f64::from(height) / focal_px).atan(),
         focus_distance: if middle > 0.0 { middle } else { like.focus_distance },
         aperture_radius: 0.0,
-        shift: DVec2::ZERO,
+        shift,
         camera_to_world: view.camera_to_world,
         ..like.clone()
     }

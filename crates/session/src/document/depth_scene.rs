@@ -2,9 +2,11 @@
 
 use super::of_picture::{OfPicture, margin_px, of_size, range, relief_error, show, usual_focal_px};
 use super::picture_scene::{Named, PictureSpace, Shown, picture_camera, picture_scene, uncalibrated};
+use super::picture_views::picture_view;
 use crate::error::{SessionError, file_name};
 use crate::jobs::Steps;
 use capture::{CaptureError, DepthMeaning, DepthPictureOptions};
+use glam::DVec2;
 use lens::Camera;
 use progress::Stage;
 use relief::{DepthStroke, Relief, ReliefOptions, filled, repaired, upsampled};
@@ -84,7 +86,10 @@ pub(super) fn load_depth_picture(
     let origin = format!("{width} × {height} px, {what} of {}", file_name(&found.depth_file));
     let named = Named { name: &found.name, path, origin };
     let shown = Shown { pixels: &whole.pixels, size: found.size.map(|side| side as usize), by: by as usize };
-    let scene = picture_scene(&relief, &shown, &space, &named, f64::from(middle));
+    let mut scene = picture_scene(&relief, &shown, &space, &named, f64::from(middle));
+    // Seen as fine as it is, though the surface may be coarser.
+    let fine = PictureSpace { focal_px: space.focal_px * f64::from(by), ..space };
+    scene.left_out.extend(picture_view(&found.name, &found.picture, DVec2::ZERO, found.size, &fine));
     // At first half as wide as it may be.
     let camera = picture_camera(&scene, found.size, &space, reach / 2.0);
     let is_incomplete = found.remarks.iter().any(|remark| remark.is_incomplete);

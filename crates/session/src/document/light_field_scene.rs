@@ -3,6 +3,7 @@
 use super::found_disparity::found_disparity;
 use super::of_picture::{OfPicture, margin_px, of_size, range, relief_error, show, usual_focal_px};
 use super::picture_scene::{Named, PictureSpace, Shown, picture_camera, picture_scene, uncalibrated};
+use super::picture_views::picture_view;
 use crate::error::{SessionError, file_name};
 use crate::jobs::Steps;
 use capture::{CaptureError, GivenDisparity, LightField, LightFieldOptions, Optics};
@@ -64,7 +65,12 @@ pub(super) fn load_light_field(
     let origin = format!(
         "{views} views of {width} × {height} px, disparities {low:.2} to {high:.2} px a step, {whence}"
     );
-    let scene = picture_scene(&relief, &shown, &space, &Named { name: &field.name, path, origin }, focus);
+    let named = Named { name: &field.name, path, origin };
+    let mut scene = picture_scene(&relief, &shown, &space, &named, focus);
+    let views = field.views.iter();
+    let views =
+        views.filter_map(|view| picture_view(&view.name, &view.picture, view.position, field.size, &space));
+    scene.left_out = views.collect();
     let mut camera = picture_camera(&scene, field.size, &space, reach);
     if let Some(longer_mm) = field.optics.sensor_size_mm {
         let [width, height] = field.size.map(f64::from);

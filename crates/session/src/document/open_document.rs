@@ -13,7 +13,8 @@ use crate::error::{SessionError, file_name};
 use crate::jobs::Steps;
 use atlas::UnwrapOptions;
 use focus::{
-    Brush, Changed, FocusMap, FocusRecipe, LayerStack, RecipeEntry, Selection, SelectionResult, Thumbnail,
+    Brush, Changed, FocusMap, FocusRecipe, LayerStack, LensMotion, RecipeEntry, Selection, SelectionResult,
+    Thumbnail,
 };
 use lens::{Camera, Exposure, FocusOffset};
 use project::{CaptureChoices, FocusFile, NamedCamera, ProjectFile, TexelSet, WorldFile};
@@ -46,6 +47,10 @@ pub struct Document {
     pub map: FocusMap,
     /// The shot camera.
     pub camera: Camera,
+    /// How the lens moves over time; how layers do, they know themselves.
+    pub lens_motion: LensMotion,
+    /// The time that is shown, s: camera and layers are as their keys say then. Neither saved nor undone.
+    pub seconds: f64,
     /// How the sum becomes the picture.
     pub exposure: Exposure,
     /// The brush of the strokes to come.
@@ -247,6 +252,8 @@ impl Document {
             map,
             adjusted_for: AdjustedView::of(&input.camera),
             camera: input.camera.clone(),
+            lens_motion: template.lens_motion.clone(),
+            seconds: 0.0,
             exposure: input.exposure(),
             brush: template.brush.clone(),
             view: template.view.clone(),
@@ -266,6 +273,7 @@ impl Document {
         let scene = &self.stage.scene;
         let mut project = self.template.clone();
         project.cameras[project.active_camera].camera = self.camera.clone();
+        project.lens_motion = self.lens_motion.clone();
         project.exposure = self.exposure;
         project.back_faces = scene.back_faces;
         project.variant = scene.variant.clone();

@@ -12,6 +12,7 @@
 //! | f | focal length | px |
 //! | x, y, z | position to the right, upward, ahead of the camera | scene units |
 
+use super::picture_regions::regions;
 use atlas::Atlas;
 use glam::{DMat4, DVec3, Mat3, Vec2};
 use lens::Camera;
@@ -177,7 +178,7 @@ pub(super) fn picture_camera(scene: &Scene, size: [u32; 2], space: &PictureSpace
     }
 }
 
-/// The atlas that the texture of a surface from a picture is, if it is one.
+/// The atlas that the texture of a surface from a picture is, if it is one. Its charts are what hangs together in depth.
 pub(super) fn picture_atlas(scene: &Scene) -> Option<Atlas> {
     let picture = scene.picture.as_ref()?;
     let size = Vec2::new(picture.size[0] as f32, picture.size[1] as f32);
@@ -186,12 +187,12 @@ pub(super) fn picture_atlas(scene: &Scene) -> Option<Atlas> {
         .iter()
         .map(|triangle| triangle.vertices.map(|v| scene.uv[0][v as usize] * size))
         .collect();
-    let chart_of = corners.iter().map(|corners| u32::from(corners[0].y >= picture.behind as f32)).collect();
+    let (chart_of, count) = regions(scene, &corners);
     // Texels a unit of length, where one is at the distance that the camera focuses on.
     let camera = scene.cameras.first()?;
     let height = 2.0 * camera.focus_distance * (0.5 * camera.yfov).tan();
     let density = f64::from(picture.shown()[1]) / height;
-    Some(Atlas::new(picture.size, corners, chart_of, &[0, 0], density))
+    Some(Atlas::new(picture.size, corners, chart_of, &vec![0; count], density))
 }
 
 /// What layers say a texel, row by row of the whole texture; rows between them say `between`.
@@ -280,5 +281,37 @@ mod tests {
         assert_eq!([atlas.width, atlas.height], [30, 48]);
         // HDR survives.
         assert_eq!(scene.materials[0].base_color.x, 1.8000001);
+    }
+    #[test]
+    fn what_hangs_together_in_depth_is_a_chart_and_specks_belong_to_what_they_lie_in() {
+        let size = [40, 30];
+        // A card before a wall, and a speck on the card.
+        let disparity = |x: usize, y: usize| match (x, y) {
+            (18..=19, 14..=15) => 5.0,
+            (10..30, 8..22) => 3.0,
+            _ => 0.0,
+        };
+        let disparity: Vec<f32> = (0..size[0] * size[1]).map(|k| disparity(k % 40, k / 40)).collect();
+        let picture: Vec<[f32; 3]> = disparity.iter().map(|d| [0.2 + 0.1 * d, 0.3, 0.4]).collect();
+        let options = ReliefOptions { reach: 2.0, margin_px: 2, ..ReliefOptions::default() };
+        let relief = Relief::of::<Infallible>(size, &disparity, &picture, &[], &options, &Unwatched).unwrap();
+        let space = uncalibrated([0.0, 5.0], 40.0);
+        let named = Named { name: "a", path: Path::new("a.png"), origin: String::new() };
+        let shown = Shown { pixels: &picture, size, by: 1 };
+        let scene = picture_scene(&relief, &shown, &space, &named, 0.0);
+        let atlas = picture_atlas(&scene).unwrap();
+        let at = |x: f32, y: f32, layer: f32| {
+            let place = Vec2::new(x + 2.0, y + 2.0 + layer * scene.picture.as_ref().unwrap().behind as f32);
+            let is_in = |[a, b, c]: &[Vec2; 3]| {
+                let sides = [(*a, *b), (*b, *c), (*c, *a)].map(|(p, q)| (q - p).perp_dot(place - p));
+                sides.iter().all(|side| *side >= 0.0) || sides.iter().all(|side| *side <= 0.0)
+            };
+            atlas.chart_of[atlas.corners.iter().position(is_in).expect("a triangle is there")]
+        };
+        let (wall, card) = (at(3.0, 3.0, 0.0), at(12.0, 10.0, 0.0));
+        assert_ne!(wall, card);
+        assert_eq!(at(37.0, 27.0, 0.0), wall, "around the card");
+        assert_eq!(at(10.6, 12.4, 1.0), wall, "what the card hides of the wall");
+        assert_eq!(at(18.9, 14.9, 0.0), card, "a speck");
     }
 }

@@ -79,6 +79,13 @@ fn is_same_surface(a: &Scene, b: &Scene) -> bool {
         && a.parts.iter().map(of_part).eq(b.parts.iter().map(of_part))
 }
 
+/// The canvas of a scene in its atlas.
+pub(crate) fn canvas_of(scene: &Scene, atlas: &Atlas, texels: &TexelMap) -> Canvas {
+    let place = |address: u32| [address % atlas.width, address / atlas.width];
+    let gutters: Vec<_> = texels.dilations.iter().map(|d| [place(d.texel), place(d.source)]).collect();
+    Canvas::new(scene, atlas, &texels.texels, &gutters)
+}
+
 impl Stage {
     /// The surface at a position in the atlas laid flat, (0, 0) its upper left corner, (1, 1) its lower right: the middle
     /// of what the texel there covers.
@@ -181,9 +188,7 @@ impl Stage {
         let texels = Arc::new(atlas.texel_map(&scene));
         progress.report(0.5);
         progress.check()?;
-        let place = |address: u32| [address % atlas.width, address / atlas.width];
-        let gutters: Vec<_> = texels.dilations.iter().map(|d| [place(d.texel), place(d.source)]).collect();
-        let canvas = Arc::new(Canvas::new(&scene, &atlas, &texels.texels, &gutters));
+        let canvas = Arc::new(canvas_of(&scene, &atlas, &texels));
         progress.report(1.0);
         let (bounds, depth_strokes, light_hash) = (scene.bounds(), Arc::default(), OnceLock::new());
         let surface_bytes = OnceLock::new();

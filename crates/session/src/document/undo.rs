@@ -1,6 +1,6 @@
 //! Undo and redo of paint, selection, lens, repaired depth and the scene's variant in the order in which they happened.
 
-use focus::{Edit, LayerStack, Selection, Thumbnail};
+use focus::{Edit, LayerStack, LensMotion, Selection, Thumbnail};
 use lens::Camera;
 use project::RecordedStep;
 use relief::DepthStroke;
@@ -16,6 +16,8 @@ enum Change {
     Layers { before: Box<LayerStack>, after: Box<LayerStack> },
     /// The camera.
     Camera { before: Box<Camera>, after: Box<Camera> },
+    /// The keys of the lens.
+    LensMotion { before: Box<LensMotion>, after: Box<LensMotion> },
     /// What may be painted.
     Selection { before: Option<Selection>, after: Option<Selection> },
     /// The scene's variant, by name. Who takes such a step back reads the scene again.
@@ -31,6 +33,9 @@ impl Change {
             Self::Paint { edit, .. } => edit.bytes(),
             Self::Layers { before, after } => before.bytes_beside(after) + after.bytes_beside(before),
             Self::Camera { .. } => 2 * size_of::<Camera>(),
+            Self::LensMotion { before, after } => {
+                [before, after].into_iter().map(|motion| motion.bytes()).sum()
+            }
             Self::Selection { before, after } => selected(before) + selected(after),
             // Each list has a stroke more than the one before it.
             Self::Depth { after, .. } => after.iter().map(depth_stroke_bytes).sum(),
@@ -73,6 +78,8 @@ pub(crate) enum Undone {
     Layers,
     /// The camera.
     Camera,
+    /// The keys of the lens.
+    LensMotion,
     /// What may be painted.
     Selection,
     /// The variant that the scene is to have now, by name.
@@ -102,6 +109,7 @@ impl<'a> HistoryStep<'a> {
 pub(crate) struct Undoable<'a> {
     pub layers: &'a mut LayerStack,
     pub camera: &'a mut Camera,
+    pub lens_motion: &'a mut LensMotion,
     pub selection: &'a mut Option<Selection>,
     pub depth_strokes: &'a mut Arc<Vec<DepthStroke>>,
 }
@@ -145,6 +153,13 @@ impl Undo {
         record: Option<RecordedStep>,
     ) {
         self.push(Step::new(name.into(), Change::Selection { before, after }, record));
+        self.run = false;
+    }
+
+    /// Takes up a change of the keys of the lens.
+    pub fn push_lens_motion(&mut self, name: &str, before: LensMotion, after: LensMotion) {
+        let change = Change::LensMotion { before: before.into(), after: after.into() };
+        self.push(Step::new(name.into(), change, None));
         self.run = false;
     }
 
@@ -264,6 +279,10 @@ impl Undo {
                 *state.camera = (**before).clone();
                 Undone::Camera
             }
+            Change::LensMotion { before, .. } => {
+                *state.lens_motion = (**before).clone();
+                Undone::LensMotion
+            }
             Change::Selection { before, .. } => {
                 *state.selection = before.clone();
                 Undone::Selection
@@ -295,6 +314,10 @@ impl Undo {
             Change::Camera { after, .. } => {
                 *state.camera = (**after).clone();
                 Undone::Camera
+            }
+            Change::LensMotion { after, .. } => {
+                *state.lens_motion = (**after).clone();
+                Undone::LensMotion
             }
             Change::Selection { after, .. } => {
                 *state.selection = after.clone();
@@ -346,6 +369,7 @@ mod tests {
         undo: Undo,
         layers: LayerStack,
         camera: Camera,
+        lens_motion: LensMotion,
         selection: Option<Selection>,
         depth_strokes: Arc<Vec<DepthStroke>>,
     }
@@ -353,18 +377,25 @@ mod tests {
     impl State {
         fn new() -> Self {
             let layers = LayerStack::of(FocusMap::new(4, 4, FocusOffset::STANDARD));
-            let (selection, depth_strokes) = (None, Arc::default());
-            Self { undo: Undo::new(1 << 20), layers, camera: focused(3.0), selection, depth_strokes }
+            let (lens_motion, selection, depth_strokes) = (LensMotion::default(), None, Arc::default());
+            Self {
+                undo: Undo::new(1 << 20),
+                layers,
+                camera: focused(3.0),
+                lens_motion,
+                selection,
+                depth_strokes,
+            }
         }
 
         fn undo(&mut self) -> Option<Undone> {
-            let Self { undo, layers, camera, selection, depth_strokes } = self;
-            undo.undo(Undoable { layers, camera, selection, depth_strokes })
+            let Self { undo, layers, camera, lens_motion, selection, depth_strokes } = self;
+            undo.undo(Undoable { layers, camera, lens_motion, selection, depth_strokes })
         }
 
         fn redo(&mut self) -> Option<Undone> {
-            let Self { undo, layers, camera, selection, depth_strokes } = self;
-            undo.redo(Undoable { layers, camera, selection, depth_strokes })
+            let Self { undo, layers, camera, lens_motion, selection, depth_strokes } = self;
+            undo.redo(Undoable { layers, camera, lens_motion, selection, depth_strokes })
         }
 
         fn focuses(&mut self, at: f64) {

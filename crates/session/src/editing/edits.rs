@@ -31,6 +31,8 @@ impl Document {
         };
         let stage = &self.stage;
         let target = |part: u32, chart: u32| match region {
+            // A picture is one object: what hangs together in depth stands for those that it shows.
+            FillRegion::Node(_) if stage.scene.picture.is_some() => FillTarget::Chart(chart),
             FillRegion::Node(_) => FillTarget::Node(stage.scene.parts[part as usize].node),
             FillRegion::Material(_) => FillTarget::Material(stage.scene.parts[part as usize].material),
             FillRegion::Chart(_) => FillTarget::Chart(chart),
@@ -59,6 +61,7 @@ impl Document {
             Some(FillTarget::Node(_)) => "Fill object",
             Some(FillTarget::Part(_)) => "Fill part",
             Some(FillTarget::Material(_)) => "Fill material",
+            Some(FillTarget::Chart(_)) if self.stage.scene.picture.is_some() => "Fill region",
             Some(FillTarget::Chart(_)) => "Fill chart",
             Some(FillTarget::Background) => "Background focus",
             Some(FillTarget::Everything) | None => "Fill everything",

@@ -34,7 +34,8 @@ pub fn bake_unpacked(
     bake_with(tracer, camera, &BakeOptions { tolerance_px, packs: false, ..margin }, steps)
 }
 
-fn bake_with(
+/// The same with these options.
+pub(crate) fn bake_with(
     tracer: &Arc<Tracer>,
     camera: &Camera,
     options: &BakeOptions,

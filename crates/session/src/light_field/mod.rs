@@ -26,6 +26,7 @@ pub use modelled::{DENSE_SAMPLE_BYTES, Modelled, ModelledRow, TexelStatistics};
 pub use salf_file::write_salf;
 pub use store::LightFieldStore;
 
+pub(crate) use baking::bake_with;
 pub(crate) use changes::Changes;
 pub(crate) use field_watch::{FieldWatch, Standing};
 pub(crate) use kept_light::LightQuality;

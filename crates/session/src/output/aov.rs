@@ -1,8 +1,10 @@
 //! Pictures beside the picture: what compositing and measuring ask for.
 
+use super::coc_convention::CocConvention;
+use super::mattes::Mattes;
 use baselines::FirstHits;
-use lens::{Camera, FocusOffset, Picture};
-use project::Layer;
+use lens::{Camera, Exposure, FocusOffset, Picture};
+use project::{Cryptomatte, Layer};
 use trace::truth::Estimate;
 
 /// An extra channel of a rendered picture.
@@ -10,8 +12,15 @@ use trace::truth::Estimate;
 pub enum Aov {
     /// The model's sum for a scene of radiance 1; 1 in a standard picture.
     Coverage,
-    /// Signed diameter of the circle of confusion, px: negative in near defocus. Of the first surface along
-    /// the chief ray of each pixel's centre, as are the following.
+    /// The share of the pixel's light paths that end on a surface, in [0, 1]. The picture is then multiplied by it: the background
+    /// is black. Only the light field and the ground truth know it; other renderers leave it out.
+    Alpha,
+    /// Cryptomatte of objects and materials, whose shares sum to alpha. Who knows it is who knows alpha.
+    Crypto,
+    /// What a pinhole sees, to be blurred by others. Who knows it is who knows alpha, by which it is multiplied where that is wanted, too.
+    Pinhole,
+    /// The circle of confusion, by a [`CocConvention`]. Of the first surface along the chief ray of each pixel's centre, as are the
+    /// following.
     CircleOfConfusion,
     /// Axial depth in scene units; infinite where no surface is.
     Depth,
@@ -32,12 +41,21 @@ pub(crate) struct Known<'a> {
     pub estimate: Option<&'a Estimate>,
     /// What [`Aov::Seen`] is.
     pub seen: Option<&'a [f32]>,
+    pub mattes: Option<&'a Mattes>,
+    /// What a pinhole sees, and its alpha, where that is wanted.
+    pub pinhole: Option<&'a (Picture, Option<Layer>)>,
     pub camera: &'a Camera,
+    pub coc: CocConvention,
+    /// How many pixels on each side of the picture lie around the frame.
+    pub overscan: u32,
 }
 
 impl Aov {
     /// All of them, by the names that the command line knows.
-    pub const ALL: [(&'static str, Aov); 6] = [
+    pub const ALL: [(&'static str, Aov); 9] = [
+        ("alpha", Aov::Alpha),
+        ("crypto", Aov::Crypto),
+        ("pinhole", Aov::Pinhole),
         ("coverage", Aov::Coverage),
         ("coc", Aov::CircleOfConfusion),
         ("depth", Aov::Depth),
@@ -46,6 +64,11 @@ impl Aov {
         ("stderr", Aov::StandardError),
     ];
 
+    /// The entry of one among all.
+    pub fn entry(&self) -> Option<(&'static str, Aov)> {
+        Self::ALL.into_iter().find(|(_, known)| known == self)
+    }
+
     /// The one of this name.
     pub fn named(name: &str) -> Option<Self> {
         Self::ALL.iter().find(|(known, _)| *known == name).map(|(_, aov)| *aov)
@@ -53,7 +76,12 @@ impl Aov {
 
     /// Whether it is made of first hits.
     pub(crate) fn needs_first_hits(self) -> bool {
-        !matches!(self, Self::Coverage | Self::Seen | Self::StandardError)
+        matches!(self, Self::CircleOfConfusion | Self::Depth | Self::Focus)
+    }
+
+    /// Whether it tells which things a pixel shows: something that only the light field and the ground truth know.
+    pub fn needs_paths(self) -> bool {
+        matches!(self, Self::Alpha | Self::Crypto | Self::Pinhole)
     }
 
     /// Its layers; none if what they are made of is missing.
@@ -62,10 +90,28 @@ impl Aov {
         match (self, known.hits, known.estimate) {
             (Self::Coverage, ..) => vec![Layer::coverage(known.picture)],
             (Self::CircleOfConfusion, Some(hits), _) => {
-                vec![layer("coc", hits.circle_of_confusion_px(known.camera))]
+                let frame_height = known.camera.height.saturating_sub(2 * known.overscan);
+                let diameters = hits.circle_of_confusion_px(known.camera).into_iter();
+                vec![layer("coc", diameters.map(|d| known.coc.told(d, frame_height)).collect())]
             }
+            (Self::Alpha, ..) => {
+                let alpha = known.mattes.map(|mattes| layer(Layer::ALPHA, mattes.alpha.clone()));
+                alpha.into_iter().collect()
+            }
+            (Self::Crypto, ..) => known
+                .mattes
+                .into_iter()
+                .flat_map(|mattes| &mattes.crypto)
+                .flat_map(Cryptomatte::layers)
+                .collect(),
+            (Self::Pinhole, ..) => known.pinhole.map_or_else(Vec::new, |(picture, alpha)| {
+                let colors = Layer::of_colors(Layer::PINHOLE, &picture.exposed(Exposure::Normalise));
+                let alpha =
+                    alpha.iter().map(|alpha| layer(&format!("{}.A", Layer::PINHOLE), alpha.values.clone()));
+                colors.into_iter().chain(alpha).collect()
+            }),
             (Self::Seen, ..) => known.seen.map(|seen| layer("seen", seen.to_vec())).into_iter().collect(),
-            (Self::Depth, Some(hits), _) => vec![layer("depth", hits.depth.clone())],
+            (Self::Depth, Some(hits), _) => vec![layer("depth.Z", hits.depth.clone())],
             (Self::Focus, Some(hits), _) => {
                 let of = |name: &str, number: fn(&FocusOffset) -> f64| {
                     layer(name, hits.focus.iter().map(|focus| number(focus) as f32).collect())

@@ -103,7 +103,7 @@ impl Input {
         one_view: &PhotographLight,
     ) -> Result<LeftOutPicture, SessionError> {
         let camera = camera_of_photograph(tracer.scene().bounds(), view, &self.camera);
-        let (photograph, mut layers) = photograph_picture(view, &camera, tracer, light)?;
+        let (photograph, mut layers) = photograph_picture(view, &camera, tracer, Some(light))?;
         let photograph = LinearPicture::of(&photograph, Exposure::Conserve);
         let is_seen: Vec<bool> = layers.remove(0).values.into_iter().map(|seen| seen >= SEEN).collect();
         let seen = is_seen.iter().filter(|&&seen| seen).count() as f64 / is_seen.len().max(1) as f64;

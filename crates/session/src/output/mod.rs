@@ -4,26 +4,31 @@
 
 mod aov;
 mod blur_histogram;
+mod coc_convention;
 mod left_out;
+mod mattes;
 mod photograph_picture;
 mod reference;
 mod render;
 mod renderer;
 mod shot_extras;
 mod stereo;
+mod thumbnail;
 mod unwrapped;
 mod verification;
 
 pub use aov::Aov;
 pub use blur_histogram::BlurHistogram;
+pub use coc_convention::CocConvention;
 pub use left_out::{LeftOut, LeftOutPicture, ToldBy};
 pub use reference::{Reference, ReferenceKind};
 pub use render::{MOST_CELLS_A_SIDE, RenderCost, RenderOptions, Rendered, render, render_input};
 pub use renderer::Renderer;
 pub(crate) use stereo::pair;
 pub use stereo::{Stereo, StereoForm, render_stereo};
+pub use thumbnail::thumbnail;
 pub use unwrapped::write_unwrapped;
 pub use verification::{Verification, VerifiedError};
 
 pub(crate) use photograph_picture::photograph_picture;
-pub(crate) use render::sum_light_field;
+pub(crate) use render::{splatter, sum_baked, sum_light_field, tracer_of};

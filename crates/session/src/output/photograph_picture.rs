@@ -20,7 +20,7 @@ pub(super) const SEEN: f32 = 0.5;
 impl Input {
     /// The photograph of a capture as its camera ([`camera_of_photograph`]) would show it, and the layer `seen`: 1 where others have
     /// photographed the surface, 0 where they have not, and beside what the photograph shows. The exposure of one that was left out is
-    /// fitted afterwards, a gain a channel; it feeds nothing else.
+    /// fitted afterwards, a gain a channel; it feeds nothing else. The views of a light field are as they were taken.
     ///
     /// # Errors
     /// There is no photograph of that name, it cannot be read, or there is no light from the others.
@@ -33,28 +33,38 @@ impl Input {
         let view = photograph(scene, name).map_err(|what| SessionError::bad(&self.path, what))?;
         let tracer = Arc::new(Tracer::new(scene.clone()));
         self.tell_atlas(&tracer)?;
-        let light = photograph_light(&tracer, &*steps.begin("light"))?;
+        let light = match scene.picture.is_some() {
+            true => None,
+            false => Some(photograph_light(&tracer, &*steps.begin("light"))?),
+        };
         let camera = camera_of_photograph(scene.bounds(), view, &self.camera);
-        photograph_picture(view, &camera, &tracer, &light)
+        photograph_picture(view, &camera, &tracer, light.as_deref())
     }
 }
 
-/// The photograph `view` as `camera` ([`camera_of_photograph`] of it) shows it, beside light from others or itself too.
+/// The photograph `view` as `camera` ([`camera_of_photograph`] of it) shows it, beside light from others or itself too; none of a surface
+/// that was made from a picture.
 pub(crate) fn photograph_picture(
     view: &View,
     camera: &Camera,
     tracer: &Tracer,
-    light: &PhotographLight,
+    light: Option<&PhotographLight>,
 ) -> Result<(Picture, Vec<Layer>), SessionError> {
     let shown =
         view.photograph(&LoadOptions::default()).map_err(|e| SessionError::BadInput(e.to_string()))?;
     let reduction = (shown.width / camera.width.max(1)).max(1);
     let shown = shown.reduced(reduction);
-    let seen = seen(tracer, camera, &|point| light.seen(point));
+    let scene = tracer.scene();
+    let seen = seen(tracer, camera, &|point| match light {
+        Some(light) => light.seen(point),
+        None => scene.photographed(point).unwrap_or(0.0),
+    });
     let place = Place { camera, view, shown: &shown, reduction: f64::from(reduction) };
-    let exposure = match tracer.scene().views.iter().position(|other| other.name == view.name) {
-        Some(index) => light.exposures()[index],
-        None => place.fitted(tracer, light, &seen),
+    let own = scene.views.iter().position(|other| other.name == view.name);
+    let exposure = match (light, own) {
+        (None, _) => Exposure::default(),
+        (Some(light), Some(index)) => light.exposures()[index],
+        (Some(light), None) => place.fitted(tracer, light, &seen),
     };
     let pixels: Vec<_> = (0..camera.width * camera.height).into_par_iter().map(|n| place.at(n)).collect();
     let radiance = |found: &Option<(DVec2, Vec3)>| {

@@ -1,27 +1,30 @@
 //! A picture without a window: what the command line and the export of the window do.
 
 use super::aov::{Aov, Known};
+use super::coc_convention::CocConvention;
+use super::mattes::{BlackBackground, Mattes, OfLightField, OfTruth, Shown, WantedMattes};
 use super::renderer::Renderer;
 use crate::document::Input;
 use crate::error::SessionError;
 use crate::jobs::Steps;
 use crate::light_field::{
-    LightQuality, bake, is_photographed, light, light_for_many_points, photograph_light, serves,
+    LightQuality, bake, bake_with, is_photographed, light, light_for_many_points, photograph_light, serves,
 };
 use baselines::{BaselineError, FirstHits, LayeredOptions, ScatterOptions, ViewsOptions};
 use focus::Focus;
 use glam::DVec2;
-use lens::{Camera, Picture};
-use project::Layer;
+use lens::{Camera, FocusOffset, Picture};
+use project::{Cryptomatte, Layer};
 use rayon::prelude::*;
 use salf::{BakeOptions, Salf, SalfStatistics};
 use scene::SurfacePoint;
 use serde::Serialize;
 use splat::{Gpu, Splatter, Tolerance};
+use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::time::Instant;
 use trace::truth::{Estimate, TruthOptions};
-use trace::{Ray, Tracer};
+use trace::{Radiance, Ray, Tracer};
 
 impl From<BaselineError> for SessionError {
     fn from(error: BaselineError) -> Self {
@@ -56,6 +59,11 @@ pub struct RenderOptions {
     pub scatter: ScatterOptions,
     /// The pictures that come along.
     pub aovs: Vec<Aov>,
+    /// How the circle of confusion is told among them.
+    pub coc: CocConvention,
+    /// How many pixels on each side of the camera's picture lie around the frame ([`Camera::overscanned`]): what is told as a share of
+    /// the frame's height is one of the frame's.
+    pub overscan: u32,
 }
 
 impl Default for RenderOptions {
@@ -71,6 +79,8 @@ impl Default for RenderOptions {
             views: ViewsOptions::default(),
             scatter: ScatterOptions::default(),
             aovs: Vec::new(),
+            coc: CocConvention::default(),
+            overscan: 0,
         }
     }
 }
@@ -90,6 +100,16 @@ impl RenderOptions {
         }
     }
 
+    fn asks_for(&self, aov: Aov) -> bool {
+        self.aovs.contains(&aov)
+    }
+
+    /// Of whom a pixel is, as far as the AOVs tell it.
+    fn wanted_mattes(&self) -> Option<WantedMattes> {
+        let crypto = self.asks_for(Aov::Crypto);
+        (crypto || self.asks_for(Aov::Alpha)).then_some(WantedMattes { crypto })
+    }
+
     /// Bakes the light field for `camera`: its own camera is as much finer as [`Self::cells_a_side`] says.
     pub fn bake(
         &self,
@@ -98,6 +118,24 @@ impl RenderOptions {
         focus: &Focus,
         steps: &dyn Steps,
     ) -> Result<Salf, SessionError> {
+        let finer = self.finer(camera)?;
+        bake(tracer, &finer, focus, self.tolerance_px * f64::from(self.cells_a_side), steps)
+    }
+
+    /// The same for a margin, and light carried as finely, as `needed` says of the finer camera.
+    pub(crate) fn bake_as(
+        &self,
+        tracer: &Arc<Tracer>,
+        camera: &Camera,
+        needed: BakeOptions,
+        steps: &dyn Steps,
+    ) -> Result<Salf, SessionError> {
+        let tolerance_px = self.tolerance_px * f64::from(self.cells_a_side);
+        bake_with(tracer, &self.finer(camera)?, &BakeOptions { tolerance_px, ..needed }, steps)
+    }
+
+    /// The camera whose light field is baked for `camera`.
+    pub(crate) fn finer(&self, camera: &Camera) -> Result<Camera, SessionError> {
         let finer = camera.finer(self.cells_a_side);
         let tell = |error| {
             let n = self.cells_a_side;
@@ -106,7 +144,7 @@ impl RenderOptions {
             ))
         };
         finer.validate().map_err(tell)?;
-        bake(tracer, &finer, focus, self.tolerance_px * f64::from(self.cells_a_side), steps)
+        Ok(finer)
     }
 }
 
@@ -117,6 +155,8 @@ pub struct Rendered {
     pub picture: Picture,
     /// The layers of the AOVs, in the order in which they were asked for.
     pub layers: Vec<Layer>,
+    /// What a file that holds the layers has to say of them, as attributes.
+    pub attributes: BTreeMap<String, String>,
     /// What it cost.
     pub cost: RenderCost,
     /// What the picture lacks, a sentence each.
@@ -165,7 +205,7 @@ pub fn render(
 ) -> Result<Rendered, SessionError> {
     let start = Instant::now();
     let mut cost = RenderCost::default();
-    let mut estimate = None;
+    let (mut estimate, mut mattes) = (None, None);
     let picture = match options.renderer {
         Renderer::Splat | Renderer::Scatter => {
             let salf = Arc::new(options.bake(tracer, camera, focus, steps)?);
@@ -175,8 +215,15 @@ pub fn render(
         }
         Renderer::Truth => {
             let light = light_for_many_points(tracer, camera, &*steps.begin("light"))?;
+            let premultiplied = BlackBackground(&*light);
+            let radiance: &dyn Radiance = if options.asks_for(Aov::Alpha) { &premultiplied } else { &*light };
             let progress = steps.begin("tracing");
-            let found = trace::truth::render(tracer, &*light, focus, camera, &options.truth, &*progress)?;
+            let found = trace::truth::render(tracer, radiance, focus, camera, &options.truth, &*progress)?;
+            if let Some(wanted) = options.wanted_mattes() {
+                let truth = TruthOptions { surveys_light: false, ..options.truth };
+                let source = OfTruth { tracer, radiance: &*light, focus, camera, options: truth };
+                mattes = Some(Mattes::of(tracer.scene(), source, wanted, steps)?);
+            }
             estimate.insert(found).picture.clone()
         }
         Renderer::Blur => {
@@ -195,7 +242,7 @@ pub fn render(
     };
     cost.picture_seconds = start.elapsed().as_secs_f64();
     let shot = Shot { tracer, camera, focus };
-    finish(shot, options, Drawn { picture, estimate, cost }, steps)
+    finish(shot, options, Drawn { picture, estimate, mattes, cost }, steps)
 }
 
 /// Draws what [`RenderOptions::bake`] baked, for a camera that it serves.
@@ -207,10 +254,9 @@ pub(super) fn draw_baked(
     options: &RenderOptions,
     steps: &dyn Steps,
 ) -> Result<Rendered, SessionError> {
-    let cells = options.cells_a_side;
-    let (drawn, cost) = draw_light_field(salf.clone(), &camera.finer(cells), focus, options, steps)?;
-    let shot = Shot { tracer, camera, focus };
-    finish(shot, options, Drawn { picture: drawn.averaged(cells), estimate: None, cost }, steps)
+    let drawn =
+        draw_light_field(salf.clone(), Shot { tracer, camera, focus }, options.cells_a_side, options, steps)?;
+    finish(Shot { tracer, camera, focus }, options, drawn, steps)
 }
 
 /// Renders what was opened: a scene, a project, or (where the renderer draws one) a light field.
@@ -248,7 +294,7 @@ pub fn render_input(
 }
 
 /// What answers the rays of a camera that can be used.
-pub(super) fn tracer_of(input: &Input, camera: &Camera) -> Result<Arc<Tracer>, SessionError> {
+pub(crate) fn tracer_of(input: &Input, camera: &Camera) -> Result<Arc<Tracer>, SessionError> {
     camera.validate().map_err(|error| SessionError::bad(&input.path, error))?;
     let tracer = Arc::new(Tracer::new(input.scene.clone()));
     input.tell_atlas(&tracer)?;
@@ -278,36 +324,81 @@ pub(crate) fn sum_light_field(
     options: &RenderOptions,
     steps: &dyn Steps,
 ) -> Result<Rendered, SessionError> {
-    let (picture, cost) = draw_light_field(salf, camera, focus, options, steps)?;
-    finish(Shot { tracer, camera, focus }, options, Drawn { picture, estimate: None, cost }, steps)
+    let shot = Shot { tracer, camera, focus };
+    let drawn = draw_light_field(salf, shot, 1, options, steps)?;
+    finish(shot, options, drawn, steps)
 }
 
-/// The picture of a light field, and what it cost.
+/// The picture of a light field of so many cells a pixel's side, what it shows, and what it cost.
 fn draw_light_field(
     salf: Arc<Salf>,
+    Shot { tracer, camera, focus }: Shot,
+    cells_a_side: u32,
+    options: &RenderOptions,
+    steps: &dyn Steps,
+) -> Result<Drawn, SessionError> {
+    let camera = &camera.finer(cells_a_side);
+    let mut cost = RenderCost::default();
+    cost.count(&salf);
+    let start = Instant::now();
+    let mut mattes = None;
+    let picture = if options.renderer == Renderer::Scatter {
+        baselines::scatter(&salf, camera, focus, &options.scatter, &*steps.begin("scattering"))?
+    } else {
+        let scene = tracer.scene();
+        let wanted = options.wanted_mattes().map(|wanted| (wanted, Shown::of(&salf, scene)));
+        let mut splatter = splatter(salf, options);
+        if let Some((_, shown)) = wanted.as_ref().filter(|_| options.asks_for(Aov::Alpha)) {
+            splatter.blacken(|sample| shown.part(sample).is_none());
+        }
+        splatter.render(camera, focus, &*steps.begin("splatting"))?;
+        cost.is_on_gpu = splatter.gpu().is_some();
+        let picture = splatter.picture().clone();
+        if let Some((wanted, shown)) = wanted {
+            let source = OfLightField { mattes: splatter.into_mattes(), shown, cells_a_side };
+            mattes = Some(Mattes::of(scene, source, wanted, steps)?);
+        }
+        picture
+    };
+    cost.picture_seconds = start.elapsed().as_secs_f64();
+    Ok(Drawn { picture: picture.averaged(cells_a_side), estimate: None, mattes, cost })
+}
+
+/// What sums a light field.
+pub(crate) fn splatter(salf: Arc<Salf>, options: &RenderOptions) -> Splatter {
+    let mut splatter = Splatter::new(salf);
+    splatter.set_tolerance(options.splat_tolerance);
+    splatter.use_gpu(options.gpu.clone());
+    splatter
+}
+
+/// Sums what [`RenderOptions::bake`] baked, for a camera that it serves, as often as one likes.
+pub(crate) fn sum_baked(
+    splatter: &mut Splatter,
+    tracer: &Arc<Tracer>,
     camera: &Camera,
     focus: &Focus,
     options: &RenderOptions,
     steps: &dyn Steps,
-) -> Result<(Picture, RenderCost), SessionError> {
+) -> Result<Rendered, SessionError> {
+    let (shot, cells) = (Shot { tracer, camera, focus }, options.cells_a_side);
+    if options.wanted_mattes().is_some() {
+        // Of whom light is, is told by a sum of its own.
+        let drawn = draw_light_field(splatter.salf().clone(), shot, cells, options, steps)?;
+        return finish(shot, options, drawn, steps);
+    }
     let mut cost = RenderCost::default();
-    cost.count(&salf);
+    cost.count(splatter.salf());
     let start = Instant::now();
-    let picture = if options.renderer == Renderer::Scatter {
-        baselines::scatter(&salf, camera, focus, &options.scatter, &*steps.begin("scattering"))?
-    } else {
-        let mut splatter = Splatter::new(salf);
-        splatter.set_tolerance(options.splat_tolerance);
-        splatter.use_gpu(options.gpu.clone());
-        splatter.render(camera, focus, &*steps.begin("splatting"))?;
-        cost.is_on_gpu = splatter.gpu().is_some();
-        splatter.picture().clone()
-    };
+    splatter.render(&camera.finer(cells), focus, &*steps.begin("splatting"))?;
+    cost.is_on_gpu = splatter.gpu().is_some();
     cost.picture_seconds = start.elapsed().as_secs_f64();
-    Ok((picture, cost))
+    let picture = splatter.picture().averaged(cells);
+    finish(shot, options, Drawn { picture, estimate: None, mattes: None, cost }, steps)
 }
 
 /// What is rendered.
+#[derive(Clone, Copy)]
 struct Shot<'a> {
     tracer: &'a Arc<Tracer>,
     camera: &'a Camera,
@@ -319,13 +410,15 @@ struct Drawn {
     picture: Picture,
     /// What the ground truth knows of its error.
     estimate: Option<Estimate>,
+    /// Of whom its pixels are, if that was asked for.
+    mattes: Option<Mattes>,
     cost: RenderCost,
 }
 
 fn finish(
     Shot { tracer, camera, focus }: Shot,
     options: &RenderOptions,
-    Drawn { picture, estimate, cost }: Drawn,
+    Drawn { picture, estimate, mattes, cost }: Drawn,
     steps: &dyn Steps,
 ) -> Result<Rendered, SessionError> {
     let asks = options.aovs.iter().any(|aov| aov.needs_first_hits());
@@ -339,10 +432,42 @@ fn finish(
     } else {
         None
     };
-    let (hits, estimate, seen) = (hits.as_ref(), estimate.as_ref(), seen.as_deref());
-    let known = Known { picture: &picture, hits, estimate, seen, camera };
+    let asks_for_pinhole = options.asks_for(Aov::Pinhole) && options.renderer.tells_paths();
+    let pinhole = asks_for_pinhole.then(|| pinhole(tracer, camera, options, steps)).transpose()?;
+    let known = Known {
+        picture: &picture,
+        hits: hits.as_ref(),
+        estimate: estimate.as_ref(),
+        seen: seen.as_deref(),
+        mattes: mattes.as_ref(),
+        pinhole: pinhole.as_ref(),
+        camera,
+        coc: options.coc,
+        overscan: options.overscan,
+    };
     let layers = options.aovs.iter().flat_map(|aov| aov.layers(&known)).collect();
-    Ok(Rendered { picture, layers, cost, warnings: Vec::new() })
+    let crypto = mattes.iter().flat_map(|mattes| &mattes.crypto);
+    let mut attributes: BTreeMap<_, _> = crypto.flat_map(Cryptomatte::attributes).collect();
+    if options.asks_for(Aov::CircleOfConfusion) {
+        attributes.insert("focusBrush.cocConvention".into(), options.coc.name().into());
+    }
+    let warnings = mattes.map_or_else(Vec::new, |mattes| mattes.warnings);
+    Ok(Rendered { picture, layers, attributes, cost, warnings })
+}
+
+/// What a pinhole sees, unpainted, by the same renderer; with its alpha where that is asked for.
+fn pinhole(
+    tracer: &Arc<Tracer>,
+    camera: &Camera,
+    options: &RenderOptions,
+    steps: &dyn Steps,
+) -> Result<(Picture, Option<Layer>), SessionError> {
+    let camera = Camera { aperture_radius: 0.0, ..camera.clone() };
+    let unpainted = Focus::constant(tracer.scene().clone(), FocusOffset::STANDARD);
+    let aovs = options.aovs.iter().copied().filter(|aov| *aov == Aov::Alpha).collect();
+    let options = RenderOptions { aovs, ..options.clone() };
+    let mut rendered = render(tracer, &camera, &unpainted, &options, steps)?;
+    Ok((rendered.picture, rendered.layers.pop()))
 }
 
 /// The chief ray of a pixel's middle; pixels are numbered row by row.

@@ -39,6 +39,11 @@ impl Renderer {
         Self::ALL.iter().find(|(_, known)| *known == self).map_or("", |(name, _)| name)
     }
 
+    /// Whether it tells where light paths end: what alpha, Cryptomatte and the pinhole's picture are made of.
+    pub fn tells_paths(self) -> bool {
+        matches!(self, Self::Splat | Self::Truth)
+    }
+
     /// Whether it draws from a light field.
     pub fn draws_light_field(self) -> bool {
         matches!(self, Self::Splat | Self::Scatter)

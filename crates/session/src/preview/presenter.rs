@@ -3,7 +3,7 @@
 use super::mailbox::Shared;
 use super::picture::{DrawingCosts, PictureTimes, Preview, PreviewKind, Quality};
 use crate::display::{
-    Content, LivePicture, Patch, PictureRing, Rectangle, Source, Tone, rectangle_to_screen, whole,
+    Content, LivePicture, Patch, PictureRing, Rectangle, Source, Tone, ToneCurve, rectangle_to_screen, whole,
 };
 use crate::light_field::Modelled;
 use lens::{Camera, Exposure, Picture};
@@ -181,7 +181,14 @@ impl Presenter {
             LivePicture::Here(picture) => {
                 Content::Pixels(rectangle_to_screen(picture, self.tone, rectangle.clone()))
             }
-            LivePicture::There(picture) => Content::OnCard(picture.clone(), self.tone),
+            LivePicture::There(on_card) => match self.tone.display.curve {
+                // Those of OpenColorIO are known here.
+                ToneCurve::Ocio(_) => picture.bring().map_or_else(
+                    || Content::OnCard(on_card.clone(), self.tone),
+                    |picture| Content::Pixels(rectangle_to_screen(&picture, self.tone, rectangle.clone())),
+                ),
+                _ => Content::OnCard(on_card.clone(), self.tone),
+            },
         };
         Patch { size: picture.size(), rectangle, content }
     }

@@ -23,6 +23,9 @@ impl Session {
                 self.opened()?.undo.finish_run();
                 Ok(())
             }
+            Command::GoToTime(seconds) => self.go_to_time(seconds),
+            Command::SetLensMotion(name, motion) => self.set_lens_motion(name, motion),
+            Command::Rack { points, seconds, ease } => self.rack(points, seconds, ease),
             Command::SetView(view) => {
                 self.opened()?.view = view;
                 Ok(())

@@ -99,8 +99,11 @@ impl Session {
                 ReferenceKind::Photograph => {
                     let what = "the camera is that of no photograph (choose one of them as the camera)";
                     let view = photograph.ok_or_else(|| SessionError::bad(&stage.scene.path, what))?;
-                    let light = photograph_light(&stage.tracer, &*steps.begin("light"))?;
-                    photograph_picture(&view, &camera, &stage.tracer, &light)?.0
+                    let light = match stage.scene.picture.is_some() {
+                        true => None,
+                        false => Some(photograph_light(&stage.tracer, &*steps.begin("light"))?),
+                    };
+                    photograph_picture(&view, &camera, &stage.tracer, light.as_deref())?.0
                 }
             };
             let samples_per_pixel = if kind == ReferenceKind::Truth { samples_per_pixel } else { 0 };

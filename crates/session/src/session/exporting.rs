@@ -171,7 +171,12 @@ impl Session {
 fn write_shown(path: &Path, picture: &Picture, layers: &[Layer], tone: Tone) -> Result<(), SessionError> {
     let is_exr = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("exr"));
     if is_exr {
-        write_picture(path, picture, layers, PictureOptions { exposure: tone.exposure, half: false })?;
+        write_picture(
+            path,
+            picture,
+            layers,
+            &PictureOptions { exposure: tone.exposure, ..PictureOptions::default() },
+        )?;
     } else {
         write_rgb(path, picture.width, picture.height, &tone.displayed(picture))?;
     }

@@ -9,7 +9,8 @@ use crate::error::{SessionError, file_name};
 use crate::jobs::JobSteps;
 use crate::output::write_unwrapped;
 use atlas::UnwrapOptions;
-use project::{CaptureChoices, FocusMapFile, write_focus_map};
+use lens::Picture;
+use project::{CaptureChoices, FocusMapFile, Thumbnail, write_focus_map};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -70,8 +71,15 @@ impl Session {
             let what = "no project file yet (choose one with Save as)";
             return Err(SessionError::bad(&document.stage.scene.path, what));
         };
-        let (project, revision) = (document.to_project(), document.revision);
+        let (mut project, revision) = (document.to_project(), document.revision);
+        let (tone, preview) = (self.tone(), self.preview.as_ref());
+        let shown = preview.map(|preview| preview.picture.clone());
         self.start(format!("{SAVING} {}", file_name(&path)), move |_| {
+            // A picture that a lost card had is the last one that was saved.
+            if let Some(picture) = shown.and_then(|shown| shown.bring()) {
+                let Picture { width, height, .. } = *picture;
+                project.thumbnail = Some(Thumbnail::of(width, height, tone.displayed(&picture)));
+            }
             project.save(&path)?;
             Ok(Outcome::Saved { path, revision, generation })
         })?;

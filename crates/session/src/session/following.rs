@@ -5,68 +5,18 @@
 
 use super::outcome::Outcome;
 use super::state::Session;
+use super::watched::Watched;
 use crate::commands::Event;
 use crate::document::Document;
 use crate::error::file_name;
 use crate::jobs::JobSteps;
-use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant, SystemTime};
-
-/// What a bridge writes beside a scene.
-const MANIFEST: &str = "focus-brush.json";
+use std::time::{Duration, Instant};
 
 /// How often the file is looked at. A file that changed is read when it has stayed the same for as long.
 const LOOKED_EVERY: Duration = Duration::from_secs(1);
 
 /// A revision that no recovery file holds.
 const UNKEPT: u64 = 0;
-
-/// When a file was written, and its length.
-type Stamp = (SystemTime, u64);
-
-/// The file that is watched.
-pub(super) struct Watched {
-    scene: PathBuf,
-    /// As it was read.
-    read: Option<Stamp>,
-    /// As it was seen last, where that is another.
-    changed: Option<Stamp>,
-    looked: Instant,
-}
-
-impl Watched {
-    /// The file at `scene`, if a bridge wrote it.
-    fn of(scene: &Path) -> Option<Self> {
-        let is_bridged = scene.parent()?.join(MANIFEST).is_file();
-        is_bridged.then(|| Self {
-            scene: scene.into(),
-            read: stamp(scene),
-            changed: None,
-            looked: Instant::now(),
-        })
-    }
-
-    /// Whether it has changed, and stayed so from one look to the next.
-    fn is_another(&mut self) -> bool {
-        let now = stamp(&self.scene);
-        self.looked = Instant::now();
-        if now.is_none() || now == self.read {
-            self.changed = None;
-            return false;
-        }
-        if self.changed != now {
-            self.changed = now;
-            return false;
-        }
-        (self.read, self.changed) = (now, None);
-        true
-    }
-}
-
-fn stamp(file: &Path) -> Option<Stamp> {
-    let found = std::fs::metadata(file).ok()?;
-    Some((found.modified().ok()?, found.len()))
-}
 
 impl Session {
     /// Begins to watch the scene of the document that was opened.

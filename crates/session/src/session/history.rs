@@ -14,8 +14,8 @@ impl Session {
             return self.abort_stroke();
         }
         let document = self.opened()?;
-        let Document { undo, layers, camera, selection, depth_strokes, .. } = document;
-        let undone = undo.undo(Undoable { layers, camera, selection, depth_strokes });
+        let Document { undo, layers, camera, lens_motion, selection, depth_strokes, .. } = document;
+        let undone = undo.undo(Undoable { layers, camera, lens_motion, selection, depth_strokes });
         self.after_step(undone)
     }
 
@@ -24,8 +24,8 @@ impl Session {
             return Ok(());
         }
         let document = self.opened()?;
-        let Document { undo, layers, camera, selection, depth_strokes, .. } = document;
-        let done = undo.redo(Undoable { layers, camera, selection, depth_strokes });
+        let Document { undo, layers, camera, lens_motion, selection, depth_strokes, .. } = document;
+        let done = undo.redo(Undoable { layers, camera, lens_motion, selection, depth_strokes });
         self.after_step(done)
     }
 
@@ -55,6 +55,10 @@ impl Session {
                 self.events.push(Event::CameraChanged);
                 self.show_camera();
                 self.follow_camera()
+            }
+            Some(Undone::LensMotion) => {
+                self.opened()?.revision += 1;
+                self.show_time()
             }
             Some(Undone::Paint { texels, .. }) => {
                 self.opened()?.revision += 1;

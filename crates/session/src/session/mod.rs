@@ -19,7 +19,9 @@ mod restaged;
 mod restaging;
 mod showing;
 mod state;
+mod timeline;
 mod verifying;
+mod watched;
 
 pub use exporting::FullSize;
 pub use state::{Session, SessionOptions};

@@ -1,8 +1,8 @@
 //! The state of a session, one document open at a time.
 
-use super::following::Watched;
 use super::outcome::Outcome;
 use super::recovery::Recovery;
+use super::watched::Watched;
 use crate::commands::Event;
 use crate::display::{Display, Screen};
 use crate::document::Document;

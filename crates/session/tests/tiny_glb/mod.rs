@@ -147,6 +147,54 @@ pub fn lit(quads: &[Quad]) -> Vec<u8> {
     container(&doc, &bin)
 }
 
+/// The bytes of a GLB with these quads, the first of which are wall, card and dot, in motion ("slide", 1 s): the card goes right by 0.5 and turns about its
+/// own axis, the dot is hidden from half a second on, the camera comes nearer by 0.5. Another animation, "stay", moves nothing.
+#[allow(dead_code, reason = "not every test that has the scene has it in motion")]
+pub fn moving(quads: &[Quad]) -> Vec<u8> {
+    let (mut doc, mut bin) = parts(&glb(quads));
+    let mut floats = |values: &[f32], shape: &str| {
+        bin.resize(bin.len().next_multiple_of(4), 0);
+        let view = json!({ "buffer": 0, "byteOffset": bin.len(), "byteLength": 4 * values.len() });
+        bin.extend(values.iter().flat_map(|value| value.to_le_bytes()));
+        let views = doc["bufferViews"].as_array_mut().expect("a list");
+        views.push(view);
+        let count = values.len()
+            / match shape {
+                "SCALAR" => 1,
+                "VEC3" => 3,
+                _ => 4,
+            };
+        let accessor =
+            json!({ "bufferView": views.len() - 1, "componentType": 5126, "count": count, "type": shape });
+        let accessors = doc["accessors"].as_array_mut().expect("a list");
+        accessors.push(accessor);
+        accessors.len() - 1
+    };
+    let second = floats(&[0.0, 1.0], "SCALAR");
+    let halves = floats(&[0.0, 0.5], "SCALAR");
+    let right = floats(&[0.0, 0.0, 0.0, 0.5, 0.0, 0.0], "VEC3");
+    let turned = floats(&[0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.05, 1.0], "VEC4");
+    let nearer = floats(&[0.0, 0.0, 0.0, 0.0, 0.0, -0.5], "VEC3");
+    let hidden = floats(&[1.0, 0.0], "SCALAR");
+    let camera = doc["nodes"].as_array().expect("a list").len() - 1;
+    let pointer =
+        json!({ "KHR_animation_pointer": { "pointer": "/nodes/2/extensions/KHR_node_visibility/visible" } });
+    doc["animations"] = json!([
+        { "name": "slide",
+          "samplers": [
+            { "input": second, "output": right }, { "input": second, "output": turned },
+            { "input": second, "output": nearer }, { "input": halves, "output": hidden, "interpolation": "STEP" }],
+          "channels": [
+            { "sampler": 0, "target": { "node": 1, "path": "translation" } },
+            { "sampler": 1, "target": { "node": 1, "path": "rotation" } },
+            { "sampler": 2, "target": { "node": camera, "path": "translation" } },
+            { "sampler": 3, "target": { "path": "pointer", "extensions": pointer } }] },
+        { "name": "stay", "samplers": [{ "input": second, "output": second }], "channels": [] }]);
+    doc["extensionsUsed"] = json!(["KHR_materials_unlit", "KHR_animation_pointer", "KHR_node_visibility"]);
+    doc["buffers"] = json!([{ "byteLength": bin.len() }]);
+    container(&doc, &bin)
+}
+
 /// The document and the buffer of a GLB.
 #[allow(dead_code, reason = "not every test changes the scene")]
 fn parts(bytes: &[u8]) -> (Value, Vec<u8>) {

@@ -72,6 +72,9 @@ pub struct TruthOptions {
     pub filter: ReconstructionFilter,
     /// Which pixels to render; `None` is the frame.
     pub region: Option<Region>,
+    /// Whether a few rays are looked at in advance, so that samples suit the light that they bring. Without, pictures of one camera and
+    /// focus are made of the same rays, whatever the light.
+    pub surveys_light: bool,
 }
 
 impl Default for TruthOptions {
@@ -83,6 +86,7 @@ impl Default for TruthOptions {
             sampler: Sampler::default(),
             filter: ReconstructionFilter::default(),
             region: None,
+            surveys_light: true,
         }
     }
 }

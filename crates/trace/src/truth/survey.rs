@@ -47,6 +47,7 @@ pub(super) const FIRST_LEVEL: u16 = 2;
 /// tell anything.
 pub(super) fn rays_of(options: &TruthOptions) -> u32 {
     match options.samples_per_pixel / 8 {
+        _ if !options.surveys_light => 0,
         0..FEWEST_RAYS => 0,
         rays => rays.min(MOST_RAYS),
     }

@@ -1,0 +1,111 @@
+//! `focus-brush keys`.
+
+use super::console::{Console, say_json};
+use super::failure::Failure;
+use super::new::check_project_name;
+use super::sequence_arguments::KeysArguments;
+use super::shot::check_folder;
+use focus::{FocusTarget, Key, LayerStack, LensMotion};
+use glam::DVec2;
+use project::{ProjectFile, read_keys};
+use serde_json::json;
+use session::{Input, chief_ray, pick};
+use std::path::Path;
+use trace::Tracer;
+
+/// Sets keys of a project, or lists those that there are.
+pub fn run(arguments: &KeysArguments, console: &Console) -> Result<(), Failure> {
+    let Some(output) = &arguments.output else {
+        list(&ProjectFile::load(&arguments.project)?);
+        return Ok(());
+    };
+    check_project_name(output)?;
+    check_folder(output)?;
+    let mut project = ProjectFile::load(&arguments.project)?;
+    if let Some(file) = &arguments.set {
+        project.lens_motion = read_keys(file)?;
+    }
+    set_lens(arguments, &mut project.lens_motion, console)?;
+    for (name, opacity, seconds) in &arguments.opacity {
+        if !(0.0..=1.0).contains(opacity) {
+            return Err(bad(&arguments.project, &format!("{opacity} is no opacity (give 0 to 1)")));
+        }
+        let index = project.layers.as_ref().and_then(|layers| index_of(layers, name));
+        let layers = project.layers.as_mut().zip(index);
+        let Some(layer) = layers.and_then(|(layers, index)| layers.layer_mut(index)) else {
+            return Err(bad(
+                &arguments.project,
+                &format!("no layer is called {name:?} ({})", names(&project)),
+            ));
+        };
+        put(
+            layer.motion.opacity.put(Key { seconds: *seconds, value: *opacity, ease: arguments.ease }),
+            arguments,
+        )?;
+    }
+    if !project.lens_motion.is_valid() {
+        return Err(bad(&arguments.project, "distances and f-numbers must be above 0"));
+    }
+    project.save(output)?;
+    console.note(&format!("wrote {}", output.display()));
+    Ok(())
+}
+
+fn set_lens(arguments: &KeysArguments, motion: &mut LensMotion, console: &Console) -> Result<(), Failure> {
+    let ease = arguments.ease;
+    for &(distance, seconds) in &arguments.distance {
+        let value = FocusTarget::Distance(distance);
+        put(motion.focus.put(Key { seconds, value, ease }), arguments)?;
+    }
+    for &(value, seconds) in &arguments.f_number {
+        put(motion.f_number.put(Key { seconds, value, ease }), arguments)?;
+    }
+    if arguments.point.is_empty() {
+        return Ok(());
+    }
+    let input = Input::open(&arguments.project, console)?;
+    let (camera, tracer) = (&input.camera, Tracer::new(input.scene.clone()));
+    for &(place, seconds) in &arguments.point {
+        let position = place / DVec2::new(camera.width.into(), camera.height.into());
+        let seen = pick(&tracer, &chief_ray(camera, position));
+        let Some(hit) = seen else {
+            let [x, y] = place.to_array();
+            let what = format!(
+                "nothing is seen at {x},{y} of {} × {} px (choose another place)",
+                camera.width, camera.height
+            );
+            return Err(bad(&arguments.project, &what));
+        };
+        put(motion.focus.put(Key { seconds, value: FocusTarget::Point(hit.point), ease }), arguments)?;
+    }
+    Ok(())
+}
+
+fn index_of(layers: &LayerStack, name: &str) -> Option<usize> {
+    layers.layers().iter().position(|layer| layer.name == name)
+}
+
+fn names(project: &ProjectFile) -> String {
+    match &project.layers {
+        None => "it has a single layer, which always counts whole; add one to fade".into(),
+        Some(layers) => {
+            let names: Vec<_> = layers.layers().iter().map(|layer| format!("{:?}", layer.name)).collect();
+            format!("there are {}", names.join(", "))
+        }
+    }
+}
+
+fn put(is_done: bool, arguments: &KeysArguments) -> Result<(), Failure> {
+    if is_done { Ok(()) } else { Err(bad(&arguments.project, "has as many keys as it can (take some away)")) }
+}
+
+fn bad(project: &Path, what: &str) -> Failure {
+    Failure::bad(format!("{}: {what}", project.display()))
+}
+
+fn list(project: &ProjectFile) {
+    let layers = project.layers.iter().flat_map(|layers| layers.layers());
+    let moving = layers.filter(|layer| !layer.motion.is_empty());
+    let layers: Vec<_> = moving.map(|layer| json!({ "layer": layer.name, "keys": layer.motion })).collect();
+    say_json(&json!({ "lens": project.lens_motion, "layers": layers }));
+}

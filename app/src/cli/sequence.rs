@@ -1,0 +1,164 @@
+//! `focus-brush render --frame` and `--frames`.
+
+use super::arguments::RenderArguments;
+use super::console::{Console, path_text, say_json};
+use super::failure::Failure;
+use super::render::{check_output, exposure, gpu, options, written};
+use super::shot::{opened, shot};
+use super::stopping;
+use focus::LensMotion;
+use project::{PictureOptions, read_keys, seal_picture, write_picture};
+use serde_json::json;
+use session::{
+    Baking, FrameFiles, FrameList, FrameOutcome, FrameReport, Rendered, SequenceOptions, SequenceReport,
+    SessionError, Shard, Take, TakeOptions, render_frames,
+};
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+/// Renders frames.
+pub fn run(arguments: &RenderArguments, console: &Console) -> Result<(), Failure> {
+    let asked = &arguments.sequence;
+    stopping::heed()?;
+    let gpu = gpu(arguments)?;
+    check_output(arguments)?;
+    let (files, frames) = files_and_frames(arguments)?;
+    let keys = asked.keys.as_deref().map(read_keys).transpose()?;
+
+    let start = Instant::now();
+    let input = opened(&arguments.file, &arguments.shot.scene_look, console)?;
+    console.warn(&input.warnings);
+    let (camera, focus) = shot(&input, &arguments.shot, console)?;
+    let render = options(arguments, &input, gpu)?;
+    let written = written(arguments, exposure(arguments, &input));
+    let of_project =
+        || input.project.as_ref().map_or_else(LensMotion::default, |project| project.lens_motion.clone());
+    let take = TakeOptions {
+        frames_per_second: asked.fps,
+        animation: asked.animation.clone(),
+        lens: keys.unwrap_or_else(of_project),
+        has_layers: arguments.shot.focus.is_none(),
+        overscan: arguments.overscan,
+    };
+    let take = Take::new(&input, camera, &focus, take, console)?;
+    let write = |file: &Path, rendered: &Rendered, plan: [u8; 32]| -> Result<Vec<PathBuf>, SessionError> {
+        let written = PictureOptions { attributes: rendered.attributes.clone(), ..written.clone() };
+        let files = write_picture(file, &rendered.picture, &rendered.layers, &written)?;
+        seal_picture(&files, &plan)?;
+        Ok(files)
+    };
+    let sequence = SequenceOptions {
+        render,
+        files,
+        written: format!("{written:?} {}", extension(&arguments.output)),
+        write: &write,
+        tell: &|frame| tell(console, frame),
+        progress: console,
+    };
+    let report = render_frames(&take, &frames, &sequence, console)?;
+    console.warn(&report.warnings);
+    conclude(arguments, console, &report, start)
+}
+
+/// Where which frames are written.
+fn files_and_frames(arguments: &RenderArguments) -> Result<(FrameFiles, Vec<u32>), Failure> {
+    let asked = &arguments.sequence;
+    let frames = asked.frames.clone().or(asked.frame.map(FrameList::of));
+    let frames = frames.as_ref().map_or(&[][..], FrameList::numbers);
+    let files = match FrameFiles::new(&arguments.output) {
+        Err(_) if asked.frame.is_some() => FrameFiles::of_one(&arguments.output),
+        files => files.map_err(Failure::usage)?,
+    };
+    let shard = asked.shard.unwrap_or(Shard::WHOLE);
+    let own = frames.iter().enumerate().filter(|(piece, _)| shard.has(*piece)).map(|(_, frame)| *frame);
+    Ok((files, own.collect()))
+}
+
+fn extension(file: &Path) -> String {
+    file.extension().map(|extension| extension.to_string_lossy().to_lowercase()).unwrap_or_default()
+}
+
+fn state(outcome: &FrameOutcome) -> &'static str {
+    match outcome {
+        FrameOutcome::Written => "written",
+        FrameOutcome::Skipped => "skipped",
+        FrameOutcome::Failed(_) => "failed",
+    }
+}
+
+/// Tells of a frame.
+fn tell(console: &Console, report: &FrameReport) {
+    let FrameReport { frame, seconds, file, outcome, took_seconds } = report;
+    let what = match outcome {
+        FrameOutcome::Written => format!("wrote {} ({took_seconds:.1} s)", file.display()),
+        FrameOutcome::Skipped => format!("{} is finished", file.display()),
+        FrameOutcome::Failed(error) => format!("frame {frame} failed: {error}"),
+    };
+    let error = match outcome {
+        FrameOutcome::Failed(error) => Some(error.to_string()),
+        _ => None,
+    };
+    console.event(
+        &what,
+        &json!({
+            "frame": frame,
+            "at_seconds": seconds,
+            "file": path_text(file),
+            "state": state(outcome),
+            "seconds": took_seconds,
+            "error": error,
+        }),
+    );
+}
+
+/// Tells what was done, and how it went.
+fn conclude(
+    arguments: &RenderArguments,
+    console: &Console,
+    report: &SequenceReport,
+    start: Instant,
+) -> Result<(), Failure> {
+    let written = report.count(|outcome| *outcome == FrameOutcome::Written);
+    let skipped = report.count(|outcome| *outcome == FrameOutcome::Skipped);
+    let failed = report.frames.len() - written - skipped;
+    let Baking { baked, kept, scenes, seconds, light_seconds } = report.baking;
+    let saved = report.saved_seconds();
+    if arguments.json {
+        let frame = |frame: &FrameReport| json!({ "frame": frame.frame, "file": path_text(&frame.file), "state": state(&frame.outcome) });
+        say_json(&json!({
+            "input": path_text(&arguments.file),
+            "frames": report.frames.iter().map(frame).collect::<Vec<_>>(),
+            "written": written,
+            "skipped": skipped,
+            "failed": failed,
+            "light_fields": { "baked": baked, "kept": kept, "seconds": seconds, "saved_seconds": saved },
+            "light": { "scenes": scenes, "seconds": light_seconds },
+            "seconds": start.elapsed().as_secs_f64(),
+            "warnings": report.warnings,
+        }));
+    }
+    let mut line = format!("{written} frames written, {skipped} were finished");
+    if failed > 0 {
+        line += &format!(", {failed} failed");
+    }
+    if baked > 0 {
+        line += &format!("; light of {scenes} scenes in {light_seconds:.1} s");
+        line +=
+            &format!("; {baked} light fields baked in {seconds:.1} s, {kept} frames used one that was there");
+    }
+    if kept > 0 {
+        line += &format!(" (about {saved:.1} s saved)");
+    }
+    console.note(&line);
+    let first = report.frames.iter().find_map(|frame| match &frame.outcome {
+        FrameOutcome::Failed(error) => Some(error),
+        _ => None,
+    });
+    match first {
+        None => Ok(()),
+        Some(error) if written + skipped > 0 => {
+            Err(Failure::partly(format!("{failed} of {} frames failed: {error}", report.frames.len())))
+        }
+        Some(error) => Err(error.clone().into()),
+    }
+}

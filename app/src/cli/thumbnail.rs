@@ -1,0 +1,18 @@
+//! `focus-brush thumbnail`.
+
+use super::arguments::ThumbnailArguments;
+use super::console::Console;
+use super::failure::Failure;
+use super::shot::check_folder;
+
+/// Writes the small picture of a file. File managers ask for it beside their own work, and name its file as they like.
+pub fn run(arguments: &ThumbnailArguments, console: &Console) -> Result<(), Failure> {
+    let ThumbnailArguments { file, output, size } = arguments;
+    check_folder(output)?;
+    let thumbnail = session::thumbnail(file, &*session::Steps::begin(console, "drawing"))?;
+    let smaller = thumbnail.of_side(*size);
+    let smaller = smaller.map_err(|what| {
+        Failure::bad(format!("{}: its picture is damaged: {what} (save it anew)", file.display()))
+    })?;
+    Ok(smaller.write(output)?)
+}

@@ -1,0 +1,15 @@
+//! The book (`docs`) tells the truth: its page of commands is the program's own help, its links lead somewhere, its commands run.
+
+#[path = "../card_light_field/mod.rs"]
+mod card_light_field;
+mod commands;
+mod links;
+mod pages;
+#[path = "../program/mod.rs"]
+mod program;
+mod running;
+#[path = "../../../crates/session/tests/tiny_glb/mod.rs"]
+mod tiny_glb;
+#[path = "../wall_capture/mod.rs"]
+mod wall_capture;
+mod workplace;

@@ -1,0 +1,181 @@
+//! Values at times.
+
+use serde::{Deserialize, Serialize};
+
+/// How a value becomes the next.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Ease {
+    /// It stays until the next.
+    Hold,
+    /// At an even pace.
+    Linear,
+    /// Slowly at both ends: 3u² − 2u³.
+    #[default]
+    Smooth,
+}
+
+impl Ease {
+    /// All of them, by name.
+    pub const ALL: [(&'static str, Ease); 3] =
+        [("hold", Ease::Hold), ("linear", Ease::Linear), ("smooth", Ease::Smooth)];
+
+    /// The one of this name.
+    pub fn named(name: &str) -> Option<Self> {
+        Self::ALL.iter().find(|(known, _)| *known == name).map(|(_, ease)| *ease)
+    }
+
+    /// How far the way is gone, in [0, 1], after a share u in [0, 1] of the time.
+    pub fn share(self, u: f64) -> f64 {
+        match self {
+            Self::Hold => 0.0,
+            Self::Linear => u,
+            Self::Smooth => u * u * (3.0 - 2.0 * u),
+        }
+    }
+}
+
+/// A value at a time.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Key<T> {
+    /// The time, s.
+    pub seconds: f64,
+    /// The value.
+    pub value: T,
+    /// How it becomes the next.
+    #[serde(default)]
+    pub ease: Ease,
+}
+
+/// Values at times, the times ascending. Before the first and after the last it stands still.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct Keys<T>(Vec<Key<T>>);
+
+impl<T> Default for Keys<T> {
+    fn default() -> Self {
+        Self(Vec::new())
+    }
+}
+
+/// Two neighbouring values, and how far the way from one to the other is gone, in [0, 1].
+#[derive(Debug, PartialEq)]
+pub struct Between<'a, T> {
+    /// The value before.
+    pub from: &'a T,
+    /// The value after.
+    pub to: &'a T,
+    /// 0 at the one, 1 at the other.
+    pub share: f64,
+}
+
+impl Between<'_, f64> {
+    /// The number between, never beyond either.
+    pub fn number(&self) -> f64 {
+        mix(*self.from, *self.to, self.share)
+    }
+}
+
+/// The number a share of the way from a to b, never beyond either.
+pub(crate) fn mix(a: f64, b: f64, share: f64) -> f64 {
+    (a + (b - a) * share).clamp(a.min(b), a.max(b))
+}
+
+impl<T> Keys<T> {
+    /// Keys that one thing may have.
+    pub const MOST: usize = 4096;
+
+    /// The keys, by time.
+    pub fn keys(&self) -> &[Key<T>] {
+        &self.0
+    }
+
+    /// Whether there are none: then nothing moves.
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    /// Sets a key; one at the same time is replaced. False, and nothing is done, where there are too many already.
+    #[must_use]
+    pub fn put(&mut self, key: Key<T>) -> bool {
+        let at = self.0.partition_point(|other| other.seconds < key.seconds);
+        if self.0.get(at).is_some_and(|other| other.seconds == key.seconds) {
+            self.0[at] = key;
+        } else if self.0.len() < Self::MOST {
+            self.0.insert(at, key);
+        } else {
+            return false;
+        }
+        true
+    }
+
+    /// Takes the key at a time away. Whether there was one.
+    pub fn remove(&mut self, seconds: f64) -> bool {
+        let count = self.0.len();
+        self.0.retain(|key| key.seconds != seconds);
+        self.0.len() < count
+    }
+
+    /// The values around a time; `None` without keys.
+    pub fn around(&self, seconds: f64) -> Option<Between<'_, T>> {
+        let after = self.0.partition_point(|key| key.seconds <= seconds);
+        let before = after.checked_sub(1).and_then(|before| self.0.get(before));
+        Some(match (before, self.0.get(after)) {
+            (Some(before), Some(after)) => {
+                let u = ((seconds - before.seconds) / (after.seconds - before.seconds)).clamp(0.0, 1.0);
+                Between { from: &before.value, to: &after.value, share: before.ease.share(u) }
+            }
+            (Some(only), None) | (None, Some(only)) => {
+                Between { from: &only.value, to: &only.value, share: 0.0 }
+            }
+            (None, None) => return None,
+        })
+    }
+
+    /// Whether times ascend and are finite, and all values are usable: a file may hold others.
+    pub fn is_valid(&self, is_usable: impl Fn(&T) -> bool) -> bool {
+        self.0.len() <= Self::MOST
+            && self.0.iter().all(|key| key.seconds.is_finite() && is_usable(&key.value))
+            && self.0.windows(2).all(|pair| pair[0].seconds < pair[1].seconds)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn key(seconds: f64, value: f64, ease: Ease) -> Key<f64> {
+        Key { seconds, value, ease }
+    }
+
+    #[test]
+    fn values_run_from_key_to_key() {
+        let mut keys = Keys::default();
+        assert!(keys.around(0.0).is_none());
+        for (seconds, value, ease) in
+            [(2.0, 1.0, Ease::Hold), (0.0, 3.0, Ease::Smooth), (1.0, 5.0, Ease::Linear)]
+        {
+            assert!(keys.put(key(seconds, value, ease)));
+        }
+        let at = |seconds: f64| keys.around(seconds).unwrap().number();
+        assert_eq!(
+            [at(-1.0), at(0.0), at(0.5), at(1.0), at(1.25), at(2.0), at(9.0)],
+            [3.0, 3.0, 4.0, 5.0, 4.0, 1.0, 1.0]
+        );
+        assert!((at(0.25) - (3.0 + 2.0 * 0.15625)).abs() < 1e-12, "slowly at first");
+        assert!(keys.put(key(1.0, 7.0, Ease::Hold)) && keys.keys().len() == 3, "one at a time");
+        assert_eq!(keys.around(1.9).unwrap().number(), 7.0);
+        assert!(keys.remove(1.0) && !keys.remove(1.0));
+    }
+
+    #[test]
+    fn what_no_key_can_be_is_told() {
+        let usable = |keys: &str| serde_json::from_str::<Keys<f64>>(keys).unwrap().is_valid(|v| *v > 0.0);
+        assert!(usable(r#"[{"seconds": 0, "value": 1}, {"seconds": 1, "value": 2, "ease": "hold"}]"#));
+        assert!(!usable(r#"[{"seconds": 1, "value": 1}, {"seconds": 1, "value": 2}]"#));
+        assert!(!usable(r#"[{"seconds": 0, "value": -1}]"#));
+        assert!(
+            serde_json::from_str::<Keys<f64>>(r#"[{"seconds": 0, "value": 1, "ease": "bouncy"}]"#).is_err()
+        );
+    }
+}

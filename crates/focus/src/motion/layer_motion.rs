@@ -1,0 +1,59 @@
+//! A layer in motion.
+
+use super::keys::{Between, Keys, mix};
+use crate::{Canvas, Curve, FocusMap};
+use lens::Camera;
+use serde::{Deserialize, Serialize};
+
+/// How much a layer counts over time.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct LayerMotion {
+    /// Its opacity, in [0, 1], instead of the one that it has.
+    #[serde(default, skip_serializing_if = "Keys::is_empty")]
+    pub opacity: Keys<f64>,
+    /// How much it counts at each depth, over the logarithm of depth in the shot camera (in scene units): multiplied into the mask that
+    /// is painted. Values beyond [0, 1] count as the nearer end.
+    #[serde(default, skip_serializing_if = "Keys::is_empty")]
+    pub mask: Keys<Curve>,
+}
+
+impl LayerMotion {
+    /// Whether nothing of it moves.
+    pub fn is_empty(&self) -> bool {
+        self.opacity.is_empty() && self.mask.is_empty()
+    }
+
+    /// Whether it can be used.
+    pub fn is_valid(&self) -> bool {
+        self.opacity.is_valid(|opacity| (0.0..=1.0).contains(opacity)) && self.mask.is_valid(Curve::is_valid)
+    }
+
+    /// All times of keys.
+    pub fn times(&self) -> impl Iterator<Item = f64> {
+        let opacity = self.opacity.keys().iter().map(|key| key.seconds);
+        opacity.chain(self.mask.keys().iter().map(|key| key.seconds))
+    }
+
+    /// Multiplies the mask of a time into that of a map, for what lies where `canvas` says, as `camera` sees it.
+    pub(crate) fn mask(&self, seconds: f64, map: &mut FocusMap, canvas: &Canvas, camera: &Camera) {
+        let Some(around) = self.mask.around(seconds) else { return };
+        let [width, height] = map.size();
+        let mut rows = map.mask_rows().unwrap_or_else(|| vec![1.0; width as usize * height as usize]);
+        let mut scale =
+            |[x, y]: [u32; 2], share: f32| rows[y as usize * width as usize + x as usize] *= share;
+        for (index, texel) in canvas.texels().iter().enumerate() {
+            let share = share_at(&around, camera.camera_from_world(texel.position).z);
+            scale([texel.x, texel.y], share);
+            canvas.gutters_of(index).iter().for_each(|&gutter| scale(gutter, share));
+        }
+        let background = map.background_mask * share_at(&around, f64::INFINITY);
+        let _ = map.set_mask_rows(Some(&rows));
+        map.background_mask = background;
+    }
+}
+
+/// How much counts at a depth; what lies behind the camera is as near as can be.
+fn share_at(around: &Between<'_, Curve>, depth: f64) -> f32 {
+    let at = depth.max(f64::MIN_POSITIVE).ln();
+    mix(around.from.at(at), around.to.at(at), around.share).clamp(0.0, 1.0) as f32
+}

@@ -1,0 +1,211 @@
+//! The lens in motion.
+
+use super::keys::{Keys, mix};
+use glam::{DVec2, DVec3};
+use lens::Camera;
+use scene::SurfacePoint;
+use serde::{Deserialize, Serialize};
+
+/// What the lens is focused on.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum FocusTarget {
+    /// An axial distance > 0; may be infinite.
+    #[serde(with = "distance")]
+    Distance(f64),
+    /// A point of the surface at rest, wherever it is now: its depth.
+    #[serde(with = "surface_point")]
+    Point(SurfacePoint),
+}
+
+impl FocusTarget {
+    fn is_valid(&self) -> bool {
+        match self {
+            Self::Distance(distance) => *distance > 0.0,
+            Self::Point(point) => {
+                let [u, v] = point.barycentric.to_array();
+                u >= 0.0 && v >= 0.0 && u + v <= 1.0
+            }
+        }
+    }
+
+    /// The reciprocal of its depth, 1/length; that of the camera's own focus distance where it cannot be seen.
+    fn inverse_depth(&self, camera: &Camera, position: &dyn Fn(SurfacePoint) -> Option<DVec3>) -> f64 {
+        let depth = match self {
+            Self::Distance(distance) => Some(*distance),
+            Self::Point(point) => position(*point).map(|position| camera.camera_from_world(position).z),
+        };
+        1.0 / depth.filter(|depth| *depth > 0.0).unwrap_or(camera.focus_distance)
+    }
+}
+
+/// The lens in motion: what it is focused on, and its f-number.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct LensMotion {
+    /// What it is focused on. Between two keys the reciprocal of the distance runs from that of the one to that of the other, so
+    /// that a rack from infinity is no special case.
+    #[serde(default, skip_serializing_if = "Keys::is_empty")]
+    pub focus: Keys<FocusTarget>,
+    /// f/(2R), > 0. Between two keys its logarithm runs, as stops are counted.
+    #[serde(default, skip_serializing_if = "Keys::is_empty")]
+    pub f_number: Keys<f64>,
+}
+
+impl LensMotion {
+    /// Whether nothing of it moves.
+    pub fn is_empty(&self) -> bool {
+        self.focus.is_empty() && self.f_number.is_empty()
+    }
+
+    /// Whether it can be used.
+    pub fn is_valid(&self) -> bool {
+        self.focus.is_valid(FocusTarget::is_valid)
+            && self.f_number.is_valid(|number| *number > 0.0 && number.is_finite())
+    }
+
+    /// Bytes in memory.
+    pub fn bytes(&self) -> usize {
+        size_of::<Self>() + size_of_val(self.focus.keys()) + size_of_val(self.f_number.keys())
+    }
+
+    /// All times of keys.
+    pub fn times(&self) -> impl Iterator<Item = f64> {
+        let focus = self.focus.keys().iter().map(|key| key.seconds);
+        focus.chain(self.f_number.keys().iter().map(|key| key.seconds))
+    }
+
+    /// `camera` with the lens as it is at a time. `position` tells where a point of the surface is then; nothing where that is
+    /// not there.
+    pub fn at(
+        &self,
+        seconds: f64,
+        camera: &Camera,
+        position: &dyn Fn(SurfacePoint) -> Option<DVec3>,
+    ) -> Camera {
+        let mut moved = camera.clone();
+        if let Some(around) = self.focus.around(seconds) {
+            let [from, to] = [around.from, around.to].map(|target| target.inverse_depth(camera, position));
+            moved.focus_distance = match around.from {
+                // What stands still is exactly what it was set to.
+                FocusTarget::Distance(distance) if around.from == around.to => *distance,
+                _ => 1.0 / mix(from, to, around.share),
+            };
+        }
+        if let Some(number) = self.f_number(seconds).filter(|number| *number != moved.f_number()) {
+            moved.aperture_radius = moved.optics().focal_length() / (2.0 * number);
+        }
+        moved
+    }
+
+    /// The f-number at a time, if it moves.
+    pub fn f_number(&self, seconds: f64) -> Option<f64> {
+        let around = self.f_number.around(seconds)?;
+        // Equal ones stay exactly what they are.
+        if around.from == around.to {
+            return Some(*around.from);
+        }
+        let number = mix(around.from.ln(), around.to.ln(), around.share).exp();
+        Some(number.clamp(around.from.min(*around.to), around.from.max(*around.to)))
+    }
+}
+
+/// A distance as a number, or "inf".
+mod distance {
+    use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
+
+    #[derive(Serialize, Deserialize)]
+    #[serde(untagged)]
+    enum Form {
+        Number(f64),
+        Word(String),
+    }
+
+    pub fn serialize<S: Serializer>(distance: &f64, to: S) -> Result<S::Ok, S::Error> {
+        let is_infinite = distance.is_infinite();
+        if is_infinite { Form::Word("inf".into()) } else { Form::Number(*distance) }.serialize(to)
+    }
+
+    pub fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<f64, D::Error> {
+        match Form::deserialize(from)? {
+            Form::Number(distance) => Ok(distance),
+            Form::Word(word) if word == "inf" => Ok(f64::INFINITY),
+            Form::Word(word) => Err(D::Error::custom(format!("{word:?} is no distance"))),
+        }
+    }
+}
+
+/// A point of a surface as its triangle and two weights.
+mod surface_point {
+    use super::{DVec2, SurfacePoint};
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    #[derive(Serialize, Deserialize)]
+    struct Form {
+        triangle: u32,
+        barycentric: [f64; 2],
+    }
+
+    pub fn serialize<S: Serializer>(point: &SurfacePoint, to: S) -> Result<S::Ok, S::Error> {
+        Form { triangle: point.triangle, barycentric: point.barycentric.to_array() }.serialize(to)
+    }
+
+    pub fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<SurfacePoint, D::Error> {
+        let Form { triangle, barycentric } = Form::deserialize(from)?;
+        Ok(SurfacePoint { triangle, barycentric: DVec2::from_array(barycentric) })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Ease, Key};
+
+    #[test]
+    fn a_rack_follows_its_points() {
+        let point = |triangle| SurfacePoint { triangle, barycentric: DVec2::ZERO };
+        let mut motion = LensMotion::default();
+        for (seconds, triangle) in [(0.0, 1), (1.0, 4)] {
+            let value = FocusTarget::Point(point(triangle));
+            assert!(motion.focus.put(Key { seconds, value, ease: Ease::Linear }));
+        }
+        // Triangle n stands n in front of the camera.
+        let camera = Camera::default();
+        let place = |point: SurfacePoint| Some(DVec3::NEG_Z * f64::from(point.triangle));
+        let distance = |seconds, place: &dyn Fn(SurfacePoint) -> Option<DVec3>| {
+            motion.at(seconds, &camera, place).focus_distance
+        };
+        assert_eq!([0.0, 1.0].map(|seconds| distance(seconds, &place)), [1.0, 4.0]);
+        assert_eq!(distance(0.5, &place), 1.0 / 0.625, "in the reciprocal");
+        let away = |_: SurfacePoint| None;
+        assert!((distance(0.5, &away) - camera.focus_distance).abs() < 1e-12);
+        let behind = |_: SurfacePoint| Some(DVec3::Z);
+        assert!((distance(0.5, &behind) - camera.focus_distance).abs() < 1e-12);
+    }
+
+    #[test]
+    fn stops_are_counted_by_their_logarithm() {
+        let mut motion = LensMotion::default();
+        assert!(motion.f_number.put(Key { seconds: 0.0, value: 2.0, ease: Ease::Linear }));
+        assert!(motion.f_number.put(Key { seconds: 2.0, value: 8.0, ease: Ease::Linear }));
+        let camera = motion.at(1.0, &Camera::default(), &|_| None);
+        assert!((camera.f_number() - 4.0).abs() < 1e-12);
+        assert_eq!(camera.focus_distance, Camera::default().focus_distance);
+    }
+
+    #[test]
+    fn infinity_and_points_come_back_from_json() {
+        let mut motion = LensMotion::default();
+        let point = SurfacePoint { triangle: 7, barycentric: DVec2::new(0.25, 0.5) };
+        for (seconds, value) in
+            [(0.0, FocusTarget::Distance(f64::INFINITY)), (1.0, FocusTarget::Point(point))]
+        {
+            assert!(motion.focus.put(Key { seconds, value, ease: Ease::Smooth }));
+        }
+        let text = serde_json::to_string(&motion).unwrap();
+        assert!(text.contains("\"inf\"") && !text.contains("f_number"), "{text}");
+        assert_eq!(serde_json::from_str::<LensMotion>(&text).unwrap(), motion);
+        assert!(motion.is_valid());
+        let other = text.replace("\"inf\"", "-1.0");
+        assert!(!serde_json::from_str::<LensMotion>(&other).unwrap().is_valid());
+    }
+}

@@ -1,0 +1,185 @@
+//! Cryptomatte 1.2 (Friedman and Jones 2015; <https://github.com/Psyop/Cryptomatte>, `specification`): of every pixel, which
+//! things it shows and how much of it each covers.
+//!
+//! A thing's id is the MurmurHash3 of its name, as the bits of a float that is neither a subnormal number nor infinite nor NaN. The things of
+//! a pixel are ranked by their share of it; two ranks make a layer, `CryptoObject00`: `R` and `B` are ids, `G` and `A` shares.
+//! Attributes of the file say which names there are.
+
+use crate::layer::Layer;
+use serde_json::json;
+use std::collections::BTreeMap;
+use std::io::Cursor;
+
+/// What the names of all its layers begin with.
+const PREFIX: &str = "Crypto";
+
+/// What the names of all its attributes begin with.
+const METADATA: &str = "cryptomatte/";
+
+/// The things of a picture, by rank.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Cryptomatte {
+    /// What the things are, `Object` or `Material`: the layers are called `CryptoObject00`, `CryptoObject01`, …
+    pub kind: String,
+    /// What the things are called; two of one name are one.
+    pub names: Vec<String>,
+    /// What each pixel shows most of, row by row; what it shows second most of; and so on. All of one length.
+    pub ranks: Vec<Vec<Ranked>>,
+}
+
+/// A thing in a pixel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ranked {
+    /// Index into [`Cryptomatte::names`]; none where the pixel shows no further one.
+    pub thing: Option<u32>,
+    /// The share of the pixel that it covers, in [0, 1].
+    pub share: f32,
+}
+
+impl Ranked {
+    /// Nothing more.
+    pub const NONE: Self = Self { thing: None, share: 0.0 };
+}
+
+impl Cryptomatte {
+    /// Its name, which those of its layers begin with.
+    pub fn name(&self) -> String {
+        format!("{PREFIX}{}", self.kind)
+    }
+
+    /// Its layers: three pairs of ranks, or more where there are more.
+    pub fn layers(&self) -> Vec<Layer> {
+        /// Readers expect so many pairs.
+        const PAIRS: usize = 3;
+        let ids: Vec<f32> = self.names.iter().map(|name| id(name)).collect();
+        let pixels = self.ranks.first().map_or(0, Vec::len);
+        let pairs = self.ranks.len().div_ceil(2).max(PAIRS);
+        let of_rank = |rank: usize| {
+            let ranked = self.ranks.get(rank);
+            let id_of = |ranked: &Ranked| ranked.thing.map_or(0.0, |thing| ids[thing as usize]);
+            let id_of = ranked.map_or(vec![0.0; pixels], |all| all.iter().map(id_of).collect());
+            let share =
+                ranked.map_or(vec![0.0; pixels], |all| all.iter().map(|ranked| ranked.share).collect());
+            [id_of, share]
+        };
+        let of_pair = |pair: usize| {
+            let values = [of_rank(2 * pair), of_rank(2 * pair + 1)].into_iter().flatten();
+            let name = move |channel| format!("{}{pair:02}.{channel}", self.name());
+            ["R", "G", "B", "A"]
+                .into_iter()
+                .zip(values)
+                .map(move |(channel, values)| Layer { name: name(channel), values })
+        };
+        (0..pairs).flat_map(of_pair).collect()
+    }
+
+    /// The attributes of a file that holds its layers.
+    pub fn attributes(&self) -> BTreeMap<String, String> {
+        let name = self.name();
+        let key = format!("{:08x}", murmur(&name));
+        let manifest: BTreeMap<_, _> =
+            self.names.iter().map(|name| (name, json!(format!("{:08x}", id(name).to_bits())))).collect();
+        let said = [
+            ("name", name),
+            ("hash", "MurmurHash3_32".to_string()),
+            ("conversion", "uint32_to_float32".to_string()),
+            ("manifest", ascii(&json!(manifest).to_string())),
+        ];
+        said.into_iter().map(|(what, said)| (format!("{METADATA}{}/{what}", &key[..7]), said)).collect()
+    }
+}
+
+/// Whether a channel is one of Cryptomatte's.
+pub(crate) fn is_cryptomatte(channel: &str) -> bool {
+    channel.starts_with(PREFIX)
+}
+
+/// Whether an attribute is one of Cryptomatte's.
+pub(crate) fn is_cryptomatte_metadata(attribute: &str) -> bool {
+    attribute.starts_with(METADATA)
+}
+
+/// The id of what has this name.
+fn id(name: &str) -> f32 {
+    /// The lowest bit of a float's exponent.
+    const EXPONENT: u32 = 1 << 23;
+    let hash = murmur(name);
+    let exponent = hash >> 23 & 0xFF;
+    // A subnormal number, or one that is not finite, may not come out as it went in.
+    f32::from_bits(if exponent == 0 || exponent == 0xFF { hash ^ EXPONENT } else { hash })
+}
+
+fn murmur(name: &str) -> u32 {
+    murmur3::murmur3_32(&mut Cursor::new(name), 0).expect("bytes in memory can be read")
+}
+
+/// JSON without any character beyond ASCII, which text of OpenEXR has none for.
+fn ascii(json: &str) -> String {
+    let mut escaped = String::with_capacity(json.len());
+    for character in json.chars() {
+        match character {
+            '\0'..='\x7f' => escaped.push(character),
+            _ => {
+                let mut units = [0; 2];
+                let units = character.encode_utf16(&mut units).iter();
+                escaped.extend(units.map(|unit| format!("\\u{unit:04x}")));
+            }
+        }
+    }
+    escaped
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ids_are_those_of_the_specification() {
+        // MurmurHash3_x86_32 with seed 0, as `mmh3` of Python has them; of the second the exponent is all ones.
+        let bits = |name| id(name).to_bits();
+        assert_eq!(murmur("hello"), 0x248b_fa47);
+        assert_eq!(bits("hello"), 0x248b_fa47);
+        let odd = (0..100_000).map(|k| format!("object {k}")).find(|name| murmur(name) >> 23 & 0xFF == 0xFF);
+        let odd = odd.expect("one in 256");
+        assert_eq!(bits(&odd), murmur(&odd) ^ 1 << 23);
+        assert!((0..10_000).all(|k| id(&format!("object {k}")).is_normal()));
+    }
+
+    fn matte() -> Cryptomatte {
+        let ranked = |thing, share| Ranked { thing: Some(thing), share };
+        Cryptomatte {
+            kind: "Object".into(),
+            names: vec!["card \"1\"\\ü\n🂡".into(), "wall".into()],
+            ranks: vec![vec![ranked(1, 0.75), ranked(0, 1.0)], vec![ranked(0, 0.25), Ranked::NONE]],
+        }
+    }
+
+    #[test]
+    fn ranks_become_pairs() {
+        let layers = matte().layers();
+        let of = |name: &str| &layers.iter().find(|layer| layer.name == name).expect("it is there").values;
+        assert_eq!(layers.len(), 12);
+        assert_eq!(of("CryptoObject00.R"), &[id("wall"), id(&matte().names[0])]);
+        assert_eq!((of("CryptoObject00.G"), of("CryptoObject00.A")), (&vec![0.75, 1.0], &vec![0.25, 0.0]));
+        assert_eq!(of("CryptoObject00.B"), &[id(&matte().names[0]), 0.0]);
+        assert_eq!(of("CryptoObject02.A"), &[0.0, 0.0]);
+    }
+
+    #[test]
+    fn the_manifest_is_json_whatever_the_names() {
+        let attributes = matte().attributes();
+        let of = |what: &str| {
+            let found = attributes.iter().find(|(key, _)| key.ends_with(&format!("/{what}")));
+            found.expect("it is said").1.clone()
+        };
+        assert_eq!(of("name"), "CryptoObject");
+        let manifest = of("manifest");
+        assert!(manifest.is_ascii());
+        let read: BTreeMap<String, String> = serde_json::from_str(&manifest).expect("JSON");
+        for name in &matte().names {
+            assert_eq!(read[name], format!("{:08x}", id(name).to_bits()));
+        }
+        let key = attributes.keys().next().expect("one").split('/').nth(1).expect("a key");
+        assert_eq!(key, &format!("{:08x}", murmur("CryptoObject"))[..7]);
+    }
+}

@@ -1,0 +1,223 @@
+//! Pictures as files.
+//!
+//! **EXR**: one part of linear `R`, `G`, `B`, and every further layer as channels of its own name: `A`, `depth.Z`, `coc`, `coverage`,
+//! `pinhole.R`, … The attribute `focusBrush.exposure` says how the sum became the picture, `chromaticities` whose colours
+//! they are. What was computed around the picture makes the data window larger than the display window.
+//!
+//! **PNG**: 8-bit sRGB, clipped to [0, 1], with straight alpha where there is a layer `A`; each further layer is an EXR beside
+//! it, `STEM.LAYER.exr`.
+
+use crate::ProjectError;
+use crate::color_space::{ColorSpace, turn};
+use crate::cryptomatte::{is_cryptomatte, is_cryptomatte_metadata};
+use crate::disk::{extension, write_bytes};
+use crate::exr_file::{ExrAttribute, ExrImage, write_exr};
+use crate::exr_form::{Compression, ExrForm, ExrSamples};
+use crate::layer::{Layer, color_channels};
+use crate::png_file::encode_8bit;
+use lens::{Exposure, Picture};
+use scene::srgb_from_linear;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+/// How pictures are written.
+#[derive(Clone, Debug, PartialEq, Default)]
+pub struct PictureOptions {
+    /// How the sum becomes the picture.
+    pub exposure: Exposure,
+    /// Whether an EXR's colours, alpha, coverage and what was photographed are half instead of float. The rest stays float, and alpha
+    /// where Cryptomatte's shares sum to it.
+    pub half: bool,
+    /// How an EXR's pixels are compressed.
+    pub compression: Compression,
+    /// The colour space of an EXR.
+    pub color_space: ColorSpace,
+    /// How many pixels on each side of the picture lie around the frame.
+    pub overscan: u32,
+    /// Attributes of an EXR, text.
+    pub attributes: BTreeMap<String, String>,
+}
+
+/// The attribute that says how the sum became the picture.
+pub(crate) const EXPOSURE: &str = "focusBrush.exposure";
+/// Its values.
+pub(crate) const EXPOSURES: [(Exposure, &str); 2] =
+    [(Exposure::Conserve, "conserve"), (Exposure::Normalise, "normalise")];
+
+/// Whether a channel loses nothing that is seen as half, where no shares have to sum to alpha.
+fn half_suffices(channel: &str) -> bool {
+    channel == Layer::ALPHA || half_suffices_beside_mattes(channel)
+}
+
+/// The same where they do.
+fn half_suffices_beside_mattes(channel: &str) -> bool {
+    let layer = channel.split('.').next().unwrap_or(channel);
+    ["R", "G", "B", Layer::PINHOLE, "coverage", "seen"].contains(&layer)
+}
+
+/// Writes a picture as EXR or PNG, by extension, with further layers. Returns the files that were written,
+/// the picture first.
+///
+/// # Errors
+/// The file is called something else, it cannot be written, or Cryptomatte was to be compressed with loss.
+pub fn write_picture(
+    file: &Path,
+    picture: &Picture,
+    layers: &[Layer],
+    options: &PictureOptions,
+) -> Result<Vec<PathBuf>, ProjectError> {
+    let exposure =
+        EXPOSURES.iter().find(|(known, _)| *known == options.exposure).map_or("", |(_, name)| name);
+    let rgb = picture.exposed(options.exposure);
+    let size = [picture.width, picture.height];
+    match extension(file).as_str() {
+        "exr" => {
+            let has_mattes = layers.iter().any(|layer| is_cryptomatte(&layer.name));
+            if has_mattes && !options.compression.is_lossless() {
+                let problem = "Cryptomatte does not survive compression with loss";
+                return Err(ProjectError::content(
+                    file,
+                    problem,
+                    "take zips, zip or piz, or write it to another file",
+                ));
+            }
+            let named = |layer: &Layer| (layer.name.clone(), layer.values.clone());
+            let mut channels: BTreeMap<_, _> = color_channels(&rgb).into();
+            channels.extend(layers.iter().map(named));
+            turn_colors(&mut channels, options.color_space);
+            let image = ExrImage {
+                width: size[0],
+                height: size[1],
+                channels,
+                attributes: attributes(options, Some(exposure)),
+                ..ExrImage::default()
+            };
+            let samples = match (options.half, has_mattes) {
+                (false, _) => ExrSamples::Float,
+                (true, false) => ExrSamples::HalfIf(half_suffices),
+                (true, true) => ExrSamples::HalfIf(half_suffices_beside_mattes),
+            };
+            write_exr(file, image, form(options, samples))?;
+            Ok(vec![file.to_owned()])
+        }
+        "png" => {
+            let alpha = layers.iter().find(|layer| layer.name == Layer::ALPHA);
+            write_png(file, size, &rgb, alpha, &[("Exposure", exposure.to_string())])?;
+            let mut files = vec![file.to_owned()];
+            let mut groups: BTreeMap<&str, BTreeMap<String, Vec<f32>>> = BTreeMap::new();
+            for layer in layers.iter().filter(|layer| layer.name != Layer::ALPHA) {
+                groups.entry(group(layer)).or_default().insert(layer.name.clone(), layer.values.clone());
+            }
+            for (group, channels) in groups {
+                let beside = file.with_extension(format!("{group}.exr"));
+                let attributes = if group == "crypto" { attributes(options, None) } else { BTreeMap::new() };
+                let image =
+                    ExrImage { width: size[0], height: size[1], channels, attributes, ..ExrImage::default() };
+                write_exr(&beside, image, ExrForm::default())?;
+                files.push(beside);
+            }
+            Ok(files)
+        }
+        _ => Err(unknown_form(file)),
+    }
+}
+
+/// The attributes of an EXR; without an exposure those of Cryptomatte alone.
+fn attributes(options: &PictureOptions, exposure: Option<&str>) -> BTreeMap<String, ExrAttribute> {
+    let of_all =
+        options.attributes.iter().filter(|(name, _)| exposure.is_some() || is_cryptomatte_metadata(name));
+    let text = |(name, text): (&str, &str)| (name.to_string(), ExrAttribute::Text(text.to_string()));
+    let of_all = of_all.map(|(name, value)| (name.as_str(), value.as_str()));
+    of_all.chain(exposure.map(|exposure| (EXPOSURE, exposure))).map(text).collect()
+}
+
+fn form(options: &PictureOptions, samples: ExrSamples) -> ExrForm {
+    ExrForm {
+        compression: options.compression,
+        samples,
+        overscan: options.overscan,
+        color_space: Some(options.color_space),
+    }
+}
+
+/// Turns the picture's colours, and those of the pinhole, to a colour space.
+fn turn_colors(channels: &mut BTreeMap<String, Vec<f32>>, space: ColorSpace) {
+    let own = ColorSpace::Rec709;
+    let matrix = own.chromaticities().to(&space.chromaticities()).filter(|_| space != own);
+    let Some(matrix) = matrix else { return };
+    for prefix in ["".to_string(), format!("{}.", Layer::PINHOLE)] {
+        let names = ["R", "G", "B"].map(|channel| format!("{prefix}{channel}"));
+        let Some(values) =
+            names.each_ref().map(|name| channels.remove(name)).into_iter().collect::<Option<Vec<_>>>()
+        else {
+            continue;
+        };
+        let mut rgb: Vec<_> =
+            (0..values[0].len()).map(|k| [values[0][k], values[1][k], values[2][k]]).collect();
+        turn(&matrix, &mut rgb);
+        let turned = color_channels(&rgb).map(|(_, values)| values);
+        channels.extend(names.into_iter().zip(turned));
+    }
+}
+
+/// Writes linear RGB as EXR (float) or PNG (8-bit sRGB, clipped), by extension.
+pub fn write_rgb(file: &Path, width: u32, height: u32, rgb: &[[f32; 3]]) -> Result<(), ProjectError> {
+    match extension(file).as_str() {
+        "exr" => {
+            let channels = color_channels(rgb).into();
+            let image = ExrImage { width, height, channels, ..ExrImage::default() };
+            write_exr(file, image, ExrForm::default())
+        }
+        "png" => write_png(file, [width, height], rgb, None, &[]),
+        _ => Err(unknown_form(file)),
+    }
+}
+
+/// What a layer is part of, and written with beside a picture that has no place for it.
+fn group(layer: &Layer) -> &str {
+    match layer.name.split('.').next() {
+        Some(group) if !is_cryptomatte(group) => group,
+        _ => "crypto",
+    }
+}
+
+fn unknown_form(file: &Path) -> ProjectError {
+    ProjectError::content(file, "pictures are not written in this form", "name an .exr or .png")
+}
+
+fn write_png(
+    file: &Path,
+    size: [u32; 2],
+    rgb: &[[f32; 3]],
+    alpha: Option<&Layer>,
+    text: &[(&str, String)],
+) -> Result<(), ProjectError> {
+    let bytes = match alpha {
+        None => srgb_bytes(rgb),
+        Some(alpha) => straight_bytes(rgb, &alpha.values),
+    };
+    let bytes = encode_8bit(size, &bytes, alpha.is_some(), text).map_err(|error| ProjectError::Write {
+        file: file.to_owned(),
+        source: std::io::Error::other(error),
+    })?;
+    write_bytes(file, &bytes)
+}
+
+/// Colours that are multiplied by alpha as 8-bit sRGB that is not, with alpha (linear), interleaved: as PNG has them.
+fn straight_bytes(rgb: &[[f32; 3]], alpha: &[f32]) -> Vec<u8> {
+    let pixel = |(color, &alpha): (&[f32; 3], &f32)| {
+        let straight = if alpha > 0.0 { color.map(|c| c / alpha) } else { [0.0; 3] };
+        let [r, g, b] = straight.map(srgb_byte);
+        [r, g, b, (alpha.clamp(0.0, 1.0) * 255.0).round() as u8]
+    };
+    rgb.iter().zip(alpha).flat_map(pixel).collect()
+}
+
+/// Linear RGB as 8-bit sRGB, clipped to [0, 1], interleaved.
+pub(crate) fn srgb_bytes(rgb: &[[f32; 3]]) -> Vec<u8> {
+    rgb.iter().flatten().map(|&c| srgb_byte(c)).collect()
+}
+
+fn srgb_byte(linear: f32) -> u8 {
+    (srgb_from_linear(linear.clamp(0.0, 1.0)) * 255.0).round() as u8
+}

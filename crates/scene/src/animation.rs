@@ -1,0 +1,159 @@
+//! A file's animations: what they are called, and what they make of the document at a time.
+//!
+//! An animation is played by writing its values into the document's JSON, where they animate it: a node's translation, the weights
+//! of its morph targets, a camera's angle of view, whatever KHR_animation_pointer names ([`target`]). The scene is then read as any
+//! other, so that all that is checked about a file is checked of it at every time.
+
+mod interpolation;
+mod target;
+mod track;
+
+use crate::document::{Document, named};
+use crate::error::Fault;
+use crate::json_object::Object;
+use serde::Serialize;
+use serde_json::Value;
+use target::Target;
+use track::Track;
+
+/// An animation of a file.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Animation {
+    /// Its name, or `animation N`.
+    pub name: String,
+    /// When its last key is, s.
+    pub seconds: f64,
+    /// How many properties it animates.
+    pub channels: usize,
+}
+
+/// A time of one of a file's animations.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Moment {
+    /// The animation, by name; the first where there is none.
+    pub animation: Option<String>,
+    /// Time, s. Before its first key and after its last, an animation stands still.
+    pub seconds: f64,
+}
+
+/// More channels than this are hardly meant.
+const MOST_CHANNELS: usize = 1 << 16;
+
+/// The animations of a document, in its order.
+pub(crate) fn list(document: &Document<'_>) -> Vec<Animation> {
+    let of = |index| {
+        let animation = document.item("animations", index, "").ok()?;
+        let channels = animation.objects("channels").unwrap_or_default();
+        let samplers = animation.objects("samplers").unwrap_or_default();
+        let mut seconds = 0.0_f64;
+        for channel in channels.iter().take(MOST_CHANNELS) {
+            if let Ok(Some(track)) = track(document, &samplers, channel)
+                && track.end().is_finite()
+            {
+                seconds = seconds.max(track.end());
+            }
+        }
+        Some(Animation { name: name(&animation, index), seconds, channels: channels.len() })
+    };
+    (0..document.len("animations")).filter_map(of).collect()
+}
+
+fn name(animation: &Object<'_>, index: usize) -> String {
+    named(animation.text("name").ok().flatten()).unwrap_or_else(|| format!("animation {index}"))
+}
+
+/// What an animation makes of a document.
+pub(crate) struct Played {
+    /// The document's text at the moment.
+    pub root: Value,
+    /// Whether it changes materials, too.
+    pub changes_materials: bool,
+}
+
+/// The text of the document at a moment. What is wrong with a channel is told, and what it animates stays at rest.
+///
+/// # Errors
+/// The animation is not there, or it is too large.
+pub(crate) fn played(document: &Document<'_>, moment: &Moment) -> Result<Played, Fault> {
+    let mut played = Played { root: document.value_to_change()?, changes_materials: false };
+    let Some(animation) = chosen(document, moment)? else { return Ok(played) };
+    let channels = animation.objects("channels")?;
+    if channels.len() > MOST_CHANNELS {
+        return Err(animation.malformed("channels", format!("has more than {MOST_CHANNELS}")));
+    }
+    let samplers = animation.objects("samplers")?;
+    for channel in &channels {
+        let value = match value(document, &samplers, channel, moment.seconds) {
+            Ok(Some(value)) => value,
+            Ok(None) => continue,
+            Err(fault @ Fault::TooBig { .. }) => return Err(fault),
+            Err(fault) => {
+                document.warn(format!("{fault}; what it animates stays at rest"));
+                continue;
+            }
+        };
+        let (target, value) = value;
+        played.changes_materials |= target.is_of_material();
+        if !target.write(&mut played.root, value) {
+            document
+                .warn(format!("{}/target: {} is not there; it stays at rest", channel.place, target.pointer));
+        }
+    }
+    Ok(played)
+}
+
+/// The animation of a moment; none where the file has none and none was asked for.
+fn chosen<'a>(document: &'a Document<'_>, moment: &Moment) -> Result<Option<Object<'a>>, Fault> {
+    let count = document.len("animations");
+    let Some(asked) = &moment.animation else {
+        return if count == 0 { Ok(None) } else { document.item("animations", 0, "").map(Some) };
+    };
+    let mut known = Vec::new();
+    for index in 0..count {
+        let animation = document.item("animations", index, "")?;
+        let name = name(&animation, index);
+        if name == *asked {
+            return Ok(Some(animation));
+        }
+        known.push(format!("{name:?}"));
+    }
+    /// So many names are told.
+    const TOLD: usize = 20;
+    known.truncate(TOLD);
+    let known =
+        if known.is_empty() { "it has none".into() } else { format!("there are {}", known.join(", ")) };
+    Err(Fault::NoAnimation { name: asked.clone(), known })
+}
+
+/// What a channel animates, and its value at a time; nothing for what no picture depends on.
+fn value(
+    document: &Document<'_>,
+    samplers: &[Object<'_>],
+    channel: &Object<'_>,
+    seconds: f64,
+) -> Result<Option<(Target, Vec<f64>)>, Fault> {
+    let Some(target) = Target::read(document, channel)? else { return Ok(None) };
+    let Some(track) = track(document, samplers, channel)? else { return Ok(None) };
+    let numbers = track.at(document, seconds, target.is_rotation())?;
+    if let Some(expected) = target.numbers().filter(|&expected| expected != numbers.len()) {
+        let what =
+            format!("has {} numbers a key for {}, which has {expected}", numbers.len(), target.pointer);
+        return Err(channel.malformed("sampler", what));
+    }
+    if !numbers.iter().all(|number| number.is_finite()) {
+        return Err(channel.malformed("sampler", format!("is not finite at {seconds} s")));
+    }
+    Ok(Some((target, numbers)))
+}
+
+fn track<'a>(
+    document: &'a Document<'_>,
+    samplers: &[Object<'_>],
+    channel: &Object<'_>,
+) -> Result<Option<Track<'a>>, Fault> {
+    let Some(index) = channel.index("sampler")? else { return Ok(None) };
+    let sampler = samplers.get(index);
+    let sampler =
+        sampler.ok_or_else(|| channel.malformed("sampler", "refers to a sampler that does not exist"))?;
+    Track::open(document, sampler).map(Some)
+}

@@ -1,0 +1,194 @@
+//! What a channel animates, as a place in the document.
+
+use crate::document::Document;
+use crate::error::Fault;
+use crate::json_object::Object;
+use serde_json::{Map, Number, Value};
+
+/// A place in the document whose number, numbers or truth a channel gives.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Target {
+    /// JSON pointer.
+    pub pointer: String,
+    kind: Kind,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Kind {
+    /// A list of so many numbers, or of any number of them.
+    List(Option<usize>),
+    /// Four numbers that are a rotation.
+    Rotation,
+    /// A number.
+    Number,
+    /// Whether a number is other than 0.
+    Truth,
+    /// Of a material: as many numbers as are given, one being a number by itself.
+    OfMaterial,
+}
+
+/// Names in a pointer that are followed; no property lies deeper.
+const MOST_STEPS: usize = 8;
+
+impl Target {
+    /// What `channel` animates; nothing where no picture depends on it.
+    ///
+    /// # Errors
+    /// Its target is malformed or not there.
+    pub fn read(document: &Document<'_>, channel: &Object<'_>) -> Result<Option<Self>, Fault> {
+        let Some(target) = channel.object("target")? else { return Ok(None) };
+        let path = target.text("path")?.unwrap_or_default();
+        let pointer = if path == "pointer" {
+            match target.extension("KHR_animation_pointer")?.map(|it| it.text("pointer")).transpose()? {
+                Some(Some(pointer)) => pointer.to_string(),
+                _ => return Err(target.malformed("extensions/KHR_animation_pointer", "has no pointer")),
+            }
+        } else {
+            let Some(node) = target.index("node")? else { return Ok(None) };
+            format!("/nodes/{node}/{path}")
+        };
+        let Some(kind) = kind(&pointer) else {
+            document.warn(format!("{}: {pointer:?} is not animated", target.place));
+            return Ok(None);
+        };
+        let mut steps = pointer.split('/').skip(1);
+        if let (Some(collection), Some(index)) = (steps.next(), steps.next())
+            && collection != "extensions"
+            && index.parse().is_ok_and(|index: usize| index >= document.len(collection))
+        {
+            return Err(target.malformed("node", format!("refers to {pointer}, which does not exist")));
+        }
+        Ok(Some(Self { pointer, kind }))
+    }
+
+    /// Whether its four numbers are a rotation.
+    pub fn is_rotation(&self) -> bool {
+        self.kind == Kind::Rotation
+    }
+
+    /// Whether it is a property of a material.
+    pub fn is_of_material(&self) -> bool {
+        self.kind == Kind::OfMaterial
+    }
+
+    /// How many numbers it takes; nothing for any.
+    pub fn numbers(&self) -> Option<usize> {
+        match self.kind {
+            Kind::List(count) => count,
+            Kind::Rotation => Some(4),
+            Kind::Number | Kind::Truth => Some(1),
+            Kind::OfMaterial => None,
+        }
+    }
+
+    /// Writes finite numbers there. False if the way there leads through something that has no properties.
+    pub fn write(&self, root: &mut Value, numbers: Vec<f64>) -> bool {
+        let numbers: Vec<Value> =
+            numbers.into_iter().filter_map(Number::from_f64).map(Value::Number).collect();
+        let is_list = match self.kind {
+            Kind::List(_) | Kind::Rotation => true,
+            Kind::Number | Kind::Truth => false,
+            Kind::OfMaterial => numbers.len() > 1,
+        };
+        let value = match (is_list, numbers.first()) {
+            (true, _) => Value::Array(numbers),
+            (false, Some(number)) if self.kind == Kind::Truth => Value::Bool(number.as_f64() != Some(0.0)),
+            (false, Some(number)) => number.clone(),
+            (false, None) => return false,
+        };
+        put(root, &self.pointer, value)
+    }
+}
+
+/// What stands at a pointer, if it is animated.
+fn kind(pointer: &str) -> Option<Kind> {
+    let steps: Vec<&str> = pointer.split('/').skip(1).take(MOST_STEPS + 1).collect();
+    if steps.len() > MOST_STEPS {
+        return None;
+    }
+    let is_index = |step: &str| step.parse::<u32>().is_ok();
+    let (collection, rest) = steps.split_first()?;
+    if *collection == "extensions" {
+        return match rest {
+            ["KHR_lights_punctual", "lights", index, "color"] if is_index(index) => Some(Kind::List(Some(3))),
+            ["KHR_lights_punctual", "lights", index, "intensity" | "range"] if is_index(index) => {
+                Some(Kind::Number)
+            }
+            ["KHR_lights_punctual", "lights", index, "spot", "innerConeAngle" | "outerConeAngle"]
+                if is_index(index) =>
+            {
+                Some(Kind::Number)
+            }
+            _ => None,
+        };
+    }
+    let (index, property) = rest.split_first()?;
+    if !is_index(index) {
+        return None;
+    }
+    match (*collection, property) {
+        ("nodes", ["translation" | "scale"]) => Some(Kind::List(Some(3))),
+        ("nodes", ["rotation"]) => Some(Kind::Rotation),
+        ("nodes" | "meshes", ["weights"]) => Some(Kind::List(None)),
+        ("nodes" | "meshes", ["weights", weight]) if is_index(weight) => Some(Kind::Number),
+        ("nodes", ["extensions", "KHR_node_visibility", "visible"]) => Some(Kind::Truth),
+        ("cameras", ["perspective", "yfov" | "aspectRatio"]) => Some(Kind::Number),
+        ("materials", [_, ..]) => Some(Kind::OfMaterial),
+        _ => None,
+    }
+}
+
+/// Puts a value at a pointer. Objects on the way there are made where they are missing, entries of lists are not.
+fn put(root: &mut Value, pointer: &str, value: Value) -> bool {
+    let mut here = root;
+    for step in pointer.split('/').skip(1) {
+        let name = step.replace("~1", "/").replace("~0", "~");
+        if here.is_null() {
+            *here = Value::Object(Map::new());
+        }
+        here = match here {
+            Value::Object(map) => map.entry(name).or_insert(Value::Null),
+            Value::Array(list) => match name.parse().ok().and_then(|index: usize| list.get_mut(index)) {
+                Some(entry) => entry,
+                None => return false,
+            },
+            _ => return false,
+        };
+    }
+    *here = value;
+    true
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    #[test]
+    fn values_come_to_their_place_and_no_other() {
+        let mut root = json!({"nodes": [{"weights": [0.0, 0.5]}, {}]});
+        let target = |pointer: &str| Target { pointer: pointer.into(), kind: kind(pointer).unwrap() };
+        assert!(target("/nodes/0/weights/1").write(&mut root, vec![0.25]));
+        assert!(target("/nodes/1/extensions/KHR_node_visibility/visible").write(&mut root, vec![0.0]));
+        assert!(target("/nodes/1/translation").write(&mut root, vec![1.0, 2.0, 3.0]));
+        assert!(!target("/nodes/0/weights/2").write(&mut root, vec![0.25]));
+        let hidden = json!({"KHR_node_visibility": {"visible": false}});
+        let expected = json!({"nodes": [{"weights": [0.0, 0.25]}, {"extensions": hidden, "translation": [1.0, 2.0, 3.0]}]});
+        assert_eq!(root, expected);
+    }
+
+    #[test]
+    fn what_is_no_property_of_the_picture_is_left_alone() {
+        for pointer in [
+            "/buffers/0/byteLength",
+            "/nodes/0/children",
+            "/nodes/x/scale",
+            "",
+            "/nodes",
+            "/accessors/0/count",
+        ] {
+            assert_eq!(kind(pointer), None, "{pointer}");
+        }
+        assert_eq!(kind(&format!("/materials/0{}", "/a".repeat(9))), None);
+    }
+}

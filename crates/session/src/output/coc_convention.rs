@@ -1,0 +1,73 @@
+//! How circles of confusion are told to the nodes that blur by them.
+//!
+//! | convention | in focus | nearer | farther | a circle of D px is |
+//! | --- | --- | --- | --- | --- |
+//! | signed-px | 0 | below 0 | above 0 | its diameter: ±D |
+//! | nuke | 0 | below 0 | above 0 | its radius: ±D/2 |
+//! | magicdefocus | 0 | above 0 | below 0 | its radius: ∓D/2 |
+//! | flame | 0.5 | to 0 | to 1 | 0.5 ± D/(2·H), H the frame's height, in [0, 1] |
+//!
+//! Where they are from is told in `docs/compositing.md`.
+
+/// What the layer `coc` holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum CocConvention {
+    /// Signed diameter, px: negative in near defocus.
+    #[default]
+    SignedPx,
+    /// Signed radius, px: negative in near defocus. For Nuke's ZDefocus with `math` direct.
+    Nuke,
+    /// Signed radius, px: positive in near defocus. For MagicDefocus2 and OpenDefocus with `math` direct.
+    MagicDefocus,
+    /// A matte in [0, 1]: 0.5 in focus, 0 nearest, 1 farthest. For Flame's defocus, which wants depth in [0, 1].
+    Flame,
+}
+
+impl CocConvention {
+    /// All of them, by the names that the command line knows.
+    pub const ALL: [(&'static str, Self); 4] = [
+        ("signed-px", Self::SignedPx),
+        ("nuke", Self::Nuke),
+        ("magicdefocus", Self::MagicDefocus),
+        ("flame", Self::Flame),
+    ];
+
+    /// The one of this name.
+    pub fn named(name: &str) -> Option<Self> {
+        Self::ALL.iter().find(|(known, _)| *known == name).map(|(_, convention)| *convention)
+    }
+
+    /// Its name on the command line.
+    pub fn name(self) -> &'static str {
+        Self::ALL.iter().find(|(_, known)| *known == self).map_or("", |(name, _)| name)
+    }
+
+    /// What it says of a circle of this signed diameter, px, in a frame of this height, px.
+    pub(crate) fn told(self, diameter: f32, frame_height: u32) -> f32 {
+        match self {
+            Self::SignedPx => diameter,
+            Self::Nuke => diameter / 2.0,
+            Self::MagicDefocus => -diameter / 2.0,
+            Self::Flame => (0.5 + diameter / (2.0 * frame_height as f32)).clamp(0.0, 1.0),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_convention_tells_near_from_far() {
+        let told =
+            |convention: CocConvention| [-10.0, 0.0, 10.0].map(|diameter| convention.told(diameter, 100));
+        assert_eq!(told(CocConvention::SignedPx), [-10.0, 0.0, 10.0]);
+        assert_eq!(told(CocConvention::Nuke), [-5.0, 0.0, 5.0]);
+        assert_eq!(told(CocConvention::MagicDefocus), [5.0, 0.0, -5.0]);
+        assert_eq!(told(CocConvention::Flame), [0.45, 0.5, 0.55]);
+        assert_eq!(CocConvention::Flame.told(1e9, 100), 1.0);
+        for (name, convention) in CocConvention::ALL {
+            assert_eq!((CocConvention::named(name), convention.name()), (Some(convention), name));
+        }
+    }
+}

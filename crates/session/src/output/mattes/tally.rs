@@ -1,0 +1,124 @@
+//! What each pixel shows, counted thing by thing, and ranked.
+
+use project::Ranked;
+use rayon::prelude::*;
+
+/// Pixels are told apart by this much: what is left of a pixel may be in no matte.
+const NEGLIGIBLE: f32 = 1e-5;
+
+/// The most ranks.
+const MOST_RANKS: usize = 32;
+
+/// A thing's share of a pixel.
+#[derive(Clone, Copy)]
+struct Entry {
+    column: u32,
+    thing: u32,
+    share: f32,
+}
+
+/// The shares of things of one kind.
+pub(crate) struct Tally {
+    width: usize,
+    /// Of each row of pixels, in any order.
+    rows: Vec<Vec<Entry>>,
+}
+
+impl Tally {
+    /// Of a picture of this width and height, px: nothing is counted yet.
+    pub fn new([width, height]: [u32; 2]) -> Self {
+        Self { width: width as usize, rows: vec![Vec::new(); height as usize] }
+    }
+
+    /// Counts the shares of all pixels, row by row, of the things that `owner` tells for columns and rows. Where an image
+    /// undershoots they may be below 0: that counts as nothing.
+    pub fn add(&mut self, shares: impl Iterator<Item = f32>, owner: impl Fn(usize, usize) -> Option<u32>) {
+        for (pixel, share) in shares.enumerate().filter(|(_, share)| *share > 0.0) {
+            let (x, y) = (pixel % self.width, pixel / self.width);
+            if let Some(thing) = owner(x, y) {
+                self.rows[y].push(Entry { column: x as u32, thing, share });
+            }
+        }
+    }
+
+    /// The things of each pixel by rank, their shares made to sum to alpha: as many ranks as are needed, one at least. And the most that is left
+    /// out of a pixel, if it is more than negligible.
+    pub fn ranks(self, alpha: &[f32]) -> (Vec<Vec<Ranked>>, f32) {
+        let width = self.width;
+        // The entries of each pixel follow each other, the largest first.
+        let ranked = self.rows.into_par_iter().enumerate().map(|(y, mut row)| {
+            row.sort_by(|a, b| {
+                a.column.cmp(&b.column).then(b.share.total_cmp(&a.share)).then(a.thing.cmp(&b.thing))
+            });
+            let (mut needed, mut left_out) = (0, 0.0f32);
+            for pixel in row.chunk_by_mut(|a, b| a.column == b.column) {
+                let sum: f32 = pixel.iter().map(|entry| entry.share).sum();
+                let scale = alpha[y * width + pixel[0].column as usize] / sum;
+                let mut rest = 0.0;
+                let mut needed_here = 0;
+                for (rank, entry) in pixel.iter_mut().enumerate().rev() {
+                    entry.share *= scale;
+                    rest += entry.share;
+                    if needed_here == 0 && rest > NEGLIGIBLE {
+                        needed_here = rank + 1;
+                    }
+                }
+                if needed_here > MOST_RANKS {
+                    left_out = left_out.max(pixel[MOST_RANKS..].iter().map(|entry| entry.share).sum());
+                }
+                needed = needed.max(needed_here.min(MOST_RANKS));
+            }
+            (row, needed, left_out)
+        });
+        let rows: Vec<_> = ranked.collect();
+        let needed = rows.iter().map(|(_, needed, _)| *needed).max().unwrap_or(0).max(1);
+        let left_out = rows.iter().map(|(.., left_out)| *left_out).fold(0.0, f32::max);
+        let mut ranks = vec![vec![Ranked::NONE; alpha.len()]; needed];
+        for (y, (row, ..)) in rows.into_iter().enumerate() {
+            for pixel in row.chunk_by(|a, b| a.column == b.column) {
+                for (entry, rank) in pixel.iter().zip(&mut ranks) {
+                    rank[y * width + entry.column as usize] =
+                        Ranked { thing: Some(entry.thing), share: entry.share };
+                }
+            }
+        }
+        (ranks, left_out)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shares_are_ranked_and_sum_to_alpha() {
+        let mut tally = Tally::new([2, 1]);
+        tally.add([0.2, 1.0].into_iter(), |_, _| Some(7));
+        tally.add([0.61, -0.1].into_iter(), |_, _| Some(3));
+        tally.add([0.2, 1e-7].into_iter(), |_, _| Some(5));
+        tally.add([0.5, 0.5].into_iter(), |_, _| None);
+        let (ranks, left_out) = tally.ranks(&[1.0, 0.75]);
+        let of = |pixel: usize| {
+            ranks.iter().map(|rank| (rank[pixel].thing, rank[pixel].share)).collect::<Vec<_>>()
+        };
+        assert_eq!((ranks.len(), left_out), (3, 0.0));
+        assert_eq!(of(0).iter().map(|(thing, _)| *thing).collect::<Vec<_>>(), [Some(3), Some(5), Some(7)]);
+        assert!((of(0).iter().map(|(_, share)| share).sum::<f32>() - 1.0).abs() < 1e-6);
+        assert_eq!(of(1)[0].0, Some(7));
+        assert!((of(1)[0].1 - 0.75).abs() < 1e-6, "{:?}", of(1));
+    }
+
+    #[test]
+    fn what_shows_nothing_has_a_rank_of_nothing() {
+        assert_eq!(Tally::new([3, 2]).ranks(&[0.0; 6]), (vec![vec![Ranked::NONE; 6]], 0.0));
+    }
+
+    #[test]
+    fn what_has_no_rank_is_told() {
+        let mut tally = Tally::new([1, 1]);
+        (0..40).for_each(|thing| tally.add([0.025].into_iter(), |_, _| Some(thing)));
+        let (ranks, left_out) = tally.ranks(&[1.0]);
+        assert_eq!(ranks.len(), MOST_RANKS);
+        assert!((left_out - 0.2).abs() < 1e-5, "{left_out}");
+    }
+}

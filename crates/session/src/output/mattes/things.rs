@@ -1,0 +1,50 @@
+//! Things that a picture shows, by name: objects or materials.
+
+use scene::{Part, Scene};
+use std::collections::HashMap;
+
+/// Things of one kind.
+pub(crate) struct Things {
+    /// As Cryptomatte calls the kind.
+    pub kind: &'static str,
+    /// As sentences call it.
+    pub said: &'static str,
+    /// Those of one name are one thing, as they are for recipes.
+    pub names: Vec<String>,
+    of_part: Vec<u32>,
+}
+
+impl Things {
+    /// The scene's nodes.
+    pub fn objects(scene: &Scene) -> Self {
+        Self::new("Object", "objects", scene, |part| &scene.nodes[part.node as usize].name)
+    }
+
+    /// Its materials.
+    pub fn materials(scene: &Scene) -> Self {
+        Self::new("Material", "materials", scene, |part| &scene.materials[part.material as usize].name)
+    }
+
+    fn new<'a>(
+        kind: &'static str,
+        said: &'static str,
+        scene: &'a Scene,
+        name_of: impl Fn(&'a Part) -> &'a String,
+    ) -> Self {
+        let (mut known, mut names) = (HashMap::new(), Vec::new());
+        let of_part = scene.parts.iter().map(|part| {
+            let name = name_of(part);
+            *known.entry(name.as_str()).or_insert_with(|| {
+                names.push(name.clone());
+                names.len() as u32 - 1
+            })
+        });
+        let of_part = of_part.collect();
+        Self { kind, said, names, of_part }
+    }
+
+    /// What a part of the scene belongs to.
+    pub fn of_part(&self, part: u32) -> u32 {
+        self.of_part[part as usize]
+    }
+}

@@ -1,0 +1,60 @@
+//! Small pictures of files, for file managers.
+
+use crate::display::Tone;
+use crate::document::InputKind;
+use crate::error::SessionError;
+use lens::{Exposure, FocusOffset};
+use progress::Progress;
+use project::Thumbnail;
+use salf::SalfFile;
+use scene::{SurfaceField, SurfacePoint};
+use splat::Splatter;
+use std::fs::File;
+use std::io::BufReader;
+use std::path::Path;
+
+/// The small picture that a project holds; of a light field, what its camera sees, drawn without its scene, which a file manager may keep
+/// out of reach.
+///
+/// # Errors
+/// The file is neither of them, cannot be read, or is a project that was saved without a picture; `progress` says to stop.
+pub fn thumbnail(path: &Path, progress: &dyn Progress) -> Result<Thumbnail, SessionError> {
+    let none = |what: &str| Err(SessionError::bad(path, what));
+    match InputKind::of(path)? {
+        InputKind::Project => match Thumbnail::read(path)? {
+            Some(thumbnail) => Ok(thumbnail),
+            None => none("was saved without a picture (open it in the window and save it)"),
+        },
+        InputKind::LightField => {
+            let file = File::open(path).map_err(|error| SessionError::io(path, &error))?;
+            let read =
+                SalfFile::read(BufReader::new(file)).map_err(|error| SessionError::bad(path, error))?;
+            let camera = read.salf.camera.clone();
+            let mut splatter = Splatter::new(read.salf);
+            splatter.render(&camera, &OrdinaryLens, progress)?;
+            let picture = splatter.picture();
+            let tone = Tone { exposure: Exposure::Normalise, ..Tone::default() };
+            Ok(Thumbnail::of(picture.width, picture.height, tone.displayed(picture)))
+        }
+        InputKind::Scene | InputKind::Capture => {
+            none("holds no picture of itself (give a project or a light field)")
+        }
+    }
+}
+
+/// Nothing painted, of no scene in particular.
+struct OrdinaryLens;
+
+impl SurfaceField<FocusOffset> for OrdinaryLens {
+    fn at(&self, _point: SurfacePoint) -> FocusOffset {
+        FocusOffset::STANDARD
+    }
+
+    fn at_infinity(&self) -> FocusOffset {
+        FocusOffset::STANDARD
+    }
+
+    fn concerns_carried(&self) -> bool {
+        false
+    }
+}

@@ -1,0 +1,90 @@
+//! Time in the window: keys are set, and lens and layers are shown as they say.
+//!
+//! To go to a time is to give the camera and the layers the values that their keys have then, as animation programs do. That is no
+//! step of undo: what the keys say is kept in the keys. The scene itself is shown at rest; frames show it in motion
+//! ([`crate::render_frames`]).
+
+use super::state::Session;
+use crate::commands::Event;
+use crate::document::SurfaceHit;
+use crate::error::SessionError;
+use focus::{Ease, FocusTarget, Key, LensMotion};
+use scene::SurfacePoint;
+
+impl Session {
+    pub(super) fn go_to_time(&mut self, seconds: f64) -> Result<(), SessionError> {
+        if !seconds.is_finite() {
+            return Err(SessionError::BadInput(format!("{seconds} s is no time")));
+        }
+        self.opened()?.seconds = seconds;
+        self.show_time()
+    }
+
+    /// Gives lens and layers what their keys say now.
+    pub(super) fn show_time(&mut self) -> Result<(), SessionError> {
+        let document = self.opened()?;
+        let (seconds, scene) = (document.seconds, document.stage.scene.clone());
+        let position = |point: SurfacePoint| {
+            ((point.triangle as usize) < scene.triangles.len()).then(|| point.position(&scene))
+        };
+        let camera = document.lens_motion.at(seconds, &document.camera, &position);
+        let is_moved = camera != document.camera && camera.validate().is_ok();
+        if is_moved {
+            document.camera = camera;
+        }
+        let mut is_faded = false;
+        for index in 0..document.layers.layers().len() {
+            let Some(layer) = document.layers.layer_mut(index) else { continue };
+            let Some(opacity) = layer.motion.opacity.around(seconds).map(|around| around.number()) else {
+                continue;
+            };
+            is_faded |= layer.opacity != opacity;
+            layer.opacity = opacity;
+        }
+        if is_moved {
+            self.events.push(Event::CameraChanged);
+            self.show_camera();
+            self.follow_camera()?;
+        }
+        if is_faded {
+            self.events.push(Event::LayersChanged);
+            self.show_layers(None)?;
+        }
+        Ok(())
+    }
+
+    pub(super) fn set_lens_motion(&mut self, name: &str, motion: LensMotion) -> Result<(), SessionError> {
+        if !motion.is_valid() {
+            let what = "keys of the lens: times must ascend, distances and f-numbers be above 0";
+            return Err(SessionError::BadInput(what.into()));
+        }
+        let document = self.opened()?;
+        if document.lens_motion == motion {
+            return Ok(());
+        }
+        let before = std::mem::replace(&mut document.lens_motion, motion.clone());
+        document.undo.push_lens_motion(name, before, motion);
+        document.revision += 1;
+        self.show_time()
+    }
+
+    pub(super) fn rack(
+        &mut self,
+        points: [SurfaceHit; 2],
+        seconds: [f64; 2],
+        ease: Ease,
+    ) -> Result<(), SessionError> {
+        if seconds[0] >= seconds[1] || !seconds.iter().all(|seconds| seconds.is_finite()) {
+            return Err(SessionError::BadInput(
+                "a rack focus takes some time (give it more than 0 s)".into(),
+            ));
+        }
+        let mut motion = self.opened()?.lens_motion.clone();
+        for (hit, seconds) in points.into_iter().zip(seconds) {
+            if !motion.focus.put(Key { seconds, value: FocusTarget::Point(hit.point), ease }) {
+                return Err(SessionError::BadInput("the lens has too many keys (take some away)".into()));
+            }
+        }
+        self.set_lens_motion("Rack focus", motion)
+    }
+}

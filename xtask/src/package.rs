@@ -1,0 +1,56 @@
+//! `package`: what people install who have no compiler, and a source archive that builds without a network.
+//!
+//! ```text
+//! cargo build --release ─▶ layout ─┬▶ deb      focus-brush_VERSION_ARCH.deb
+//!                                  └▶ tarball  focus-brush-VERSION-linux-ARCH.tar.xz
+//! git, cargo vendor ────────────────▶ source   focus-brush-VERSION-source.tar.xz
+//! ```
+//!
+//! Of the same commit, compiler and system libraries come the same bytes: times in archives are the commit's.
+
+mod deb;
+mod layout;
+mod release;
+mod source;
+mod staging;
+mod tarball;
+
+use crate::chore::{Failure, cargo, execute};
+use crate::packages::{TO_BUILD, TO_PACKAGE, install_missing};
+use release::{Release, target};
+use std::ffi::OsString;
+use std::path::PathBuf;
+
+/// Makes the packages that are named, `deb`, `tarball` or `source`; all of them where none is.
+pub fn package(kinds: &[OsString]) -> Result<(), Failure> {
+    const KINDS: [&str; 3] = ["deb", "tarball", "source"];
+    if let Some(other) = kinds.iter().find(|kind| !KINDS.iter().any(|known| kind == known)) {
+        return Err(Failure::new(format!(
+            "{}: no package (there are {})",
+            other.display(),
+            KINDS.join(", ")
+        )));
+    }
+    let is_wanted = |kind: &str| kinds.is_empty() || kinds.iter().any(|wanted| wanted == kind);
+    install_missing(&[TO_BUILD, TO_PACKAGE])?;
+    let release = Release::of_commit()?;
+    if is_wanted("deb") || is_wanted("tarball") {
+        execute(cargo("build").args(["--release", "--package", "focus-brush"]))?;
+        let program = target().join("release/focus-brush");
+        if is_wanted("deb") {
+            told(deb::make(&release, &program)?);
+        }
+        if is_wanted("tarball") {
+            told(tarball::make(&release, &program)?);
+        }
+    }
+    if is_wanted("source") {
+        told(source::make(&release)?);
+    }
+    Ok(())
+}
+
+fn told(package: PathBuf) {
+    let size = std::fs::metadata(&package).map_or(0, |data| data.len());
+    println!("{} ({} MiB)", package.display(), size.div_ceil(1 << 20));
+}

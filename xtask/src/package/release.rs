@@ -1,0 +1,39 @@
+//! What is packaged: a version, as old as its commit.
+
+use crate::chore::{Failure, output_of, repository};
+use std::path::PathBuf;
+use std::process::Command;
+
+/// What is packaged.
+pub struct Release {
+    pub version: String,
+    /// Seconds since 1970 that everything in archives is as old as: the commit's.
+    pub time: String,
+    /// Where packages go.
+    pub output: PathBuf,
+}
+
+impl Release {
+    pub fn of_commit() -> Result<Self, Failure> {
+        let output = target().join("package");
+        std::fs::create_dir_all(&output).map_err(|e| Failure::new(format!("{}: {e}", output.display())))?;
+        let time = output_of(git().args(["log", "-1", "--format=%ct"]))?;
+        Ok(Self {
+            version: env!("CARGO_PKG_VERSION").into(),
+            time: String::from_utf8_lossy(&time).trim().into(),
+            output,
+        })
+    }
+}
+
+/// Git, in this repository.
+pub fn git() -> Command {
+    let mut command = Command::new("git");
+    command.arg("-C").arg(repository());
+    command
+}
+
+/// Where cargo builds.
+pub fn target() -> PathBuf {
+    std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| repository().join("target"), PathBuf::from)
+}

@@ -1,0 +1,78 @@
+//! The tree that a package holds, laid out on disk before it is packed.
+
+use super::layout::{Installed, PROGRAM, SHARED};
+use super::release::Release;
+use crate::chore::{Failure, execute, repository};
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// Makes an empty folder for a package.
+pub fn empty_folder(release: &Release, name: &str) -> Result<PathBuf, Failure> {
+    let folder = release.output.join("staging").join(name);
+    if folder.exists() {
+        std::fs::remove_dir_all(&folder).map_err(|error| failed(&folder, &error))?;
+    }
+    std::fs::create_dir_all(&folder).map_err(|error| failed(&folder, &error))?;
+    Ok(folder)
+}
+
+/// Lays out below `root` what is installed, the program without its debug information.
+pub fn lay_out(root: &Path, program: &Path) -> Result<(), Failure> {
+    let placed = root.join(PROGRAM);
+    copy(program, &placed)?;
+    execute(Command::new("strip").arg("--strip-unneeded").arg(&placed))?;
+    for Installed { from, to } in SHARED {
+        copy(&repository().join(from), &root.join(to))?;
+    }
+    Ok(())
+}
+
+/// Copies a file, or a folder with all that is in it.
+pub fn copy(from: &Path, to: &Path) -> Result<(), Failure> {
+    if from.is_dir() {
+        let entries = std::fs::read_dir(from).map_err(|error| failed(from, &error))?;
+        for entry in entries {
+            let entry = entry.map_err(|error| failed(from, &error))?;
+            copy(&entry.path(), &to.join(entry.file_name()))?;
+        }
+        return Ok(());
+    }
+    let folder = to.parent().unwrap_or(to);
+    std::fs::create_dir_all(folder).map_err(|error| failed(folder, &error))?;
+    std::fs::copy(from, to).map_err(|error| failed(from, &error))?;
+    Ok(())
+}
+
+/// Writes a file.
+pub fn write(file: &Path, text: &str) -> Result<(), Failure> {
+    let folder = file.parent().unwrap_or(file);
+    std::fs::create_dir_all(folder).map_err(|error| failed(folder, &error))?;
+    std::fs::write(file, text).map_err(|error| failed(file, &error))
+}
+
+/// Sets the rights that files and folders have in packages, whatever they are here.
+pub fn set_rights(root: &Path) -> Result<(), Failure> {
+    execute(Command::new("chmod").args(["-R", "u=rwX,go=rX"]).arg(root))
+}
+
+/// Packs a folder, under its own name.
+pub fn pack(release: &Release, folder: &Path, archive: &Path) -> Result<(), Failure> {
+    let (above, name) = (folder.parent().unwrap_or(folder), folder.file_name().unwrap_or_default());
+    let mut tar = Command::new("tar");
+    tar.args([
+        "--create",
+        "--xz",
+        "--sort=name",
+        "--owner=0",
+        "--group=0",
+        "--numeric-owner",
+        "--format=gnu",
+    ]);
+    tar.arg(format!("--mtime=@{}", release.time)).arg("--file").arg(archive).arg("-C").arg(above).arg(name);
+    // Many small files: more than the default does not make them smaller.
+    execute(tar.env("XZ_OPT", "-6"))
+}
+
+pub fn failed(file: &Path, error: &std::io::Error) -> Failure {
+    Failure::new(format!("{}: {error}", file.display()))
+}
