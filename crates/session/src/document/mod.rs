@@ -41,6 +41,6 @@ pub use variant_choice::VariantChoice;
 pub(crate) use adjusted_view::AdjustedView;
 pub(crate) use capture_scene::photograph;
 pub(crate) use kept_atlas::unwrapped;
-pub(crate) use scene_hashes::{light_hash, photographs_hash};
+pub(crate) use scene_hashes::{content_hash, light_hash, photographs_hash};
 pub(crate) use stage::{atlas_error, canvas_of};
 pub(crate) use undo::{Undoable, Undone};

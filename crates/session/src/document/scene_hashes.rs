@@ -1,6 +1,7 @@
 //! Checksums of parts of a scene: of what an atlas is made from, of what photographs' light is made from, and of all that gives light.
 
-use scene::{Environment, ImageLevel, Scene, View};
+use glam::Vec3;
+use scene::{Environment, ImageLevel, Scene, View, World};
 use sha2::{Digest, Sha256};
 use std::path::Path;
 
@@ -33,6 +34,21 @@ impl Lists {
         }
     }
 
+    /// The same by what is in the pictures, wherever they lie and whenever they were written.
+    fn add_view_contents(&mut self, views: &[View]) {
+        for view in views {
+            let View { name, orientation, exif_orientation, lens, camera_to_world, exposure_hint, .. } = view;
+            let said = format!(
+                "{name:?} {orientation} {exif_orientation} {lens:?} {camera_to_world:?} {exposure_hint:?}"
+            );
+            self.add(said.as_bytes());
+            for file in [Some(&view.picture), view.mask.as_ref()].into_iter().flatten() {
+                // One that cannot be read stops the picture, too.
+                self.add(&std::fs::read(file).unwrap_or_default());
+            }
+        }
+    }
+
     fn sum(self) -> [u8; 32] {
         self.0.finalize().into()
     }
@@ -57,38 +73,58 @@ pub(crate) fn photographs_hash(scene: &Scene) -> [u8; 32] {
 /// alike.
 pub(crate) fn light_hash(scene: &Scene) -> [u8; 32] {
     let mut lists = Lists(Sha256::new());
-    lists.add_surface(scene);
-    lists.add(bytemuck::cast_slice(&scene.colors));
-    lists.add(bytemuck::cast_slice(&scene.tangents));
-    for image in &scene.images {
-        lists.add(format!("{} {}", image.width, image.height).as_bytes());
-        match &image.texels {
-            ImageLevel::Bits8(texels) => lists.add(texels),
-            ImageLevel::Bits16(texels) => lists.add(bytemuck::cast_slice(texels)),
-            ImageLevel::Float(texels) => lists.add(bytemuck::cast_slice(texels)),
-        }
-    }
-    for world in scene.own_world.iter().chain(&scene.world) {
-        let Environment::Map(map) = &world.environment else { continue };
-        lists.add(format!("{} {}", map.width, map.height).as_bytes());
-        lists.add(bytemuck::cast_slice(&map.texels));
-    }
+    lists.add_lit(scene);
     lists.add_views(&scene.views);
-    lists.add(format!("{:?}", scene.photo_lookup).as_bytes());
-    // Written out, numbers are as exact as they are.
-    lists.add(
-        format!(
-            "{:?} {:?} {:?} {:?} {:?} {:?}",
-            scene.materials,
-            scene.lights,
-            scene.back_faces,
-            scene.own_world,
-            scene.world,
-            scene.single_scattering
-        )
-        .as_bytes(),
-    );
+    lists.add(format!("{:?} {:?}", scene.own_world, scene.world).as_bytes());
     lists.sum()
+}
+
+/// The same by contents alone: wherever the files lie, whenever they were written, on whatever machine.
+pub(crate) fn content_hash(scene: &Scene) -> [u8; 32] {
+    let mut lists = Lists(Sha256::new());
+    lists.add_lit(scene);
+    lists.add_view_contents(&scene.views);
+    for world in [&scene.own_world, &scene.world] {
+        // The texels of a map are told already, and what it is called makes no light.
+        let nameless = world.clone().map(|world| match world.environment {
+            Environment::Map(_) => World { environment: Environment::Uniform(Vec3::ZERO), ..world },
+            Environment::Uniform(_) => world,
+        });
+        lists.add(format!("{nameless:?}").as_bytes());
+    }
+    lists.sum()
+}
+
+impl Lists {
+    /// All but photographs, and what is told of worlds in words.
+    fn add_lit(&mut self, scene: &Scene) {
+        let lists = self;
+        lists.add_surface(scene);
+        lists.add(bytemuck::cast_slice(&scene.colors));
+        lists.add(bytemuck::cast_slice(&scene.tangents));
+        for image in &scene.images {
+            lists.add(format!("{} {}", image.width, image.height).as_bytes());
+            match &image.texels {
+                ImageLevel::Bits8(texels) => lists.add(texels),
+                ImageLevel::Bits16(texels) => lists.add(bytemuck::cast_slice(texels)),
+                ImageLevel::Float(texels) => lists.add(bytemuck::cast_slice(texels)),
+            }
+        }
+        for world in scene.own_world.iter().chain(&scene.world) {
+            let Environment::Map(map) = &world.environment else { continue };
+            lists.add(format!("{} {}", map.width, map.height).as_bytes());
+            lists.add(bytemuck::cast_slice(&map.texels));
+        }
+        lists.add(format!("{:?}", scene.photo_lookup).as_bytes());
+        // Written out, numbers are as exact as they are.
+        lists.add(
+            format!(
+                "{:?} {:?} {:?} {:?}",
+                scene.materials, scene.lights, scene.back_faces, scene.single_scattering
+            )
+            .as_bytes(),
+        );
+    }
 }
 
 #[cfg(test)]
@@ -160,5 +196,14 @@ mod tests {
         std::fs::write(&picture, "another").unwrap();
         assert_ne!(photographs_hash(&scene), before);
         assert_eq!(surface_hash(&scene), surface_hash(&Scene::default()));
+        // Of contents it counts what is in the file, not when it was written, or where.
+        let content = content_hash(&scene);
+        let elsewhere = folder.path().join("copy.jpg");
+        std::fs::copy(&picture, &elsewhere).unwrap();
+        let mut copied = scene.clone();
+        copied.views[0].picture = elsewhere;
+        assert!(content_hash(&copied) == content && light_hash(&copied) != light_hash(&scene));
+        std::fs::write(&picture, "changed").unwrap();
+        assert_ne!(content_hash(&scene), content);
     }
 }

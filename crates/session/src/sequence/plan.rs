@@ -18,6 +18,8 @@ pub(super) fn plan(at: &Instant, baked: &str, options: &RenderOptions, written: 
     };
     add(VERSION.as_bytes());
     add(&at.scene.hash);
+    // Mattes are called after objects.
+    at.scene.scene.nodes.iter().for_each(|node| add(node.name.as_bytes()));
     // Written out, numbers are as exact as they are.
     add(format!("{:?}", at.camera).as_bytes());
     add(baked.as_bytes());

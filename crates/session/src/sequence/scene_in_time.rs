@@ -3,7 +3,7 @@
 //! Atlas and paint belong to the surface at rest: a triangle keeps its place in the atlas wherever it is, so that a texel stays on its
 //! piece of surface ([`posed_atlas`]).
 
-use crate::document::{canvas_of, light_hash};
+use crate::document::{canvas_of, content_hash};
 use crate::error::SessionError;
 use atlas::Atlas;
 use focus::{Canvas, Focus, FocusMap, FocusSource};
@@ -40,7 +40,7 @@ impl SceneInTime {
     }
 
     fn new(scene: Arc<Scene>, at_rest: Option<Vec<Option<RestTriangle>>>) -> Self {
-        let hash = light_hash(&scene);
+        let hash = content_hash(&scene);
         let (now, tracer, atlas, canvas) = Default::default();
         Self { scene, hash, at_rest, now, tracer, atlas, canvas }
     }
