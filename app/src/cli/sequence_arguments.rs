@@ -10,7 +10,7 @@ use std::path::PathBuf;
 #[derive(Debug, Args)]
 pub struct SequenceArguments {
     /// The picture of one frame: with what moves where it is then. Frame 1 is at 0 s
-    #[arg(long, value_name = "N", conflicts_with_all = ["frames", "shard"])]
+    #[arg(long, value_name = "N", conflicts_with_all = ["frames", "shard", "stereo"])]
     pub frame: Option<u32>,
     /// The pictures of these frames, to -o out.####.exr: 1-100, 1-100x2 (every second), 1-3,5,7-10:2. Those that are there, whole and
     /// by the same plan, are skipped

@@ -2,7 +2,7 @@
 
 use crate::program::done;
 use crate::{card_light_field, tiny_glb, wall_capture};
-use focus::{Brush, ViewFrame};
+use focus::{Brush, FocusLayer, LayerStack, ViewFrame};
 use lens::FocusOffset;
 use project::{ProjectFile, RecordedStep, RecordedStroke};
 use std::path::Path;
@@ -33,7 +33,9 @@ pub fn workplace() -> TempDir {
     done(folder, "new garden.glb --focus recipe.json -o garden.fbrush");
     done(folder, "render garden.glb --aperture-radius 0 -o cycles.exr");
     std::fs::copy(folder.join("garden.fbrush"), folder.join("shot.fbrush")).unwrap();
-    strokes(folder);
+    let project = ProjectFile::load(&folder.join("garden.fbrush")).unwrap();
+    layered(project.clone(), &folder.join("layered.fbrush"));
+    strokes(&project, &folder.join("strokes.json"));
     place
 }
 
@@ -44,14 +46,21 @@ fn sky(file: &Path) {
     image::codecs::hdr::HdrEncoder::new(writer).encode(&pixels, 32, 16).unwrap();
 }
 
+/// The project with a second layer.
+fn layered(project: ProjectFile, file: &Path) {
+    let map = project.focus_map.clone().unwrap();
+    let layers = ["Paint", "far lamp"].map(|name| FocusLayer::painted(name, map.clone()));
+    let layers = LayerStack::new(layers.into(), 1);
+    ProjectFile { layers, ..project }.save(file).unwrap();
+}
+
 /// One stroke across the picture, as the window records it.
-fn strokes(folder: &Path) {
-    let project = ProjectFile::load(&folder.join("garden.fbrush")).unwrap();
+fn strokes(project: &ProjectFile, file: &Path) {
     let view = ViewFrame::of(&project.cameras[0].camera);
     let brush = Brush { radius: 0.3, target: FocusOffset::new(1.4, 0.5), ..Brush::default() };
     let points = (0..20).map(|k| [0.3 + 0.02 * f64::from(k), 0.5, 1.0]).collect();
     let stroke = RecordedStroke { layer: "Paint".into(), brush, view: view.into(), points };
-    project::write_strokes(&folder.join("strokes.json"), &[RecordedStep::Stroke(stroke)]).unwrap();
+    project::write_strokes(file, &[RecordedStep::Stroke(stroke)]).unwrap();
 }
 
 /// White is near.
