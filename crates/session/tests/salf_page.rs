@@ -307,7 +307,7 @@ fn a_reader_by_the_page_knows_all_apertures_and_samples_that_are_not_packed() {
 
 /// Where the counts begin of a file whose aperture is a polygon.
 fn counts_at(source: &str) -> usize {
-    let camera = 8 + 8 * (4 + 3 + 16 + 1) + 1 + 4 + 16;
+    let camera = 8 + 8 * (4 + 2 + 3 + 16 + 1) + 1 + 4 + 16;
     8 + 4 + 4 + source.len() + 4 + camera + 4
 }
 
