@@ -196,3 +196,28 @@ fn a_map_that_is_coded_by_colour_is_decoded_by_the_views() {
     assert_eq!(output.status.code(), Some(3), "{errors}");
     assert!(errors.contains("residual"), "{errors}");
 }
+
+#[test]
+fn views_are_looked_through_and_compared_with() {
+    let place = tempfile::tempdir().unwrap();
+    let folder = place.path();
+    card_light_field::write(&folder.join("card"));
+    done(folder, "import card -o card.fbrush");
+    // The middle one, and those at an end of a row and in a corner.
+    for (name, [u, v]) in [("02_02", [0, 0]), ("02_04", [2, 0]), ("00_00", [-2, -2])] {
+        let taken: Vec<[f64; 3]> =
+            (0..SIZE[1]).flat_map(|y| (0..SIZE[0]).map(move |x| pixel(x, y, [u.into(), v.into()]))).collect();
+        done(folder, &format!("export card.fbrush --photo {name}=taken.exr"));
+        assert!(psnr(&folder.join("taken.exr"), &taken) > 50.0, "{name}: 8 bits of it");
+        done(folder, &format!("render card.fbrush --camera photo:{name} -o seen.exr"));
+        let seen = psnr(&folder.join("seen.exr"), &taken);
+        assert!(seen > 30.0, "{name}: {seen}");
+        // Not by the camera of the middle.
+        done(folder, "render card.fbrush --aperture-radius 0 -o middle.exr");
+        let middle = psnr(&folder.join("middle.exr"), &taken);
+        assert!([u, v] == [0, 0] || middle < seen - 6.0, "{name}: {middle} {seen}");
+    }
+    let errors =
+        String::from_utf8(run(folder, "render card.fbrush --camera photo:none -o x.exr").stderr).unwrap();
+    assert!(errors.contains("no photograph is called \"none\""), "{errors}");
+}

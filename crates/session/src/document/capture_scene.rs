@@ -100,7 +100,7 @@ fn load_photographs(
     if let Some(name) = choices.leave_out.iter().find(|name| !views.iter().any(|view| view.name == **name)) {
         return Err(SessionError::bad(
             folder,
-            format!("no photograph is called \"{name}\" ({})", names(&views)),
+            format!("no photograph is called \"{name}\" ({})", names(views.iter())),
         ));
     }
     let is_left_out = |view: &View| choices.leave_out.contains(&view.name);
@@ -135,13 +135,14 @@ pub(crate) fn photograph_camera(scene: &Scene, name: &str, like: &Camera) -> Res
 pub(crate) fn photograph<'a>(scene: &'a Scene, name: &str) -> Result<&'a View, String> {
     let mut views = scene.photographs();
     let view = views.find(|view| view.name == name);
-    view.ok_or_else(|| format!("no photograph is called \"{name}\" ({})", names(&scene.views)))
+    view.ok_or_else(|| format!("no photograph is called \"{name}\" ({})", names(scene.photographs())))
 }
 
-fn names(views: &[View]) -> String {
+fn names<'a>(views: impl Iterator<Item = &'a View>) -> String {
     const TOLD: usize = 8;
-    let told: Vec<&str> = views.iter().take(TOLD).map(|view| view.name.as_str()).collect();
-    let more = if views.len() > TOLD { ", …" } else { "" };
+    let mut names = views.map(|view| view.name.as_str());
+    let told: Vec<&str> = names.by_ref().take(TOLD).collect();
+    let more = if names.next().is_some() { ", …" } else { "" };
     match told.is_empty() {
         true => "it is no capture, or all are left out".into(),
         false => format!("there are {}{more}", told.join(", ")),
