@@ -57,7 +57,7 @@ pub enum Subcommand {
     /// Bake the light field of a scene or project into a file
     Bake(BakeArguments),
     /// Render a picture of a scene, project or light field
-    Render(RenderArguments),
+    Render(Box<RenderArguments>),
     /// How far picture A is from the reference B: RMSE, relMSE, PSNR, FLIP, signed mean error
     Compare(CompareArguments),
     /// Measure every renderer against the ground truth: speed, error, memory, as tables, plots and a page
