@@ -43,22 +43,7 @@ def bake(scene, found, folder, side=2048, samples=256, project="scene.fbrush"):
     for file in (raw, unwrapped):
         file.unlink()
     world = world_light.write(scene, folder)
-    manifest = {
-        "format": handover.FORMAT,
-        "version": 1,
-        "blend": bpy.data.filepath,
-        "scene_name": scene.name,
-        "frame": scene.frame_current,
-        "camera": scene.camera.name,
-        "camera_data": scene.camera.data.name,
-        "scene": "scene.glb",
-        "world": world.name,
-        "project": project,
-        "light": "cycles",
-        "told": told,
-    }
-    handover.save(folder, manifest)
-    return manifest
+    return handover.save(folder, scene, world.name, project, "cycles", told)
 
 
 def light_named(path, picture):

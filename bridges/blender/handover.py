@@ -75,6 +75,11 @@ def write(scene, folder, project="scene.fbrush", animation=False):
     told = export_glb(scene, folder / "scene.glb", animation)
     world = world_light.write(scene, folder)
     told += world_light.told_of(scene.world)
+    return save(folder, scene, world.name, project, "scene", told)
+
+
+def save(folder, scene, world, project, light, told):
+    """Writes the manifest of what lies in the folder; gives it. `light` says whose it is: "scene" or "cycles"."""
     manifest = {
         "format": FORMAT,
         "version": 1,
@@ -84,17 +89,13 @@ def write(scene, folder, project="scene.fbrush", animation=False):
         "camera": scene.camera.name,
         "camera_data": scene.camera.data.name,
         "scene": "scene.glb",
-        "world": world.name,
+        "world": world,
         "project": project,
-        "light": "scene",
+        "light": light,
         "told": told,
     }
-    save(folder, manifest)
-    return manifest
-
-
-def save(folder, manifest):
     (Path(folder) / MANIFEST).write_text(json.dumps(manifest, indent=1) + "\n", encoding="utf-8")
+    return manifest
 
 
 def read(folder):

@@ -1,13 +1,14 @@
 //! What can be typed.
 
-use super::parsers::{name_parser, positive};
+use super::parsers::{
+    aov, camera_parser, name_parser, named, not_negative, photograph_output, place, positive, size,
+};
 use super::sequence_arguments::{KeysArguments, SequenceArguments};
-use clap::builder::{OsStringValueParser, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, ValueEnum};
 use project::{ColorSpace, Compression};
 use scene::{BackFaces, PhotoLookup};
 use session::{Aov, CameraChoice, CocConvention, Renderer, VariantChoice};
-use std::ffi::{OsStr, OsString};
+use std::ffi::OsString;
 use std::path::PathBuf;
 
 /// Paint onto a 3D scene how it is focused.
@@ -77,7 +78,7 @@ pub enum Subcommand {
 pub struct SceneLook {
     /// Whether faces that are not double sided are seen from behind (default: the project's, or hide, as glTF asks for). show:
     /// for files whose faces are turned, and to compare with renderers that show them
-    #[arg(long, value_name = "show|hide", value_parser = back_faces_parser())]
+    #[arg(long, value_name = "show|hide", value_parser = named(BackFaces::ALL))]
     pub back_faces: Option<BackFaces>,
     /// What lies beyond all surfaces, and lights them: a world file, or an equirectangular .hdr or .exr (default: the project's, or
     /// the scene's own; a scene without light has a studio)
@@ -92,7 +93,7 @@ pub struct SceneLook {
     pub single_scattering: bool,
     /// Where the light of a capture's photographs is looked up: at texels, which they were resampled to, or direct, in the photographs
     /// themselves for each point (slower; what texels cannot show finely enough)
-    #[arg(long, value_name = "texels|direct", default_value = "texels", value_parser = photos_parser())]
+    #[arg(long, value_name = "texels|direct", default_value = "texels", value_parser = named(PhotoLookup::ALL))]
     pub photos: PhotoLookup,
 }
 
@@ -295,7 +296,7 @@ pub struct RenderArguments {
     pub shot: ShotArguments,
     /// What draws it: the splatted light field or the ray-traced ground truth; or, to compare with: a blur of the pinhole
     /// picture by depth, the same in layers, shifted pinhole views, or every ray of the light field thrown at one pixel
-    #[arg(long, value_name = "NAME", default_value = "splat", value_parser = renderer_parser())]
+    #[arg(long, value_name = "NAME", default_value = "splat", value_parser = named(Renderer::ALL))]
     pub renderer: Renderer,
     /// Where the splat runs; the picture is the same. auto: on a graphics card if there is one, and on the processor rather
     /// than on a card that is one in software
@@ -386,13 +387,6 @@ pub enum ProgressName {
     Text,
     /// A line of JSON a step
     Json,
-}
-
-/// A place of a picture.
-fn place(text: &str) -> Result<glam::DVec2, String> {
-    let number = |text: &str| text.trim().parse::<f64>().ok().filter(|number| number.is_finite());
-    let place = text.split_once(',').and_then(|(x, y)| Some(glam::DVec2::new(number(x)?, number(y)?)));
-    place.ok_or_else(|| "X,Y in pixels".into())
 }
 
 /// Forms of stereo pictures.
@@ -564,73 +558,6 @@ pub enum ExposureName {
     Normalise,
 }
 
-fn camera_parser() -> impl TypedValueParser<Value = CameraChoice> {
-    OsStringValueParser::new().map(|text| camera_choice(&text))
-}
-
-/// A path may be any bytes, so it is not made text.
-fn camera_choice(text: &OsStr) -> CameraChoice {
-    let is_file = text.as_encoded_bytes().to_ascii_lowercase().ends_with(b".json");
-    if is_file { CameraChoice::File(text.into()) } else { CameraChoice::Named(text.to_string_lossy().into()) }
-}
-
-/// A photograph's name may hold anything but the file's.
-fn photograph_output(text: &str) -> Result<(String, PathBuf), String> {
-    match text.rsplit_once('=') {
-        Some((name, file)) if !name.is_empty() && file.to_lowercase().ends_with(".exr") => {
-            Ok((name.into(), file.into()))
-        }
-        _ => Err("NAME=OUT.exr".into()),
-    }
-}
-
-fn size(text: &str) -> Result<[u32; 2], String> {
-    let sides = text.split_once(['x', 'X', '×']);
-    let side = |text: &str| {
-        text.trim().parse().ok().filter(|side| (1..=lens::Camera::LARGEST_SIDE_PX).contains(side))
-    };
-    sides
-        .and_then(|(width, height)| Some([side(width)?, side(height)?]))
-        .ok_or_else(|| format!("WIDTHxHEIGHT in pixels, each 1 to {}", lens::Camera::LARGEST_SIDE_PX))
-}
-
-/// One of some values, by the names that they have.
-fn named<T: Copy + Send + Sync + 'static, const COUNT: usize>(
-    all: [(&'static str, T); COUNT],
-) -> impl TypedValueParser<Value = T> {
-    PossibleValuesParser::new(all.map(|(name, _)| name)).try_map(move |name| {
-        let found = all.iter().find(|(known, _)| *known == name);
-        found.map(|(_, value)| *value).ok_or("not one of them")
-    })
-}
-
-fn renderer_parser() -> impl TypedValueParser<Value = Renderer> {
-    let names = PossibleValuesParser::new(Renderer::ALL.map(|(name, _)| name));
-    names.try_map(|name| Renderer::named(&name).ok_or("not a renderer"))
-}
-
-fn back_faces_parser() -> impl TypedValueParser<Value = BackFaces> {
-    let names = PossibleValuesParser::new(BackFaces::ALL.map(|(name, _)| name));
-    names.try_map(|name| BackFaces::named(&name).ok_or("neither show nor hide"))
-}
-
-fn photos_parser() -> impl TypedValueParser<Value = PhotoLookup> {
-    let names = PossibleValuesParser::new(PhotoLookup::ALL.map(|(name, _)| name));
-    names.try_map(|name| PhotoLookup::named(&name).ok_or("neither texels nor direct"))
-}
-
-fn aov(name: &str) -> Result<Aov, String> {
-    Aov::named(name).ok_or_else(|| {
-        let known: Vec<_> = Aov::ALL.iter().map(|(name, _)| *name).collect();
-        format!("one of {}", known.join(", "))
-    })
-}
-
-fn not_negative(text: &str) -> Result<f64, String> {
-    let number = text.parse().ok().filter(|x: &f64| *x >= 0.0 && x.is_finite());
-    number.ok_or_else(|| "a number of 0 or more".into())
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -639,15 +566,5 @@ mod tests {
     #[test]
     fn the_command_line_is_consistent() {
         Arguments::command().debug_assert();
-    }
-
-    #[test]
-    fn values_are_checked() {
-        assert_eq!(size("960x540"), Ok([960, 540]));
-        assert!(size("960").is_err() && size("0x5").is_err() && size("99999x1").is_err());
-        assert_eq!(camera_choice("a.JSON".as_ref()), CameraChoice::File("a.JSON".into()));
-        assert_eq!(camera_choice("front".as_ref()), CameraChoice::Named("front".into()));
-        assert!(aov("depth").is_ok() && aov("z").is_err());
-        assert!(positive("0").is_err() && positive("nan").is_err() && not_negative("0").is_ok());
     }
 }

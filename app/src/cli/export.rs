@@ -5,8 +5,8 @@ use super::console::Console;
 use super::failure::Failure;
 use super::shot::{check_folder, unwrap_options};
 use focus::FocusMap;
-use lens::FocusOffset;
-use project::{FocusMapFile, PictureOptions, write_focus_map, write_picture};
+use lens::{FocusOffset, Picture};
+use project::{FocusMapFile, Layer, PictureOptions, write_focus_map, write_picture};
 use session::{Aov, Input, InputKind, RenderOptions, Rendered, render_input, write_unwrapped};
 use std::path::Path;
 
@@ -75,13 +75,7 @@ fn glb(input: &Input, path: &Path, console: &Console) -> Result<(), Failure> {
 fn photograph(input: &Input, name: &str, path: &Path, console: &Console) -> Result<(), Failure> {
     check_folder(path)?;
     let (picture, layers) = input.photograph_picture(name, console)?;
-    write_picture(
-        path,
-        &picture,
-        &layers,
-        &PictureOptions { exposure: input.exposure(), ..PictureOptions::default() },
-    )?;
-    Ok(())
+    written(input, path, &picture, &layers)
 }
 
 fn layers(input: &Input, path: &Path, console: &Console) -> Result<(), Failure> {
@@ -95,11 +89,11 @@ fn layers(input: &Input, path: &Path, console: &Console) -> Result<(), Failure> 
     let Rendered { picture, layers, warnings, .. } =
         render_input(input, &input.camera, &focus, &options, console)?;
     console.warn(&warnings);
-    write_picture(
-        path,
-        &picture,
-        &layers,
-        &PictureOptions { exposure: input.exposure(), ..PictureOptions::default() },
-    )?;
+    written(input, path, &picture, &layers)
+}
+
+fn written(input: &Input, path: &Path, picture: &Picture, layers: &[Layer]) -> Result<(), Failure> {
+    let options = PictureOptions { exposure: input.exposure(), ..PictureOptions::default() };
+    write_picture(path, picture, layers, &options)?;
     Ok(())
 }

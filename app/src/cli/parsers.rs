@@ -1,6 +1,9 @@
-//! How values that several commands take are read.
+//! How values that are typed are read.
 
-use clap::builder::{OsStringValueParser, TypedValueParser};
+use clap::builder::{OsStringValueParser, PossibleValuesParser, TypedValueParser};
+use session::{Aov, CameraChoice};
+use std::ffi::OsStr;
+use std::path::PathBuf;
 
 /// A name inside a file, which is UTF-8 there: other bytes make a name that nothing has.
 pub fn name_parser() -> impl TypedValueParser<Value = String> {
@@ -11,4 +14,82 @@ pub fn name_parser() -> impl TypedValueParser<Value = String> {
 pub fn positive(text: &str) -> Result<f64, String> {
     let number = text.parse().ok().filter(|x: &f64| *x > 0.0 && x.is_finite());
     number.ok_or_else(|| "a number above 0".into())
+}
+
+/// A place of a picture.
+pub fn place(text: &str) -> Result<glam::DVec2, String> {
+    let number = |text: &str| text.trim().parse::<f64>().ok().filter(|number| number.is_finite());
+    let place = text.split_once(',').and_then(|(x, y)| Some(glam::DVec2::new(number(x)?, number(y)?)));
+    place.ok_or_else(|| "X,Y in pixels".into())
+}
+
+/// A camera file, or a camera's name.
+pub fn camera_parser() -> impl TypedValueParser<Value = CameraChoice> {
+    OsStringValueParser::new().map(|text| camera_choice(&text))
+}
+
+/// A path may be any bytes, so it is not made text.
+fn camera_choice(text: &OsStr) -> CameraChoice {
+    let is_file = text.as_encoded_bytes().to_ascii_lowercase().ends_with(b".json");
+    if is_file { CameraChoice::File(text.into()) } else { CameraChoice::Named(text.to_string_lossy().into()) }
+}
+
+/// A photograph's name may hold anything but the file's.
+pub fn photograph_output(text: &str) -> Result<(String, PathBuf), String> {
+    match text.rsplit_once('=') {
+        Some((name, file)) if !name.is_empty() && file.to_lowercase().ends_with(".exr") => {
+            Ok((name.into(), file.into()))
+        }
+        _ => Err("NAME=OUT.exr".into()),
+    }
+}
+
+/// Columns and rows of a picture.
+pub fn size(text: &str) -> Result<[u32; 2], String> {
+    let sides = text.split_once(['x', 'X', '×']);
+    let side = |text: &str| {
+        text.trim().parse().ok().filter(|side| (1..=lens::Camera::LARGEST_SIDE_PX).contains(side))
+    };
+    sides
+        .and_then(|(width, height)| Some([side(width)?, side(height)?]))
+        .ok_or_else(|| format!("WIDTHxHEIGHT in pixels, each 1 to {}", lens::Camera::LARGEST_SIDE_PX))
+}
+
+/// One of some values, by the names that they have.
+pub fn named<T: Copy + Send + Sync + 'static, const COUNT: usize>(
+    all: [(&'static str, T); COUNT],
+) -> impl TypedValueParser<Value = T> {
+    PossibleValuesParser::new(all.map(|(name, _)| name)).try_map(move |name| {
+        let found = all.iter().find(|(known, _)| *known == name);
+        found.map(|(_, value)| *value).ok_or("not one of them")
+    })
+}
+
+/// An extra channel.
+pub fn aov(name: &str) -> Result<Aov, String> {
+    Aov::named(name).ok_or_else(|| {
+        let known: Vec<_> = Aov::ALL.iter().map(|(name, _)| *name).collect();
+        format!("one of {}", known.join(", "))
+    })
+}
+
+/// A finite number of 0 or more.
+pub fn not_negative(text: &str) -> Result<f64, String> {
+    let number = text.parse().ok().filter(|x: &f64| *x >= 0.0 && x.is_finite());
+    number.ok_or_else(|| "a number of 0 or more".into())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_are_checked() {
+        assert_eq!(size("960x540"), Ok([960, 540]));
+        assert!(size("960").is_err() && size("0x5").is_err() && size("99999x1").is_err());
+        assert_eq!(camera_choice("a.JSON".as_ref()), CameraChoice::File("a.JSON".into()));
+        assert_eq!(camera_choice("front".as_ref()), CameraChoice::Named("front".into()));
+        assert!(aov("depth").is_ok() && aov("z").is_err());
+        assert!(positive("0").is_err() && positive("nan").is_err() && not_negative("0").is_ok());
+    }
 }

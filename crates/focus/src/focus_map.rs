@@ -170,18 +170,29 @@ impl FocusMap {
     /// (i + ½, j + ½)), bilinear; outside the map its border goes on. Between equal texels it is exactly
     /// their value.
     pub fn sample(&self, position: DVec2) -> FocusOffset {
-        let last = UVec2::from(self.size()) - UVec2::ONE;
-        let p = (position - DVec2::splat(0.5)).clamp(DVec2::ZERO, last.as_dvec2());
-        let low = p.as_uvec2();
-        let high = (low + UVec2::ONE).min(last);
-        let corners = [[low.x, low.y], [high.x, low.y], [low.x, high.y], [high.x, high.y]];
-        let share = p - low.as_dvec2();
+        let (corners, share) = self.around(position);
         let [t, anchor] = bilinear(corners.map(|[x, y]| self.texel(x, y)), share);
         let gloss = match self.gloss.is_blank_at(corners.into_iter()) {
             true => 0.0,
             false => bilinear(corners.map(|[x, y]| [self.gloss_at(x, y)]), share)[0],
         };
         FocusOffset { t, anchor, gloss }
+    }
+
+    /// The same of the mask: how much the map counts as a layer there, in [0, 1].
+    pub fn sample_mask(&self, position: DVec2) -> f32 {
+        let (corners, share) = self.around(position);
+        bilinear(corners.map(|[x, y]| [self.mask_at(x, y)]), share)[0] as f32
+    }
+
+    /// The four texels around a position, and where it lies between them.
+    fn around(&self, position: DVec2) -> ([[u32; 2]; 4], DVec2) {
+        let last = UVec2::from(self.size()) - UVec2::ONE;
+        let p = (position - DVec2::splat(0.5)).clamp(DVec2::ZERO, last.as_dvec2());
+        let low = p.as_uvec2();
+        let high = (low + UVec2::ONE).min(last);
+        let corners = [[low.x, low.y], [high.x, low.y], [low.x, high.y], [high.x, high.y]];
+        (corners, p - low.as_dvec2())
     }
 
     /// The least and the greatest t, anchor and gloss of the texels of a box, the first and the last column and row;

@@ -5,7 +5,7 @@
 pub struct PictureTexture {
     /// Columns and rows.
     pub size: [u32; 2],
-    /// The first row of what goes on behind: from there on triangles are another chart.
+    /// The first row of what goes on behind.
     pub behind: u32,
     /// Columns and rows around the picture that it does not show.
     pub margin: u32,

@@ -25,6 +25,11 @@ impl SurfacePoint {
         let [wa, wb, wc] = self.weights();
         a * wa + b * wb + c * wc
     }
+
+    /// The same of a point that may be of another scene; none where this one has no such triangle.
+    pub fn position_if_there(self, scene: &Scene) -> Option<DVec3> {
+        ((self.triangle as usize) < scene.triangles.len()).then(|| self.position(scene))
+    }
 }
 
 /// A value at every point of the scene's surface, and at infinity (the background).

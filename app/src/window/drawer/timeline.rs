@@ -60,9 +60,7 @@ impl Row {
         match self {
             Self::Focus if document.lens_motion.focus.is_empty() => None,
             Self::Focus => {
-                let place = |point: scene::SurfacePoint| {
-                    ((point.triangle as usize) < scene.triangles.len()).then(|| point.position(scene))
-                };
+                let place = |point: scene::SurfacePoint| point.position_if_there(scene);
                 // Far is up.
                 Some(-1.0 / document.lens_motion.at(seconds, &document.camera, &place).focus_distance)
             }

@@ -103,7 +103,7 @@ impl Onto<'_> {
             let focus = old.sample(*place);
             values[at] = [focus.t as f32, focus.anchor as f32];
             gloss[at] = focus.gloss as f32;
-            mask[at] = mask_at(old, *place);
+            mask[at] = old.sample_mask(*place);
         }
         self.atlas.dilate(self.texels, &mut values);
         self.atlas.dilate(self.texels, &mut gloss);
@@ -142,16 +142,4 @@ impl Onto<'_> {
         let [all, without] = areas.iter().fold([0.0; 2], |[a, b], [c, d]| [a + c, b + d]);
         CarriedPaint { gaps, share: if all > 0.0 { 1.0 - without / all } else { 1.0 } }
     }
-}
-
-/// How much a place of a layer counts, bilinear as its values are.
-fn mask_at(map: &FocusMap, position: DVec2) -> f32 {
-    let at = position - 0.5;
-    let (low, share) = (at.floor(), (at - at.floor()).as_vec2());
-    let texel = |x: f64, y: f64| {
-        let clamped = |v: f64, side: u32| v.clamp(0.0, f64::from(side - 1)) as u32;
-        map.mask_at(clamped(x, map.width()), clamped(y, map.height()))
-    };
-    let row = |y: f64| texel(low.x, y) * (1.0 - share.x) + texel(low.x + 1.0, y) * share.x;
-    row(low.y) * (1.0 - share.y) + row(low.y + 1.0) * share.y
 }

@@ -1,9 +1,9 @@
 //! Display transforms of an OpenColorIO configuration: that which `$OCIO` names.
 //!
 //! What a view does to linear light is asked of the `ocio` crate once, on a grid over logarithmic light, and interpolated between the
-//! four corners of the tetrahedron that a colour lies in: a pixel of a live picture may not take as long as a view does. That is off by a
-//! tenth of a screen's 256 steps in the mean, by less than two in 98 of 100 numbers, and by up to 15 in colours so saturated that the view
-//! itself has an edge there.
+//! four corners of the tetrahedron that a colour lies in: a pixel of a live picture may not take as long as a view does. That is off by less
+//! than a fifth of a screen's 256 steps in the mean, by less than two in 98 of 100 numbers, and by less than 20 in colours so saturated
+//! that the view itself has an edge there.
 
 use ocio::{Config, CpuProcessor};
 use rayon::prelude::*;

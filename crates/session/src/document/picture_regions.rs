@@ -7,7 +7,7 @@ use glam::DVec3;
 use scene::Scene;
 use std::collections::HashMap;
 
-/// A region of fewer triangles, seen as large as `SPECK_PX` pixels, is a speck.
+/// A region of fewer texels is a speck.
 const SPECK_PX: f32 = 64.0;
 
 /// The region of each triangle, counted from 0 in order of the first triangle of each; and how many there are. `corners`: of triangles, in

@@ -31,4 +31,4 @@ pub use unwrapped::write_unwrapped;
 pub use verification::{Verification, VerifiedError};
 
 pub(crate) use photograph_picture::photograph_picture;
-pub(crate) use render::{splatter, sum_baked, sum_light_field, tracer_of};
+pub(crate) use render::{light_of_photographs, splatter, sum_baked, sum_light_field, tracer_of};

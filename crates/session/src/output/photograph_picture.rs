@@ -1,10 +1,9 @@
 //! A photograph as pictures are compared with it: without its lens's distortion, in linear light, exposed as all of them together.
 
-use super::render::{pixel_ray, seen};
+use super::render::{light_of_photographs, pixel_ray, seen};
 use crate::document::{Input, camera_of_photograph, photograph};
 use crate::error::SessionError;
 use crate::jobs::Steps;
-use crate::light_field::photograph_light;
 use glam::{DVec2, DVec3, Vec3};
 use lens::{Camera, Picture};
 use project::Layer;
@@ -33,10 +32,7 @@ impl Input {
         let view = photograph(scene, name).map_err(|what| SessionError::bad(&self.path, what))?;
         let tracer = Arc::new(Tracer::new(scene.clone()));
         self.tell_atlas(&tracer)?;
-        let light = match scene.picture.is_some() {
-            true => None,
-            false => Some(photograph_light(&tracer, &*steps.begin("light"))?),
-        };
+        let light = light_of_photographs(&tracer, steps)?;
         let camera = camera_of_photograph(scene.bounds(), view, &self.camera);
         photograph_picture(view, &camera, &tracer, light.as_deref())
     }
@@ -55,10 +51,7 @@ pub(crate) fn photograph_picture(
     let reduction = (shown.width / camera.width.max(1)).max(1);
     let shown = shown.reduced(reduction);
     let scene = tracer.scene();
-    let seen = seen(tracer, camera, &|point| match light {
-        Some(light) => light.seen(point),
-        None => scene.photographed(point).unwrap_or(0.0),
-    });
+    let seen = seen(tracer, camera, light);
     let place = Place { camera, view, shown: &shown, reduction: f64::from(reduction) };
     let own = scene.views.iter().position(|other| other.name == view.name);
     let exposure = match (light, own) {

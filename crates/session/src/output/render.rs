@@ -19,6 +19,7 @@ use rayon::prelude::*;
 use salf::{BakeOptions, Salf, SalfStatistics};
 use scene::SurfacePoint;
 use serde::Serialize;
+use slf::PhotographLight;
 use splat::{Gpu, Splatter, Tolerance};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -187,11 +188,17 @@ pub struct RenderCost {
 }
 
 impl RenderCost {
-    fn count(&mut self, salf: &Salf) {
+    /// What is told of a light field; no time was spent yet.
+    fn of(salf: &Salf) -> Self {
         let SalfStatistics { open, partial, background, bytes, .. } = salf.statistics();
-        (self.open_samples, self.partial_samples) = (open, partial);
-        (self.background_samples, self.salf_bytes) = (background, bytes);
-        self.margin_px = salf.margin_px;
+        Self {
+            open_samples: open,
+            partial_samples: partial,
+            background_samples: background,
+            salf_bytes: bytes,
+            margin_px: salf.margin_px,
+            ..Self::default()
+        }
     }
 }
 
@@ -337,12 +344,12 @@ fn draw_light_field(
     steps: &dyn Steps,
 ) -> Result<Drawn, SessionError> {
     let camera = &camera.finer(cells_a_side);
-    let mut cost = RenderCost::default();
-    cost.count(&salf);
     let start = Instant::now();
     let mut mattes = None;
-    let picture = if options.renderer == Renderer::Scatter {
-        baselines::scatter(&salf, camera, focus, &options.scatter, &*steps.begin("scattering"))?
+    let (picture, cost) = if options.renderer == Renderer::Scatter {
+        let scattering = steps.begin("scattering");
+        let picture = baselines::scatter(&salf, camera, focus, &options.scatter, &*scattering)?;
+        (picture, RenderCost::of(&salf))
     } else {
         let scene = tracer.scene();
         let wanted = options.wanted_mattes().map(|wanted| (wanted, Shown::of(&salf, scene)));
@@ -350,16 +357,15 @@ fn draw_light_field(
         if let Some((_, shown)) = wanted.as_ref().filter(|_| options.asks_for(Aov::Alpha)) {
             splatter.blacken(|sample| shown.part(sample).is_none());
         }
-        splatter.render(camera, focus, &*steps.begin("splatting"))?;
-        cost.is_on_gpu = splatter.gpu().is_some();
+        let cost = splatted(&mut splatter, camera, focus, steps)?;
         let picture = splatter.picture().clone();
         if let Some((wanted, shown)) = wanted {
             let source = OfLightField { mattes: splatter.into_mattes(), shown, cells_a_side };
             mattes = Some(Mattes::of(scene, source, wanted, steps)?);
         }
-        picture
+        (picture, cost)
     };
-    cost.picture_seconds = start.elapsed().as_secs_f64();
+    let cost = RenderCost { picture_seconds: start.elapsed().as_secs_f64(), ..cost };
     Ok(Drawn { picture: picture.averaged(cells_a_side), estimate: None, mattes, cost })
 }
 
@@ -369,6 +375,19 @@ pub(crate) fn splatter(salf: Arc<Salf>, options: &RenderOptions) -> Splatter {
     splatter.set_tolerance(options.splat_tolerance);
     splatter.use_gpu(options.gpu.clone());
     splatter
+}
+
+/// Has a splatter draw; what it cost.
+fn splatted(
+    splatter: &mut Splatter,
+    camera: &Camera,
+    focus: &Focus,
+    steps: &dyn Steps,
+) -> Result<RenderCost, SessionError> {
+    let start = Instant::now();
+    splatter.render(camera, focus, &*steps.begin("splatting"))?;
+    let (is_on_gpu, picture_seconds) = (splatter.gpu().is_some(), start.elapsed().as_secs_f64());
+    Ok(RenderCost { is_on_gpu, picture_seconds, ..RenderCost::of(splatter.salf()) })
 }
 
 /// Sums what [`RenderOptions::bake`] baked, for a camera that it serves, as often as one likes.
@@ -386,12 +405,7 @@ pub(crate) fn sum_baked(
         let drawn = draw_light_field(splatter.salf().clone(), shot, cells, options, steps)?;
         return finish(shot, options, drawn, steps);
     }
-    let mut cost = RenderCost::default();
-    cost.count(splatter.salf());
-    let start = Instant::now();
-    splatter.render(&camera.finer(cells), focus, &*steps.begin("splatting"))?;
-    cost.is_on_gpu = splatter.gpu().is_some();
-    cost.picture_seconds = start.elapsed().as_secs_f64();
+    let cost = splatted(splatter, &camera.finer(cells), focus, steps)?;
     let picture = splatter.picture().averaged(cells);
     finish(shot, options, Drawn { picture, estimate: None, mattes: None, cost }, steps)
 }
@@ -422,15 +436,13 @@ fn finish(
 ) -> Result<Rendered, SessionError> {
     let asks = options.aovs.iter().any(|aov| aov.needs_first_hits());
     let hits = asks.then(|| first_hits(tracer, camera, focus, steps)).transpose()?;
-    let is_seen_asked = options.aovs.contains(&Aov::Seen);
-    let seen = if is_seen_asked && is_photographed(tracer) {
-        let light = photograph_light(tracer, &*steps.begin("light"))?;
-        Some(seen(tracer, camera, &|point| light.seen(point)))
-    } else if is_seen_asked && tracer.scene().picture.is_some() {
-        Some(seen(tracer, camera, &|point| tracer.scene().photographed(point).unwrap_or(0.0)))
-    } else {
-        None
-    };
+    let is_captured = is_photographed(tracer) || tracer.scene().picture.is_some();
+    let is_seen_asked = options.aovs.contains(&Aov::Seen) && is_captured;
+    let seen = is_seen_asked.then(|| {
+        let light = light_of_photographs(tracer, steps)?;
+        Ok::<_, SessionError>(seen(tracer, camera, light.as_deref()))
+    });
+    let seen = seen.transpose()?;
     let asks_for_pinhole = options.asks_for(Aov::Pinhole) && options.renderer.tells_paths();
     let pinhole = asks_for_pinhole.then(|| pinhole(tracer, camera, options, steps)).transpose()?;
     let known = Known {
@@ -475,12 +487,22 @@ pub(super) fn pixel_ray(camera: &Camera, number: u32) -> Ray {
     Ray::of_pinhole(camera, DVec2::ZERO, pixel + 0.5)
 }
 
-/// How far the surface along each pixel's chief ray was photographed, as is told by point.
-pub(super) fn seen(
-    tracer: &Tracer,
-    camera: &Camera,
-    told: &(dyn Fn(SurfacePoint) -> f32 + Sync),
-) -> Vec<f32> {
+/// The light of a capture's photographs; none of a surface that was made from a picture, whose texture has it.
+pub(crate) fn light_of_photographs(
+    tracer: &Arc<Tracer>,
+    steps: &dyn Steps,
+) -> Result<Option<Arc<PhotographLight>>, SessionError> {
+    let is_texture = tracer.scene().picture.is_some();
+    (!is_texture).then(|| photograph_light(tracer, &*steps.begin("light"))).transpose()
+}
+
+/// How far the surface along each pixel's chief ray was photographed, in the photographs of `light`, or else in the picture that it was
+/// made from.
+pub(super) fn seen(tracer: &Tracer, camera: &Camera, light: Option<&PhotographLight>) -> Vec<f32> {
+    let told = |point: SurfacePoint| match light {
+        Some(light) => light.seen(point),
+        None => tracer.scene().photographed(point).unwrap_or(0.0),
+    };
     let of_pixel = |number: u32| {
         let hit = tracer.first_hit(&pixel_ray(camera, number));
         hit.map_or(0.0, |hit| told(hit.point))

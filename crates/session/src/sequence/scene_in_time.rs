@@ -92,7 +92,7 @@ impl SceneInTime {
                 }
             }
         };
-        ((here.triangle as usize) < self.scene.triangles.len()).then(|| here.position(&self.scene))
+        here.position_if_there(&self.scene)
     }
 
     /// The focus of the scene at rest where its surface is now; `painted`, if given, is what is painted now. What was hidden at rest has

@@ -5,9 +5,10 @@ use super::state::Session;
 use crate::commands::Event;
 use crate::error::SessionError;
 use crate::jobs::{JobSteps, Steps};
-use crate::light_field::{LightQuality, light, photograph_light};
+use crate::light_field::{LightQuality, light};
 use crate::output::{
-    Reference, ReferenceKind, RenderOptions, Renderer, Stereo, StereoForm, pair, photograph_picture, render,
+    Reference, ReferenceKind, RenderOptions, Renderer, Stereo, StereoForm, light_of_photographs, pair,
+    photograph_picture, render,
 };
 use crate::preview::PreviewActivity;
 use baselines::FirstHits;
@@ -99,10 +100,7 @@ impl Session {
                 ReferenceKind::Photograph => {
                     let what = "the camera is that of no photograph (choose one of them as the camera)";
                     let view = photograph.ok_or_else(|| SessionError::bad(&stage.scene.path, what))?;
-                    let light = match stage.scene.picture.is_some() {
-                        true => None,
-                        false => Some(photograph_light(&stage.tracer, &*steps.begin("light"))?),
-                    };
+                    let light = light_of_photographs(&stage.tracer, &steps)?;
                     photograph_picture(&view, &camera, &stage.tracer, light.as_deref())?.0
                 }
             };

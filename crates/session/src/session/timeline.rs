@@ -24,9 +24,7 @@ impl Session {
     pub(super) fn show_time(&mut self) -> Result<(), SessionError> {
         let document = self.opened()?;
         let (seconds, scene) = (document.seconds, document.stage.scene.clone());
-        let position = |point: SurfacePoint| {
-            ((point.triangle as usize) < scene.triangles.len()).then(|| point.position(&scene))
-        };
+        let position = |point: SurfacePoint| point.position_if_there(&scene);
         let camera = document.lens_motion.at(seconds, &document.camera, &position);
         let is_moved = camera != document.camera && camera.validate().is_ok();
         if is_moved {
