@@ -12,6 +12,7 @@ mod device;
 mod error;
 mod layout;
 mod listing;
+mod pace;
 mod passes;
 mod picture_on_card;
 mod probe;

@@ -4,7 +4,7 @@ use crate::gpu::Gpu;
 use crate::gpu::device::Lost;
 use std::ops::Range;
 use std::sync::mpsc;
-use wgpu::{BindGroup, BindGroupLayout, Buffer, BufferBinding, BufferUsages};
+use wgpu::{BindGroup, BindGroupLayout, Buffer, BufferUsages};
 
 impl Gpu {
     /// A buffer of so many words (at least a few, for none can be bound that is empty).
@@ -41,33 +41,33 @@ impl Gpu {
         layout: &BindGroupLayout,
         buffers: impl IntoIterator<Item = (u32, &'a Buffer)>,
     ) -> BindGroup {
-        let whole = |(binding, buffer): (u32, &'a Buffer)| (binding, buffer.as_entire_buffer_binding());
-        self.bind_parts(layout, buffers.into_iter().map(whole))
-    }
-
-    /// Parts of buffers at their bindings.
-    pub(super) fn bind_parts<'a>(
-        &self,
-        layout: &BindGroupLayout,
-        parts: impl IntoIterator<Item = (u32, BufferBinding<'a>)>,
-    ) -> BindGroup {
-        let entries = parts.into_iter().map(|(binding, part)| wgpu::BindGroupEntry {
+        let entry = |(binding, buffer): (u32, &'a Buffer)| wgpu::BindGroupEntry {
             binding,
-            resource: wgpu::BindingResource::Buffer(part),
-        });
-        let entries: Vec<_> = entries.collect();
+            resource: buffer.as_entire_binding(),
+        };
+        let entries: Vec<_> = buffers.into_iter().map(entry).collect();
         let descriptor = wgpu::BindGroupDescriptor { label: None, layout, entries: &entries };
         self.device().create_bind_group(&descriptor)
     }
 
     /// The words of a range of bytes of a buffer.
     pub(super) fn read(&self, buffer: &Buffer, range: Range<u64>) -> Result<Vec<u32>, Lost> {
+        self.read_all(&[(buffer, range)])
+    }
+
+    /// The words of ranges of bytes of buffers, one after the other, waited for once.
+    pub(super) fn read_all(&self, parts: &[(&Buffer, Range<u64>)]) -> Result<Vec<u32>, Lost> {
         self.check()?;
-        let size = range.end - range.start;
+        let size = parts.iter().map(|(_, range)| range.end - range.start).sum::<u64>();
         let usage = BufferUsages::MAP_READ | BufferUsages::COPY_DST;
         let staging = self.buffer("read", size as usize / 4, usage)?;
         let mut encoder = self.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        encoder.copy_buffer_to_buffer(buffer, range.start, &staging, 0, size);
+        let mut first = 0;
+        for (buffer, range) in parts {
+            let size = range.end - range.start;
+            encoder.copy_buffer_to_buffer(buffer, range.start, &staging, first, size);
+            first += size;
+        }
         let asked_for = self.queue().submit([encoder.finish()]);
         let (sender, receiver) = mpsc::channel();
         staging.map_async(wgpu::MapMode::Read, 0..size, move |result| {

@@ -1,5 +1,6 @@
 // Drawing placed nodes onto the accumulators: the twin of ../draw.rs and of what lies in ../draw, term by term.
-// Read after pen.wgsl. A thread draws one record. Accumulators are added to atomically; integers make the order irrelevant.
+// Read after pen.wgsl. One thread or several draw a record, each its own pixel rows. Accumulators are added to atomically;
+// integers make the order irrelevant.
 
 // What partly occluded nodes see, eleven words each: 16 rows of cells, share, mean, half.
 @group(0) @binding(1) var<storage, read> cells: array<u32>;
@@ -16,6 +17,8 @@
 override IS_WIDE: bool = false;
 // Which records are drawn: boxes, images, images through cells, large images.
 override KIND: u32 = 0u;
+// How many threads draw a record: a divisor of a workgroup's.
+override LANES: u32 = 1u;
 
 const HEIGHT_BITS: u32 = 24u;
 const LARGEST_HALF: u32 = 40960u;
@@ -40,6 +43,8 @@ struct Image {
     is_sharing: bool,
     is_removed: bool,
     slot: u32,
+    // Which of the record's rows this thread draws: one of LANES.
+    lane: u32,
 }
 
 // Accumulators
@@ -187,7 +192,7 @@ fn draw_box(image: ptr<function, Image>, half_size: vec2<u32>, of_aperture: vec2
     let down = reciprocal_of(half_y);
     let density = mul_shift(across.value, (*image).share, 26u);
     let shift = light_shift(image, HEIGHT_BITS);
-    for (var row = first; row <= last; row += 1) {
+    for (var row = first + i32((*image).lane); row <= last; row += i32(LANES)) {
         let overlap = u32(min(bottom, (row + 1) << POSITION_BITS) - max(top, row << POSITION_BITS));
         let share = mul_shift(overlap, down.value, down.bits + 1u);
         let height = mul_shift(share, density, across.bits + 25u);
@@ -232,51 +237,71 @@ fn draw_parts(image: ptr<function, Image>, depth_share: i32) {
 
 // Stencils: a table of (first run, runs, bits of the heights), then runs of four words.
 
-fn draw_image(image: ptr<function, Image>, place: u32, cells: u32, share: u32) {
-    let first_run = stencils[2u * place];
-    let count = stencils[2u * place + 1u] & 0xFFFFu;
-    let height_bits = (stencils[2u * place + 1u] >> 16u) & 63u;
-    let half_step = i32(stencils[2u * place + 1u] >> 22u);
+// A stencil as an image meets it.
+struct Met {
+    first_run: u32,
+    count: u32,
+    base: i32,
+    shift: u32,
+    // By how many bits what passes of a row is told more finely.
+    finer: u32,
+}
+
+fn meet(image: ptr<function, Image>, place: u32) -> Met {
+    let word = stencils[2u * place + 1u];
+    let height_bits = (word >> 16u) & 63u;
+    let half_step = i32(word >> 22u);
     let base = ((*image).center.y + half_step) >> POSITION_BITS;
+    let finer = POSITION_BITS + height_bits - HEIGHT_BITS;
+    return Met(stencils[2u * place], word & 0xFFFFu, base, light_shift(image, height_bits), finer);
+}
+
+fn draw_image(image: ptr<function, Image>, place: u32) {
+    let met = meet(image, place);
     let level = pen.levels[(*image).level];
-    let shift = light_shift(image, height_bits);
     let center = (*image).center.x;
-    if KIND == KIND_IMAGES {
-        for (var k = 0u; k < count; k += 1u) {
-            let at = first_run + 4u * k;
-            let row = base + high_half(stencils[at + 3u]);
-            if row >= -1 && row <= level.height {
-                let value = value_of(image, stencils[at + 2u], (*image).share, shift, row);
-                let start = center + bitcast<i32>(stencils[at]);
-                let end = center + bitcast<i32>(stencils[at + 1u]);
-                add_run(image, row, start, end, value);
-            }
-        }
-    } else {
-        let finer = POSITION_BITS + height_bits - HEIGHT_BITS;
-        let seen = seen_runs_of(image, cells);
-        let takes_all = takes_all_rows(image);
-        var passing = 0u;
-        for (var pass_number = 0u; pass_number < 2u; pass_number += 1u) {
-            for (var k = 0u; k < count; k += 1u) {
-                let at = first_run + 4u * k;
-                let row = base + high_half(stencils[at + 3u]);
-                let v = low_half(stencils[at + 3u]);
-                let span = vec2<i32>(center + bitcast<i32>(stencils[at]), center + bitcast<i32>(stencils[at + 1u]));
-                let is_found = pass_number == 0u;
-                if is_found || (row >= -1 && row <= level.height) {
-                    let here = SeenRow(row, v, span, stencils[at + 2u], shift, finer, is_found);
-                    passing += seen_row(image, seen, here, takes_all);
-                }
-            }
-            if cells != OPEN && passing < share / LARGEST_SCALE {
-                // The few cells of a partly occluded node are missed.
-                draw_seen_box(image, cells);
-                return;
-            }
-            (*image).share = ratio(share, passing, LARGEST_SCALE);
+    for (var k = (*image).lane; k < met.count; k += LANES) {
+        let at = met.first_run + 4u * k;
+        let row = met.base + high_half(stencils[at + 3u]);
+        if row >= -1 && row <= level.height {
+            let value = value_of(image, stencils[at + 2u], (*image).share, met.shift, row);
+            let start = center + bitcast<i32>(stencils[at]);
+            let end = center + bitcast<i32>(stencils[at + 1u]);
+            add_run(image, row, start, end, value);
         }
     }
+}
+
+// What occluders let through of this thread's rows: drawn, or only found (all rows then count, also those beyond the picture).
+fn seen_rows(image: ptr<function, Image>, place: u32, cells: u32, is_found: bool) -> u32 {
+    let met = meet(image, place);
+    let level = pen.levels[(*image).level];
+    let center = (*image).center.x;
+    let seen = seen_runs_of(image, cells);
+    let takes_all = takes_all_rows(image);
+    var passing = 0u;
+    for (var k = (*image).lane; k < met.count; k += LANES) {
+        let at = met.first_run + 4u * k;
+        let row = met.base + high_half(stencils[at + 3u]);
+        let v = low_half(stencils[at + 3u]);
+        let span = vec2<i32>(center + bitcast<i32>(stencils[at]), center + bitcast<i32>(stencils[at + 1u]));
+        if is_found || (row >= -1 && row <= level.height) {
+            let here = SeenRow(row, v, span, stencils[at + 2u], met.shift, met.finer, is_found);
+            passing += seen_row(image, seen, here, takes_all);
+        }
+    }
+    return passing;
+}
+
+// Draws what occluders let through of an image, of all of whose rows `passing` passes.
+fn draw_seen(image: ptr<function, Image>, place: u32, cells: u32, share: u32, passing: u32) {
+    if cells != OPEN && passing < share / LARGEST_SCALE {
+        // The few cells of a partly occluded node are missed.
+        draw_seen_box(image, cells);
+        return;
+    }
+    (*image).share = ratio(share, passing, LARGEST_SCALE);
+    seen_rows(image, place, cells, false);
 }
 
 // Large images; `height`, its bits and the share were found when the list was made.
@@ -291,7 +316,7 @@ fn draw_large(image: ptr<function, Image>, height_of_clear: u32, height_bits: u3
     let shift = light_shift(image, height_bits);
     let first = max((center.y - size) >> POSITION_BITS, -1);
     let last = min((center.y + size) >> POSITION_BITS, level.height);
-    for (var row = first; row <= last; row += 1) {
+    for (var row = first + i32((*image).lane); row <= last; row += i32(LANES)) {
         let up = divide(per_radius, center.y - ((row << POSITION_BITS) + PIXEL / 2));
         let v = select(up, -up, radius < 0);
         let shape_row = min(mul_shift(u32(max(v + ONE, 0)), pen.shape_rows, 15u), pen.shape_rows - 1u);
@@ -324,74 +349,121 @@ fn light_of(image: ptr<function, Image>, at: u32, gain: i32, is_coverage: bool) 
     (*image).exponent = i32(top) - 157 + gain;
 }
 
-@compute @workgroup_size(64)
-fn draw(@builtin(global_invocation_id) id: vec3<u32>, @builtin(workgroup_id) group: vec3<u32>) {
-    if id.x >= batch.x {
-        return;
-    }
+struct Asked {
+    form: u32,
+    // What the form needs: a stencil's number, or the share of depth.
+    of_form: u32,
+    first_word: u32,
+    // What it is seen through, and how much of it passes.
+    through: u32,
+    share: u32,
+    // The part of it that is drawn as a stencil, of 65536.
+    far: u32,
+}
+
+fn ask(image: ptr<function, Image>, index: u32, lane: u32, slot: u32) -> Asked {
     let words = select(4u, 8u, KIND == KIND_LARGE);
-    let record = words * (batch.y + id.x);
+    let record = words * (batch.y + index);
     let at = NODE_WORDS * records[record];
     let flags = records[record + 3u];
     let form = flags & 7u;
 
-    var image: Image;
-    image.node = node_at(at);
+    (*image).node = node_at(at);
     let level = (flags >> 8u) & 7u;
     if (flags & 64u) != 0u {
-        image.node = piece_of(image.node, level, flags >> 16u);
+        (*image).node = piece_of((*image).node, level, flags >> 16u);
     }
-    image.level = level;
-    image.center = image.node.center >> vec2<u32>(level);
-    image.radius = bitcast<i32>(records[record + 1u]) / (1i << level);
-    image.share = WHOLE;
-    image.dither = seed(image.node, level);
-    image.is_sharing = (flags & 8u) != 0u;
-    image.is_removed = (flags & 16u) != 0u;
-    image.slot = group.x % SLOTS;
+    let node = (*image).node;
+    (*image).level = level;
+    (*image).center = node.center >> vec2<u32>(level);
+    (*image).radius = bitcast<i32>(records[record + 1u]) / (1i << level);
+    (*image).share = WHOLE;
+    (*image).dither = seed(node, level);
+    (*image).is_sharing = (flags & 8u) != 0u;
+    (*image).is_removed = (flags & 16u) != 0u;
+    (*image).slot = slot;
+    (*image).lane = lane;
     let is_coverage = (flags & 32u) != 0u;
     var gain = 0;
     if !IS_WIDE {
-        gain = select(pen.dim_exponent, pen.coverage_exponent, image.node.is_bright);
+        gain = select(pen.dim_exponent, pen.coverage_exponent, node.is_bright);
     }
     // Light is that of a pixel of the node's own level.
-    gain -= 2 * i32(level - image.node.level);
-    light_of(&image, at, gain, is_coverage);
+    gain -= 2 * i32(level - node.level);
+    light_of(image, at, gain, is_coverage);
 
-    let of_form = records[record + 2u];
-    let of_finest = part_drawn_as_stencil(u32(abs(bitcast<i32>(records[record + 1u]))), image.dither);
+    let of_finest = part_drawn_as_stencil(u32(abs(bitcast<i32>(records[record + 1u]))), (*image).dither);
     let far = select(of_finest, 65536u, level > 0u);
     var through = OPEN;
     var share = WHOLE;
     if form == FORM_SEEN || form == FORM_SEEN_BOX {
-        through = 11u * image.node.cells;
+        through = 11u * node.cells;
         share = cells[through + 8u];
     }
     if form == FORM_TILTED {
-        let leaning = image.node.tilt.x * pen.mean.x + image.node.tilt.y * pen.mean.y;
-        share = mul_shift(far << 8u, u32(max((image.node.base << 14u) + leaning, 0)), 28u);
+        let leaning = node.tilt.x * pen.mean.x + node.tilt.y * pen.mean.y;
+        share = mul_shift(far << 8u, u32(max((node.base << 14u) + leaning, 0)), 28u);
     }
     if form == FORM_IMAGE {
-        image.share = far << 8u;
-        lean(&image);
+        (*image).share = far << 8u;
+        lean(image);
     }
-    if KIND == KIND_BOXES {
-        if form == FORM_PARTS {
-            image.share = WHOLE - (far << 8u);
-            draw_parts(&image, bitcast<i32>(of_form));
-        } else if form == FORM_SEEN_BOX {
-            draw_seen_box(&image, through);
-        } else {
-            image.share = WHOLE - (far << 8u);
-            lean(&image);
-            shift_to(&image, pen.mean);
-            draw_box(&image, image.node.half_size, pen.half);
-        }
+    return Asked(form, records[record + 2u], record, through, share, far);
+}
+
+fn draw_asked(image: ptr<function, Image>, asked: Asked) {
+    if KIND == KIND_IMAGES {
+        draw_image(image, asked.of_form);
     } else if KIND == KIND_LARGE {
-        image.share = records[record + 6u];
-        let seen_through = select(through, OPEN - 1u, form == FORM_IMAGE);
-        draw_large(&image, records[record + 4u], records[record + 5u], seen_through);
+        (*image).share = records[asked.first_word + 6u];
+        let seen_through = select(asked.through, OPEN - 1u, asked.form == FORM_IMAGE);
+        draw_large(image, records[asked.first_word + 4u], records[asked.first_word + 5u], seen_through);
+    } else if asked.form == FORM_SEEN_BOX {
+        draw_seen_box(image, asked.through);
     } else {
-        draw_image(&image, of_form, through, share);
+        (*image).share = WHOLE - (asked.far << 8u);
+        if asked.form == FORM_PARTS {
+            draw_parts(image, bitcast<i32>(asked.of_form));
+        } else {
+            lean(image);
+            shift_to(image, pen.mean);
+            draw_box(image, (*image).node.half_size, pen.half);
+        }
+    }
+}
+
+// What passes of each record, of all its rows.
+var<workgroup> passing_of: array<atomic<u32>, 64>;
+
+@compute @workgroup_size(64)
+fn draw(
+    @builtin(global_invocation_id) id: vec3<u32>,
+    @builtin(workgroup_id) group: vec3<u32>,
+    @builtin(local_invocation_index) thread: u32,
+) {
+    let index = id.x / LANES;
+    let is_there = index < batch.x;
+    var image: Image;
+    var asked: Asked;
+    if is_there {
+        asked = ask(&image, index, id.x % LANES, group.x % SLOTS);
+    }
+    if KIND != KIND_SEEN {
+        if is_there {
+            draw_asked(&image, asked);
+        }
+        return;
+    }
+    var passing = 0u;
+    if is_there {
+        passing = seen_rows(&image, asked.of_form, asked.through, true);
+    }
+    if LANES > 1u {
+        atomicAdd(&passing_of[thread / LANES], passing);
+        workgroupBarrier();
+        passing = atomicLoad(&passing_of[thread / LANES]);
+    }
+    if is_there {
+        draw_seen(&image, asked.of_form, asked.through, asked.share, passing);
     }
 }

@@ -141,7 +141,7 @@ impl Listing {
         let bound = self.bound(gpu, chunk, pen, focus, uniform);
         let pass = &gpu.passes().list[usize::from(is_writing)];
         let mut work = Work::new(gpu);
-        work.run(pass, &bound, &[], [chunk.shared.count.div_ceil(64), 1]);
+        work.run(pass, &bound, [chunk.shared.count.div_ceil(64), 1]);
         work.submit();
     }
 

@@ -3,6 +3,9 @@
 use std::sync::OnceLock;
 use wgpu::{BindGroupLayout, BufferBindingType, ComputePipeline, Device, ShaderModule};
 
+/// Threads that draw one record where there are few: a divisor of draw.wgsl's 64.
+pub const LANES: u32 = 16;
+
 /// Kinds of records, as in pen.wgsl.
 pub const KINDS: usize = 4;
 
@@ -22,8 +25,8 @@ pub struct Passes {
     /// Listing what is drawn: counting, then writing.
     pub list: [Pass; 2],
     pub list_layout: BindGroupLayout,
-    /// Drawing, by kind of record: onto ordinary accumulators, then onto wide ones.
-    pub draw: [[Pass; KINDS]; 2],
+    /// Drawing, by kind of record: onto ordinary accumulators, then onto wide ones. By a thread a record, and by [`LANES`] threads.
+    pub draw: [[[Pass; 2]; KINDS]; 2],
     pub draw_layout: BindGroupLayout,
     pub integrate: Pass,
     pub integrate_wide: Pass,
@@ -85,14 +88,12 @@ enum Bound {
     Read,
     Write,
     Uniform,
-    /// One that may begin anywhere in its buffer.
-    UniformPart,
 }
 
 impl Passes {
     /// Has a card read the shaders.
     pub fn new(device: &Device) -> Self {
-        use Bound::{Read, Uniform, UniformPart, Write};
+        use Bound::{Read, Uniform, Write};
         let module = |name: &'static str, source: String| {
             device.create_shader_module(wgpu::ShaderModuleDescriptor {
                 label: Some(name),
@@ -109,7 +110,7 @@ impl Passes {
             [(0, Read), (1, Read), (2, Read), (3, Read), (4, Write), (5, Write), (6, Uniform)],
         );
         let reads = (0..6).map(|binding| (binding, Read));
-        let draw_layout = layout(device, reads.chain([(6, Write), (7, Write), (8, UniformPart)]));
+        let draw_layout = layout(device, reads.chain([(6, Write), (7, Write), (8, Uniform)]));
         let integrate_layout =
             layout(device, [(0, Read), (1, Write), (2, Uniform), (3, Uniform), (4, Write)]);
         let finish_layout = layout(
@@ -128,7 +129,10 @@ impl Passes {
         let probe = module("probe", PROBE.to_owned());
         let probe_layout = layout(device, [(0, Read), (1, Write), (2, Uniform)]);
         let of_kind = |is_wide: f64, kind: usize| {
-            Pass::new(&draw, &draw_layout, "draw", &[("IS_WIDE", is_wide), ("KIND", kind as f64)])
+            [1, LANES].map(|lanes| {
+                let constants = [("IS_WIDE", is_wide), ("KIND", kind as f64), ("LANES", lanes.into())];
+                Pass::new(&draw, &draw_layout, "draw", &constants)
+            })
         };
         Self {
             list: [1.0, 0.0]
@@ -167,9 +171,9 @@ fn layout(device: &Device, bound: impl IntoIterator<Item = (u32, Bound)>) -> Bin
             ty: match bound {
                 Bound::Read => BufferBindingType::Storage { read_only: true },
                 Bound::Write => BufferBindingType::Storage { read_only: false },
-                Bound::Uniform | Bound::UniformPart => BufferBindingType::Uniform,
+                Bound::Uniform => BufferBindingType::Uniform,
             },
-            has_dynamic_offset: matches!(bound, Bound::UniformPart),
+            has_dynamic_offset: false,
             min_binding_size: None,
         },
         count: None,

@@ -24,7 +24,7 @@ impl Gpu {
         let passes = self.passes();
         let bound = self.bind(&passes.probe_layout, [(0, &given), (1, &results), (2, &zero)]);
         let mut work = Work::new(self);
-        work.run(&passes.probe, &bound, &[], [(THREADS / 64) as u32, 1]);
+        work.run(&passes.probe, &bound, [(THREADS / 64) as u32, 1]);
         work.submit();
         Ok(self.read(&results, 0..4 * numbers.len() as u64)? == expected(&numbers))
     }

@@ -11,7 +11,7 @@ use crate::knots::{KnotSums, Knots, SharedSums};
 use crate::nodes::{BRIGHT, Nodes};
 use crate::resolve::{MARGIN, Overflow, Quanta};
 use std::ops::Range;
-use wgpu::{BindGroup, Buffer, BufferUsages, SubmissionIndex};
+use wgpu::{BindGroup, Buffer, BufferUsages};
 
 /// Lines, shares and picture.
 pub struct Resolve {
@@ -110,7 +110,7 @@ impl Resolve {
                 [(rows.start as i32 >> k) - MARGIN, ((rows.end as i32 - 1) >> k) + MARGIN + 1]
             };
             let count = end.min(level.height as i32 + 1) - first.max(-1);
-            work.run(&passes.integrate, &bound, &[], [count.max(0) as u32, 1]);
+            work.run(&passes.integrate, &bound, [count.max(0) as u32, 1]);
         }
     }
 
@@ -126,7 +126,7 @@ impl Resolve {
     ) -> Result<(), Lost> {
         gpu.write(&self.wide_uniform, &words_of_level(0, layout.levels.first().ok_or(Lost)?, None));
         let bound = self.bound(gpu, sums, kind, &self.wide_uniform);
-        work.run(&gpu.passes().integrate_wide, &bound, &[], [rows.len() as u32, 1]);
+        work.run(&gpu.passes().integrate_wide, &bound, [rows.len() as u32, 1]);
         Ok(())
     }
 
@@ -136,22 +136,22 @@ impl Resolve {
     }
 
     /// Makes shares or the picture of the lines.
-    pub fn finish(&self, gpu: &Gpu, rows: &Range<u32>) -> SubmissionIndex {
+    pub fn finish(&self, gpu: &Gpu, rows: &Range<u32>) {
         let across = (self.size[0] as u32).div_ceil(64);
         let mut work = Work::new(gpu);
-        work.run(&gpu.passes().finish, &self.finish_bound(gpu), &[], [across, rows.len() as u32]);
-        work.submit()
+        work.run(&gpu.passes().finish, &self.finish_bound(gpu), [across, rows.len() as u32]);
+        work.submit();
     }
 
     /// What lines and shares bring to each knot.
-    pub fn knot_sums(&self, gpu: &Gpu) -> Result<Vec<KnotSums>, Lost> {
+    pub fn knot_sums(&self, gpu: &Gpu) -> Result<Vec<KnotSums>, GpuError> {
         let knots = Knots::new(self.size);
         let sums = self.sums(gpu, &gpu.passes().balance, [knots.columns(), knots.rows()])?;
         Ok(sums.into_iter().map(KnotSums).collect())
     }
 
     /// What lines, shares and gains bring to each cell.
-    pub fn shared_sums(&self, gpu: &Gpu) -> Result<Vec<SharedSums>, Lost> {
+    pub fn shared_sums(&self, gpu: &Gpu) -> Result<Vec<SharedSums>, GpuError> {
         let knots = Knots::new(self.size);
         let sums = self.sums(gpu, &gpu.passes().share, [knots.columns() - 1, knots.rows() - 1])?;
         Ok(sums.into_iter().map(SharedSums).collect())
@@ -163,12 +163,12 @@ impl Resolve {
         gpu: &Gpu,
         pass: &Pass,
         groups: [usize; 2],
-    ) -> Result<Vec<[[f32; 4]; COUNT]>, Lost> {
+    ) -> Result<Vec<[[f32; 4]; COUNT]>, GpuError> {
         let mut work = Work::new(gpu);
-        work.run(pass, &self.finish_bound(gpu), &[], groups.map(|groups| groups as u32));
+        work.run(pass, &self.finish_bound(gpu), groups.map(|groups| groups as u32));
         work.submit();
         let bytes = groups[0] * groups[1] * size_of::<[[f32; 4]; COUNT]>();
-        let words = gpu.read(&self.knots, 0..bytes as u64)?;
+        let words = self.checked(gpu, &self.knots, 0..bytes as u64)?;
         let floats: Vec<f32> = words.into_iter().map(f32::from_bits).collect();
         Ok(floats.as_chunks().0.as_chunks().0.to_vec())
     }
@@ -195,10 +195,16 @@ impl Resolve {
         gpu.bind(&gpu.passes().finish_layout, buffers)
     }
 
-    /// Whether all integers held what they were given.
+    /// Whether all integers held what they were given, once all is done that was asked for.
     pub fn check(&self, gpu: &Gpu) -> Result<(), GpuError> {
-        match gpu.read(&self.overflow, 0..4)?.first() {
-            Some(0) => Ok(()),
+        self.checked(gpu, &self.overflow, 0..4).map(|_| ())
+    }
+
+    /// The words of a range of bytes of a buffer, if all integers held what they were given.
+    fn checked(&self, gpu: &Gpu, buffer: &Buffer, range: Range<u64>) -> Result<Vec<u32>, GpuError> {
+        let mut words = gpu.read_all(&[(buffer, range), (&self.overflow, 0..4)])?;
+        match words.pop() {
+            Some(0) => Ok(words),
             Some(_) => Err(Overflow.into()),
             None => Err(Lost.into()),
         }
@@ -210,9 +216,9 @@ impl Resolve {
     }
 
     /// Pixel rows of it.
-    pub fn read(&self, gpu: &Gpu, rows: Range<u32>) -> Result<Vec<[f32; 4]>, Lost> {
+    pub fn read(&self, gpu: &Gpu, rows: Range<u32>) -> Result<Vec<[f32; 4]>, GpuError> {
         let row = 16 * self.size[0] as u64;
-        let words = gpu.read(&self.picture, rows.start as u64 * row..rows.end as u64 * row)?;
+        let words = self.checked(gpu, &self.picture, rows.start as u64 * row..rows.end as u64 * row)?;
         Ok(words.chunks_exact(4).map(|p| [p[0], p[1], p[2], p[3]].map(f32::from_bits)).collect())
     }
 }

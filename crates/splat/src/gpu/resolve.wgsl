@@ -185,6 +185,7 @@ fn integrate(@builtin(workgroup_id) group: vec3<u32>, lane: Lane) {
 }
 
 var<workgroup> wide_before: array<vec2<u32>, THREADS>;
+var<workgroup> all_bits: atomic<u32>;
 
 fn wide_word(line: u32, x: u32, c: u32) -> vec2<u32> {
     let at = line + 8u * x + 2u * c;
@@ -205,8 +206,16 @@ fn integrate_wide(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invoca
     let count = u32(level.width + 2);
     let line = level.pixels + u32(row + 1) * u32(level.width + 3) * 8u;
     let segment = (count + THREADS - 1u) / THREADS;
+    // Few rows have any.
+    var bits = 0u;
+    for (var word = thread; word < 8u * count; word += THREADS) {
+        bits |= sums[line + word];
+    }
+    atomicOr(&all_bits, bits);
+    workgroupBarrier();
+    let is_dark = atomicLoad(&all_bits) == 0u;
     let first = min(thread * segment, count);
-    let end = min(first + segment, count);
+    let end = select(min(first + segment, count), first, is_dark);
     for (var c = 0u; c < 4u; c += 1u) {
         var sum = vec2<u32>();
         for (var x = first; x < end; x += 1u) {

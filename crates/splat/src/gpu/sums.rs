@@ -8,52 +8,34 @@ use crate::gpu::device::Lost;
 use crate::gpu::error::GpuError;
 use crate::gpu::layout::Layout;
 use crate::gpu::listing::{Listed, Listing};
-use crate::gpu::passes::KINDS;
+use crate::gpu::pace::{Batch, Pace};
+use crate::gpu::passes::LANES;
 use crate::gpu::records::{self, LARGE, Records, complete_large};
 use crate::gpu::resolve::Resolve;
 use crate::gpu::scene::Scene as Uploaded;
 use crate::gpu::shapes::Shapes;
 use crate::gpu::stopwatch::Stopwatch;
 use crate::gpu::work::Work;
-use crate::knots::{KnotSums, Knots, SharedSums};
+use crate::knots::{Knots, SharedSums};
 use crate::nodes::Nodes;
 use lens::Picture;
 use progress::Progress;
 use salf::tree::LEVELS;
-use std::collections::VecDeque;
-use std::num::NonZeroU64;
 use std::ops::Range;
-use wgpu::{BindGroup, Buffer, BufferUsages, SubmissionIndex};
+use wgpu::{BindGroup, Buffer, BufferUsages};
 
-/// Records that are drawn at a time, by kind: few enough that no card takes a second.
-/// Tests' scenes have several, too.
-const BATCH: [usize; KINDS] =
-    if cfg!(test) { [1 << 7, 1 << 6, 1 << 5, 1 << 5] } else { [1 << 16, 1 << 15, 1 << 14, 1 << 9] };
+/// Words of the room for records that are listed elsewhere.
+const ROOM: usize = 1 << 18;
 
-/// So many batches are asked for at once.
-const BATCHES_AT_ONCE: usize = 2;
+/// Words of what draw.wgsl is told of a batch.
+const BATCH_WORDS: usize = 4;
 
-/// As often, before the first of them must be done.
-const MOST_AHEAD: usize = 4;
+/// Fewer records than that are drawn by [`LANES`] threads each.
+const FEW: usize = if cfg!(test) { 1 << 6 } else { 1 << 14 };
 
-/// Words of what draw.wgsl is told of a batch: bindings begin at multiples of 256 bytes.
-const BATCH_WORDS: usize = 64;
-
-/// What the card was asked for and may not have done yet.
-#[derive(Default)]
-struct Ahead(VecDeque<SubmissionIndex>);
-
-impl Ahead {
-    /// More, once little enough waits: others wait their turn on the card, too, and what nobody wants any more is soon out of
-    /// their way.
-    fn add(&mut self, gpu: &Gpu, asked_for: SubmissionIndex) -> Result<(), Lost> {
-        self.0.push_back(asked_for);
-        if self.0.len() <= MOST_AHEAD {
-            return Ok(());
-        }
-        self.0.pop_front().map_or(Ok(()), |first| gpu.wait_for(first))
-    }
-}
+/// Threads of a workgroup of draw.wgsl, and how many workgroups a card is sure to take.
+const THREADS: usize = 64;
+const MOST_GROUPS: usize = 65_535;
 
 /// Accumulators of one kind of samples' integers.
 struct Accumulators {
@@ -75,8 +57,11 @@ pub struct GpuSums {
     is_paint_there: bool,
     /// Room for what is listed elsewhere.
     records: Buffer,
-    batches: Buffer,
+    batch: Buffer,
+    pace: Pace,
     resolve: Resolve,
+    /// The rows that lines are integrated of, of the sums as they are.
+    integrated: Range<u32>,
     stopwatch: Option<Stopwatch>,
 }
 
@@ -104,7 +89,6 @@ impl GpuSums {
         if has_bright {
             all.push(accumulators(1, 8)?);
         }
-        let most = (0..KINDS).map(|kind| BATCH[kind] * words_of(kind)).max().unwrap_or(0);
         let pens: Result<Vec<_>, Lost> = all.iter().map(|_| Shapes::pen_buffer(gpu)).collect();
         Ok(Self {
             listing: Listing::new(gpu, &scene)?,
@@ -115,12 +99,10 @@ impl GpuSums {
             resolve: Resolve::new(gpu, size, &all[0].layout)?,
             accumulators: all,
             pens: pens?,
-            records: gpu.buffer("records", most, BufferUsages::STORAGE | BufferUsages::COPY_DST)?,
-            batches: gpu.buffer(
-                "batches",
-                BATCHES_AT_ONCE * BATCH_WORDS,
-                BufferUsages::UNIFORM | BufferUsages::COPY_DST,
-            )?,
+            records: gpu.buffer("records", ROOM, BufferUsages::STORAGE | BufferUsages::COPY_DST)?,
+            batch: gpu.buffer("batch", BATCH_WORDS, BufferUsages::UNIFORM | BufferUsages::COPY_DST)?,
+            pace: Pace::new(),
+            integrated: 0..0,
             gpu: gpu.clone(),
         })
     }
@@ -146,6 +128,8 @@ impl GpuSums {
 
     /// Sets the sums to what a scene sends.
     pub fn set(&mut self, scene: &Scene, progress: &dyn Progress) -> Result<(), GpuError> {
+        self.integrated = 0..0;
+        self.pace.forget();
         let mut work = Work::new(&self.gpu);
         self.accumulators
             .iter()
@@ -179,26 +163,24 @@ impl GpuSums {
         listed: Listed,
         progress: &dyn Progress,
     ) -> Result<(), GpuError> {
-        let mut ahead = Ahead::default();
         for (width, kinds) in listed.into_iter().enumerate().take(self.accumulators.len()) {
             let bound = self.bound(chunk, width, self.listing.records())?;
             let [boxes, images, seen, large] = kinds;
             for (kind, records) in [boxes, images, seen].into_iter().enumerate() {
-                let first = records.clone().step_by(BATCH[kind]);
-                let batches: Vec<_> =
-                    first.map(|first| [first, (records.end - first).min(BATCH[kind] as u32)]).collect();
-                for batches in batches.chunks(BATCHES_AT_ONCE) {
+                let mut first = records.start;
+                while first < records.end {
                     progress.check()?;
-                    ahead.add(&self.gpu, self.draw_batches(&bound, width, kind, batches)?)?;
+                    let count = self.pace.size(width, kind).min((records.end - first) as usize);
+                    first += self.draw_batch(&bound, Batch { width, kind, count }, first)?;
                 }
             }
             if !large.is_empty() {
                 let bytes = [large.start, large.end].map(|at| 4 * (records::WORDS as u64) * u64::from(at));
                 let listed = self.gpu.read(self.listing.records(), bytes[0]..bytes[1])?;
-                for listed in listed.chunks(BATCH[LARGE] * records::WORDS) {
+                for listed in listed.chunks(ROOM / words_of(LARGE) * records::WORDS) {
                     progress.check()?;
                     let words = complete_large(pen, self.scene.chunks[chunk].shared.first, listed);
-                    self.draw_words([chunk, width, LARGE], &words, &mut ahead, progress)?;
+                    self.draw_words([chunk, width, LARGE], &words, progress)?;
                 }
             }
         }
@@ -207,6 +189,8 @@ impl GpuSums {
 
     /// Takes nodes away and adds others.
     pub fn change(&mut self, pen: &Pen, changes: &Changes) -> Result<(), GpuError> {
+        self.integrated = 0..0;
+        self.pace.forget();
         self.take_up(pen)?;
         for chunk in 0..self.scene.chunks.len() {
             let first = self.scene.chunks[chunk].shared.first;
@@ -249,10 +233,9 @@ impl GpuSums {
     ) -> Result<(), GpuError> {
         let shapes = self.shapes.as_mut().ok_or(Lost)?;
         shapes.upload(&self.gpu, pen.stencils, &records.places)?;
-        let mut ahead = Ahead::default();
         for width in 0..self.accumulators.len() {
             for (kind, words) in records.words[width].iter().enumerate() {
-                self.draw_words([chunk, width, kind], words, &mut ahead, progress)?;
+                self.draw_words([chunk, width, kind], words, progress)?;
             }
         }
         Ok(())
@@ -260,48 +243,41 @@ impl GpuSums {
 
     /// Draws records of a chunk, a width and a kind that are not on the card yet.
     fn draw_words(
-        &self,
+        &mut self,
         [chunk, width, kind]: [usize; 3],
-        words: &[u32],
-        ahead: &mut Ahead,
+        mut words: &[u32],
         progress: &dyn Progress,
     ) -> Result<(), GpuError> {
         if words.is_empty() {
             return Ok(());
         }
         let bound = self.bound(chunk, width, &self.records)?;
-        for words in words.chunks(BATCH[kind] * words_of(kind)) {
+        while !words.is_empty() {
             progress.check()?;
-            self.gpu.write(&self.records, words);
-            let all = [0, (words.len() / words_of(kind)) as u32];
-            ahead.add(&self.gpu, self.draw_batches(&bound, width, kind, &[all])?)?;
+            let count = self.pace.size(width, kind).min(ROOM.min(words.len()) / words_of(kind));
+            self.gpu.write(&self.records, &words[..count * words_of(kind)]);
+            let drawn = self.draw_batch(&bound, Batch { width, kind, count }, 0)?;
+            words = &words[drawn as usize * words_of(kind)..];
         }
         Ok(())
     }
 
-    /// Draws batches of records: so many, after so many others.
-    fn draw_batches(
-        &self,
-        bound: &BindGroup,
-        width: usize,
-        kind: usize,
-        batches: &[[u32; 2]],
-    ) -> Result<SubmissionIndex, Lost> {
+    /// Draws records, after so many others. Returns how many: no more than a card takes at once.
+    fn draw_batch(&mut self, bound: &BindGroup, batch: Batch, first: u32) -> Result<u32, Lost> {
         self.gpu.check()?;
-        let mut words = vec![0; BATCH_WORDS * batches.len()];
-        for (words, [first, count]) in words.chunks_mut(BATCH_WORDS).zip(batches) {
-            words[..2].copy_from_slice(&[*count, *first]);
-        }
-        self.gpu.write(&self.batches, &words);
-        let pass = &self.gpu.passes().draw[width][kind];
+        let Batch { width, kind, count } = batch;
+        let is_few = kind == LARGE || count <= FEW;
+        let lanes = if is_few { LANES as usize } else { 1 };
+        let count = count.min(MOST_GROUPS * THREADS / lanes);
+        self.gpu.write(&self.batch, &[count as u32, first, 0, 0]);
+        let pass = &self.gpu.passes().draw[width][kind][usize::from(is_few)];
         let mut work = Work::new(&self.gpu);
-        for (k, [_, count]) in (0..).zip(batches) {
-            work.run(pass, bound, &[4 * BATCH_WORDS as u32 * k], [count.div_ceil(64), 1]);
-        }
+        work.run(pass, bound, [(count * lanes).div_ceil(THREADS) as u32, 1]);
         let asked_for = work.submit();
         // Frees what was staged for batches that are through.
         self.gpu.device().poll(wgpu::PollType::Poll).map_err(|_| Lost)?;
-        Ok(asked_for)
+        self.pace.add(&self.gpu, Batch { count, ..batch }, asked_for)?;
+        Ok(count as u32)
     }
 
     fn bound(&self, chunk: usize, width: usize, records: &Buffer) -> Result<BindGroup, Lost> {
@@ -316,15 +292,9 @@ impl GpuSums {
             records,
             &sums[0],
             &sums[1],
+            &self.batch,
         ];
-        let batch = wgpu::BufferBinding {
-            buffer: &self.batches,
-            offset: 0,
-            size: NonZeroU64::new(4 * size_of::<u32>() as u64),
-        };
-        let whole = buffers.map(|buffer| buffer.as_entire_buffer_binding());
-        let bindings = (0..).zip(whole.into_iter().chain([batch]));
-        Ok(self.gpu.bind_parts(&self.gpu.passes().draw_layout, bindings))
+        Ok(self.gpu.bind(&self.gpu.passes().draw_layout, (0..).zip(buffers)))
     }
 
     /// Finds the shares of a standard picture whose sums these are, and the gains.
@@ -333,36 +303,29 @@ impl GpuSums {
         self.resolve.begin(&self.gpu, nodes, rows.clone(), true, false);
         self.integrate_lines(&rows)?;
         self.resolve.finish(&self.gpu, &rows);
-        self.resolve.check(&self.gpu)?;
-        Ok(Gains::of(Knots::new(self.resolve.size), &self.knot_sums()?))
+        Ok(Gains::of(Knots::new(self.resolve.size), &self.resolve.knot_sums(&self.gpu)?))
     }
 
-    /// Integrates pixel rows, for a picture of them.
-    pub fn integrate(&self, nodes: &Nodes, rows: &Range<u32>, is_evened: bool) -> Result<(), GpuError> {
+    /// Integrates pixel rows, for a picture of them, unless they are.
+    pub fn integrate(&mut self, nodes: &Nodes, rows: &Range<u32>, is_evened: bool) -> Result<(), GpuError> {
         self.resolve.begin(&self.gpu, nodes, rows.clone(), false, is_evened);
-        self.integrate_lines(rows)?;
-        self.resolve.check(&self.gpu)
-    }
-
-    /// What all rows bring to each knot, once they are integrated.
-    fn knot_sums(&self) -> Result<Vec<KnotSums>, GpuError> {
-        Ok(self.resolve.knot_sums(&self.gpu)?)
+        let is_there = self.integrated.start <= rows.start && rows.end <= self.integrated.end;
+        if is_there { Ok(()) } else { Ok(self.integrate_lines(rows)?) }
     }
 
     /// What shares in each cell of a picture, once all rows are integrated.
     pub fn shared_sums(&self, gains: &Gains) -> Result<Vec<SharedSums>, GpuError> {
         self.resolve.set_gains(&self.gpu, gains, NO_REST);
-        Ok(self.resolve.shared_sums(&self.gpu)?)
+        self.resolve.shared_sums(&self.gpu)
     }
 
     /// Makes pixel rows of a picture, which were integrated last.
-    pub fn make_picture(&self, gains: &Gains, rest: [f32; 3], rows: &Range<u32>) -> SubmissionIndex {
+    pub fn make_picture(&self, gains: &Gains, rest: [f32; 3], rows: &Range<u32>) {
         self.resolve.set_gains(&self.gpu, gains, rest);
-        let asked_for = self.resolve.finish(&self.gpu, rows);
+        self.resolve.finish(&self.gpu, rows);
         if let Some(stopwatch) = &self.stopwatch {
             stopwatch.end(&self.gpu);
         }
-        asked_for
     }
 
     /// The picture on the card: of each pixel red, green, blue and coverage.
@@ -370,9 +333,9 @@ impl GpuSums {
         self.resolve.picture()
     }
 
-    /// Waits until that is done.
-    pub fn wait_for(&self, asked_for: SubmissionIndex) -> Result<(), GpuError> {
-        Ok(self.gpu.wait_for(asked_for)?)
+    /// Waits until the picture is made.
+    pub fn finish(&self) -> Result<(), GpuError> {
+        self.resolve.check(&self.gpu)
     }
 
     /// Brings pixel rows of the picture back.
@@ -400,8 +363,9 @@ impl GpuSums {
         }
     }
 
-    fn integrate_lines(&self, rows: &Range<u32>) -> Result<(), Lost> {
+    fn integrate_lines(&mut self, rows: &Range<u32>) -> Result<(), Lost> {
         self.gpu.check()?;
+        self.integrated = rows.clone();
         let mut work = Work::new(&self.gpu);
         for kind in 0..2 {
             let work = &mut work;

@@ -16,11 +16,11 @@ impl<'g> Work<'g> {
         Self { gpu, encoder }
     }
 
-    /// Runs a pass in so many workgroups; `offsets`: where in their buffers bindings begin that may begin anywhere.
-    pub fn run(&mut self, pass: &Pass, bound: &BindGroup, offsets: &[u32], [x, y]: [u32; 2]) {
+    /// Runs a pass in so many workgroups.
+    pub fn run(&mut self, pass: &Pass, bound: &BindGroup, [x, y]: [u32; 2]) {
         let mut compute = self.encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
         compute.set_pipeline(pass.pipeline(self.gpu.device()));
-        compute.set_bind_group(0, bound, offsets);
+        compute.set_bind_group(0, bound, &[]);
         compute.dispatch_workgroups(x, y, 1);
     }
 

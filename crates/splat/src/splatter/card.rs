@@ -140,17 +140,17 @@ impl Card {
         gains: &Gains,
         picture: &mut Picture,
     ) -> Result<(), GpuError> {
-        let sums = self.sums.as_ref().ok_or(GpuError::Lost)?;
+        let sums = self.sums.as_mut().ok_or(GpuError::Lost)?;
         sums.integrate(nodes, &rows, finish == Finish::Evened)?;
         let is_balanced = finish == Finish::Balanced;
         let rest = if is_balanced { rest(&sums.shared_sums(gains)?) } else { NO_REST };
-        let asked_for = sums.make_picture(gains, rest, &rows);
+        sums.make_picture(gains, rest, &rows);
         if !self.keeps {
             return sums.read_picture(rows, picture);
         }
         let newer = std::mem::take(&mut self.newer);
         self.newer = hull([newer, rows].into_iter().filter(|rows| !rows.is_empty()));
-        sums.wait_for(asked_for)
+        sums.finish()
     }
 
     /// Brings back what of the picture is newer here; `None` where nothing is.
