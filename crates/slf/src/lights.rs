@@ -34,6 +34,13 @@ pub(crate) struct LightSample {
     pub number: Option<usize>,
 }
 
+impl LightSample {
+    /// Whether it is a direction of the environment.
+    pub fn is_of_sky(&self) -> bool {
+        self.density.is_some() && !self.is_near
+    }
+}
+
 /// How often lights are drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Draws {

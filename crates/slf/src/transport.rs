@@ -15,7 +15,7 @@ use gathered::{Gathered, split};
 use glam::{DVec3, Vec3};
 use material::{Bsdf, Frame, Scattered, Scattering, Split, Surface, Toward};
 use scene::{Scene, SurfacePoint, World};
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 use trace::{Among, Hit, Leaving, Radiance, Received, Spot, Tracer};
 
 /// How light is gathered.
@@ -60,6 +60,8 @@ pub struct Transport {
     lights: Lights,
     media: Media,
     irradiance: Option<Arc<Irradiance>>,
+    /// Directions of the sky, once they are asked for.
+    sky: OnceLock<Vec<LightSample>>,
 }
 
 /// Where a path has come to.
@@ -67,7 +69,26 @@ struct Path {
     random: PathRandom,
     inside: Inside,
     /// How many lights were drawn at its first surface for each direction that was.
-    lights_a_path: f64,
+    lights: LightsAPath,
+}
+
+/// How many directions of the sky and places on lamps are drawn for each direction that a surface scatters to.
+#[derive(Clone, Copy)]
+struct LightsAPath {
+    sky: f64,
+    lamps: f64,
+}
+
+impl LightsAPath {
+    /// As many of either.
+    fn each(lights: f64) -> Self {
+        Self { sky: lights, lamps: lights }
+    }
+
+    /// Of what is drawn where this one is.
+    fn of(&self, sample: &LightSample) -> f64 {
+        if sample.is_of_sky() { self.sky } else { self.lamps }
+    }
 }
 
 /// Light on its way back along a path: from where, in which direction, and how likely that was drawn.
@@ -127,7 +148,7 @@ impl Transport {
     pub fn new(tracer: Arc<Tracer>, world: World, options: TransportOptions) -> Self {
         let scene = tracer.scene();
         let (lights, media) = (Lights::of(scene, &world), Media::of(scene));
-        Self { tracer, world, options, lights, media, irradiance: None }
+        Self { tracer, world, options, lights, media, irradiance: None, sky: OnceLock::new() }
     }
 
     /// The same with light that is known already, of the same scene and world.
@@ -166,7 +187,7 @@ impl Transport {
         };
         let inside = self.media.beside(at.material, is_front);
         let random = PathRandom::new(PathRandom::seed(seed, place.normal), index);
-        let mut path = Path { random, inside, lights_a_path: 1.0 };
+        let mut path = Path { random, inside, lights: LightsAPath::each(1.0) };
         let interface = self.media.interface(at.material, &inside, is_front);
         let bsdf = Bsdf::new(&at.surface, at.frame, interface);
         let lobes = bsdf.toward(place.normal);
@@ -301,7 +322,7 @@ impl Transport {
         if of_light == 0.0 {
             return DVec3::ZERO;
         }
-        let share = heuristic(density, of_light * path.lights_a_path);
+        let share = heuristic(density, of_light * path.lights.lamps);
         let light = emitted(self.scene(), hit.point, -direction).as_dvec3() * share;
         light * self.media.attenuation(&path.inside, hit.t)
     }
@@ -321,7 +342,8 @@ impl Transport {
             let Some(Hit { point, t }) = hit else {
                 let of_light = self.lights.density_of_environment(&self.world, step.direction);
                 let light = throughput * self.world.radiance(step.direction).as_dvec3();
-                found.add(light, step.density, of_light, scatterings, path);
+                let often = path.lights.sky;
+                found.add(light, step.density, [of_light, often], scatterings);
                 return found;
             };
             if scatterings == 1 {
@@ -332,7 +354,8 @@ impl Transport {
             if shines != DVec3::ZERO {
                 let place = point.position(scene);
                 let of_light = self.lights.density_of_emitter(point.triangle, place, step.position);
-                found.add(throughput * shines, step.density, of_light, scatterings, path);
+                let often = path.lights.lamps;
+                found.add(throughput * shines, step.density, [of_light, often], scatterings);
             }
             if scatterings > most || scene.material_of(point.triangle).unlit {
                 return found;
@@ -389,9 +412,10 @@ impl Transport {
 }
 
 impl Arriving {
-    /// Light that was found after so many scatterings by a direction of some density; drawn lights find it with another.
-    fn add(&mut self, light: DVec3, density: Option<f64>, of_light: f64, scatterings: u32, path: &Path) {
-        let drawn = if scatterings == 1 { of_light * path.lights_a_path } else { of_light };
+    /// Light that was found after so many scatterings by a direction of some density; lights find it with another, and are drawn
+    /// so often for the first direction.
+    fn add(&mut self, light: DVec3, density: Option<f64>, [of_light, often]: [f64; 2], scatterings: u32) {
+        let drawn = if scatterings == 1 { of_light * often } else { of_light };
         let light = light * density.map_or(1.0, |own| heuristic(own, drawn));
         let sum = if scatterings == 1 && of_light > 0.0 { &mut self.drawn } else { &mut self.other };
         *sum += light;
@@ -489,7 +513,7 @@ impl Radiance for Transport {
                 let mut sum = Gathered::default();
                 for index in 0..paths {
                     let random = PathRandom::new(among.seed, among.index * paths + index);
-                    let mut path = Path { random, inside, lights_a_path: 1.0 };
+                    let mut path = Path { random, inside, lights: LightsAPath::each(1.0) };
                     sum += self.scattered(point, &at, outgoing, &mut path);
                 }
                 sum * (1.0 / f64::from(paths))

@@ -2,7 +2,7 @@
 
 use super::gathered::Gathered;
 use super::receiving::drawn;
-use super::{Known, Path, Transport, each_of, heuristic};
+use super::{Known, LightsAPath, Path, Transport, each_of, heuristic};
 use crate::irradiance::Irradiance;
 use crate::material_point::MaterialPoint;
 use crate::media::Inside;
@@ -66,7 +66,7 @@ impl Transport {
         let mut drawn = Split::default();
         for index in 0..draws.all {
             let random = PathRandom::new(light_seed, among.index * draws.all + index);
-            let mut path = Path { random, inside, lights_a_path };
+            let mut path = Path { random, inside, lights: LightsAPath::each(lights_a_path) };
             drawn += self.direct_by(point, at, &mut path, index < draws.punctual, |sample| {
                 let (Parts { spread, sharp }, own) = lobes.scatter_parts(sample.from);
                 if sample.density.is_some() && !sample.is_near {
@@ -95,7 +95,7 @@ impl Transport {
         }
         for index in 0..paths {
             let random = PathRandom::new(look_seed, among.index * paths + index);
-            let mut path = Path { random, inside, lights_a_path };
+            let mut path = Path { random, inside, lights: LightsAPath::each(lights_a_path) };
             if !is_told {
                 let sent = self.looked_for(point, at.position, lobes, &mut path).map(|(_, sent)| sent);
                 found.light += Split { own: sent.unwrap_or_default(), carried: DVec3::ZERO };

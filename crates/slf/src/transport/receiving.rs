@@ -3,9 +3,10 @@
 mod asked;
 pub(super) mod drawn;
 
-use super::{Path, Transport, heuristic};
+use super::{LightsAPath, Path, Transport, heuristic};
 use crate::irradiance::patches::facing;
 use crate::irradiance::place::Place;
+use crate::lights::LightSample;
 use crate::material_point::MaterialPoint;
 use crate::path_random::PathRandom;
 use crate::spots::{self, Measure, Measured, Seen};
@@ -41,6 +42,7 @@ impl Transport {
             irradiance,
             spots,
             eye,
+            sky: self.sky(),
             places: Vec::new(),
             is_front: Vec::new(),
             inside: Vec::new(),
@@ -143,7 +145,7 @@ impl Asked<'_> {
         let lights_a_look = f64::from(drawing.of_areas) / f64::from(self.light_samples());
         let cosine = |from: DVec3| place.normal.dot(from);
         // The sky's samples tell what share of it is missing: none is, or all, where none is seen, or all, to the last bit.
-        let of_sky = |drawn: &&Drawn| drawn.sample.density.is_some() && !drawn.sample.is_near;
+        let of_sky = |drawn: &&Drawn| drawn.sample.is_of_sky();
         let drawn_of_sky = drawing.lights.iter().filter(of_sky).map(|drawn| {
             drawn.sample.light.as_dvec3()
                 * cosine(drawn.sample.from)
@@ -181,7 +183,8 @@ impl Asked<'_> {
         let lights_a_path = f64::from(drawing.of_areas) / f64::from(looks);
         for index in 0..looks {
             let random = PathRandom::new(drawn::LOOKING, index);
-            let mut path = Path { random, inside: self.inside[facing.spot], lights_a_path };
+            let inside = self.inside[facing.spot];
+            let mut path = Path { random, inside, lights: LightsAPath::each(lights_a_path) };
             let found = self.transport.looked_for(facing.point, place.position, facing.lobes, &mut path);
             if let Some((direction, sent)) = found {
                 let cosine = place.normal.dot(direction);
@@ -195,17 +198,39 @@ impl Asked<'_> {
         let (place, inside) = (&self.places[facing.spot], self.inside[facing.spot]);
         let sent_of_all = (facing.lobes.albedo().own - facing.lobes.spread_albedo()).max_element();
         let paths = if sent_of_all < AS_METAL { PATHS } else { PATHS_OF_METAL } * self.light_samples();
-        let lights_a_path = f64::from(drawing.of_areas) / f64::from(paths);
-        let mut sent = DVec3::ZERO;
-        for Drawn { sample, .. } in drawing.lights.iter().filter(|drawn| drawn.is_seen) {
+        // All spots draw the same few directions of the sky, which tell what share of it is seen; many more tell what all of it sends.
+        let [sky, lamps] =
+            [self.sky.len() as f64, drawing.of_areas.into()].map(|draws| draws / f64::from(paths));
+        let lights = LightsAPath { sky, lamps };
+        let sent_of = |sample: &LightSample, light: DVec3| {
             let (Parts { sharp, .. }, own) = facing.lobes.scatter_parts(sample.from);
-            let share = drawing.share(sample)
-                * sample.density.map_or(1.0, |density| heuristic(density * lights_a_path, own));
-            sent += self.transport.light_of(sample, place.position, &inside) * sharp.own * share;
+            light
+                * sharp.own
+                * sample.density.map_or(1.0, |density| heuristic(density * lights.of(sample), own))
+        };
+        let mut sent = DVec3::ZERO;
+        let [mut sky, mut seen_sky] = [DVec3::ZERO; 2];
+        for Drawn { sample, is_seen } in &drawing.lights {
+            let is_sky = sample.is_of_sky();
+            if !is_sky && !is_seen {
+                continue;
+            }
+            let light = self.transport.light_of(sample, place.position, &inside);
+            let sent_of = sent_of(sample, light) * drawing.share(sample);
+            match (is_sky, is_seen) {
+                (true, true) => (sky, seen_sky) = (sky + sent_of, seen_sky + sent_of),
+                (true, false) => sky += sent_of,
+                (false, _) => sent += sent_of,
+            }
+        }
+        if seen_sky != DVec3::ZERO {
+            let above = self.sky.iter().filter(|sample| place.normal.dot(sample.from) > 0.0);
+            let open: DVec3 = above.map(|sample| sent_of(sample, sample.light.as_dvec3())).sum();
+            sent += seen_sky * inverse(sky) * open / self.sky.len() as f64;
         }
         for index in 0..paths {
             let random = PathRandom::new(drawn::LOOKING, index);
-            let mut path = Path { random, inside, lights_a_path };
+            let mut path = Path { random, inside, lights };
             let found =
                 self.transport.sharp(facing.point, facing.at, facing.lobes, &mut path, self.irradiance);
             sent += found.light.own / f64::from(paths);

@@ -3,6 +3,7 @@
 use super::super::Transport;
 use crate::irradiance::Irradiance;
 use crate::irradiance::place::Place;
+use crate::lights::LightSample;
 use crate::media::Inside;
 use glam::DVec3;
 use trace::Spot;
@@ -13,6 +14,8 @@ pub(super) struct Asked<'a> {
     pub irradiance: &'a Irradiance,
     pub spots: &'a [Spot],
     pub eye: DVec3,
+    /// Directions of the sky, many more than are drawn for a spot.
+    pub sky: &'a [LightSample],
     pub places: Vec<Place>,
     pub is_front: Vec<bool>,
     pub inside: Vec<Inside>,

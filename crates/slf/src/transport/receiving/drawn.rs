@@ -4,13 +4,17 @@ use super::asked::Asked;
 use crate::lights::LightSample;
 use crate::path_random::PathRandom;
 use crate::spots::Seen;
-use glam::Vec3;
+use crate::transport::Transport;
+use glam::{DVec3, Vec3};
 
 /// How often sky and lamps are drawn where a spot sees all of them, or none, over how often for a point asked alone.
 const LIGHTS: u32 = 4;
 
 /// How often where it sees some.
 const LIGHTS_IN_PENUMBRA: u32 = 8;
+
+/// Directions of the sky that tell what an unshaded gloss sends: no rays are traced for these.
+const SKY_DIRECTIONS: u32 = 512;
 
 /// So many punctual lights are all asked; of more so many are drawn.
 const PUNCTUAL: usize = 64;
@@ -49,6 +53,22 @@ fn bit(sample: &LightSample, turn: u32) -> (usize, u64) {
         Some(number) => (PUNCTUAL_LIGHTS, of(number as u32)),
         None if sample.is_near => (LAMPS, of(turn)),
         None => (SKY, of(turn)),
+    }
+}
+
+impl Transport {
+    /// Directions of the sky, the first of them those that are drawn for spots. Empty where none is drawn.
+    pub(super) fn sky(&self) -> &[LightSample] {
+        self.sky.get_or_init(|| {
+            let mut sky = Vec::new();
+            for turn in 0..SKY_DIRECTIONS {
+                let mut random = PathRandom::new(SEED, turn);
+                let draw = || random.next();
+                let mut keep = |sample: LightSample| sky.extend(sample.is_of_sky().then_some(sample));
+                self.lights.sample_areas(self.scene(), &self.world, DVec3::ZERO, draw, &mut keep);
+            }
+            sky
+        })
     }
 }
 

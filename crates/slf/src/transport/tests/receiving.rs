@@ -111,3 +111,48 @@ fn a_shut_box_gets_nothing_of_the_sky_to_the_last_bit() {
     let open = lit_in_a_box(false);
     assert!(open > 0.1, "{open}");
 }
+
+#[test]
+fn rough_metal_sends_what_a_sky_of_lamps_does() {
+    let (width, height) = (64u32, 32u32);
+    let mut texels = vec![[0.02f32; 3]; (width * height) as usize];
+    for (k, [x, y]) in
+        [[3, 5], [19, 9], [26, 2], [33, 12], [41, 7], [55, 4], [60, 13]].into_iter().enumerate()
+    {
+        let colour = [k % 3, (k + 1) % 3, (k + 2) % 3].map(|c| [40.0, 15.0, 5.0][c]);
+        texels[(y * width + x) as usize] = colour;
+        texels[(y * width + x + 1) as usize] = colour;
+    }
+    let map = EnvironmentMap { name: "lamps".into(), width, height, texels };
+    let world = World { environment: Environment::Map(Arc::new(map)), ..World::uniform(Vec3::ZERO) };
+    let metal = |roughness: f32| Material {
+        workflow: Workflow::MetallicRoughness {
+            metallic: Scalar { factor: 1.0, texture: None },
+            roughness: Scalar { factor: roughness, texture: None },
+        },
+        ..grey()
+    };
+    for roughness in [0.4, 0.6, 1.0] {
+        let tracer = Arc::new(Tracer::new(Arc::new(scene_of(&[floor(metal(roughness))], &[]))));
+        let transport = Transport::new(tracer, world.clone(), TransportOptions::default());
+        let solved = IrradianceOptions { patches: 200, rays: 64 };
+        let kept = Irradiance::solve(&transport, solved, &Unwatched).unwrap();
+        let transport = transport.with_irradiance(Arc::new(kept));
+        let spots = spots();
+        for eye in [ABOVE, DVec3::new(3.0, 1.5, -2.0)] {
+            let told = transport.received(&spots, eye);
+            let (mut found, mut expected) = (Vec3::ZERO, Vec3::ZERO);
+            for (spot, received) in spots.iter().zip(told).step_by(9) {
+                let leaving = |received, seed| {
+                    let among = Among { received, ..Among::alone(seed) };
+                    transport.leaving_among(spot.point, eye, among).own
+                };
+                const SEEDS: u64 = 256;
+                found += leaving(received, 0);
+                expected += (0..SEEDS).map(|seed| leaving(None, seed)).sum::<Vec3>() / SEEDS as f32;
+            }
+            let off = (found / expected - 1.0).abs().max_element();
+            assert!(off < 0.05, "roughness {roughness} from {eye}: {found}, not {expected}");
+        }
+    }
+}
