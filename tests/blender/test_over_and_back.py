@@ -49,18 +49,41 @@ class OverAndBack(unittest.TestCase):
             there = self.camera(name)
             width, height = there["width"], there["height"]
             self.assertEqual((width, height), (96, 64))
-            inverse = Matrix(there["camera_to_world"]).inverted()
-            shift = there.get("shift", [0, 0])
-            farthest = 0
-            for point in points:
-                x, y, _ = world_to_camera_view(self.scene, here, Vector(point))
-                seen = inverse @ Vector((point[0], point[2], -point[1]))
-                half = height / 2 / math.tan(there["yfov"] / 2)
-                px = width / 2 - shift[0] * height + half * seen.x / -seen.z
-                py = height / 2 + shift[1] * height - half * seen.y / -seen.z
-                farthest = max(farthest, abs(px - x * width), abs(py - (1 - y) * height))
+            to_camera = Matrix(there["camera_to_world"]).inverted() @ meshes_back.TO_BLENDER.inverted()
+            farthest = self.farthest(here, there, to_camera, points)
             print(f"{name}: 100 points within {farthest:.5f} px")
             self.assertLess(farthest, 0.1)
+
+    def farthest(self, here, there, to_camera, points):
+        """How far apart Blender and a lens of ours put points of the scene, px."""
+        width, height = there["width"], there["height"]
+        shift = there.get("shift", [0, 0])
+        half = height / 2 / math.tan(there["yfov"] / 2)
+        farthest = 0
+        for point in points:
+            x, y, _ = world_to_camera_view(self.scene, here, Vector(point))
+            seen = to_camera @ Vector(point)
+            px = width / 2 - shift[0] * height + half * seen.x / -seen.z
+            py = height / 2 + shift[1] * height - half * seen.y / -seen.z
+            farthest = max(farthest, abs(px - x * width), abs(py - (1 - y) * height))
+        return farthest
+
+    def test_every_fit_of_the_sensor_projects_as_blenders(self):
+        points = np.random.default_rng(6).uniform((-2, -2, 0), (2, 2, 1.5), (100, 3))
+        here, render = self.scene.objects["Wide"], self.scene.render
+        data = here.data
+        before = data.sensor_fit, render.resolution_x, render.resolution_y, render.resolution_percentage
+        for fit in ("AUTO", "HORIZONTAL", "VERTICAL"):
+            for width, height, percentage in ((96, 64, 100), (64, 96, 100), (80, 80, 100), (192, 128, 50)):
+                data.sensor_fit = fit
+                render.resolution_x, render.resolution_y, render.resolution_percentage = width, height, percentage
+                bpy.context.view_layer.update()
+                there = camera_lens.lens_of(here, self.scene, bpy.context.evaluated_depsgraph_get())
+                there["yfov"] = camera_lens.Frame(data, render).yfov(data)
+                farthest = self.farthest(here, there, here.matrix_world.inverted(), points)
+                self.assertLess(farthest, 0.01, f"{fit}, {width} × {height}")
+        data.sensor_fit, render.resolution_x, render.resolution_y, render.resolution_percentage = before
+        bpy.context.view_layer.update()
 
     def camera(self, name):
         file = PLACE / f"{name}.fbrush"

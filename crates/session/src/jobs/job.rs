@@ -76,18 +76,21 @@ mod tests {
     use std::sync::mpsc;
     use std::time::Duration;
 
+    /// More than any machine takes.
+    const PATIENCE: Duration = Duration::from_secs(120);
+
     #[test]
     fn a_panic_is_an_error_and_a_result_arrives() {
         let (send, receive) = mpsc::channel();
         let deliver = send.clone();
         let panics = |_: &JobProgress| -> Result<u8, SessionError> { panic!("index out of bounds") };
         Job::start(JobId(1), "testing".into(), panics, move |id, r| deliver.send((id, r)).unwrap()).unwrap();
-        let (id, result) = receive.recv_timeout(Duration::from_secs(10)).unwrap();
+        let (id, result) = receive.recv_timeout(PATIENCE).unwrap();
         assert_eq!(id, JobId(1));
         assert!(matches!(result, Err(SessionError::Internal(text)) if text.contains("index out of bounds")));
 
         Job::start(JobId(2), "testing".into(), |_| Ok(7), move |id, r| send.send((id, r)).unwrap()).unwrap();
-        assert_eq!(receive.recv_timeout(Duration::from_secs(10)).unwrap(), (JobId(2), Ok(7)));
+        assert_eq!(receive.recv_timeout(PATIENCE).unwrap(), (JobId(2), Ok(7)));
     }
 
     #[test]
@@ -112,12 +115,12 @@ mod tests {
             move |_, result: Result<(), _>| send.send(result).unwrap(),
         )
         .unwrap();
-        has_begun.recv_timeout(Duration::from_secs(10)).unwrap();
+        has_begun.recv_timeout(PATIENCE).unwrap();
         let quick: u32 = (0..1000u32).into_par_iter().sum();
         assert_eq!(quick, 499_500);
         assert!(receive.try_recv().is_err(), "the long work goes on");
         job.progress.cancel();
-        assert_eq!(receive.recv_timeout(Duration::from_secs(10)).unwrap(), Ok(()));
+        assert_eq!(receive.recv_timeout(PATIENCE).unwrap(), Ok(()));
     }
 
     #[test]
@@ -134,6 +137,6 @@ mod tests {
         )
         .unwrap();
         job.progress.cancel();
-        assert_eq!(receive.recv_timeout(Duration::from_secs(10)).unwrap(), Err(SessionError::Cancelled));
+        assert_eq!(receive.recv_timeout(PATIENCE).unwrap(), Err(SessionError::Cancelled));
     }
 }
