@@ -1,0 +1,179 @@
+//! A light field in parts, each as it is in the whole: what a part of a picture needs is baked square by square, and need not be in
+//! memory at once.
+//!
+//! Samples depend on their own block of the picture, and on the depths of what stands around it as far as that may hide or reveal something.
+//! So a part of the picture is surveyed first, with as much around it ([`PartsBaker::around`]); then its squares are baked, some at
+//! a time. The parts of a light field have its camera, its blocks and its hierarchy.
+
+use crate::bake::{beside, each_row, patches};
+use crate::baker::Baker;
+use crate::domain::Domain;
+use crate::occluders::Occluders;
+use crate::options::BakeOptions;
+use crate::outliers::Outliers;
+use crate::reach::{Bound, FocusRanges, Reach, SQUARE_PX};
+use crate::salf::Salf;
+use crate::sample::Sample;
+use crate::samples::Samples;
+use glam::{IVec2, Vec2};
+use lens::Camera;
+use progress::{Cancelled, Progress, Stage};
+use std::collections::{HashMap, HashSet};
+use trace::{Radiance, Tracer};
+
+/// Bakes parts of one light field.
+pub struct PartsBaker<'a> {
+    baker: Baker<'a>,
+    camera: &'a Camera,
+    options: BakeOptions,
+    reach: Reach,
+}
+
+/// What stands around a part of the picture.
+pub struct Surroundings {
+    /// The squares whose light may reach it, by column and row; row by row.
+    pub squares: Vec<IVec2>,
+    occluders: Occluders,
+    patches: HashMap<IVec2, Vec<Sample>>,
+}
+
+/// The footprint of a node is no wider, to either side, px.
+const WIDEST_FOOTPRINT_PX: f32 = 32.0;
+
+impl<'a> PartsBaker<'a> {
+    /// For `camera`, which must be valid, and a focus that ranges so.
+    pub fn new(
+        tracer: &'a Tracer,
+        radiance: &'a dyn Radiance,
+        camera: &'a Camera,
+        options: &BakeOptions,
+        ranges: &FocusRanges,
+    ) -> Self {
+        let baker = Baker::new(tracer, radiance, camera, options);
+        let reach = Reach::new(tracer.scene(), &baker.view, baker.domain, &baker.placement, ranges);
+        Self { baker, camera, options: *options, reach }
+    }
+
+    /// Surveys what stands around some pixels of the picture, first and end: the squares whose light may come within `near_px` of
+    /// them, and of the squares that lie outside of the picture those that are nearest to them.
+    pub fn around(
+        &self,
+        [first, end]: [IVec2; 2],
+        near_px: i32,
+        progress: &dyn Progress,
+    ) -> Result<Surroundings, Cancelled> {
+        let apart = |square: IVec2| {
+            let [low, high] = self.reach.pixels(square);
+            (low - end).max(first - high).max_element().max(0)
+        };
+        let is_needed = |square: IVec2, bound: Bound| {
+            // The nearest pixel of the picture is one of these.
+            let [low, high] = self.reach.pixels(square);
+            let nearest = ((low + high) / 2).clamp(IVec2::ZERO, self.baker.domain.size - 1);
+            let is_own = nearest.cmpge(first).all() && nearest.cmplt(end).all();
+            is_own || apart(square) as f32 <= reach_px(bound.radius_px) + near_px as f32
+        };
+        let needed: Vec<_> = self.reach.squares().filter(|(square, bound)| is_needed(*square, *bound)).collect();
+        let squares: Vec<IVec2> = needed.iter().map(|(square, _)| *square).collect();
+        let occluders = self.survey(&needed, &Stage::new(progress, 0.0, 0.9))?;
+        let wanted: HashSet<IVec2> = squares.iter().copied().collect();
+        let is_wanted = |corner: IVec2| wanted.contains(&self.square_of(self.baker.domain.nearest_block(corner)));
+        let patches = patches(&self.baker, &is_wanted, &Stage::new(progress, 0.9, 1.0))?;
+        Ok(Surroundings { squares, occluders, patches })
+    }
+
+    /// The depths of everything that may hide a surface of the needed squares, or reveal one.
+    fn survey(&self, needed: &[(IVec2, Bound)], progress: &dyn Progress) -> Result<Occluders, Cancelled> {
+        let domain = &self.baker.domain;
+        let parallax_px = self.baker.view.radius_per_kappa_px;
+        let hull = |rects: &mut dyn Iterator<Item = [IVec2; 2]>| {
+            rects.reduce(|[a, b], [c, d]| [a.min(c), b.max(d)]).unwrap_or([IVec2::ZERO; 2])
+        };
+        /// Beside what parallax tells: cells are up to a block wide.
+        const ROOM: i32 = 3 * Domain::BLOCK;
+        let far = |bound: Bound| {
+            let px = f64::from(bound.inverse_depth) * parallax_px;
+            // Beyond any picture.
+            px.min(1e6).ceil() as i32 + ROOM
+        };
+        // What is revealed lies within the parallax of what hides it against infinity, …
+        let own = hull(&mut needed.iter().map(|(square, bound)| {
+            let [low, high] = self.reach.pixels(*square);
+            [low - far(*bound), high + far(*bound)]
+        }));
+        // … and so does what hides.
+        let [first, end] = hull(&mut needed.iter().map(|(square, _)| self.reach.pixels(*square)));
+        let hiding = self.reach.squares().filter_map(|(square, bound)| {
+            let [low, high] = self.reach.pixels(square);
+            let apart = (low - end).max(first - high).max_element();
+            (apart <= far(bound)).then_some([low, high])
+        });
+        let [low, high] = hull(&mut hiding.chain([own]));
+        let margin = IVec2::splat(domain.margin);
+        let [low, high] = [low.max(-margin), high.min(domain.size + margin)];
+        let [first, end] = [domain.nearest_block(low), domain.nearest_block(high - 1) + 1];
+        let corner = domain.corner_of_block(first);
+        let extent = (domain.corner_of_block(end) - corner).min(domain.size + margin - corner);
+        let rows: Vec<i32> = (first.y..end.y).collect();
+        let depths = each_row(&rows, progress, |&row| {
+            let blocks = (first.x..end.x).flat_map(|column| domain.cells_of_block(IVec2::new(column, row)));
+            blocks.map(|cell| (cell, self.baker.depths(cell))).collect::<Vec<_>>()
+        })?;
+        Ok(Occluders::new([corner, extent], parallax_px, depths.into_iter().flatten()))
+    }
+
+    /// The square of a block.
+    fn square_of(&self, block: IVec2) -> IVec2 {
+        block / (SQUARE_PX / Domain::BLOCK)
+    }
+
+    /// Bakes some of the squares around a part of the picture.
+    pub fn bake(
+        &self,
+        around: &Surroundings,
+        squares: &[IVec2],
+        progress: &dyn Progress,
+    ) -> Result<(Salf, Outliers), Cancelled> {
+        let domain = &self.baker.domain;
+        let (side, all) = (SQUARE_PX / Domain::BLOCK, domain.blocks());
+        let mut blocks: Vec<IVec2> = squares
+            .iter()
+            .flat_map(|square| (0..side * side).map(move |k| *square * side + IVec2::new(k % side, k / side)))
+            .filter(|block| block.cmplt(all).all())
+            .collect();
+        blocks.sort_by_key(|block| (block.y, block.x));
+        let parts = each_row(&blocks, progress, |&block| {
+            let patches = around.patches.get(&domain.corner_of_block(block)).map_or(&[][..], Vec::as_slice);
+            let looks = self.baker.first_looks(&domain.cells_of_block(block));
+            self.baker.block(&around.occluders, &looks, patches)
+        })?;
+        let outliers = parts.iter().fold(Outliers::default(), |all, (_, outliers)| all.and(*outliers));
+        let here: HashSet<IVec2> = squares.iter().copied().collect();
+        let is_beside = |corner: &IVec2| {
+            let nearest = domain.nearest_block(*corner);
+            domain.corner_of_block(nearest) != *corner && here.contains(&self.square_of(nearest))
+        };
+        let apart = around.patches.iter().filter(|(corner, _)| is_beside(corner));
+        let apart: HashMap<_, _> = apart.map(|(corner, patches)| (*corner, patches.clone())).collect();
+        let samples = Samples::join(parts.into_iter().map(|(samples, _)| samples).chain(beside(apart)));
+        let (camera, margin_px) = (self.camera.clone(), domain.margin as u32);
+        Ok((Salf { camera, margin_px, carried: self.options.carried, samples }, outliers))
+    }
+
+    /// Where in the picture the light of each part of the scene may land: of each part, the first and the end of some pixels.
+    pub fn footprints(&self) -> impl Iterator<Item = (u32, [Vec2; 2])> {
+        self.reach.parts().map(|(part, square, radius)| {
+            let [low, high] = self.reach.pixels(square);
+            let far = reach_px(radius) + MOST_BLUR_PX;
+            (part, [low.as_vec2() - far, high.as_vec2() + far])
+        })
+    }
+}
+
+/// How far levels of the sum spread light at most, px.
+const MOST_BLUR_PX: f32 = 80.0;
+
+/// How far the light of a square reaches whose aperture images have this radius, px: see `splat`.
+fn reach_px(radius_px: f32) -> f32 {
+    radius_px * 1.02 + WIDEST_FOOTPRINT_PX + 8.0
+}
