@@ -10,8 +10,8 @@
 //! or, of a large picture, looked for again: [`crate::parts`] bakes parts of one.
 
 use crate::baker::{Baker, FirstLook};
-use crate::options::BakeOptions;
 use crate::occluders::Occluders;
+use crate::options::BakeOptions;
 use crate::outliers::Outliers;
 use crate::salf::Salf;
 use crate::sample::Sample;
@@ -142,4 +142,3 @@ pub fn each_row<T: Sync, R: Send>(
         })
         .collect()
 }
-

@@ -141,7 +141,8 @@ impl Domain {
     /// is spread at least that far can enter the frame, so that its splat is eight cells wide or wider.
     pub fn block_rows(&self) -> Vec<Vec<Cell>> {
         let IVec2 { x: columns, y: rows } = self.blocks();
-        let of_row = |row: i32| (0..columns).flat_map(move |column| self.cells_of_block(IVec2::new(column, row)));
+        let of_row =
+            |row: i32| (0..columns).flat_map(move |column| self.cells_of_block(IVec2::new(column, row)));
         (0..rows).map(|row| of_row(row).collect()).collect()
     }
 

@@ -38,7 +38,6 @@ pub use margin::LARGEST_MARGIN_HEIGHTS;
 pub use options::BakeOptions;
 pub use outliers::Outliers;
 pub use parts::{PartsBaker, Surroundings};
-pub use reach::{FocusRange, FocusRanges};
 pub use salf::{Salf, SalfStatistics};
 pub use sample::{Address, Sample, SampleFocus, Visibility};
 pub use samples::{Addresses, Run, Samples, Spot};

@@ -11,13 +11,14 @@ use crate::domain::Domain;
 use crate::occluders::Occluders;
 use crate::options::BakeOptions;
 use crate::outliers::Outliers;
-use crate::reach::{Bound, FocusRanges, Reach, SQUARE_PX};
+use crate::reach::{Bound, Reach, SQUARE_PX};
 use crate::salf::Salf;
 use crate::sample::Sample;
 use crate::samples::Samples;
 use glam::{IVec2, Vec2};
-use lens::Camera;
+use lens::{Camera, FocusOffset};
 use progress::{Cancelled, Progress, Stage};
+use scene::SurfaceField;
 use std::collections::{HashMap, HashSet};
 use trace::{Radiance, Tracer};
 
@@ -41,17 +42,22 @@ pub struct Surroundings {
 const WIDEST_FOOTPRINT_PX: f32 = 32.0;
 
 impl<'a> PartsBaker<'a> {
-    /// For `camera`, which must be valid, and a focus that ranges so.
+    /// For `camera`, which must be valid, and a focus.
     pub fn new(
         tracer: &'a Tracer,
         radiance: &'a dyn Radiance,
         camera: &'a Camera,
         options: &BakeOptions,
-        ranges: &FocusRanges,
+        focus: &dyn SurfaceField<FocusOffset>,
     ) -> Self {
         let baker = Baker::new(tracer, radiance, camera, options);
-        let reach = Reach::new(tracer.scene(), &baker.view, baker.domain, &baker.placement, ranges);
+        let reach = Reach::new(tracer.scene(), &baker.view, baker.domain, &baker.placement, focus);
         Self { baker, camera, options: *options, reach }
+    }
+
+    /// Whether anything may be painted, wherever it is.
+    pub fn may_be_painted(&self) -> bool {
+        self.reach.may_be_painted
     }
 
     /// Surveys what stands around some pixels of the picture, first and end: the squares whose light may come within `near_px` of
@@ -73,11 +79,13 @@ impl<'a> PartsBaker<'a> {
             let is_own = nearest.cmpge(first).all() && nearest.cmplt(end).all();
             is_own || apart(square) as f32 <= reach_px(bound.radius_px) + near_px as f32
         };
-        let needed: Vec<_> = self.reach.squares().filter(|(square, bound)| is_needed(*square, *bound)).collect();
+        let needed: Vec<_> =
+            self.reach.squares().filter(|(square, bound)| is_needed(*square, *bound)).collect();
         let squares: Vec<IVec2> = needed.iter().map(|(square, _)| *square).collect();
         let occluders = self.survey(&needed, &Stage::new(progress, 0.0, 0.9))?;
         let wanted: HashSet<IVec2> = squares.iter().copied().collect();
-        let is_wanted = |corner: IVec2| wanted.contains(&self.square_of(self.baker.domain.nearest_block(corner)));
+        let is_wanted =
+            |corner: IVec2| wanted.contains(&self.square_of(self.baker.domain.nearest_block(corner)));
         let patches = patches(&self.baker, &is_wanted, &Stage::new(progress, 0.9, 1.0))?;
         Ok(Surroundings { squares, occluders, patches })
     }

@@ -16,39 +16,34 @@ use crate::view::View;
 use glam::{DVec2, DVec3, IVec2};
 use lens::FocusOffset;
 use rayon::prelude::*;
-use scene::Scene;
+use scene::{Scene, SurfaceField};
 use std::collections::HashMap;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// How focus offsets range.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct FocusRange {
+struct FocusRange {
     /// The least and the greatest t.
-    pub t: [f64; 2],
+    t: [f64; 2],
     /// The least and the greatest anchor.
-    pub anchor: [f64; 2],
-}
-
-/// How the focus of a scene ranges.
-#[derive(Clone, Debug, PartialEq)]
-pub struct FocusRanges {
-    /// Over each of the scene's parts.
-    pub parts: Vec<FocusRange>,
-    /// Of the background.
-    pub background: FocusRange,
+    anchor: [f64; 2],
 }
 
 impl FocusRange {
     /// Nothing is painted.
-    pub const STANDARD: Self = Self { t: [1.0; 2], anchor: [0.0; 2] };
+    const STANDARD: Self = Self { t: [1.0; 2], anchor: [0.0; 2] };
+
+    /// Anything may be painted.
+    const ANY: Self = Self { t: [-1e9, 1e9], anchor: [0.0, 1.0] };
 
     /// The range from the least of values to the greatest, and the ordinary lens, which carried light may keep.
-    pub fn between([least, greatest]: [FocusOffset; 2]) -> Self {
+    fn between([least, greatest]: [FocusOffset; 2]) -> Self {
         let wide = |a: f64, b: f64, standard: f64| [a.min(b).min(standard), a.max(b).max(standard)];
         Self { t: wide(least.t, greatest.t, 1.0), anchor: wide(least.anchor, greatest.anchor, 0.0) }
     }
 
     /// Whether nothing is painted.
-    pub fn is_standard(self) -> bool {
+    fn is_standard(self) -> bool {
         self == Self::STANDARD
     }
 
@@ -96,23 +91,35 @@ pub struct Reach {
     bounds: Vec<Bound>,
     /// Of each part of the scene, where it may stand: the largest radius there, px, by the number of the square.
     parts: HashMap<(u32, u32), f32>,
+    /// Whether anything may be painted.
+    pub may_be_painted: bool,
 }
 
 /// Larger squares' worth of parts is gathered by one thread.
 const TOGETHER: usize = 1 << 12;
 
 impl Reach {
-    /// Of what `view` shows of a scene; of its parts one by one only `of_parts`.
-    pub fn new(scene: &Scene, view: &View, domain: Domain, placement: &Placement, ranges: &FocusRanges) -> Self {
+    /// Of what `view` shows of a scene that is focused so.
+    pub fn new(
+        scene: &Scene,
+        view: &View,
+        domain: Domain,
+        placement: &Placement,
+        focus: &dyn SurfaceField<FocusOffset>,
+    ) -> Self {
         let squares = Squares::of(domain);
-        let background = ranges.background.radius_px(view, [0.0; 2]);
-        let background = background.max(FocusRange::STANDARD.radius_px(view, [0.0; 2]));
+        let of_background = FocusRange::between([focus.at_infinity().or_standard(); 2]);
+        let background = of_background.radius_px(view, [0.0; 2]);
+        let is_painted = AtomicBool::new(!of_background.is_standard());
         let empty = || HashMap::<(u32, u32), Bound>::new();
         let triangles: Vec<u32> = (0..scene.triangles.len() as u32).collect();
         let gather = |mut found: HashMap<(u32, u32), Bound>, chunk: &[u32]| {
             for &triangle in chunk {
                 let part = scene.triangles[triangle as usize].part;
-                let range = ranges.parts.get(part as usize).copied().unwrap_or(FocusRange::STANDARD);
+                let range = focus.bounds(triangle).map_or(FocusRange::ANY, FocusRange::between);
+                if !range.is_standard() {
+                    is_painted.store(true, Ordering::Relaxed);
+                }
                 squares.visit(scene, view, placement, triangle, &mut |square, depths| {
                     let bound = Bound {
                         inverse_depth: depths[1] as f32,
@@ -139,7 +146,8 @@ impl Reach {
             *known = known.or(*bound);
         }
         let parts = found.into_iter().map(|(key, bound)| (key, bound.radius_px)).collect();
-        Self { size: squares.size, corner: squares.corner, bounds, parts }
+        let may_be_painted = is_painted.into_inner();
+        Self { size: squares.size, corner: squares.corner, bounds, parts, may_be_painted }
     }
 
     /// All squares with their bounds, row by row: by column and row.
@@ -152,9 +160,9 @@ impl Reach {
     /// Each part in each square where it may stand, with the largest radius of its images there, px.
     pub fn parts(&self) -> impl Iterator<Item = (u32, IVec2, f32)> {
         let width = self.size.x;
-        self.parts
-            .iter()
-            .map(move |((part, square), radius)| (*part, IVec2::new(*square as i32 % width, *square as i32 / width), *radius))
+        self.parts.iter().map(move |((part, square), radius)| {
+            (*part, IVec2::new(*square as i32 % width, *square as i32 / width), *radius)
+        })
     }
 
     /// The pixels of a square, first and end.

@@ -129,7 +129,8 @@ impl<'a, W: Word> LevelRows<'a, W> {
             here.give_back(room);
             coarser = Some(Lines { window, pixels });
         }
-        let finest = Self::new(&accumulator.levels[0], quanta, Columns::marked(&window.columns), coarser, room);
+        let finest =
+            Self::new(&accumulator.levels[0], quanta, Columns::marked(&window.columns), coarser, room);
         Ok(Self { largest, ..finest })
     }
 

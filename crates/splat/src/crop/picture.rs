@@ -116,7 +116,8 @@ pub(super) fn standard(
                 let pixels = Pixels { first: 0, radiance: &mut radiance, coverage: &mut coverage };
                 parts.join(shares, None, true, pixels);
                 let pixels = numbers.chunks_exact_mut(form.numbers()).zip(radiance.iter().zip(&coverage));
-                pixels.for_each(|(pixel, ([r, g, b], covered))| pixel.copy_from_slice(&[*r, *g, *b, *covered]));
+                pixels
+                    .for_each(|(pixel, ([r, g, b], covered))| pixel.copy_from_slice(&[*r, *g, *b, *covered]));
             })
         })
         .try_reduce(|| [0; 2], |a, b| Ok(larger(a, b)))?;

@@ -1,9 +1,9 @@
 //! The sums of a crop.
 
+use super::Crop;
 use super::integers::{Integers, Kind};
 use super::picture::{self, CropFacts, CropPicture, Inner};
 use super::row::CropForm;
-use super::Crop;
 use crate::bands::Pace;
 use crate::drawn::{BlockList, Changes, Scene};
 use crate::lens_in_use::{LensInUse, Tolerance};

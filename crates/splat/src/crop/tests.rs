@@ -117,7 +117,8 @@ fn joined(
     let made: Vec<(Crop, CropPicture)> = crops()
         .into_iter()
         .map(|crop| {
-            let options = CropOptions { camera: &camera, crop, tolerance, integers, may_be_painted, mattes: 1 };
+            let options =
+                CropOptions { camera: &camera, crop, tolerance, integers, may_be_painted, mattes: 1 };
             let mut sums = CropSums::new(options);
             for part in &parts {
                 sums.add(part, focus, None, &[&sets(part)], &Unwatched).unwrap();
