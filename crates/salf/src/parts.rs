@@ -90,44 +90,50 @@ impl<'a> PartsBaker<'a> {
         Ok(Surroundings { squares, occluders, patches })
     }
 
-    /// The depths of everything that may hide a surface of the needed squares, or reveal one.
+    /// The depths of everything that may hide a surface of the needed squares, or reveal one: of squares that lie so near that the parallax
+    /// of either against infinity reaches from the one to the other. What lies beyond is taken for infinitely far, and the edges that this
+    /// makes are too far away to reveal anything.
     fn survey(&self, needed: &[(IVec2, Bound)], progress: &dyn Progress) -> Result<Occluders, Cancelled> {
         let domain = &self.baker.domain;
         let parallax_px = self.baker.view.radius_per_kappa_px;
-        let hull = |rects: &mut dyn Iterator<Item = [IVec2; 2]>| {
-            rects.reduce(|[a, b], [c, d]| [a.min(c), b.max(d)]).unwrap_or([IVec2::ZERO; 2])
-        };
         /// Beside what parallax tells: cells are up to a block wide.
-        const ROOM: i32 = 3 * Domain::BLOCK;
-        let far = |bound: Bound| {
-            let px = f64::from(bound.inverse_depth) * parallax_px;
-            // Beyond any picture.
-            px.min(1e6).ceil() as i32 + ROOM
+        const ROOM: f64 = 3.0 * Domain::BLOCK as f64;
+        let size = self.reach.size;
+        // The squares within the parallax of what stands in one.
+        let near = |square: IVec2, bound: Bound| {
+            let px = f64::from(bound.inverse_depth) * parallax_px + ROOM;
+            let far = (px / f64::from(SQUARE_PX)).ceil().min(f64::from(size.max_element())) as i32;
+            let [low, high] = [(square - far).max(IVec2::ZERO), (square + far).min(size - 1)];
+            (low.y..=high.y).flat_map(move |y| (low.x..=high.x).map(move |x| IVec2::new(x, y)))
         };
-        // What is revealed lies within the parallax of what hides it against infinity, …
-        let own = hull(&mut needed.iter().map(|(square, bound)| {
-            let [low, high] = self.reach.pixels(*square);
-            [low - far(*bound), high + far(*bound)]
-        }));
-        // … and so does what hides.
-        let [first, end] = hull(&mut needed.iter().map(|(square, _)| self.reach.pixels(*square)));
-        let hiding = self.reach.squares().filter_map(|(square, bound)| {
-            let [low, high] = self.reach.pixels(square);
-            let apart = (low - end).max(first - high).max_element();
-            (apart <= far(bound)).then_some([low, high])
-        });
-        let [low, high] = hull(&mut hiding.chain([own]));
-        let margin = IVec2::splat(domain.margin);
-        let [low, high] = [low.max(-margin), high.min(domain.size + margin)];
-        let [first, end] = [domain.nearest_block(low), domain.nearest_block(high - 1) + 1];
-        let corner = domain.corner_of_block(first);
-        let extent = (domain.corner_of_block(end) - corner).min(domain.size + margin - corner);
-        let rows: Vec<i32> = (first.y..end.y).collect();
-        let depths = each_row(&rows, progress, |&row| {
-            let blocks = (first.x..end.x).flat_map(|column| domain.cells_of_block(IVec2::new(column, row)));
-            blocks.map(|cell| (cell, self.baker.depths(cell))).collect::<Vec<_>>()
+        let wanted: HashSet<IVec2> = needed.iter().map(|(square, _)| *square).collect();
+        let mut surveyed: HashSet<IVec2> = wanted.clone();
+        needed.iter().for_each(|(square, bound)| surveyed.extend(near(*square, *bound)));
+        let hides =
+            |(square, bound): &(IVec2, Bound)| near(*square, *bound).any(|near| wanted.contains(&near));
+        surveyed.extend(self.reach.squares().filter(hides).map(|(square, _)| square));
+
+        let mut squares: Vec<IVec2> = surveyed.into_iter().collect();
+        squares.sort_by_key(|square| (square.y, square.x));
+        let depths = each_row(&squares, progress, |&square| {
+            let blocks = self.blocks_of(square);
+            let cells = blocks.flat_map(|block| domain.cells_of_block(block));
+            cells.map(|cell| (cell, self.baker.depths(cell))).collect::<Vec<_>>()
         })?;
-        Ok(Occluders::new([corner, extent], parallax_px, depths.into_iter().flatten()))
+        let [low, high] = squares
+            .iter()
+            .map(|square| self.reach.pixels(*square))
+            .reduce(|[a, b], [c, d]| [a.min(c), b.max(d)])
+            .unwrap_or([IVec2::splat(-domain.margin); 2]);
+        let extent = high.min(domain.size + domain.margin) - low;
+        Ok(Occluders::new([low, extent], parallax_px, depths.into_iter().flatten()))
+    }
+
+    /// The blocks of a square.
+    fn blocks_of(&self, square: IVec2) -> impl Iterator<Item = IVec2> + use<> {
+        let (side, all) = (SQUARE_PX / Domain::BLOCK, self.baker.domain.blocks());
+        let of_square = (0..side * side).map(move |k| square * side + IVec2::new(k % side, k / side));
+        of_square.filter(move |block| block.cmplt(all).all())
     }
 
     /// The square of a block.
@@ -143,12 +149,7 @@ impl<'a> PartsBaker<'a> {
         progress: &dyn Progress,
     ) -> Result<(Salf, Outliers), Cancelled> {
         let domain = &self.baker.domain;
-        let (side, all) = (SQUARE_PX / Domain::BLOCK, domain.blocks());
-        let mut blocks: Vec<IVec2> = squares
-            .iter()
-            .flat_map(|square| (0..side * side).map(move |k| *square * side + IVec2::new(k % side, k / side)))
-            .filter(|block| block.cmplt(all).all())
-            .collect();
+        let mut blocks: Vec<IVec2> = squares.iter().flat_map(|square| self.blocks_of(*square)).collect();
         blocks.sort_by_key(|block| (block.y, block.x));
         let parts = each_row(&blocks, progress, |&block| {
             let patches = around.patches.get(&domain.corner_of_block(block)).map_or(&[][..], Vec::as_slice);

@@ -85,8 +85,8 @@ impl Bound {
 
 /// The bounds of all squares of the picture and its margin.
 pub struct Reach {
-    /// Columns and rows.
-    size: IVec2,
+    /// Columns and rows of squares.
+    pub size: IVec2,
     corner: IVec2,
     bounds: Vec<Bound>,
     /// Of each part of the scene, where it may stand: the largest radius there, px, by the number of the square.
@@ -95,7 +95,7 @@ pub struct Reach {
     pub may_be_painted: bool,
 }
 
-/// Larger squares' worth of parts is gathered by one thread.
+/// So many triangles are gathered by one thread.
 const TOGETHER: usize = 1 << 12;
 
 impl Reach {
