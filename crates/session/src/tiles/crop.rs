@@ -1,6 +1,6 @@
 //! A crop of a picture, drawn: the light field around it is baked square by square, and each goes into the sums.
 
-use super::draw::Lit;
+use super::lit::Lit;
 use crate::error::SessionError;
 use crate::jobs::Steps;
 use crate::output::{Footprints, Packing, Ranking, Shown, Tally, Things, WantedMattes, shares};

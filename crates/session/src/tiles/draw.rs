@@ -2,19 +2,17 @@
 
 use super::crop::{CropDrawer, CropFailure, DrawnCrop};
 use super::grid::pieces;
+use super::lit::Lit;
 use super::part::{Matte, NamedThings, NumbersAt, Piece, Sums};
 use crate::error::SessionError;
 use crate::jobs::Steps;
-use crate::light_field::{LightQuality, is_photographed, light};
-use crate::output::{
-    Aov, Known, Ranking, RenderOptions, Things, WantedMattes, light_of_photographs, seen_in,
-};
+use crate::light_field::is_photographed;
+use crate::output::{Aov, Known, Ranking, RenderOptions, Things, light_of_photographs, seen_in};
 use baselines::FirstHits;
 use focus::Focus;
 use glam::{DVec3, Vec3};
 use lens::{Camera, FocusOffset, Picture};
 use project::{Cryptomatte, Layer, PartWriter, Section};
-use salf::{BakeOptions, PartsBaker};
 use scene::SurfacePoint;
 use splat::{Crop, Integers};
 use std::collections::BTreeMap;
@@ -30,55 +28,19 @@ pub(super) struct Shot<'a> {
     pub options: &'a RenderOptions,
 }
 
-/// The light of a picture that is summed: the picture itself, or what a pinhole sees.
-pub(super) struct Lit {
-    pub tracer: Arc<Tracer>,
-    /// Of the light field: as much finer as the options say.
-    pub finer: Camera,
-    pub focus: Focus,
-    pub options: RenderOptions,
-    pub mattes: Option<WantedMattes>,
-    light: Arc<dyn Radiance + Send + Sync>,
-    bake: BakeOptions,
-}
-
-impl Lit {
-    fn new(shot: Shot, options: RenderOptions, steps: &dyn Steps) -> Result<Self, SessionError> {
-        let finer = options.finer(shot.camera)?;
-        let bake = BakeOptions {
-            tolerance_px: options.tolerance_px * f64::from(options.cells_a_side),
-            ..BakeOptions::for_focus(shot.tracer, &finer, shot.focus)
-        };
-        let light = light(shot.tracer, &finer, LightQuality::Fine, &*steps.begin("light"))?;
-        let mattes = options.wanted_mattes();
-        Ok(Self {
-            tracer: shot.tracer.clone(),
-            finer,
-            focus: shot.focus.clone(),
-            options,
-            mattes,
-            light,
-            bake,
-        })
-    }
-
-    pub fn baker(&self) -> PartsBaker<'_> {
-        PartsBaker::new(&self.tracer, &*self.light, &self.finer, &self.bake, &self.focus)
-    }
-}
-
 impl Shot<'_> {
     /// The light of the picture, and of what a pinhole sees if that is asked for.
     fn lit(self, steps: &dyn Steps) -> Result<(Lit, Option<Lit>), SessionError> {
-        let lit = Lit::new(self, self.options.clone(), steps)?;
-        if !self.options.aovs.contains(&Aov::Pinhole) {
+        let Self { tracer, camera, focus, options } = self;
+        let lit = Lit::new(tracer, camera, focus.clone(), options.clone(), steps)?;
+        if !options.aovs.contains(&Aov::Pinhole) {
             return Ok((lit, None));
         }
-        let camera = Camera { aperture_radius: 0.0, ..self.camera.clone() };
-        let unpainted = Focus::constant(self.tracer.scene().clone(), FocusOffset::STANDARD);
-        let aovs = self.options.aovs.iter().copied().filter(|aov| *aov == Aov::Alpha).collect();
-        let shot = Shot { camera: &camera, focus: &unpainted, ..self };
-        let pinhole = Lit::new(shot, RenderOptions { aovs, ..self.options.clone() }, steps)?;
+        let camera = Camera { aperture_radius: 0.0, ..camera.clone() };
+        let unpainted = Focus::constant(tracer.scene().clone(), FocusOffset::STANDARD);
+        let aovs = options.aovs.iter().copied().filter(|aov| *aov == Aov::Alpha).collect();
+        let options = RenderOptions { aovs, ..options.clone() };
+        let pinhole = Lit::new(tracer, &camera, unpainted, options, steps)?;
         Ok((lit, Some(pinhole)))
     }
 

@@ -15,6 +15,7 @@ mod crop;
 mod draw;
 mod grid;
 mod joined;
+mod lit;
 mod merge;
 mod part;
 mod run;
