@@ -1,13 +1,14 @@
 //! What can be typed.
 
 use super::parsers::{
-    aov, camera_parser, name_parser, named, not_negative, photograph_output, place, positive, size,
+    aov, camera_parser, integers, name_parser, named, not_negative, photograph_output, place, positive, size,
 };
 use super::sequence_arguments::{KeysArguments, SequenceArguments};
 use clap::{Args, Parser, ValueEnum};
 use project::{ColorSpace, Compression};
 use scene::{BackFaces, PhotoLookup};
-use session::{Aov, CameraChoice, CocConvention, Renderer, VariantChoice};
+use session::{Aov, CameraChoice, CocConvention, Renderer, TileGrid, VariantChoice};
+use splat::Integers;
 use std::ffi::OsString;
 use std::path::PathBuf;
 
@@ -59,6 +60,8 @@ pub enum Subcommand {
     Bake(BakeArguments),
     /// Render a picture of a scene, project or light field
     Render(Box<RenderArguments>),
+    /// Merge the tiles of a picture (render --tiles --shard) to the same bytes as the whole
+    Merge(MergeArguments),
     /// How far picture A is from the reference B: RMSE, relMSE, PSNR, FLIP, signed mean error
     Compare(CompareArguments),
     /// Measure every renderer against the ground truth: speed, error, memory, as tables, plots and a page
@@ -370,8 +373,33 @@ pub struct RenderArguments {
     /// Seed of the ground truth's rays, and of scattered ones
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub seed: u32,
+    /// Draws the picture in columns and rows of tiles, each within the memory of a tile, to the same bytes: of an .exr, by splat, on the
+    /// processor. With --shard to parts beside it, which `merge` puts together; finished ones are skipped
+    #[arg(long, value_name = "CxR", conflicts_with_all = ["frame", "frames", "stereo"])]
+    pub tiles: Option<TileGrid>,
+    /// Bits behind the point of the sums of tiles, at most: unpainted and painted, as merge asks for them where a picture is covered many
+    /// times
+    #[arg(long, value_name = "BITS,BITS", requires = "tiles", value_parser = integers)]
+    pub integers: Option<Integers>,
     #[command(flatten)]
     pub sequence: SequenceArguments,
+    /// What is told on stderr meanwhile; json is a line of JSON a step
+    #[arg(long, value_enum, value_name = "FORM", default_value_t = ProgressName::Text)]
+    pub progress: ProgressName,
+    /// Write timings and counts as JSON to stdout
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// `merge`.
+#[derive(Debug, Args)]
+pub struct MergeArguments {
+    /// The parts of all tiles, in any order
+    #[arg(required = true, value_name = "PART")]
+    pub parts: Vec<PathBuf>,
+    /// Where to write the picture
+    #[arg(short, long, value_name = "OUT.exr")]
+    pub output: PathBuf,
     /// What is told on stderr meanwhile; json is a line of JSON a step
     #[arg(long, value_enum, value_name = "FORM", default_value_t = ProgressName::Text)]
     pub progress: ProgressName,

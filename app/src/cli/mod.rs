@@ -1,8 +1,8 @@
 //! The command line: a thin layer over the `session` crate.
 //!
 //! * `arguments`: what can be typed. One file a subcommand does it: `info`, `new`, `import`, `replay`, `keys`, `unwrap`, `bake`, `render`,
-//!   `compare`, `report`, `export`, `presets`, `thumbnail`, `doctor`.
-//! * `sequence`: `render` of frames. `stopping`: what a signal to end does.
+//!   `merge`, `compare`, `report`, `export`, `presets`, `thumbnail`, `doctor`.
+//! * `sequence`: `render` of frames. `tiles`: of a picture in tiles. `stopping`: what a signal to end does.
 //! * `console`: progress on stderr, results on stdout. `failure`: errors and exit codes.
 
 mod arguments;
@@ -15,6 +15,7 @@ mod failure;
 mod import;
 mod info;
 mod keys;
+mod merge;
 mod new;
 mod parsers;
 mod presets;
@@ -26,6 +27,7 @@ mod sequence_arguments;
 mod shot;
 mod stopping;
 mod thumbnail;
+mod tiles;
 mod unwrap;
 
 use crate::window;
@@ -88,11 +90,17 @@ fn dispatch(command: Subcommand) -> Result<(), Failure> {
         Subcommand::Render(arguments) => {
             keep_work();
             let console = Console::telling(arguments.progress);
-            match arguments.sequence.is_asked_for() {
-                true => sequence::run(&arguments, &console),
-                false => render::run(&arguments, &console),
+            let asked = &arguments.sequence;
+            match (arguments.tiles, asked.is_asked_for()) {
+                (Some(grid), _) => tiles::run(&arguments, grid, &console),
+                (None, true) => sequence::run(&arguments, &console),
+                (None, false) if asked.shard.is_some() => {
+                    Err(Failure::usage("--shard is a share of --frames or --tiles (give one of them)"))
+                }
+                (None, false) => render::run(&arguments, &console),
             }
         }
+        Subcommand::Merge(arguments) => merge::run(&arguments, &Console::telling(arguments.progress)),
         Subcommand::Compare(arguments) => compare::run(&arguments),
         Subcommand::Report(arguments) => report::run(&arguments, &console),
         Subcommand::Export(arguments) => {

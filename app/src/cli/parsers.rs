@@ -2,6 +2,7 @@
 
 use clap::builder::{OsStringValueParser, PossibleValuesParser, TypedValueParser};
 use session::{Aov, CameraChoice};
+use splat::Integers;
 use std::ffi::OsStr;
 use std::path::PathBuf;
 
@@ -77,6 +78,14 @@ pub fn aov(name: &str) -> Result<Aov, String> {
 pub fn not_negative(text: &str) -> Result<f64, String> {
     let number = text.parse().ok().filter(|x: &f64| *x >= 0.0 && x.is_finite());
     number.ok_or_else(|| "a number of 0 or more".into())
+}
+
+/// `BITS,BITS`.
+pub fn integers(text: &str) -> Result<Integers, String> {
+    let parts =
+        text.split_once(',').and_then(|(a, b)| Some((a.trim().parse().ok()?, b.trim().parse().ok()?)));
+    let found = parts.map(|(standard, painted)| Integers { standard, painted });
+    found.filter(|integers| integers.are_known()).ok_or_else(|| "two of 22, 14 and 6, as in 14,22".into())
 }
 
 #[cfg(test)]

@@ -25,8 +25,8 @@ pub struct SequenceArguments {
     /// How the lens moves: keys in a file instead of the project's (docs/sequences.md)
     #[arg(long, value_name = "KEYS.json")]
     pub keys: Option<PathBuf>,
-    /// This share of the frames: the K-th of N; env: as the farm says (Slurm's arrays, indexed jobs of Kubernetes, GNU parallel)
-    #[arg(long, value_name = "K/N|env", value_parser = shard, requires = "frames")]
+    /// This share of the frames or tiles: the K-th of N; env: as the farm says (Slurm's arrays, indexed jobs of Kubernetes, GNU parallel)
+    #[arg(long, value_name = "K/N|env", value_parser = shard)]
     pub shard: Option<Shard>,
 }
 

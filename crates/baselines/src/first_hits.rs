@@ -5,6 +5,7 @@ use lens::{Camera, FocusOffset, Picture};
 use progress::{Cancelled, Progress};
 use rayon::prelude::*;
 use scene::SurfaceField;
+use std::ops::Range;
 use std::sync::atomic::{AtomicU32, Ordering};
 use trace::{Radiance, Ray, Tracer};
 
@@ -34,10 +35,25 @@ impl FirstHits {
         camera: &Camera,
         progress: &dyn Progress,
     ) -> Result<Self, Cancelled> {
+        let whole = [0..camera.width, 0..camera.height];
+        Self::trace_part(tracer, radiance, focus, camera, whole, progress)
+    }
+
+    /// The same in some columns and rows of the camera's picture alone.
+    pub fn trace_part(
+        tracer: &Tracer,
+        radiance: &dyn Radiance,
+        focus: &dyn SurfaceField<FocusOffset>,
+        camera: &Camera,
+        [columns, rows_of_camera]: [Range<u32>; 2],
+        progress: &dyn Progress,
+    ) -> Result<Self, Cancelled> {
         let optics = camera.optics();
         let done = AtomicU32::new(0);
-        let mut hits = Self::background(camera.width, camera.height);
-        let row_length = camera.width as usize;
+        let [width, height] = [columns.len() as u32, rows_of_camera.len() as u32];
+        let corner = DVec2::new(columns.start.into(), rows_of_camera.start.into());
+        let mut hits = Self::background(width, height);
+        let row_length = width as usize;
         let rows = hits
             .radiance
             .par_chunks_mut(row_length)
@@ -47,7 +63,8 @@ impl FirstHits {
         rows.enumerate().try_for_each(|(y, (((radiances, depths), offsets), kappas))| {
             progress.check()?;
             for x in 0..row_length {
-                let ray = Ray::of_pinhole(camera, DVec2::ZERO, DVec2::new(x as f64 + 0.5, y as f64 + 0.5));
+                let pixel = corner + DVec2::new(x as f64, y as f64) + 0.5;
+                let ray = Ray::of_pinhole(camera, DVec2::ZERO, pixel);
                 let (rgb, depth, offset) = match tracer.first_hit(&ray) {
                     Some(hit) => (radiance.toward(hit.point, ray.origin), hit.t, focus.at(hit.point)),
                     None => (radiance.from_infinity(ray.direction), f64::INFINITY, focus.at_infinity()),
@@ -58,7 +75,7 @@ impl FirstHits {
                 offsets[x] = offset;
                 kappas[x] = optics.kappa(1.0 / depth, offset);
             }
-            progress.report((done.fetch_add(1, Ordering::Relaxed) + 1) as f32 / camera.height as f32);
+            progress.report((done.fetch_add(1, Ordering::Relaxed) + 1) as f32 / height as f32);
             Ok(())
         })?;
         Ok(hits)

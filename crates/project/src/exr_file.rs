@@ -3,13 +3,12 @@
 use crate::ProjectError;
 use crate::color_space::Chromaticities;
 use crate::disk::{read_bytes, write_bytes};
-use crate::exr_form::{ExrForm, ExrSamples, stored, told};
+use crate::exr_form::{ExrForm, half_of, stored, told};
 use crate::exr_header;
 use crate::exr_window::Window;
 use exr::meta::attribute::{AttributeValue, Text};
 use exr::prelude as ox;
 use exr::prelude::{ReadChannels, ReadLayers, WritableImage};
-use half::f16;
 use std::collections::BTreeMap;
 use std::io::Cursor;
 use std::panic::AssertUnwindSafe;
@@ -162,7 +161,7 @@ fn attribute(value: &AttributeValue) -> Option<ExrAttribute> {
 fn encode(image: ExrImage, form: ExrForm) -> Result<Vec<u8>, String> {
     let channel = |(name, values): (String, Vec<f32>)| {
         let data = match form.samples {
-            ExrSamples::HalfIf(suffices) if suffices(&name) => {
+            samples if samples.is_half(&name) => {
                 ox::FlatSamples::F16(values.into_iter().map(half_of).collect())
             }
             _ => ox::FlatSamples::F32(values),
@@ -170,6 +169,24 @@ fn encode(image: ExrImage, form: ExrForm) -> Result<Vec<u8>, String> {
         ox::AnyChannel::new(name.as_str(), data)
     };
     let channels = ox::AnyChannels::sort(image.channels.into_iter().map(channel).collect());
+    let size = [image.width, image.height];
+    let (of_image, of_layer) = all_attributes(size, &image.attributes, &form)?;
+    let size = (size[0] as usize, size[1] as usize);
+    let layer = ox::Layer::new(size, of_layer, form.compression.encoding(), channels);
+    let mut bytes = Cursor::new(Vec::new());
+    let written = ox::Image::new(of_image, layer).write().to_buffered(&mut bytes);
+    written.map_err(|error| error.to_string())?;
+    let mut bytes = bytes.into_inner();
+    exr_header::sort_attributes(&mut bytes);
+    Ok(bytes)
+}
+
+/// The attributes of an image of this width and height, and of its only part: those that are given, and what its form says.
+pub(crate) fn all_attributes(
+    size: [u32; 2],
+    given: &BTreeMap<String, ExrAttribute>,
+    form: &ExrForm,
+) -> Result<(ox::ImageAttributes, ox::LayerAttributes), String> {
     let around = form.overscan as i32;
     let mut attributes = ox::LayerAttributes {
         software_name: Some(Text::from("Focus Brush")),
@@ -177,7 +194,7 @@ fn encode(image: ExrImage, form: ExrForm) -> Result<Vec<u8>, String> {
         ..ox::LayerAttributes::default()
     };
     let mut write = |name: &str, value| attributes.other.insert(Text::from(name), value);
-    for (name, value) in &image.attributes {
+    for (name, value) in given {
         let value = match value {
             ExrAttribute::Text(value) => AttributeValue::Text(text(name, value)?),
             ExrAttribute::Number(number) => AttributeValue::F64(*number),
@@ -187,32 +204,14 @@ fn encode(image: ExrImage, form: ExrForm) -> Result<Vec<u8>, String> {
     if let Some(space) = form.color_space {
         write("colorInteropID", AttributeValue::Text(Text::from(space.interop_id())));
     }
-    let size = [image.width, image.height];
     let frame = size.map(|side| side.saturating_sub(2 * form.overscan) as usize);
-    let layer = ox::Layer::new(
-        (size[0] as usize, size[1] as usize),
-        attributes,
-        form.compression.encoding(),
-        channels,
-    );
     let chromaticities = form.color_space.map(|space| stored(space.chromaticities()));
-    let attributes =
+    let of_image =
         ox::ImageAttributes { chromaticities, ..ox::ImageAttributes::with_size((frame[0], frame[1])) };
-    let mut bytes = Cursor::new(Vec::new());
-    let written = ox::Image::new(attributes, layer).write().to_buffered(&mut bytes);
-    written.map_err(|error| error.to_string())?;
-    let mut bytes = bytes.into_inner();
-    exr_header::sort_attributes(&mut bytes);
-    Ok(bytes)
+    Ok((of_image, attributes))
 }
 
 /// The value of an attribute, whose characters the format has bytes for.
 fn text(name: &str, value: &str) -> Result<Text, String> {
     Text::new_or_none(value).ok_or_else(|| format!("attribute {name} has a character beyond U+00FF"))
-}
-
-/// The nearest half; light that none holds is as bright as one can be.
-fn half_of(value: f32) -> f16 {
-    let most = f16::MAX.to_f32();
-    f16::from_f32(if value.is_finite() { value.clamp(-most, most) } else { value })
 }

@@ -4,6 +4,7 @@ use crate::color_space::{Chromaticities, ColorSpace};
 use exr::meta::attribute::Chromaticities as StoredChromaticities;
 use exr::prelude as ox;
 use glam::DVec2;
+use half::f16;
 
 /// How pixels are compressed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -63,6 +64,13 @@ pub(crate) enum ExrSamples {
     HalfIf(fn(&str) -> bool),
 }
 
+impl ExrSamples {
+    /// Whether a channel is stored as half.
+    pub fn is_half(self, channel: &str) -> bool {
+        matches!(self, Self::HalfIf(suffices) if suffices(channel))
+    }
+}
+
 /// How an image is written.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct ExrForm {
@@ -86,4 +94,10 @@ pub(crate) fn told(stored: StoredChromaticities) -> Chromaticities {
     let place = |at: ox::Vec2<f32>| DVec2::new(at.0.into(), at.1.into());
     let StoredChromaticities { red, green, blue, white } = stored;
     Chromaticities { red: place(red), green: place(green), blue: place(blue), white: place(white) }
+}
+
+/// The nearest half; light that none holds is as bright as one can be.
+pub(crate) fn half_of(value: f32) -> f16 {
+    let most = f16::MAX.to_f32();
+    f16::from_f32(if value.is_finite() { value.clamp(-most, most) } else { value })
 }

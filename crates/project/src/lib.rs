@@ -4,6 +4,7 @@
 //! * [`read_recipe`]: focus by name, as JSON; [`read_focus`]: a recipe or a map, whichever the file is.
 //! * [`FocusMapFile`]: focus maps as EXR or 16-bit PNG.
 //! * [`write_picture`], [`read_picture`]: pictures as EXR, PNG and (reading only) HDR, with layers beside the colour.
+//! * [`PartFile`]: a part of a picture that is yet to be merged.
 //! * [`Cryptomatte`]: which things each pixel shows, as layers.
 //! * [`seal_picture`], [`is_finished`]: whether a picture is whole, and which plan it was made by.
 //! * [`compare`]: how far two pictures are apart; [`write_error_map`]: where; [`z_test`]: whether
@@ -23,6 +24,7 @@ mod cryptomatte;
 mod disk;
 mod error;
 mod error_map_file;
+mod exr_bands;
 mod exr_file;
 mod exr_form;
 mod exr_header;
@@ -35,6 +37,7 @@ mod layer_entries;
 mod layer_rows;
 mod manifest;
 mod mask_rows;
+mod part_file;
 mod picture_file;
 mod picture_output;
 mod picture_seal;
@@ -65,8 +68,9 @@ pub use exr_form::Compression;
 pub use focus_map_file::{FocusMapFile, write_focus_map};
 pub use keys_file::{read_keys, write_keys};
 pub use layer::Layer;
+pub use part_file::{Numbers, PartFile, PartWriter, Section};
 pub use picture_file::{LinearPicture, read_picture};
-pub use picture_output::{PictureOptions, write_picture, write_rgb};
+pub use picture_output::{PictureOptions, write_picture, write_picture_in_bands, write_rgb};
 pub use picture_seal::{is_finished, seal_picture};
 pub use presets::{LensPreset, Preset, PresetContent, PresetKind, PresetShelf, ShelfEntry};
 pub use project_file::{NamedCamera, ProjectFile, SceneState};

@@ -11,6 +11,7 @@ use crate::ProjectError;
 use crate::color_space::{ColorSpace, turn};
 use crate::cryptomatte::{is_cryptomatte, is_cryptomatte_metadata};
 use crate::disk::{extension, write_bytes};
+use crate::exr_bands::{ExrHead, write_exr_in_bands};
 use crate::exr_file::{ExrAttribute, ExrImage, write_exr};
 use crate::exr_form::{Compression, ExrForm, ExrSamples};
 use crate::layer::{Layer, color_channels};
@@ -18,6 +19,7 @@ use crate::png_file::encode_8bit;
 use lens::{Exposure, Picture};
 use scene::srgb_from_linear;
 use std::collections::BTreeMap;
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 /// How pictures are written.
@@ -66,36 +68,18 @@ pub fn write_picture(
     layers: &[Layer],
     options: &PictureOptions,
 ) -> Result<Vec<PathBuf>, ProjectError> {
-    let exposure =
-        EXPOSURES.iter().find(|(known, _)| *known == options.exposure).map_or("", |(_, name)| name);
+    let exposure = exposure_name(options.exposure);
     let rgb = picture.exposed(options.exposure);
     let size = [picture.width, picture.height];
     match extension(file).as_str() {
         "exr" => {
-            let has_mattes = layers.iter().any(|layer| is_cryptomatte(&layer.name));
-            if has_mattes && !options.compression.is_lossless() {
-                let problem = "Cryptomatte does not survive compression with loss";
-                return Err(ProjectError::content(
-                    file,
-                    problem,
-                    "take zips, zip or piz, or write it to another file",
-                ));
-            }
-            let named = |layer: &Layer| (layer.name.clone(), layer.values.clone());
-            let mut channels: BTreeMap<_, _> = color_channels(&rgb).into();
-            channels.extend(layers.iter().map(named));
-            turn_colors(&mut channels, options.color_space);
+            let samples = samples(file, layers.iter().map(|layer| layer.name.as_str()), options)?;
             let image = ExrImage {
                 width: size[0],
                 height: size[1],
-                channels,
+                channels: channels(&rgb, layers, options),
                 attributes: attributes(options, Some(exposure)),
                 ..ExrImage::default()
-            };
-            let samples = match (options.half, has_mattes) {
-                (false, _) => ExrSamples::Float,
-                (true, false) => ExrSamples::HalfIf(half_suffices),
-                (true, true) => ExrSamples::HalfIf(half_suffices_beside_mattes),
             };
             write_exr(file, image, form(options, samples))?;
             Ok(vec![file.to_owned()])
@@ -120,6 +104,67 @@ pub fn write_picture(
         }
         _ => Err(unknown_form(file)),
     }
+}
+
+/// Writes a picture as EXR in bands of rows, from top to bottom, of which one at a time is in memory: the same bytes as those of
+/// [`write_picture`]. `layers` are the names of the layers that every band has.
+///
+/// # Errors
+/// Those of `band`, which tells a band's picture and layers; the file cannot be written, or Cryptomatte was to be compressed with loss.
+pub fn write_picture_in_bands<E: From<ProjectError> + Send>(
+    file: &Path,
+    [width, height]: [u32; 2],
+    layers: &[String],
+    options: &PictureOptions,
+    mut band: impl FnMut(Range<u32>) -> Result<(Picture, Vec<Layer>), E> + Send,
+) -> Result<(), E> {
+    let samples = samples(file, layers.iter().map(String::as_str), options)?;
+    let colors = ["R", "G", "B"].map(String::from);
+    let head = ExrHead {
+        size: [width, height],
+        channels: colors.into_iter().chain(layers.iter().cloned()).collect(),
+        attributes: attributes(options, Some(exposure_name(options.exposure))),
+        form: form(options, samples),
+    };
+    write_exr_in_bands(file, &head, |rows| {
+        let (picture, layers) = band(rows)?;
+        Ok(channels(&picture.exposed(options.exposure), &layers, options))
+    })
+}
+
+fn exposure_name(exposure: Exposure) -> &'static str {
+    EXPOSURES.iter().find(|(known, _)| *known == exposure).map_or("", |(_, name)| name)
+}
+
+/// The channels of an EXR.
+fn channels(rgb: &[[f32; 3]], layers: &[Layer], options: &PictureOptions) -> BTreeMap<String, Vec<f32>> {
+    let named = |layer: &Layer| (layer.name.clone(), layer.values.clone());
+    let mut channels: BTreeMap<_, _> = color_channels(rgb).into();
+    channels.extend(layers.iter().map(named));
+    turn_colors(&mut channels, options.color_space);
+    channels
+}
+
+/// How the samples of an EXR with layers of these names are stored.
+fn samples<'a>(
+    file: &Path,
+    mut layers: impl Iterator<Item = &'a str>,
+    options: &PictureOptions,
+) -> Result<ExrSamples, ProjectError> {
+    let has_mattes = layers.any(is_cryptomatte);
+    if has_mattes && !options.compression.is_lossless() {
+        let problem = "Cryptomatte does not survive compression with loss";
+        return Err(ProjectError::content(
+            file,
+            problem,
+            "take zips, zip or piz, or write it to another file",
+        ));
+    }
+    Ok(match (options.half, has_mattes) {
+        (false, _) => ExrSamples::Float,
+        (true, false) => ExrSamples::HalfIf(half_suffices),
+        (true, true) => ExrSamples::HalfIf(half_suffices_beside_mattes),
+    })
 }
 
 /// The attributes of an EXR; without an exposure those of Cryptomatte alone.

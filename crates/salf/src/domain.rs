@@ -140,17 +140,33 @@ impl Domain {
     /// A cell outside the frame has at most a quarter of its distance to the frame as its side: only light that
     /// is spread at least that far can enter the frame, so that its splat is eight cells wide or wider.
     pub fn block_rows(&self) -> Vec<Vec<Cell>> {
-        let blocks = (self.extent() + Self::BLOCK - 1) / Self::BLOCK;
-        (0..blocks.y)
-            .map(|row| {
-                let mut cells = Vec::new();
-                for column in 0..blocks.x {
-                    let corner = IVec2::new(column, row) * Self::BLOCK - self.margin;
-                    self.split(Cell { corner, side: Self::BLOCK }, &mut cells);
-                }
-                cells
-            })
-            .collect()
+        let IVec2 { x: columns, y: rows } = self.blocks();
+        let of_row =
+            |row: i32| (0..columns).flat_map(move |column| self.cells_of_block(IVec2::new(column, row)));
+        (0..rows).map(|row| of_row(row).collect()).collect()
+    }
+
+    /// How many blocks there are in a row, and rows of them.
+    pub fn blocks(&self) -> IVec2 {
+        (self.extent() + Self::BLOCK - 1) / Self::BLOCK
+    }
+
+    /// The upper left corner of a block, by its column and row.
+    pub fn corner_of_block(&self, block: IVec2) -> IVec2 {
+        block * Self::BLOCK - self.margin
+    }
+
+    /// The cells of a block.
+    pub fn cells_of_block(&self, block: IVec2) -> Vec<Cell> {
+        let mut cells = Vec::new();
+        self.split(Cell { corner: self.corner_of_block(block), side: Self::BLOCK }, &mut cells);
+        cells
+    }
+
+    /// Column and row of the block that `pixel` lies in, or of the nearest.
+    pub fn nearest_block(&self, pixel: IVec2) -> IVec2 {
+        let block = (pixel + self.margin).div_euclid(IVec2::splat(Self::BLOCK));
+        block.clamp(IVec2::ZERO, self.blocks() - 1)
     }
 
     /// The cell that `pixel`, of the frame or its margin, lies in.

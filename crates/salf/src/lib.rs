@@ -8,6 +8,7 @@
 //! they are kept packed ([`Samples`]).
 
 mod bake;
+mod baker;
 mod carried;
 mod domain;
 mod file;
@@ -18,7 +19,9 @@ mod occluders;
 mod options;
 mod outgoing;
 mod outliers;
+mod parts;
 mod placement;
+mod reach;
 mod salf;
 mod sample;
 mod samples;
@@ -34,6 +37,7 @@ pub use file::{SalfFile, SalfFileError};
 pub use margin::LARGEST_MARGIN_HEIGHTS;
 pub use options::BakeOptions;
 pub use outliers::Outliers;
+pub use parts::{PartsBaker, Surroundings};
 pub use salf::{Salf, SalfStatistics};
 pub use sample::{Address, Sample, SampleFocus, Visibility};
 pub use samples::{Addresses, Run, Samples, Spot};

@@ -5,12 +5,15 @@
 //! at y can therefore only be in the way if |y − x| ≤ (m − p)·C in each axis. Whatever hides behind the nearest
 //! surface at y is further away and has a smaller reach, so the nearest surfaces decide for all.
 
-use crate::domain::{Cell, Domain};
+use crate::domain::Cell;
 use glam::{DVec2, IVec2};
 
 /// The largest inverse depth of each pixel, and of ever larger squares of them.
 pub struct Occluders {
-    domain: Domain,
+    /// The upper left corner of the part of the picture that they are known in, px, …
+    corner: IVec2,
+    /// … and its size.
+    extent: IVec2,
     /// C: px of parallax for a unit of inverse depth, over half the aperture.
     parallax_px: f64,
     /// Level ℓ holds the maxima of 2^ℓ × 2^ℓ px, with its width.
@@ -48,13 +51,16 @@ impl Occluders {
     /// Parallax that is too small to tell two surfaces apart, px.
     pub const SAME_SURFACE_PX: f64 = 0.25;
 
-    /// From the depths of every cell.
-    pub fn new(domain: Domain, parallax_px: f64, cells: impl Iterator<Item = (Cell, Depths)>) -> Self {
-        let extent = domain.extent();
+    /// From the depths of every cell of a part of the picture, its upper left corner and its size.
+    pub fn new(
+        [corner, extent]: [IVec2; 2],
+        parallax_px: f64,
+        cells: impl Iterator<Item = (Cell, Depths)>,
+    ) -> Self {
         let mut depths =
             vec![Depths { nearest: 0.0, farthest: 0.0, relief: 0.0 }; (extent.x * extent.y) as usize];
         for (cell, of_cell) in cells {
-            let low = cell.corner + domain.margin;
+            let low = cell.corner - corner;
             let high = (low + cell.side).min(extent);
             for y in low.y..high.y {
                 let row = (y * extent.x) as usize;
@@ -71,15 +77,15 @@ impl Occluders {
             let (width, fine) = levels.last().expect("just seen");
             levels.push(coarser(*width, fine));
         }
-        Self { domain, parallax_px, levels, edge_distance, step_distance }
+        Self { corner, extent, parallax_px, levels, edge_distance, step_distance }
     }
 
     /// Whether a cell whose nearest surface has `inverse_depth` may let some aperture point see what lies behind
     /// that surface: a discontinuity is closer than the surface's parallax against infinity, or a step closer than the
     /// parallax of any step.
     pub fn may_reveal(&self, cell: Cell, inverse_depth: f32) -> bool {
-        let at = cell.corner + self.domain.margin;
-        let at = (at.y * self.domain.extent().x + at.x) as usize;
+        let at = cell.corner - self.corner;
+        let at = (at.y * self.extent.x + at.x) as usize;
         let [edge, step] = [&self.edge_distance, &self.step_distance].map(|distance| distance[at] as f64);
         let room = cell.side as f64 * 1.5;
         edge - room <= inverse_depth as f64 * self.parallax_px || step - room <= JUMP_ACROSS_PX
@@ -99,7 +105,7 @@ impl Occluders {
             return false;
         }
         let side = 1 << level;
-        let low = node * side - self.domain.margin;
+        let low = node * side + self.corner;
         let middle = low.as_dvec2() + side as f64 / 2.0;
         let gap = (middle - footprint.center).abs() - (side + footprint.cell.side) as f64 / 2.0;
         if gap.max_element() > ahead * self.parallax_px {
@@ -225,6 +231,11 @@ fn spread(extent: IVec2, distance: &mut [f32]) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::domain::Domain;
+
+    fn whole(domain: Domain) -> [IVec2; 2] {
+        [IVec2::splat(-domain.margin), domain.extent()]
+    }
 
     /// A wall of inverse depth 0.2 with a post of 1.0 at columns 20..24.
     fn post() -> (Domain, Occluders) {
@@ -236,7 +247,7 @@ mod tests {
                 (cell, Depths { nearest: depth, farthest: depth, relief: 0.0 })
             })
             .collect();
-        (domain, Occluders::new(domain, 10.0, cells.into_iter()))
+        (domain, Occluders::new(whole(domain), 10.0, cells.into_iter()))
     }
 
     fn wall(x: i32) -> Footprint {
@@ -262,7 +273,7 @@ mod tests {
         let depths = |x: i32| Depths { nearest: depth(x), farthest: depth(x), relief: 0.05 };
         let cells: Vec<_> =
             domain.block_rows().into_iter().flatten().map(|c| (c, depths(c.corner.x))).collect();
-        let occluders = Occluders::new(domain, 10.0, cells.into_iter());
+        let occluders = Occluders::new(whole(domain), 10.0, cells.into_iter());
         let cell = Cell { corner: IVec2::new(10, 9), side: 1 };
         let slope = DVec2::new(0.05, 0.0);
         let footprint =
@@ -287,7 +298,7 @@ mod tests {
             let depths = |x: i32| Depths { nearest: depth(x), farthest: depth(x), relief: 0.0 };
             let cells: Vec<_> =
                 domain.block_rows().into_iter().flatten().map(|c| (c, depths(c.corner.x))).collect();
-            let occluders = Occluders::new(domain, 10.0, cells.into_iter());
+            let occluders = Occluders::new(whole(domain), 10.0, cells.into_iter());
             [31, 24].map(|x| occluders.may_reveal(Cell { corner: IVec2::new(x, 9), side: 1 }, 1.0))
         };
         assert_eq!(revealed(0.05), [false, false]);

@@ -5,15 +5,17 @@
 //! lie between the pinhole's rays. Such triangles ([`crate::placement`]) are cut into patches of about a pixel, and each
 //! side of a patch that can be seen is a sample.
 
+use crate::baker::Baker;
 use crate::domain::Domain;
 use crate::jitter::jitter;
 use crate::outgoing::{Outgoing, Sent};
 use crate::sample::Sample;
+use crate::samples::block_corner;
 use crate::view::View;
 use crate::visibility::{self, Fineness, Patterns, Seen};
-use glam::{DVec2, DVec3};
+use glam::{DVec2, DVec3, IVec2};
 use scene::SurfacePoint;
-use trace::{Radiance, Tracer, Viewpoint};
+use trace::Viewpoint;
 
 /// More pieces than this are not made of one triangle: the largest is then split no further.
 const MOST_PATCHES: usize = 20_000;
@@ -34,6 +36,11 @@ struct Piece {
 impl Piece {
     fn center(&self) -> DVec3 {
         self.corners.iter().sum::<DVec3>() / 3.0
+    }
+
+    /// Where its centre is in the pinhole picture, px.
+    fn pixel(&self, view: &View) -> DVec2 {
+        view.camera.pixel_from_q(view.optics.chief(self.center()))
     }
 
     /// Along its normal, as long as it is large.
@@ -65,15 +72,11 @@ impl Piece {
 }
 
 /// The samples of one triangle.
-pub fn samples(
-    tracer: &Tracer,
-    radiance: &dyn Radiance,
-    view: &View,
-    patterns: &Patterns,
-    domain: &Domain,
-    triangle: u32,
-) -> Vec<Sample> {
-    let scene = tracer.scene();
+///
+/// `is_wanted` tells of the corner of a block whether what lies there is.
+pub fn samples(baker: &Baker, triangle: u32, is_wanted: &dyn Fn(IVec2) -> bool) -> Vec<Sample> {
+    let Baker { view, domain, .. } = baker;
+    let scene = baker.tracer.scene();
     let corners = scene.corners(triangle).map(|p| view.camera.camera_from_world(p));
     let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalize_or_zero();
     if normal == DVec3::ZERO {
@@ -86,25 +89,21 @@ pub fn samples(
     let center = SurfacePoint { triangle, barycentric: DVec2::splat(1.0 / 3.0) };
     let brightness = f64::from(scene.emitted(center).max_element());
     for piece in split(whole, view, domain, brightness) {
+        if !is_wanted(block_corner(piece.pixel(view).as_vec2().floor().as_ivec2())) {
+            continue;
+        }
         let point = SurfacePoint { triangle, barycentric: piece.barycentric.iter().sum::<DVec2>() / 3.0 };
         let sides = if scene.hides_back(triangle) { &[front][..] } else { &[front, -front] };
         for &side in sides {
-            samples.extend(patch(tracer, radiance, view, patterns, point, piece, side));
+            samples.extend(patch(baker, point, piece, side));
         }
     }
     samples
 }
 
 /// One side of a piece.
-fn patch(
-    tracer: &Tracer,
-    radiance: &dyn Radiance,
-    view: &View,
-    patterns: &Patterns,
-    point: SurfacePoint,
-    piece: Piece,
-    normal: DVec3,
-) -> Vec<Sample> {
+fn patch(baker: &Baker, point: SurfacePoint, piece: Piece, normal: DVec3) -> Vec<Sample> {
+    let Baker { tracer, radiance, view, patterns, .. } = baker;
     let optics = &view.optics;
     let position = piece.center();
     // w(P, U) = dA·n·(U − P)/(z³ tan²θ), linear in U.
@@ -115,7 +114,7 @@ fn patch(
     if largest <= 0.0 {
         return Vec::new();
     }
-    let pixel = view.camera.pixel_from_q(optics.chief(position));
+    let pixel = piece.pixel(view);
     let inverse_depth = 1.0 / position.z;
     let fineness = Fineness::of(view, inverse_depth);
     let seed = [point.triangle, (jitter(point.barycentric.x.to_bits() as u32, 0, 0)[0] * 1e9) as u32];

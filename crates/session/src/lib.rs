@@ -26,6 +26,7 @@ mod output;
 mod preview;
 mod sequence;
 mod session;
+mod tiles;
 #[cfg(test)]
 #[path = "../tests/tiny_glb/mod.rs"]
 mod tiny_glb;
@@ -62,4 +63,7 @@ pub use sequence::{
 };
 pub use session::{FullSize, Session, SessionOptions};
 pub use slf::PhotographLight;
+pub use tiles::{
+    Merged, TileGrid, TileOptions, TileOutcome, TileReport, TilesReport, merge_tiles, render_tiles,
+};
 pub use trace::truth::Region;

@@ -132,13 +132,16 @@ impl Gains {
     /// Scales a picture that is evened out.
     pub fn scale(&self, radiance: &mut [[f32; 3]]) {
         let width = self.knots.size[0];
-        radiance.par_chunks_mut(width).enumerate().for_each(|(y, row)| {
-            let gains = self.of_row(y, Scaled::All);
-            with_widest_instructions(
-                #[inline(always)]
-                || gains.scale(row),
-            );
-        });
+        radiance.par_chunks_mut(width).enumerate().for_each(|(y, row)| self.scale_row(y, row));
+    }
+
+    /// Scales a row of it.
+    pub fn scale_row(&self, y: usize, row: &mut [[f32; 3]]) {
+        let gains = self.of_row(y, Scaled::All);
+        with_widest_instructions(
+            #[inline(always)]
+            || gains.scale(row),
+        );
     }
 
     /// Those of knots, row by row, by [`Scaled`].

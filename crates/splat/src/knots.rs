@@ -15,7 +15,8 @@ pub const SPACING: usize = 32;
 pub struct KnotSums(pub [[f32; 4]; 4]);
 
 impl KnotSums {
-    fn add(&mut self, weight: f32, other: &Self) {
+    /// Adds others with a weight.
+    pub fn add(&mut self, weight: f32, other: &Self) {
         for (sum, other) in self.0.as_flattened_mut().iter_mut().zip(other.0.as_flattened()) {
             *sum += weight * other;
         }

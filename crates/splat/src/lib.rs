@@ -13,10 +13,13 @@
 //! rows that were cut once for all splats of its size (`stencil`, `shape`), on the level of a pyramid of accumulators
 //! whose pixel is about its own size (`canvas`). Running sums and upsampling make the picture (`resolve`); partly
 //! occluded samples share what open ones leave of it (`partition`), which leaves the sum of light as it is (`balance`).
+//!
+//! A picture that is too large for memory is summed in crops ([`CropSums`]), from a light field in parts.
 
 mod balance;
 mod bands;
 mod canvas;
+mod crop;
 mod draw;
 mod drawn;
 mod fixed;
@@ -36,6 +39,10 @@ mod stencil;
 mod sums;
 mod widest;
 
+pub use crop::{
+    Crop, CropError, CropFacts, CropForm, CropOptions, CropPicture, CropRow, CropSums, Integers, Joining,
+    KNOT_NUMBERS, Kind,
+};
 pub use gpu::{AdapterDescription, BackendChoice, Gpu, GpuAbsent, PictureOnCard, adapters};
 pub use lens_in_use::Tolerance;
 pub use nodes::QUANTUM;

@@ -2,6 +2,7 @@
 
 use crate::canvas::{PIXEL, POSITION_BITS};
 use crate::fixed::ONE;
+use crate::resolve::Quanta;
 use rayon::prelude::*;
 use salf::Salf;
 use salf::tree::{Block, LEVELS, Node, each_block};
@@ -35,6 +36,12 @@ impl Scale {
     fn weight_of_quantum(self, node: &SplatNode) -> f32 {
         let bits = if node.is_bright { self.bright_bits } else { self.dim_bits };
         4f32.powi(node.level.into()) * (-bits as f32).exp2()
+    }
+
+    /// How integers become numbers, of ordinary samples and of bright ones, where no radiance is above `brightest`.
+    pub fn quanta(self, brightest: f64) -> [Quanta; 2] {
+        let dim = Quanta::new(self.dim_bits, 32, brightest.min(BRIGHT.into()));
+        [dim, Quanta::new(self.bright_bits, 64, brightest)]
     }
 
     /// For light that converges more.
@@ -176,7 +183,14 @@ pub struct Nodes {
 impl Nodes {
     /// Reads a light field. `None` if a sample is too bright to be summed.
     pub fn new(salf: &Salf, scale: Scale) -> Option<Self> {
-        let parts = each_block(salf, HIGHLIGHT, |block| Part::new(block, scale));
+        Self::from_corner(salf, scale, [0; 2])
+    }
+
+    /// The same where the picture is a part of the whole that begins at this column and row, px: multiples of a block's side. All is as in
+    /// the whole, but for places, which are counted from there.
+    pub fn from_corner(salf: &Salf, scale: Scale, corner: [i32; 2]) -> Option<Self> {
+        let corner = corner.map(|px| px * PIXEL);
+        let parts = each_block(salf, HIGHLIGHT, |block| Part::new(block, scale, corner));
         let parts = parts.into_iter().collect::<Option<Vec<_>>>()?;
         let blocks = places(parts.iter().map(|part| part.nodes.len()));
         let cells_of_block = places(parts.iter().map(|part| part.cells.len()));
@@ -213,8 +227,16 @@ impl Nodes {
             node_of_sample,
             block_of_node,
             scale,
-            middle: [salf.camera.width, salf.camera.height].map(|side| side as i32 * (PIXEL / 2)),
+            middle: [
+                salf.camera.width as i32 * (PIXEL / 2) - corner[0],
+                salf.camera.height as i32 * (PIXEL / 2) - corner[1],
+            ],
         })
+    }
+
+    /// How the integers of their sums become numbers: of ordinary samples, and of bright ones.
+    pub fn quanta(&self) -> [Quanta; 2] {
+        self.scale.quanta(self.brightest)
     }
 
     /// Changes to another scale.
@@ -324,8 +346,13 @@ struct Part {
 
 impl Part {
     /// `None` if a node is too bright.
-    fn new(block: Block, scale: Scale) -> Option<Self> {
-        let nodes = block.nodes.iter().map(|node| convert(node, scale)).collect::<Option<Vec<_>>>()?;
+    fn new(block: Block, scale: Scale, corner: [i32; 2]) -> Option<Self> {
+        let at_corner = |node: SplatNode| {
+            let [x, y] = node.center;
+            SplatNode { center: [x - corner[0], y - corner[1]], ..node }
+        };
+        let nodes = block.nodes.iter().map(|node| convert(node, scale).map(at_corner));
+        let nodes = nodes.collect::<Option<Vec<_>>>()?;
         let leaves = block.nodes.iter().filter(|node| node.sample.is_some());
         let rows = |words: &[u64; 4]| std::array::from_fn(|row| (words[row / 4] >> (row % 4 * 16)) as u16);
         Some(Self {

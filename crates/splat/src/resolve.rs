@@ -101,6 +101,8 @@ pub struct LevelRows<'a, W: Word> {
     coarser: Option<Lines>,
     /// A row between those of the coarser ones, and a pixel beside either end.
     mixed: Vec<Light>,
+    /// The largest coverage of a pixel so far, in quanta, coarser levels' too.
+    pub largest: i64,
 }
 
 impl<'a, W: Word> LevelRows<'a, W> {
@@ -111,7 +113,7 @@ impl<'a, W: Word> LevelRows<'a, W> {
         window: &Window,
         room: &mut Room,
     ) -> Result<Self, Overflow> {
-        let mut coarser: Option<Lines> = None;
+        let (mut coarser, mut largest): (Option<Lines>, i64) = (None, 0);
         for (k, level) in accumulator.levels.iter().enumerate().skip(1).rev() {
             let window = window.on_level(k).within(level);
             if coarser.is_none() && window.rows.clone().all(|row| level.row(row).is_none()) {
@@ -123,10 +125,13 @@ impl<'a, W: Word> LevelRows<'a, W> {
             for (row, line) in window.rows.clone().zip(pixels.chunks_exact_mut(window.columns.len().max(1))) {
                 here.read(row, unkept.of_row(0), line)?;
             }
+            largest = largest.max(here.largest);
             here.give_back(room);
             coarser = Some(Lines { window, pixels });
         }
-        Ok(Self::new(&accumulator.levels[0], quanta, Columns::marked(&window.columns), coarser, room))
+        let finest =
+            Self::new(&accumulator.levels[0], quanta, Columns::marked(&window.columns), coarser, room);
+        Ok(Self { largest, ..finest })
     }
 
     fn new(
@@ -137,7 +142,7 @@ impl<'a, W: Word> LevelRows<'a, W> {
         room: &mut Room,
     ) -> Self {
         let mixed = room.take(coarser.as_ref().map_or(0, |coarser| coarser.window.columns.len() + 2));
-        Self { level, quanta, columns, coarser, mixed }
+        Self { level, quanta, columns, coarser, mixed, largest: 0 }
     }
 
     /// What they needed room for.
@@ -155,7 +160,9 @@ impl<'a, W: Word> LevelRows<'a, W> {
             ),
             None => line.fill(BLACK),
         }
-        add_row::<W, 4>(self.level, row, &self.columns, self.quanta, marks, line)
+        let largest = add_row::<W, 4>(self.level, row, &self.columns, self.quanta, marks, line)?;
+        self.largest = self.largest.max(largest);
+        Ok(())
     }
 }
 
@@ -181,7 +188,8 @@ impl Columns {
     }
 }
 
-/// Adds the first `CHANNELS` channels of a row of a level's pixels in some columns. `marks` are the row's.
+/// Adds the first `CHANNELS` channels of a row of a level's pixels in some columns. `marks` are the row's. Returns the largest coverage that
+/// was met, in quanta.
 pub fn add_row<W: Word, const CHANNELS: usize>(
     level: &Level<W>,
     row: i32,
@@ -189,20 +197,20 @@ pub fn add_row<W: Word, const CHANNELS: usize>(
     quanta: Quanta,
     marks: &mut [Mark<W>],
     line: &mut [Light],
-) -> Result<(), Overflow> {
+) -> Result<i64, Overflow> {
     if let Some(next) = level.row(row + 1) {
         next.ask_for_all();
     }
     let Some(row) = level.row(row) else {
         marks.fill(Mark::default());
-        return Ok(());
+        return Ok(0);
     };
-    with_widest_instructions(
+    let largest = with_widest_instructions(
         #[inline(always)]
         || integrate::<W, CHANNELS>(&row, quanta, in_memory, line, &mut marks[spans.clone()], spans.start),
     )?;
     let covered: i64 = marks.iter().fold(0, |sum, mark| sum.wrapping_add(mark.covered));
-    if covered == row.total { Ok(()) } else { Err(Overflow) }
+    if covered == row.total { Ok(largest) } else { Err(Overflow) }
 }
 
 /// Adds the pixels of a row of a level in some columns in memory to a line, and sets the marks of the spans from `first_span`
@@ -215,7 +223,7 @@ fn integrate<W: Word, const CHANNELS: usize>(
     line: &mut [Light],
     marks: &mut [Mark<W>],
     first_span: usize,
-) -> Result<(), Overflow> {
+) -> Result<i64, Overflow> {
     let quantum = quanta.quantum as f32;
     let mut running =
         Running { sum: marks.first().map_or([W::default(); 4], |mark| mark.sum), ..Running::default() };
@@ -256,8 +264,8 @@ fn integrate<W: Word, const CHANNELS: usize>(
         }
         mark.covered = running.covered[3];
     }
-    let largest = running.largest;
-    if largest[3].wide() <= quanta.largest_coverage { Ok(()) } else { Err(Overflow) }
+    let largest = running.largest[3].wide();
+    if largest <= quanta.largest_coverage { Ok(largest) } else { Err(Overflow) }
 }
 
 /// The running sum of a row. Of all four, though only coverage is asked for: lanes of one register.

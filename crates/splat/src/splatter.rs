@@ -17,7 +17,7 @@ use crate::lens_in_use::{LensInUse, Tolerance};
 use crate::nodes::{Nodes, Scale};
 use crate::paint::Paint;
 use crate::sums::Sums;
-use aperture_in_use::ApertureInUse;
+pub(crate) use aperture_in_use::ApertureInUse;
 use card::Card;
 use lens::{Camera, FocusOffset, Picture};
 use progress::{Progress, Stage};

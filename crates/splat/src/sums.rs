@@ -6,7 +6,7 @@ use crate::draw::{Paper, Pen};
 use crate::drawn::{AHEAD, BlockList, Changes, Drawn};
 use crate::lens_in_use::Placed;
 use crate::marks::Marks;
-use crate::nodes::{Nodes, SplatNode};
+use crate::nodes::SplatNode;
 use crate::resolve::{Columns, LevelRows, Light, Overflow, Quanta, Room, Window, add_row};
 use crate::widest::{ask_for, with_widest_instructions};
 use progress::{Cancelled, Progress};
@@ -82,19 +82,19 @@ impl Sum {
         self.dim.bytes() + self.bright.as_ref().map_or(0, Accumulator::bytes)
     }
 
-    /// The rows of its pixels in a window of the picture.
+    /// The rows of its pixels in a window of the picture. `quanta` are those of ordinary samples, and of bright ones ([`crate::nodes::Scale::quanta`]).
     pub fn rows<'a>(
         &'a self,
-        nodes: &Nodes,
+        quanta: [Quanta; 2],
         window: &Window,
         (dim_marks, bright_marks): &'a mut SumMarks,
         room: &mut Room,
     ) -> Result<SumRows<'a>, Overflow> {
-        let dim = Quanta::new(nodes.scale.dim_bits, 32, nodes.brightest.min(crate::nodes::BRIGHT as f64));
-        let bright = Quanta::new(nodes.scale.bright_bits, 64, nodes.brightest);
+        let [dim, bright] = quanta;
         let of_bright = |sum: &'a Accumulator<i64>| (&sum.levels[0], bright, bright_marks);
         Ok(SumRows {
             columns: Columns::marked(&window.columns),
+            largest_bright: 0,
             dim: LevelRows::of_sum(&self.dim, dim, window, room)?,
             dim_marks,
             bright: self.bright.as_ref().map(of_bright),
@@ -105,6 +105,7 @@ impl Sum {
 /// The rows of a sum's pixels in some columns, each made when it is read.
 pub struct SumRows<'a> {
     columns: Columns,
+    largest_bright: i64,
     dim: LevelRows<'a, i32>,
     dim_marks: &'a mut Marks<i32>,
     bright: Option<(&'a Level<i64>, Quanta, &'a mut Marks<i64>)>,
@@ -116,9 +117,15 @@ impl SumRows<'_> {
         self.dim.read(row, self.dim_marks.of_row(row), line)?;
         if let Some((level, quanta, marks)) = &mut self.bright {
             // Their coverage is among the ordinary ones'.
-            add_row::<i64, 3>(level, row, &self.columns, *quanta, marks.of_row(row), line)?;
+            let largest = add_row::<i64, 3>(level, row, &self.columns, *quanta, marks.of_row(row), line)?;
+            self.largest_bright = self.largest_bright.max(largest);
         }
         Ok(())
+    }
+
+    /// The largest coverage of a pixel so far, in quanta: in the sum of ordinary samples, and in that of bright ones.
+    pub fn largest(&self) -> [i64; 2] {
+        [self.dim.largest, self.largest_bright]
     }
 
     /// Of coverage alone: it is all among the ordinary samples'. Colours are what they may.
@@ -190,6 +197,38 @@ impl Sums {
         pace: &mut Pace,
         progress: &dyn Progress,
     ) -> Result<(), Cancelled> {
+        self.draw(pen, lists, |band| band.clear(), pace, progress)
+    }
+
+    /// Adds what the lists of all blocks say.
+    pub fn add(
+        &mut self,
+        pen: &Pen,
+        lists: &[BlockList],
+        pace: &mut Pace,
+        progress: &dyn Progress,
+    ) -> Result<(), Cancelled> {
+        self.draw(pen, lists, |_| (), pace, progress)
+    }
+
+    /// Makes room for bright samples, if there is none yet.
+    pub fn hold_bright(&mut self) {
+        for sum in [&mut self.free, &mut self.sharing] {
+            let level = &sum.dim.levels[0];
+            let size = [level.width, level.height];
+            sum.bright.get_or_insert_with(|| Accumulator::new(size[0], size[1], 1));
+        }
+    }
+
+    /// Draws what the lists of all blocks say on what `prepare` leaves of each band.
+    fn draw(
+        &mut self,
+        pen: &Pen,
+        lists: &[BlockList],
+        prepare: impl Fn(&mut Band) + Sync,
+        pace: &mut Pace,
+        progress: &dyn Progress,
+    ) -> Result<(), Cancelled> {
         let height = self.height();
         let mut work = Work::none(height);
         for list in lists {
@@ -202,8 +241,7 @@ impl Sums {
         let summed = bands.into_par_iter().with_max_len(1).map(|mut band| {
             progress.check()?;
             let begun = Instant::now();
-            band.free.clear();
-            band.sharing.clear();
+            prepare(&mut band);
             let here = band.rows.clone();
             let lists = lists.iter().filter(|list| meet(&list.rows, &here)).map(|list| list.drawn.as_slice());
             band.draw_each(pen, lists, 1, || {
@@ -274,6 +312,12 @@ struct Band<'a> {
 }
 
 impl Band<'_> {
+    /// Makes it black.
+    fn clear(&mut self) {
+        self.free.clear();
+        self.sharing.clear();
+    }
+
     /// Adds (`sign` 1) the nodes of some blocks' lists, or takes them away (−1). Ends with `check` if that fails after one.
     fn draw_each<'l, E>(
         &mut self,

@@ -38,13 +38,12 @@ impl Grid {
     pub fn new(salf: &Salf) -> Self {
         let frame = IVec2::new(salf.camera.width as i32, salf.camera.height as i32);
         let domain = Domain { size: frame, margin: salf.margin_px as i32 };
-        Self { domain, size: (domain.extent() + BLOCK_PX - 1) / BLOCK_PX }
+        Self { domain, size: domain.blocks() }
     }
 
     /// The upper left pixel of a block.
     pub fn corner(&self, block: usize) -> IVec2 {
-        let column_row = IVec2::new(block as i32 % self.size.x, block as i32 / self.size.x);
-        column_row * BLOCK_PX - self.domain.margin
+        self.domain.corner_of_block(IVec2::new(block as i32 % self.size.x, block as i32 / self.size.x))
     }
 
     /// The pixel of the grid that a place in the picture lies in.
@@ -71,8 +70,7 @@ impl Grid {
 
     /// The block that `pixel` lies in, or the nearest.
     fn block_around(&self, pixel: IVec2) -> usize {
-        let block = (pixel + self.domain.margin).div_euclid(IVec2::splat(BLOCK_PX));
-        let block = block.clamp(IVec2::ZERO, self.size - 1);
+        let block = self.domain.nearest_block(pixel);
         (block.y * self.size.x + block.x) as usize
     }
 

@@ -10,7 +10,10 @@ mod source;
 mod tally;
 mod things;
 
+pub(crate) use packing::{Footprints, Packing};
 pub(crate) use source::{BlackBackground, MatteSource, OfLightField, OfTruth, Shown};
+pub(crate) use tally::{Entry, Ranking, Tally, left_out_warning, ranks_of};
+pub(crate) use things::Things;
 
 use crate::error::SessionError;
 use crate::jobs::Steps;
@@ -20,8 +23,6 @@ use project::Cryptomatte;
 use scene::Scene;
 use source::Sets;
 use splat::SETS;
-use tally::Tally;
-use things::Things;
 
 /// What is wanted of mattes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -81,13 +82,7 @@ impl Mattes {
         }
         for (things, tally) in kinds.into_iter().zip(tallies) {
             let (ranks, left_out) = tally.ranks(&mattes.alpha);
-            if left_out > 0.0 {
-                mattes.warnings.push(format!(
-                    "some pixels show more {} than Cryptomatte has ranks for: up to {:.2} % of a pixel is in no matte",
-                    things.said,
-                    100.0 * left_out
-                ));
-            }
+            mattes.warnings.extend(left_out_warning(things.said, left_out));
             mattes.crypto.push(Cryptomatte { kind: things.kind.into(), names: things.names, ranks });
         }
         Ok(mattes)
@@ -95,7 +90,7 @@ impl Mattes {
 }
 
 /// The share of each pixel that a set has; 0 where nothing is covered.
-fn shares(picture: &Picture, set: usize) -> impl Iterator<Item = f32> {
+pub(crate) fn shares(picture: &Picture, set: usize) -> impl Iterator<Item = f32> {
     let share =
         move |(rgb, &coverage): (&[f32; 3], &f32)| if coverage > 0.0 { rgb[set] / coverage } else { 0.0 };
     picture.radiance.iter().zip(&picture.coverage).map(share)

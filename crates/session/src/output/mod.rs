@@ -30,5 +30,10 @@ pub use thumbnail::thumbnail;
 pub use unwrapped::write_unwrapped;
 pub use verification::{Verification, VerifiedError};
 
+pub(crate) use aov::Known;
+pub(crate) use mattes::{
+    Entry, Footprints, Packing, Ranking, Shown, Tally, Things, WantedMattes, left_out_warning, ranks_of,
+    shares,
+};
 pub(crate) use photograph_picture::photograph_picture;
-pub(crate) use render::{light_of_photographs, splatter, sum_baked, sum_light_field, tracer_of};
+pub(crate) use render::{light_of_photographs, seen_in, splatter, sum_baked, sum_light_field, tracer_of};

@@ -105,8 +105,13 @@ impl RenderOptions {
         self.aovs.contains(&aov)
     }
 
+    /// Whether the picture is multiplied by alpha: the background is black.
+    pub(crate) fn is_premultiplied(&self) -> bool {
+        self.asks_for(Aov::Alpha)
+    }
+
     /// Of whom a pixel is, as far as the AOVs tell it.
-    fn wanted_mattes(&self) -> Option<WantedMattes> {
+    pub(crate) fn wanted_mattes(&self) -> Option<WantedMattes> {
         let crypto = self.asks_for(Aov::Crypto);
         (crypto || self.asks_for(Aov::Alpha)).then_some(WantedMattes { crypto })
     }
@@ -499,6 +504,16 @@ pub(crate) fn light_of_photographs(
 /// How far the surface along each pixel's chief ray was photographed, in the photographs of `light`, or else in the picture that it was
 /// made from.
 pub(super) fn seen(tracer: &Tracer, camera: &Camera, light: Option<&PhotographLight>) -> Vec<f32> {
+    seen_in(tracer, camera, light, (0..camera.width * camera.height).collect())
+}
+
+/// The same in some pixels.
+pub(crate) fn seen_in(
+    tracer: &Tracer,
+    camera: &Camera,
+    light: Option<&PhotographLight>,
+    pixels: Vec<u32>,
+) -> Vec<f32> {
     let told = |point: SurfacePoint| match light {
         Some(light) => light.seen(point),
         None => tracer.scene().photographed(point).unwrap_or(0.0),
@@ -507,7 +522,7 @@ pub(super) fn seen(tracer: &Tracer, camera: &Camera, light: Option<&PhotographLi
         let hit = tracer.first_hit(&pixel_ray(camera, number));
         hit.map_or(0.0, |hit| told(hit.point))
     };
-    (0..camera.width * camera.height).into_par_iter().map(of_pixel).collect()
+    pixels.into_par_iter().map(of_pixel).collect()
 }
 
 fn first_hits(

@@ -23,6 +23,7 @@ mod take;
 pub use baker::Baking;
 pub use frame_files::FrameFiles;
 pub use frame_list::FrameList;
+pub(crate) use plan::still_plan;
 pub use run::{FrameOutcome, FrameReport, SequenceOptions, SequenceReport, WritePicture, render_frames};
 pub use shard::Shard;
 pub use take::{Take, TakeOptions};

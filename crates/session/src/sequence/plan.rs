@@ -1,10 +1,13 @@
 //! What the bytes of a frame depend on, as a checksum: a frame whose file was made by the same plan is finished.
 
+use super::scene_in_time::SceneInTime;
 use super::take::Instant;
 use crate::output::RenderOptions;
 use focus::{Focus, FocusMap, FocusSource};
+use lens::Camera;
 use sha2::{Digest, Sha256};
 use std::sync::Arc;
+use trace::Tracer;
 
 /// Changes whenever the same input may give other bytes.
 const VERSION: &str = concat!("frame 1, ", env!("CARGO_PKG_VERSION"));
@@ -29,6 +32,19 @@ pub(super) fn plan(at: &Instant, baked: &str, options: &RenderOptions, written: 
     add(format!("{anywhere:?}").as_bytes());
     add(written.as_bytes());
     hash.finalize().into()
+}
+
+/// The plan of a picture of a scene that stands still.
+pub(crate) fn still_plan(
+    tracer: &Arc<Tracer>,
+    camera: &Camera,
+    focus: &Focus,
+    options: &RenderOptions,
+    written: &str,
+) -> [u8; 32] {
+    let scene = Arc::new(SceneInTime::at_rest(tracer.clone()));
+    let at = Instant { scene, camera: camera.clone(), focus: focus.clone(), placed: camera.clone() };
+    plan(&at, "", options, written)
 }
 
 fn add_focus(add: &mut dyn FnMut(&[u8]), focus: &Focus) {

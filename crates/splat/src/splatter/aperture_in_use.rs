@@ -20,10 +20,18 @@ pub struct ApertureInUse {
 
 impl ApertureInUse {
     pub fn new(aperture: &Aperture, stop: f64, nodes: Option<&Nodes>) -> Self {
-        let shape = Shape::new(aperture);
+        let (shape, seen) = (Shape::new(aperture), Vec::new());
+        let mut new = Self { aperture: aperture.clone(), stop, stencils: Stencils::new(shape), seen };
+        if let Some(nodes) = nodes {
+            new.look_at(nodes);
+        }
+        new
+    }
+
+    /// Goes on to other nodes.
+    pub fn look_at(&mut self, nodes: &Nodes) {
         // A pinhole sees what its chief ray sees.
-        let seen = nodes.map_or_else(Vec::new, |nodes| seen(nodes, &shape, stop.max(1e-3)));
-        Self { aperture: aperture.clone(), stop, stencils: Stencils::new(shape), seen }
+        self.seen = seen(nodes, &self.stencils.shape, self.stop.max(1e-3));
     }
 
     /// What nodes are drawn with.

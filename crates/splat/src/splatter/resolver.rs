@@ -114,11 +114,11 @@ impl Resolver {
                 let [free_marks, sharing_marks] = marks;
                 let [mut free, mut sharing] = [None, None];
                 if wanted.has_free() {
-                    let rows = sums.free.rows(nodes, &window, free_marks, room)?;
+                    let rows = sums.free.rows(nodes.quanta(), &window, free_marks, room)?;
                     free = Some(if wants_colour { rows } else { rows.of_coverage() });
                 }
                 if wanted.has_sharing() {
-                    sharing = Some(sums.sharing.rows(nodes, &window, sharing_marks, room)?);
+                    sharing = Some(sums.sharing.rows(nodes.quanta(), &window, sharing_marks, room)?);
                 }
                 let mut lines = [room.take(columns.len()), room.take(columns.len())];
                 lines.iter_mut().for_each(|line| line.fill(BLACK));

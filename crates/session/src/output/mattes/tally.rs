@@ -10,11 +10,21 @@ const NEGLIGIBLE: f32 = 1e-5;
 const MOST_RANKS: usize = 32;
 
 /// A thing's share of a pixel.
-#[derive(Clone, Copy)]
-struct Entry {
-    column: u32,
-    thing: u32,
-    share: f32,
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Entry {
+    pub column: u32,
+    pub thing: u32,
+    pub share: f32,
+}
+
+/// The things of each pixel by rank.
+pub(crate) struct Ranking {
+    /// Of each row of pixels, column by column, those of each the largest first.
+    pub rows: Vec<Vec<Entry>>,
+    /// How many ranks are needed.
+    pub needed: usize,
+    /// The most that is left out of a pixel, if it is more than negligible.
+    pub left_out: f32,
 }
 
 /// The shares of things of one kind.
@@ -45,6 +55,13 @@ impl Tally {
     /// out of a pixel, if it is more than negligible.
     pub fn ranks(self, alpha: &[f32]) -> (Vec<Vec<Ranked>>, f32) {
         let width = self.width;
+        let Ranking { rows, needed, left_out } = self.ranking(alpha);
+        (ranks_of(rows.iter().map(Vec::as_slice), width, needed.max(1)), left_out)
+    }
+
+    /// The same as lists of what each pixel has.
+    pub fn ranking(self, alpha: &[f32]) -> Ranking {
+        let width = self.width;
         // The entries of each pixel follow each other, the largest first.
         let ranked = self.rows.into_par_iter().enumerate().map(|(y, mut row)| {
             row.sort_by(|a, b| {
@@ -71,19 +88,38 @@ impl Tally {
             (row, needed, left_out)
         });
         let rows: Vec<_> = ranked.collect();
-        let needed = rows.iter().map(|(_, needed, _)| *needed).max().unwrap_or(0).max(1);
+        let needed = rows.iter().map(|(_, needed, _)| *needed).max().unwrap_or(0);
         let left_out = rows.iter().map(|(.., left_out)| *left_out).fold(0.0, f32::max);
-        let mut ranks = vec![vec![Ranked::NONE; alpha.len()]; needed];
-        for (y, (row, ..)) in rows.into_iter().enumerate() {
-            for pixel in row.chunk_by(|a, b| a.column == b.column) {
-                for (entry, rank) in pixel.iter().zip(&mut ranks) {
-                    rank[y * width + entry.column as usize] =
-                        Ranked { thing: Some(entry.thing), share: entry.share };
-                }
+        Ranking { rows: rows.into_iter().map(|(row, ..)| row).collect(), needed, left_out }
+    }
+}
+
+/// So many ranks of rows of pixels, each of this width, from the lists of what each pixel has.
+pub(crate) fn ranks_of<'a>(
+    rows: impl ExactSizeIterator<Item = &'a [Entry]>,
+    width: usize,
+    count: usize,
+) -> Vec<Vec<Ranked>> {
+    let mut ranks = vec![vec![Ranked::NONE; width * rows.len()]; count];
+    for (y, row) in rows.enumerate() {
+        for pixel in row.chunk_by(|a, b| a.column == b.column) {
+            for (entry, rank) in pixel.iter().zip(&mut ranks) {
+                rank[y * width + entry.column as usize] =
+                    Ranked { thing: Some(entry.thing), share: entry.share };
             }
         }
-        (ranks, left_out)
     }
+    ranks
+}
+
+/// The sentence on what has no rank, of things that are called so; none where all have one.
+pub(crate) fn left_out_warning(said: &str, left_out: f32) -> Option<String> {
+    (left_out > 0.0).then(|| {
+        format!(
+            "some pixels show more {said} than Cryptomatte has ranks for: up to {:.2} % of a pixel is in no matte",
+            100.0 * left_out
+        )
+    })
 }
 
 #[cfg(test)]

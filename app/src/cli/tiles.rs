@@ -1,0 +1,146 @@
+//! `focus-brush render --tiles`.
+
+use super::arguments::{BackendName, RenderArguments};
+use super::console::{Console, path_text, say_json};
+use super::failure::Failure;
+use super::render::{check_output, exposure, options, written};
+use super::shot::{opened, shot};
+use super::stopping;
+use serde_json::json;
+use session::{Renderer, TileGrid, TileOptions, TileOutcome, TileReport, TilesReport, render_tiles};
+use std::path::Path;
+use std::time::Instant;
+
+/// Draws a picture in tiles, or a share of its tiles.
+pub fn run(arguments: &RenderArguments, grid: TileGrid, console: &Console) -> Result<(), Failure> {
+    stopping::heed()?;
+    check(arguments)?;
+    check_output(arguments)?;
+    let start = Instant::now();
+    let input = opened(&arguments.file, &arguments.shot.scene_look, console)?;
+    if input.salf.is_some() {
+        let what =
+            "is baked already, for the whole picture (leave out --tiles, or give the scene or project)";
+        return Err(Failure::usage(format!("{}: {what}", arguments.file.display())));
+    }
+    console.warn(&input.warnings);
+    let (camera, focus) = shot(&input, &arguments.shot, console)?;
+    let camera = camera.overscanned(arguments.overscan);
+    if let Err(what) = grid.tiles([camera.width, camera.height]) {
+        return Err(Failure::usage(format!("--tiles: {what}")));
+    }
+    let tiles = TileOptions {
+        render: options(arguments, &input, None)?,
+        grid,
+        shard: arguments.sequence.shard,
+        output: arguments.output.clone(),
+        written: written(arguments, exposure(arguments, &input)),
+        integers: arguments.integers.unwrap_or_default(),
+        tell: &|tile| tell(console, tile),
+        progress: console,
+    };
+    let report = render_tiles(&input, &camera, &focus, &tiles, console)?;
+    conclude(arguments, console, &report, start)
+}
+
+/// What cannot be drawn in tiles.
+fn check(arguments: &RenderArguments) -> Result<(), Failure> {
+    if arguments.renderer != Renderer::Splat {
+        let name = arguments.renderer.name();
+        return Err(Failure::usage(format!("--tiles: --renderer {name} draws no tiles (use splat)")));
+    }
+    if arguments.backend == BackendName::Gpu || arguments.adapter.is_some() {
+        let what = "--tiles: tiles are summed on the processor (leave out --backend gpu and --adapter; the picture is the same)";
+        return Err(Failure::usage(what));
+    }
+    check_exr(&arguments.output)
+}
+
+/// Tiles are merged to an EXR alone.
+pub fn check_exr(output: &Path) -> Result<(), Failure> {
+    if output.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("exr")) {
+        return Ok(());
+    }
+    Err(Failure::usage(format!("{}: tiles are merged to an EXR (name an .exr)", output.display())))
+}
+
+fn state(outcome: &TileOutcome) -> &'static str {
+    match outcome {
+        TileOutcome::Written => "written",
+        TileOutcome::Skipped => "skipped",
+        TileOutcome::Failed(_) => "failed",
+    }
+}
+
+/// Tells of a tile.
+fn tell(console: &Console, report: &TileReport) {
+    let TileReport { tile, of, file, outcome, took_seconds } = report;
+    let what = match outcome {
+        TileOutcome::Written => format!("wrote {} ({took_seconds:.1} s)", file.display()),
+        TileOutcome::Skipped => format!("{} is finished", file.display()),
+        TileOutcome::Failed(error) => format!("tile {tile} of {of} failed: {error}"),
+    };
+    let error = match outcome {
+        TileOutcome::Failed(error) => Some(error.to_string()),
+        _ => None,
+    };
+    console.event(
+        &what,
+        &json!({
+            "tile": tile,
+            "of": of,
+            "file": path_text(file),
+            "state": state(outcome),
+            "seconds": took_seconds,
+            "error": error,
+        }),
+    );
+}
+
+/// Tells what was done, and how it went.
+fn conclude(
+    arguments: &RenderArguments,
+    console: &Console,
+    report: &TilesReport,
+    start: Instant,
+) -> Result<(), Failure> {
+    let TilesReport { tiles, merged } = report;
+    let count = |state_of: &str| tiles.iter().filter(|tile| state(&tile.outcome) == state_of).count();
+    let [written, skipped, failed] = ["written", "skipped", "failed"].map(count);
+    let warnings = merged.as_ref().map_or(&[][..], |merged| &merged.warnings);
+    console.warn(warnings);
+    if arguments.json {
+        let tile = |tile: &TileReport| json!({ "tile": tile.tile, "file": path_text(&tile.file), "state": state(&tile.outcome) });
+        say_json(&json!({
+            "input": path_text(&arguments.file),
+            "file": merged.as_ref().map(|_| path_text(&arguments.output)),
+            "width": merged.as_ref().map(|merged| merged.size[0]),
+            "height": merged.as_ref().map(|merged| merged.size[1]),
+            "tiles": tiles.iter().map(tile).collect::<Vec<_>>(),
+            "written": written,
+            "skipped": skipped,
+            "failed": failed,
+            "seconds": start.elapsed().as_secs_f64(),
+            "warnings": warnings,
+        }));
+    }
+    let mut line = format!("{written} tiles written, {skipped} were finished");
+    if failed > 0 {
+        line += &format!(", {failed} failed");
+    }
+    if merged.is_some() {
+        line += &format!("; merged to {}", arguments.output.display());
+    }
+    console.note(&line);
+    let first = tiles.iter().find_map(|tile| match &tile.outcome {
+        TileOutcome::Failed(error) => Some(error),
+        _ => None,
+    });
+    match first {
+        None => Ok(()),
+        Some(error) if written + skipped > 0 => {
+            Err(Failure::partly(format!("{failed} of {} tiles failed: {error}", tiles.len())))
+        }
+        Some(error) => Err(error.clone().into()),
+    }
+}

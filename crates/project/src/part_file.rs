@@ -1,0 +1,252 @@
+//! A part of a picture that is yet to be merged: sections of numbers, what they are, and a seal.
+//!
+//! ```text
+//! "focus-brush part 1\n"
+//! sections                  numbers of 32 bits, little-endian
+//! what they are             JSON, UTF-8
+//! its length                u64, little-endian
+//! SHA-256                   of all before it, 32 bytes
+//! ```
+//!
+//! A part is written from beginning to end, and is there only once it is whole.
+
+use crate::ProjectError;
+use atomic_write_file::AtomicWriteFile;
+use serde_json::Value;
+use sha2::{Digest, Sha256};
+use std::fs::File;
+use std::io::{BufReader, BufWriter, Read, Seek, SeekFrom, Write};
+use std::path::{Path, PathBuf};
+
+const MAGIC: &[u8] = b"focus-brush part 1\n";
+
+/// Bytes behind the description: its length, and the seal.
+const END: u64 = 8 + 32;
+
+/// A description is no longer, bytes.
+const LONGEST_DESCRIPTION: u64 = 64 << 20;
+
+/// Where numbers are in a part.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Section {
+    /// The first byte.
+    pub first: u64,
+    /// How many numbers of 32 bits.
+    pub count: u64,
+}
+
+/// Writes a part.
+pub struct PartWriter {
+    file: PathBuf,
+    out: BufWriter<AtomicWriteFile>,
+    hash: Sha256,
+    written: u64,
+}
+
+impl PartWriter {
+    /// Begins a part.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn begin(file: &Path) -> Result<Self, ProjectError> {
+        let error = |source| ProjectError::Write { file: file.to_owned(), source };
+        let target = std::fs::canonicalize(file).unwrap_or_else(|_| file.to_owned());
+        let out = BufWriter::new(AtomicWriteFile::open(target).map_err(error)?);
+        let mut new = Self { file: file.to_owned(), out, hash: Sha256::new(), written: 0 };
+        new.put(MAGIC)?;
+        Ok(new)
+    }
+
+    fn put(&mut self, bytes: &[u8]) -> Result<(), ProjectError> {
+        self.hash.update(bytes);
+        self.written += bytes.len() as u64;
+        self.out.write_all(bytes).map_err(|source| ProjectError::Write { file: self.file.clone(), source })
+    }
+
+    /// Adds floats; returns where.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn floats(&mut self, numbers: impl IntoIterator<Item = f32>) -> Result<Section, ProjectError> {
+        self.words(numbers.into_iter().map(f32::to_bits))
+    }
+
+    /// Adds integers; returns where.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn words(&mut self, numbers: impl IntoIterator<Item = u32>) -> Result<Section, ProjectError> {
+        const TOGETHER: usize = 1 << 16;
+        let first = self.written;
+        let mut bytes = Vec::with_capacity(TOGETHER);
+        for number in numbers {
+            bytes.extend(number.to_le_bytes());
+            if bytes.len() == TOGETHER {
+                self.put(&bytes)?;
+                bytes.clear();
+            }
+        }
+        self.put(&bytes)?;
+        Ok(Section { first, count: (self.written - first) / 4 })
+    }
+
+    /// Ends the part with what it is.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn finish(mut self, what: &Value) -> Result<(), ProjectError> {
+        let text = what.to_string();
+        self.put(text.as_bytes())?;
+        self.put(&(text.len() as u64).to_le_bytes())?;
+        let seal = self.hash.clone().finalize();
+        self.put(&seal)?;
+        let Self { file, out, .. } = self;
+        let error = |source| ProjectError::Write { file: file.clone(), source };
+        let out = out.into_inner().map_err(|failed| error(failed.into_error()))?;
+        out.sync_all().and_then(|()| out.commit()).map_err(error)
+    }
+}
+
+/// A part that is whole.
+#[derive(Clone, Debug)]
+pub struct PartFile {
+    /// Where it is.
+    pub file: PathBuf,
+    /// What its sections are.
+    pub what: Value,
+}
+
+impl PartFile {
+    /// Opens a part, and reads all of it once.
+    ///
+    /// # Errors
+    /// It cannot be read, is something else, or is not whole.
+    pub fn open(file: &Path) -> Result<Self, ProjectError> {
+        let error = |source| ProjectError::Read { file: file.to_owned(), source };
+        let cut = || {
+            let problem = "is cut short or damaged";
+            ProjectError::content(file, problem, "render its tile again, or take another copy")
+        };
+        let mut from = File::open(file).map_err(error)?;
+        let length = from.metadata().map_err(error)?.len();
+        let mut magic = vec![0; MAGIC.len().min(length as usize)];
+        from.read_exact(&mut magic).map_err(error)?;
+        if !MAGIC.starts_with(&magic) || magic.is_empty() {
+            let problem = "is no part of a picture";
+            return Err(ProjectError::content(file, problem, "give what render --tiles --shard wrote"));
+        }
+        let sealed =
+            length.checked_sub(32).filter(|sealed| *sealed >= MAGIC.len() as u64 + 8).ok_or_else(cut)?;
+        from.seek(SeekFrom::Start(0)).map_err(error)?;
+        let mut hash = Sha256::new();
+        let mut rest = BufReader::with_capacity(1 << 20, from.take(sealed));
+        std::io::copy(&mut rest, &mut HashOf(&mut hash)).map_err(error)?;
+        let mut from = rest.into_inner().into_inner();
+        let mut seal = [0; 32];
+        from.seek(SeekFrom::Start(sealed)).and_then(|_| from.read_exact(&mut seal)).map_err(error)?;
+        if hash.finalize()[..] != seal {
+            return Err(cut());
+        }
+        let mut of_text = [0; 8];
+        let end = length - END;
+        from.seek(SeekFrom::Start(end)).and_then(|_| from.read_exact(&mut of_text)).map_err(error)?;
+        let of_text = u64::from_le_bytes(of_text);
+        let first = end.checked_sub(of_text).filter(|_| of_text <= LONGEST_DESCRIPTION).ok_or_else(cut)?;
+        let mut text = vec![0; of_text as usize];
+        from.seek(SeekFrom::Start(first)).and_then(|_| from.read_exact(&mut text)).map_err(error)?;
+        let what = serde_json::from_slice(&text).map_err(|_| cut())?;
+        Ok(Self { file: file.to_owned(), what })
+    }
+
+    /// Reads a section from its beginning on.
+    ///
+    /// # Errors
+    /// The file cannot be read.
+    pub fn read(&self, section: Section) -> Result<Numbers, ProjectError> {
+        let error = |source| ProjectError::Read { file: self.file.clone(), source };
+        let mut from = File::open(&self.file).map_err(error)?;
+        from.seek(SeekFrom::Start(section.first)).map_err(error)?;
+        let from = BufReader::with_capacity(1 << 16, from.take(section.count.saturating_mul(4)));
+        Ok(Numbers { file: self.file.clone(), from, bytes: Vec::new() })
+    }
+}
+
+/// The numbers of a section, one after the other.
+pub struct Numbers {
+    file: PathBuf,
+    from: BufReader<std::io::Take<File>>,
+    bytes: Vec<u8>,
+}
+
+impl Numbers {
+    /// The next so many integers.
+    ///
+    /// # Errors
+    /// There are fewer, or the file cannot be read.
+    pub fn words(&mut self, count: usize) -> Result<Vec<u32>, ProjectError> {
+        self.bytes.resize(4 * count, 0);
+        self.from
+            .read_exact(&mut self.bytes)
+            .map_err(|source| ProjectError::Read { file: self.file.clone(), source })?;
+        let (words, _) = self.bytes.as_chunks::<4>();
+        Ok(words.iter().map(|word| u32::from_le_bytes(*word)).collect())
+    }
+
+    /// The next so many floats.
+    ///
+    /// # Errors
+    /// There are fewer, or the file cannot be read.
+    pub fn floats(&mut self, count: usize) -> Result<Vec<f32>, ProjectError> {
+        Ok(self.words(count)?.into_iter().map(f32::from_bits).collect())
+    }
+}
+
+struct HashOf<'a>(&'a mut Sha256);
+
+impl Write for HashOf<'_> {
+    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+        self.0.update(bytes);
+        Ok(bytes.len())
+    }
+    fn flush(&mut self) -> std::io::Result<()> {
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    #[test]
+    fn a_part_is_read_as_it_was_written_or_not_at_all() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("a.part");
+        let mut part = PartWriter::begin(&file).unwrap();
+        let floats = part.floats((0..70_000).map(|k| k as f32 * 0.5)).unwrap();
+        let words = part.words([7, u32::MAX, 0]).unwrap();
+        assert!(!file.exists(), "it is not yet whole");
+        part.finish(&json!({ "tile": 3 })).unwrap();
+        let read = PartFile::open(&file).unwrap();
+        assert_eq!(read.what, json!({ "tile": 3 }));
+        let mut numbers = read.read(floats).unwrap();
+        assert_eq!(numbers.floats(3).unwrap(), [0.0, 0.5, 1.0]);
+        assert_eq!(numbers.floats(69_997).unwrap()[69_996], 69_999.0 * 0.5);
+        assert!(numbers.words(1).is_err(), "it has no more");
+        assert_eq!(read.read(words).unwrap().words(3).unwrap(), [7, u32::MAX, 0]);
+        let whole = std::fs::read(&file).unwrap();
+        for length in [0, 3, 40, whole.len() / 2, whole.len() - 1] {
+            std::fs::write(&file, &whole[..length]).unwrap();
+            assert!(PartFile::open(&file).is_err(), "{length}");
+        }
+        for at in [MAGIC.len() + 5, whole.len() - 50, whole.len() - 33, whole.len() - 1] {
+            let mut flipped = whole.clone();
+            flipped[at] ^= 1;
+            std::fs::write(&file, &flipped).unwrap();
+            let error = PartFile::open(&file).unwrap_err().to_string();
+            assert!(error.contains("cut short or damaged"), "{at}: {error}");
+        }
+        std::fs::write(&file, b"something else").unwrap();
+        assert!(PartFile::open(&file).unwrap_err().to_string().contains("no part of a picture"));
+    }
+}

@@ -1,0 +1,185 @@
+//! A tile, drawn to its part.
+
+use super::crop::{CropDrawer, CropFailure, DrawnCrop};
+use super::grid::pieces;
+use super::lit::Lit;
+use super::part::{Matte, NamedThings, NumbersAt, Piece, Sums};
+use crate::error::SessionError;
+use crate::jobs::Steps;
+use crate::light_field::is_photographed;
+use crate::output::{Aov, Known, Ranking, RenderOptions, Things, light_of_photographs, seen_in};
+use baselines::FirstHits;
+use focus::Focus;
+use glam::{DVec3, Vec3};
+use lens::{Camera, FocusOffset, Picture};
+use project::{Cryptomatte, Layer, PartWriter, Section};
+use scene::SurfacePoint;
+use splat::{Crop, Integers};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+use trace::{Leaving, Radiance, Tracer};
+
+/// A picture that is drawn in tiles.
+#[derive(Clone, Copy)]
+pub(super) struct Shot<'a> {
+    pub tracer: &'a Arc<Tracer>,
+    pub camera: &'a Camera,
+    pub focus: &'a Focus,
+    pub options: &'a RenderOptions,
+}
+
+impl Shot<'_> {
+    /// The light of the picture, and of what a pinhole sees if that is asked for.
+    fn lit(self, steps: &dyn Steps) -> Result<(Lit, Option<Lit>), SessionError> {
+        let Self { tracer, camera, focus, options } = self;
+        let lit = Lit::new(tracer, camera, focus.clone(), options.clone(), steps)?;
+        if !options.aovs.contains(&Aov::Pinhole) {
+            return Ok((lit, None));
+        }
+        let camera = Camera { aperture_radius: 0.0, ..camera.clone() };
+        let unpainted = Focus::constant(tracer.scene().clone(), FocusOffset::STANDARD);
+        let aovs = options.aovs.iter().copied().filter(|aov| *aov == Aov::Alpha).collect();
+        let options = RenderOptions { aovs, ..options.clone() };
+        let pinhole = Lit::new(tracer, &camera, unpainted, options, steps)?;
+        Ok((lit, Some(pinhole)))
+    }
+
+    /// Draws a tile, and puts its numbers in a part.
+    pub fn draw(
+        self,
+        tile: Crop,
+        integers: Integers,
+        part: &mut PartWriter,
+        steps: &dyn Steps,
+    ) -> Result<Vec<Piece>, CropFailure> {
+        let (lit, pinhole) = self.lit(steps)?;
+        let drawer = CropDrawer::new(&lit);
+        let pinhole = pinhole.as_ref().map(CropDrawer::new);
+        let cells = u64::from(self.options.cells_a_side);
+        let most = pinhole.iter().chain([&drawer]).map(CropDrawer::most_px).min().unwrap_or(u64::MAX);
+        let mut drawn = Vec::new();
+        for crop in pieces(tile, most / (cells * cells)) {
+            let DrawnCrop { picture, alpha, mattes } = drawer.draw(crop, integers, steps)?;
+            let sums = [part.floats(picture.numbers)?, part.floats(picture.knots)?];
+            let picture = Sums::new(picture.form, picture.facts, sums);
+            let mut planes = BTreeMap::new();
+            let mut put = |part: &mut PartWriter, layer: Layer| -> Result<(), SessionError> {
+                let numbers: NumbersAt = part.floats(layer.values)?.into();
+                planes.insert(layer.name, numbers);
+                Ok(())
+            };
+            let name = Layer::ALPHA.to_string();
+            if let Some(values) = alpha.filter(|_| self.options.aovs.contains(&Aov::Alpha)) {
+                put(part, Layer { name, values })?;
+            }
+            let of_pinhole = match &pinhole {
+                None => None,
+                Some(drawer) => {
+                    // Nothing is painted, and no pixel covered twice: the finest integers hold it.
+                    let drawn = drawer.draw(crop, Integers::default(), steps).map_err(without_kind)?;
+                    let picture = drawn.picture;
+                    let sums = [part.floats(picture.numbers)?, part.floats(picture.knots)?];
+                    if let Some(values) = drawn.alpha {
+                        put(part, Layer { name: format!("{}.A", Layer::PINHOLE), values })?;
+                    }
+                    Some(Sums::new(picture.form, picture.facts, sums))
+                }
+            };
+            for layer in self.layers(crop, steps)? {
+                put(part, layer)?;
+            }
+            let mattes = mattes.iter().map(|ranking| matte(part, ranking)).collect::<Result<_, _>>()?;
+            let Crop { corner, size } = crop;
+            drawn.push(Piece { corner, size, picture, pinhole: of_pinhole, planes, mattes });
+        }
+        Ok(drawn)
+    }
+
+    /// The layers of a crop that first hits tell.
+    fn layers(self, crop: Crop, steps: &dyn Steps) -> Result<Vec<Layer>, SessionError> {
+        let Self { tracer, camera, focus, options } = self;
+        let told: Vec<Aov> =
+            options.aovs.iter().copied().filter(|aov| aov.needs_first_hits() || *aov == Aov::Seen).collect();
+        let [columns, rows] = [0, 1].map(|axis| crop.corner[axis]..crop.corner[axis] + crop.size[axis]);
+        let asks = told.iter().any(|aov| aov.needs_first_hits());
+        let hits = asks.then(|| {
+            let window = [columns.clone(), rows.clone()];
+            FirstHits::trace_part(tracer, &Dark, focus, camera, window, &*steps.begin("first hits"))
+        });
+        let hits = hits.transpose()?;
+        let is_captured = is_photographed(tracer) || tracer.scene().picture.is_some();
+        let seen = match told.contains(&Aov::Seen) && is_captured {
+            false => None,
+            true => {
+                let light = light_of_photographs(tracer, steps)?;
+                let pixels = rows.flat_map(|y| columns.clone().map(move |x| y * camera.width + x));
+                Some(seen_in(tracer, camera, light.as_deref(), pixels.collect()))
+            }
+        };
+        let known = Known {
+            picture: &Picture::black(0, 0),
+            hits: hits.as_ref(),
+            estimate: None,
+            seen: seen.as_deref(),
+            mattes: None,
+            pinhole: None,
+            camera,
+            coc: options.coc,
+            overscan: options.overscan,
+        };
+        Ok(told.iter().flat_map(|aov| aov.layers(&known)).collect())
+    }
+
+    /// The things of which there are mattes, by kind.
+    pub fn things(self) -> Vec<NamedThings> {
+        if !self.options.wanted_mattes().is_some_and(|wanted| wanted.crypto) {
+            return Vec::new();
+        }
+        let scene = self.tracer.scene();
+        let named = |Things { kind, said, names, .. }: Things| {
+            let [kind, said] = [kind, said].map(String::from);
+            NamedThings { kind, said, names }
+        };
+        vec![named(Things::objects(scene)), named(Things::materials(scene))]
+    }
+
+    /// What a file that holds the layers has to say of them, as attributes.
+    pub fn attributes(self) -> BTreeMap<String, String> {
+        let things = self.things().into_iter();
+        let mattes =
+            things.map(|NamedThings { kind, names, .. }| Cryptomatte { kind, names, ranks: Vec::new() });
+        let mut attributes: BTreeMap<_, _> = mattes.flat_map(|matte| matte.attributes()).collect();
+        if self.options.aovs.contains(&Aov::CircleOfConfusion) {
+            attributes.insert("focusBrush.cocConvention".into(), self.options.coc.name().into());
+        }
+        attributes
+    }
+}
+
+fn without_kind(failure: CropFailure) -> CropFailure {
+    match failure {
+        CropFailure::TooFine(_) => CropFailure::Other(splat::SplatError::Overflow.into()),
+        other => other,
+    }
+}
+
+fn matte(part: &mut PartWriter, ranking: &Ranking) -> Result<Matte, SessionError> {
+    let counts: Section = part.words(ranking.rows.iter().map(|row| row.len() as u32))?;
+    let entries = ranking.rows.iter().flatten();
+    let entries = part.words(entries.flat_map(|entry| [entry.column, entry.thing, entry.share.to_bits()]))?;
+    let Ranking { needed, left_out, .. } = *ranking;
+    Ok(Matte { counts: counts.into(), entries: entries.into(), needed, left_out })
+}
+
+/// No light, where none is asked for.
+struct Dark;
+
+impl Radiance for Dark {
+    fn leaving(&self, _point: SurfacePoint, _eye: DVec3) -> Leaving {
+        Leaving::default()
+    }
+
+    fn from_infinity(&self, _direction: DVec3) -> Vec3 {
+        Vec3::ZERO
+    }
+}

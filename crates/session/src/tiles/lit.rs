@@ -1,0 +1,48 @@
+//! What a picture in tiles is lit and baked by.
+
+use crate::error::SessionError;
+use crate::jobs::Steps;
+use crate::light_field::{LightQuality, light};
+use crate::output::{RenderOptions, WantedMattes};
+use focus::Focus;
+use lens::Camera;
+use salf::{BakeOptions, PartsBaker};
+use std::sync::Arc;
+use trace::{Radiance, Tracer};
+
+/// The light of a picture that is summed: the picture itself, or what a pinhole sees.
+pub(super) struct Lit {
+    pub tracer: Arc<Tracer>,
+    /// Of the light field: as much finer as the options say.
+    pub finer: Camera,
+    pub focus: Focus,
+    pub options: RenderOptions,
+    pub mattes: Option<WantedMattes>,
+    light: Arc<dyn Radiance + Send + Sync>,
+    bake: BakeOptions,
+}
+
+impl Lit {
+    /// Of what a camera shows of a scene that is focused so.
+    pub fn new(
+        tracer: &Arc<Tracer>,
+        camera: &Camera,
+        focus: Focus,
+        options: RenderOptions,
+        steps: &dyn Steps,
+    ) -> Result<Self, SessionError> {
+        let finer = options.finer(camera)?;
+        let bake = BakeOptions {
+            tolerance_px: options.tolerance_px * f64::from(options.cells_a_side),
+            ..BakeOptions::for_focus(tracer, &finer, &focus)
+        };
+        let light = light(tracer, &finer, LightQuality::Fine, &*steps.begin("light"))?;
+        let mattes = options.wanted_mattes();
+        Ok(Self { tracer: tracer.clone(), finer, focus, options, mattes, light, bake })
+    }
+
+    /// Bakes parts of its light field.
+    pub fn baker(&self) -> PartsBaker<'_> {
+        PartsBaker::new(&self.tracer, &*self.light, &self.finer, &self.bake, &self.focus)
+    }
+}

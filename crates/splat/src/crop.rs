@@ -1,0 +1,48 @@
+//! A picture in crops: each is summed by itself, from parts of the light field one after the other, and all of them join to the picture of
+//! the whole, bit for bit.
+//!
+//! ```text
+//! let mut sums = CropSums::new(&options);                 // a crop of the picture
+//! sums.add(&part_of_the_light_field, …)?;                 // all parts whose light may reach it, in any order
+//! let picture = sums.picture(progress)?;                  // numbers, which may go to a file
+//!
+//! let mut joining = Joining::new(size);                   // the whole picture
+//! joining.add_knots(y, …); joining.settle();              // what gains are made of, row by row
+//! joining.add_shared(y, &mut row); joining.find_rest();   // of a painted picture
+//! joining.join(y, &mut row);                              // a row of the picture
+//! ```
+//!
+//! Sums are integers, and nodes are drawn from their place within the whole. What a picture decides as a whole is left to who joins:
+//! gains, for which crops tell what each of their rows brings to the knots ([`crate::knots`]); whether anything is painted; and
+//! whether its integers are the finest that hold it ([`Integers`]).
+
+mod integers;
+mod joining;
+mod picture;
+mod row;
+mod sums;
+
+pub use integers::{Integers, Kind};
+pub use joining::Joining;
+pub use picture::{CropFacts, CropPicture};
+pub use row::{CropForm, CropRow, KNOT_NUMBERS};
+pub use sums::{CropError, CropOptions, CropSums};
+
+use crate::knots::SPACING;
+
+/// A part of a picture, px.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Crop {
+    /// The first column and row: multiples of [`Self::ALIGNMENT`].
+    pub corner: [u32; 2],
+    /// Columns and rows: multiples of it, too, but where the picture ends.
+    pub size: [u32; 2],
+}
+
+impl Crop {
+    /// Where crops may meet, px: knots of gains lie so far apart.
+    pub const ALIGNMENT: u32 = SPACING as u32;
+}
+
+#[cfg(test)]
+mod tests;
