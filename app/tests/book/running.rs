@@ -1,11 +1,15 @@
 //! Every command of the book runs, in the order of its page.
 //!
 //! Commands stand in blocks of code; a block that is fenced as `text` shows a form, with names to be filled in, and is passed over. A line
-//! that ends in a backslash goes on; two blanks end a command, what follows tells of it.
+//! that ends in a backslash goes on; two blanks end a command, what follows tells of it. Pictures that are large for what a page tells of them are
+//! small here.
 
 use crate::pages::{lines, pages, repository};
 use crate::workplace::workplace;
 use std::process::Command;
+
+/// The size of pictures that are large, and of those that stand for them.
+const LARGE: [&str; 2] = ["8192x4608", "256x144"];
 
 /// A page's commands, each with the number of its line.
 fn commands(text: &str) -> Vec<(usize, String)> {
@@ -54,7 +58,7 @@ fn every_command_of_the_book_runs() {
         for (number, command) in commands {
             count += 1;
             let output = Command::new("sh")
-                .args(["-ec", &command])
+                .args(["-ec", &command.replace(LARGE[0], LARGE[1])])
                 .current_dir(place.path())
                 .env("PATH", &path)
                 .env("XDG_CACHE_HOME", place.path().join("cache"))
