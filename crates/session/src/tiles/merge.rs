@@ -233,8 +233,8 @@ impl MergedMatte<'_> {
             let [counts, entries] = open;
             let count = counts.words(1)?.first().copied().unwrap_or(0);
             let count = u64::from(count).min(piece.matte.entries.count) as usize;
-            let (entries, _) = (entries.words(3 * count)?, ());
-            let (entries, _) = entries.as_chunks::<3>();
+            let numbers = entries.words(3 * count)?;
+            let (entries, _) = numbers.as_chunks::<3>();
             found.extend(entries.iter().map(|&[column, thing, share]| Entry {
                 column: piece.first_column.saturating_add(column),
                 thing,
