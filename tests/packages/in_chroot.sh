@@ -66,8 +66,9 @@ for kind in $kinds; do
         within source sh -c 'apt-get -q update && apt-get -q install -y --no-install-recommends gcc g++ libclang-dev libc6-dev'
         mkdir -p "$place/source/rust"
         cp -a "$(rustc --print sysroot)/." "$place/source/rust/"
-        # No network: a namespace without any.
-        unshare --net chroot "$place/source" /usr/bin/env -i PATH=/rust/bin:/usr/bin:/bin HOME=/root LANG=C.UTF-8 \
+        # No network: a namespace without any. The compiler finds its libraries by /proc.
+        unshare --net --mount sh -c 'mount -t proc proc "$1/proc" && shift && exec chroot "$@"' sh \
+            "$place/source" "$place/source" /usr/bin/env -i PATH=/rust/bin:/usr/bin:/bin HOME=/root LANG=C.UTF-8 \
             CARGO_BUILD_JOBS="${JOBS:-$(nproc)}" sh -c "cd /opt/$folder && cargo build --release -p focus-brush"
         tried source "/opt/$folder/target/release/focus-brush" "/opt/$folder/assets/demo/demo.fbrush"
         ;;

@@ -27,7 +27,7 @@ pub struct DepthStroke {
     pub radius_px: f32,
     /// The share of the radius with full strength, in [0, 1].
     pub hardness: f32,
-    /// How far it goes, in [0, 1]: of [`DEEPEST`], of the way to the mean.
+    /// How far it goes, in [0, 1]: of what one full stroke pulls or pushes, or of the way to the mean.
     pub strength: f32,
 }
 
