@@ -184,5 +184,5 @@ const MOST_BLUR_PX: f32 = 80.0;
 
 /// How far the light of a square reaches whose aperture images have this radius, px: see `splat`.
 fn reach_px(radius_px: f32) -> f32 {
-    radius_px * 1.02 + WIDEST_FOOTPRINT_PX + 8.0
+    radius_px * 1.15 + WIDEST_FOOTPRINT_PX + 8.0
 }

@@ -70,7 +70,7 @@ pub const SQUARE_PX: i32 = 4 * Domain::BLOCK;
 pub struct Bound {
     /// The largest 1/z.
     pub inverse_depth: f32,
-    /// The largest radius of an aperture image, px.
+    /// The largest radius of an aperture image, px; of surfaces that may be edge-on, twice that.
     pub radius_px: f32,
 }
 
@@ -120,10 +120,12 @@ impl Reach {
                 if !range.is_standard() {
                     is_painted.store(true, Ordering::Relaxed);
                 }
+                // What is edge-on leans toward where its weight is, by up to the radius.
+                let wider = if placement.is_on_surface(triangle) { 2.0 } else { 1.0 };
                 squares.visit(scene, view, placement, triangle, &mut |square, depths| {
                     let bound = Bound {
                         inverse_depth: depths[1] as f32,
-                        radius_px: range.radius_px(view, depths) as f32,
+                        radius_px: (wider * range.radius_px(view, depths)) as f32,
                     };
                     let known = found.entry((part, square)).or_default();
                     *known = known.or(bound);

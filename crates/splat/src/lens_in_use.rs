@@ -99,13 +99,36 @@ impl Placed {
     #[inline(always)]
     pub fn reach(self, node: &SplatNode, axis: usize, side: u32) -> Range<u32> {
         // Coarse levels spread a little further.
+        within(side, self.range(node, axis, 0))
+    }
+
+    /// The columns or rows that its light may reach, and so many more to either side.
+    #[inline(always)]
+    pub fn range(self, node: &SplatNode, axis: usize, more: i32) -> Range<i32> {
+        // Coarse levels spread a little further.
         let center = node.center[axis] >> POSITION_BITS;
         let reach = (self.radius.abs() >> POSITION_BITS) * 65 / 64
             + (node.half_size[axis] as i32 >> (POSITION_BITS - 1))
-            + (5 << self.level);
-        let within = |place: i32| place.clamp(0, side as i32) as u32;
-        within(center - reach)..within(center + reach + 1)
+            + (5 << self.level)
+            + more;
+        center - reach..center + reach + 1
     }
+
+    /// The columns with room for what hardly has any light: runs of what is seen lean toward where the weight is, beyond the image by a
+    /// quarter of it, and of edge-on nodes by up to its radius.
+    #[inline(always)]
+    pub fn wide_columns(self, node: &SplatNode, side: u32) -> Range<u32> {
+        let radius = self.radius.abs() >> POSITION_BITS;
+        let more = if i32::from(node.base) == ONE { radius / 4 } else { radius };
+        within(side, self.range(node, 0, more))
+    }
+}
+
+/// What of a range lies in a picture of `side` columns or rows.
+#[inline(always)]
+fn within(side: u32, range: Range<i32>) -> Range<u32> {
+    let within = |place: i32| place.clamp(0, side as i32) as u32;
+    within(range.start)..within(range.end)
 }
 
 /// Larger aperture images, 1/4096 px, are taken as this large: next to none of their light is in the picture.

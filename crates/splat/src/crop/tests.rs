@@ -196,6 +196,56 @@ fn crops_join_to_the_whole_picture() {
     }
 }
 
+/// Light of what is partly hidden and edge-on leans beyond its image: a crop beside has what the whole has of it.
+#[test]
+fn what_leans_beyond_its_image_is_not_cut_off_where_crops_meet() {
+    let camera = Camera { width: 640, height: 320, aperture_radius: 0.4, ..camera() };
+    let mut far = 0;
+    for trial in 0..60u32 {
+        let mixed = |k: u32| (trial * 8 + k).wrapping_mul(2654435761) >> 8;
+        let random = |k: u32| (mixed(k) % 1000) as f32 / 1000.0;
+        let sample = Sample {
+            center: Vec2::new(250.0 + 140.0 * random(0), 100.0 + 120.0 * random(1)),
+            half_size: Vec2::splat(0.5),
+            inverse_depth: 0.5 + (random(2) - 0.5),
+            weight: 0.2 * random(3),
+            tilt: Vec2::new(2.0 * random(4) - 1.0, 2.0 * random(5) - 1.0),
+            radiance: Vec3::splat(2.0),
+            surface: Some(SurfacePoint { triangle: 0, barycentric: DVec2::ZERO }),
+            is_carried: false,
+            visibility: Visibility::Cells { words: Box::new([u64::MAX << (trial % 20)]) },
+        };
+        let samples = vec![sample].into();
+        let carried = salf::Carried::Standard;
+        let salf = Salf { camera: camera.clone(), margin_px: 0, carried, samples };
+        let mut splatter = Splatter::new(Arc::new(salf.clone()));
+        splatter.set_live(true);
+        splatter.render(&camera, &Corner(None), &Unwatched).unwrap();
+        let picture = splatter.picture();
+        for x in (0..camera.width).step_by(32) {
+            let crop = Crop { corner: [x, 0], size: [32, camera.height] };
+            let mut sums = CropSums::new(CropOptions {
+                camera: &camera,
+                crop,
+                tolerance: Tolerance::NONE,
+                integers: Integers::default(),
+                may_be_painted: true,
+                mattes: 0,
+            });
+            sums.add(&salf, &Corner(None), None, &[], &Unwatched).unwrap();
+            let made = sums.picture().unwrap();
+            for (k, numbers) in made.numbers.chunks(made.form.numbers()).enumerate() {
+                let at = (k as u32 / 32 * camera.width + x + k as u32 % 32) as usize;
+                // Live, what shares the rest is scaled by its share.
+                let found = numbers[3] + numbers[7] * numbers[8];
+                assert_eq!(found, picture.coverage[at], "{trial}: {x}");
+                far += u32::from(found != 0.0);
+            }
+        }
+    }
+    assert!(far > 10_000, "{far}");
+}
+
 /// The light of everything else lands where a little is: integers must be coarser, and are so in all crops.
 #[test]
 fn integers_are_as_fine_as_the_whole_picture_has_them() {

@@ -47,6 +47,7 @@ impl ApertureInUse {
         paint: &'a Paint,
         camera: &Camera,
     ) -> Scene<'a> {
-        Scene { pen: self.pen(nodes, lens), lens, paint, size: [camera.width, camera.height] }
+        let size = [camera.width, camera.height];
+        Scene { pen: self.pen(nodes, lens), lens, paint, size, part_of: None }
     }
 }
