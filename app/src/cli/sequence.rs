@@ -10,7 +10,7 @@ use focus::LensMotion;
 use project::{PictureOptions, read_keys, seal_picture, write_picture};
 use serde_json::json;
 use session::{
-    Baking, FrameFiles, FrameList, FrameOutcome, FrameReport, Rendered, SequenceOptions, SequenceReport,
+    Baking, FrameFiles, FrameList, FrameReport, Outcome, Rendered, SequenceOptions, SequenceReport,
     SessionError, Shard, Take, TakeOptions, render_frames,
 };
 use std::path::{Path, PathBuf};
@@ -78,25 +78,13 @@ fn extension(file: &Path) -> String {
     file.extension().map(|extension| extension.to_string_lossy().to_lowercase()).unwrap_or_default()
 }
 
-fn state(outcome: &FrameOutcome) -> &'static str {
-    match outcome {
-        FrameOutcome::Written => "written",
-        FrameOutcome::Skipped => "skipped",
-        FrameOutcome::Failed(_) => "failed",
-    }
-}
-
 /// Tells of a frame.
 fn tell(console: &Console, report: &FrameReport) {
     let FrameReport { frame, seconds, file, outcome, took_seconds } = report;
     let what = match outcome {
-        FrameOutcome::Written => format!("wrote {} ({took_seconds:.1} s)", file.display()),
-        FrameOutcome::Skipped => format!("{} is finished", file.display()),
-        FrameOutcome::Failed(error) => format!("frame {frame} failed: {error}"),
-    };
-    let error = match outcome {
-        FrameOutcome::Failed(error) => Some(error.to_string()),
-        _ => None,
+        Outcome::Written => format!("wrote {} ({took_seconds:.1} s)", file.display()),
+        Outcome::Skipped => format!("{} is finished", file.display()),
+        Outcome::Failed(error) => format!("frame {frame} failed: {error}"),
     };
     console.event(
         &what,
@@ -104,9 +92,9 @@ fn tell(console: &Console, report: &FrameReport) {
             "frame": frame,
             "at_seconds": seconds,
             "file": path_text(file),
-            "state": state(outcome),
+            "state": outcome.name(),
             "seconds": took_seconds,
-            "error": error,
+            "error": outcome.error().map(ToString::to_string),
         }),
     );
 }
@@ -118,13 +106,13 @@ fn conclude(
     report: &SequenceReport,
     start: Instant,
 ) -> Result<(), Failure> {
-    let written = report.count(|outcome| *outcome == FrameOutcome::Written);
-    let skipped = report.count(|outcome| *outcome == FrameOutcome::Skipped);
+    let written = report.count(|outcome| *outcome == Outcome::Written);
+    let skipped = report.count(|outcome| *outcome == Outcome::Skipped);
     let failed = report.frames.len() - written - skipped;
     let Baking { baked, kept, scenes, seconds, light_seconds } = report.baking;
     let saved = report.saved_seconds();
     if arguments.json {
-        let frame = |frame: &FrameReport| json!({ "frame": frame.frame, "file": path_text(&frame.file), "state": state(&frame.outcome) });
+        let frame = |frame: &FrameReport| json!({ "frame": frame.frame, "file": path_text(&frame.file), "state": frame.outcome.name() });
         say_json(&json!({
             "input": path_text(&arguments.file),
             "frames": report.frames.iter().map(frame).collect::<Vec<_>>(),
@@ -150,10 +138,7 @@ fn conclude(
         line += &format!(" (about {saved:.1} s saved)");
     }
     console.note(&line);
-    let first = report.frames.iter().find_map(|frame| match &frame.outcome {
-        FrameOutcome::Failed(error) => Some(error),
-        _ => None,
-    });
+    let first = report.frames.iter().find_map(|frame| frame.outcome.error());
     match first {
         None => Ok(()),
         Some(error) if written + skipped > 0 => {

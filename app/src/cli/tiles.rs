@@ -7,7 +7,7 @@ use super::render::{check_output, exposure, options, written};
 use super::shot::{opened, shot};
 use super::stopping;
 use serde_json::json;
-use session::{Renderer, TileGrid, TileOptions, TileOutcome, TileReport, TilesReport, render_tiles};
+use session::{Outcome, Renderer, TileGrid, TileOptions, TileReport, TilesReport, render_tiles};
 use std::path::Path;
 use std::time::Instant;
 
@@ -64,25 +64,13 @@ pub fn check_exr(output: &Path) -> Result<(), Failure> {
     Err(Failure::usage(format!("{}: tiles are merged to an EXR (name an .exr)", output.display())))
 }
 
-fn state(outcome: &TileOutcome) -> &'static str {
-    match outcome {
-        TileOutcome::Written => "written",
-        TileOutcome::Skipped => "skipped",
-        TileOutcome::Failed(_) => "failed",
-    }
-}
-
 /// Tells of a tile.
 fn tell(console: &Console, report: &TileReport) {
     let TileReport { tile, of, file, outcome, took_seconds } = report;
     let what = match outcome {
-        TileOutcome::Written => format!("wrote {} ({took_seconds:.1} s)", file.display()),
-        TileOutcome::Skipped => format!("{} is finished", file.display()),
-        TileOutcome::Failed(error) => format!("tile {tile} of {of} failed: {error}"),
-    };
-    let error = match outcome {
-        TileOutcome::Failed(error) => Some(error.to_string()),
-        _ => None,
+        Outcome::Written => format!("wrote {} ({took_seconds:.1} s)", file.display()),
+        Outcome::Skipped => format!("{} is finished", file.display()),
+        Outcome::Failed(error) => format!("tile {tile} of {of} failed: {error}"),
     };
     console.event(
         &what,
@@ -90,9 +78,9 @@ fn tell(console: &Console, report: &TileReport) {
             "tile": tile,
             "of": of,
             "file": path_text(file),
-            "state": state(outcome),
+            "state": outcome.name(),
             "seconds": took_seconds,
-            "error": error,
+            "error": outcome.error().map(ToString::to_string),
         }),
     );
 }
@@ -105,12 +93,12 @@ fn conclude(
     start: Instant,
 ) -> Result<(), Failure> {
     let TilesReport { tiles, merged } = report;
-    let count = |state_of: &str| tiles.iter().filter(|tile| state(&tile.outcome) == state_of).count();
+    let count = |state_of: &str| tiles.iter().filter(|tile| tile.outcome.name() == state_of).count();
     let [written, skipped, failed] = ["written", "skipped", "failed"].map(count);
     let warnings = merged.as_ref().map_or(&[][..], |merged| &merged.warnings);
     console.warn(warnings);
     if arguments.json {
-        let tile = |tile: &TileReport| json!({ "tile": tile.tile, "file": path_text(&tile.file), "state": state(&tile.outcome) });
+        let tile = |tile: &TileReport| json!({ "tile": tile.tile, "file": path_text(&tile.file), "state": tile.outcome.name() });
         say_json(&json!({
             "input": path_text(&arguments.file),
             "file": merged.as_ref().map(|_| path_text(&arguments.output)),
@@ -132,10 +120,7 @@ fn conclude(
         line += &format!("; merged to {}", arguments.output.display());
     }
     console.note(&line);
-    let first = tiles.iter().find_map(|tile| match &tile.outcome {
-        TileOutcome::Failed(error) => Some(error),
-        _ => None,
-    });
+    let first = tiles.iter().find_map(|tile| tile.outcome.error());
     match first {
         None => Ok(()),
         Some(error) if written + skipped > 0 => {

@@ -58,12 +58,10 @@ pub use output::{
 pub use preview::{DrawingCosts, PictureTimes, Preview, PreviewActivity, PreviewKind, Quality};
 pub use relief::{DepthRepair, DepthStroke};
 pub use sequence::{
-    Baking, FrameFiles, FrameList, FrameOutcome, FrameReport, SequenceOptions, SequenceReport, Shard, Take,
+    Baking, FrameFiles, FrameList, FrameReport, Outcome, SequenceOptions, SequenceReport, Shard, Take,
     TakeOptions, WritePicture, render_frames,
 };
 pub use session::{FullSize, Session, SessionOptions};
 pub use slf::PhotographLight;
-pub use tiles::{
-    Merged, TileGrid, TileOptions, TileOutcome, TileReport, TilesReport, merge_tiles, render_tiles,
-};
+pub use tiles::{Merged, TileGrid, TileOptions, TileReport, TilesReport, merge_tiles, render_tiles};
 pub use trace::truth::Region;

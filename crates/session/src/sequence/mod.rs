@@ -14,6 +14,7 @@
 mod baker;
 mod frame_files;
 mod frame_list;
+mod outcome;
 mod plan;
 mod run;
 mod scene_in_time;
@@ -23,7 +24,8 @@ mod take;
 pub use baker::Baking;
 pub use frame_files::FrameFiles;
 pub use frame_list::FrameList;
+pub use outcome::Outcome;
 pub(crate) use plan::still_plan;
-pub use run::{FrameOutcome, FrameReport, SequenceOptions, SequenceReport, WritePicture, render_frames};
+pub use run::{FrameReport, SequenceOptions, SequenceReport, WritePicture, render_frames};
 pub use shard::Shard;
 pub use take::{Take, TakeOptions};

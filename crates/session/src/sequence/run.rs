@@ -2,6 +2,7 @@
 
 use super::baker::{Baking, FrameBaker};
 use super::frame_files::FrameFiles;
+use super::outcome::Outcome;
 use super::plan::plan;
 use super::take::Take;
 use crate::error::SessionError;
@@ -31,17 +32,6 @@ pub struct SequenceOptions<'a> {
     pub progress: &'a dyn Progress,
 }
 
-/// What became of a frame.
-#[derive(Clone, Debug, PartialEq)]
-pub enum FrameOutcome {
-    /// It was rendered and written.
-    Written,
-    /// It was there already, by the same plan, and whole.
-    Skipped,
-    /// It could not be made.
-    Failed(SessionError),
-}
-
 /// A frame of the report.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FrameReport {
@@ -52,7 +42,7 @@ pub struct FrameReport {
     /// Its picture.
     pub file: PathBuf,
     /// What became of it.
-    pub outcome: FrameOutcome,
+    pub outcome: Outcome,
     /// How long it took, s.
     pub took_seconds: f64,
 }
@@ -70,7 +60,7 @@ pub struct SequenceReport {
 
 impl SequenceReport {
     /// How many frames had an outcome like this.
-    pub fn count(&self, is_like: impl Fn(&FrameOutcome) -> bool) -> usize {
+    pub fn count(&self, is_like: impl Fn(&Outcome) -> bool) -> usize {
         self.frames.iter().filter(|frame| is_like(&frame.outcome)).count()
     }
 
@@ -105,7 +95,7 @@ pub fn render_frames(
             ) => {
                 return Err(error);
             }
-            Err(error) => FrameOutcome::Failed(error),
+            Err(error) => Outcome::Failed(error),
         };
         let took_seconds = start.elapsed().as_secs_f64();
         let of_frame = FrameReport { frame, seconds, file, outcome, took_seconds };
@@ -124,7 +114,7 @@ fn one(
     options: &SequenceOptions<'_>,
     warnings: &mut Vec<String>,
     steps: &dyn Steps,
-) -> Result<FrameOutcome, SessionError> {
+) -> Result<Outcome, SessionError> {
     let at = take.at(seconds, options.progress)?;
     at.camera
         .validate()
@@ -133,7 +123,7 @@ fn one(
     let baked = field.as_ref().map(|field| field.name()).unwrap_or_default();
     let plan = plan(&at, &baked, &options.render, &options.written);
     if is_finished(file, &plan) {
-        return Ok(FrameOutcome::Skipped);
+        return Ok(Outcome::Skipped);
     }
     let rendered = baker.render(&at, field.as_ref(), steps)?;
     let mut odd = at
@@ -148,5 +138,5 @@ fn one(
     warnings.sort_unstable();
     warnings.dedup();
     (options.write)(file, &rendered, plan)?;
-    Ok(FrameOutcome::Written)
+    Ok(Outcome::Written)
 }

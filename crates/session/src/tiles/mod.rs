@@ -22,4 +22,4 @@ mod run;
 
 pub use grid::TileGrid;
 pub use merge::{Merged, merge_tiles};
-pub use run::{TileOptions, TileOutcome, TileReport, TilesReport, render_tiles};
+pub use run::{TileOptions, TileReport, TilesReport, render_tiles};

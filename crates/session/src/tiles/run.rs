@@ -9,7 +9,7 @@ use crate::document::Input;
 use crate::error::SessionError;
 use crate::jobs::Steps;
 use crate::output::{RenderOptions, tracer_of};
-use crate::sequence::{Shard, still_plan};
+use crate::sequence::{Outcome, Shard, still_plan};
 use focus::Focus;
 use lens::Camera;
 use progress::Progress;
@@ -38,17 +38,6 @@ pub struct TileOptions<'a> {
     pub progress: &'a dyn Progress,
 }
 
-/// What became of a tile.
-#[derive(Clone, Debug, PartialEq)]
-pub enum TileOutcome {
-    /// It was drawn and written.
-    Written,
-    /// Its part was there already, by the same plan, and whole.
-    Skipped,
-    /// It could not be made.
-    Failed(SessionError),
-}
-
 /// A tile of the report.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TileReport {
@@ -59,7 +48,7 @@ pub struct TileReport {
     /// Its part.
     pub file: PathBuf,
     /// What became of it.
-    pub outcome: TileOutcome,
+    pub outcome: Outcome,
     /// How long it took, s.
     pub took_seconds: f64,
 }
@@ -119,7 +108,7 @@ pub fn render_tiles(
             let outcome = match one(shot, *tile, part, integers, &file, steps) {
                 Ok(outcome) => outcome,
                 Err(error @ (SessionError::Cancelled | SessionError::TryAgain(_))) => return Err(error),
-                Err(error) => TileOutcome::Failed(error),
+                Err(error) => Outcome::Failed(error),
             };
             let took_seconds = start.elapsed().as_secs_f64();
             let (tile, of) = (number + 1, options.grid.count());
@@ -127,7 +116,7 @@ pub fn render_tiles(
             (options.tell)(&told);
             report.tiles.push(told);
         }
-        let is_whole = !report.tiles.iter().any(|tile| matches!(tile.outcome, TileOutcome::Failed(_)));
+        let is_whole = report.tiles.iter().all(|tile| tile.outcome.error().is_none());
         if options.shard.is_some() || !is_whole {
             return Ok(report);
         }
@@ -156,9 +145,9 @@ fn one(
     mut integers: Integers,
     file: &Path,
     steps: &dyn Steps,
-) -> Result<TileOutcome, SessionError> {
+) -> Result<Outcome, SessionError> {
     if is_finished(file, &part, integers) {
-        return Ok(TileOutcome::Skipped);
+        return Ok(Outcome::Skipped);
     }
     loop {
         let mut writer = PartWriter::begin(file)?;
@@ -167,7 +156,7 @@ fn one(
                 let part = Part { pieces, ..part };
                 let what = serde_json::to_value(&part);
                 writer.finish(&what.map_err(|error| SessionError::Internal(error.to_string()))?)?;
-                return Ok(TileOutcome::Written);
+                return Ok(Outcome::Written);
             }
             Err(CropFailure::Other(error)) => return Err(error),
             Err(CropFailure::TooFine(kind)) => {
