@@ -21,6 +21,7 @@ pub use paper::Paper;
 pub use pen::{ALL, Form, Pen};
 
 use crate::canvas::Word;
+use crate::fixed::mul_shift;
 use crate::lens_in_use::Placed;
 use crate::nodes::SplatNode;
 
@@ -80,7 +81,8 @@ impl Pen<'_> {
                         image.lean(node, self.tilt_shift);
                         image.shift(self.mean);
                         let half_size = [node.half_size[0].into(), node.half_size[1].into()];
-                        self.draw_box(&image, half_size, self.half, paper, sign);
+                        let half = self.half.map(|half| mul_shift(image.radius.unsigned_abs(), half, 16));
+                        self.draw_box(&image, half_size, half, paper, sign);
                     }
                     Form::Parts(share) => {
                         image.share = share;

@@ -19,26 +19,6 @@ pub struct Scene<'a> {
     pub paint: &'a Paint,
     /// Pixel columns and rows of the picture.
     pub size: [u32; 2],
-    /// If it is a part of a larger one: which.
-    pub part_of: Option<Whole>,
-}
-
-/// A picture that another is a part of.
-#[derive(Clone, Copy)]
-pub struct Whole {
-    /// Its first column, counted from that of the part.
-    pub first_column: i32,
-    /// Its columns.
-    pub width: u32,
-}
-
-impl Whole {
-    /// Whether a node is drawn in the whole.
-    #[inline(always)]
-    fn has(self, node: &SplatNode, placed: Placed) -> bool {
-        let columns = placed.range(node, 0, 0);
-        columns.start < self.first_column + self.width as i32 && columns.end > self.first_column
-    }
 }
 
 impl Scene<'_> {
@@ -66,12 +46,7 @@ impl Scene<'_> {
                 let placed = self.lens.place(node, &focus);
                 if node.is_leaf() || self.lens.may_merge(node, &focus, placed) {
                     // One by one, and so wherever nodes are many: what maps an array is not always inlined.
-                    let columns = match self.part_of {
-                        None => placed.reach(node, 0, self.size[0]),
-                        // Whatever the whole draws leaves all of its light.
-                        Some(whole) if whole.has(node, placed) => placed.wide_columns(node, self.size[0]),
-                        Some(_) => 0..0,
-                    };
+                    let columns = placed.reach(node, 0, self.size[0]);
                     let rows = placed.reach(node, 1, self.size[1]);
                     if !columns.is_empty() && !rows.is_empty() {
                         visit(index, node, placed, rows);

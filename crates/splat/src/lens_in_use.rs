@@ -98,37 +98,39 @@ impl Placed {
     /// The columns (`axis` 0) or rows (1) of a picture of `side` of them that the light of a node drawn so may reach.
     #[inline(always)]
     pub fn reach(self, node: &SplatNode, axis: usize, side: u32) -> Range<u32> {
-        // Coarse levels spread a little further.
-        within(side, self.range(node, axis, 0))
+        let range = self.range(node, axis);
+        let within = |place: i32| place.clamp(0, side as i32) as u32;
+        within(range.start)..within(range.end)
     }
 
-    /// The columns or rows that its light may reach, and so many more to either side.
+    /// The columns or rows that its light may reach, whatever the picture's size.
     #[inline(always)]
-    pub fn range(self, node: &SplatNode, axis: usize, more: i32) -> Range<i32> {
-        // Coarse levels spread a little further.
+    pub fn range(self, node: &SplatNode, axis: usize) -> Range<i32> {
         let center = node.center[axis] >> POSITION_BITS;
-        let reach = (self.radius.abs() >> POSITION_BITS) * 65 / 64
-            + (node.half_size[axis] as i32 >> (POSITION_BITS - 1))
-            + (5 << self.level)
-            + more;
-        center - reach..center + reach + 1
-    }
-
-    /// The columns with room for what hardly has any light: runs of what is seen lean toward where the weight is, beyond the image by a
-    /// quarter of it, and of edge-on nodes by up to its radius.
-    #[inline(always)]
-    pub fn wide_columns(self, node: &SplatNode, side: u32) -> Range<u32> {
         let radius = self.radius.abs() >> POSITION_BITS;
-        let more = if i32::from(node.base) == ONE { radius / 4 } else { radius };
-        within(side, self.range(node, 0, more))
+        // Coarse levels spread a little further.
+        let reach = radius * 33 / 32
+            + if axis == 0 { leaning(node, radius) } else { 0 }
+            + (node.half_size[axis] as i32 >> (POSITION_BITS - 1))
+            + (5 << self.level);
+        center - reach..center + reach + 1
     }
 }
 
-/// What of a range lies in a picture of `side` columns or rows.
+/// How far beyond an image of `radius` its light may lean along a row: parts of a run do toward where the weight is, by tilt·half²/3 of
+/// their weight, where half is half their width.
 #[inline(always)]
-fn within(side: u32, range: Range<i32>) -> Range<u32> {
-    let within = |place: i32| place.clamp(0, side as i32) as u32;
-    within(range.start)..within(range.end)
+fn leaning(node: &SplatNode, radius: i32) -> i32 {
+    let tilt = i32::from(node.tilt[0]).abs() + i32::from(node.tilt[1]).abs();
+    if tilt <= ONE / 8 {
+        radius / 16
+    } else if i32::from(node.base) == ONE {
+        // The weight is nowhere negative: tilt·half is at most the weight.
+        radius / 3
+    } else {
+        // No part leans beyond half its width.
+        radius
+    }
 }
 
 /// Larger aperture images, 1/4096 px, are taken as this large: next to none of their light is in the picture.

@@ -5,7 +5,7 @@ use super::integers::{Integers, Kind};
 use super::picture::{self, CropFacts, CropPicture, Inner};
 use super::row::CropForm;
 use crate::bands::Pace;
-use crate::drawn::{BlockList, Changes, Scene, Whole};
+use crate::drawn::{BlockList, Changes, Scene};
 use crate::lens_in_use::{LensInUse, Tolerance};
 use crate::nodes::{Nodes, Scale};
 use crate::paint::{Paint, STANDARD};
@@ -201,9 +201,7 @@ impl<'a> CropSums<'a> {
         progress: &dyn Progress,
     ) -> Result<(), CropError> {
         let pen = self.aperture.pen(nodes, &self.lens);
-        let Crop { corner, size } = self.outer;
-        let whole = Whole { first_column: -(corner[0] as i32), width: self.options.camera.width };
-        let scene = Scene { pen, lens: &self.lens, paint, size, part_of: Some(whole) };
+        let scene = Scene { pen, lens: &self.lens, paint, size: self.outer.size };
         scene.list_all(None, &mut self.lists, &mut self.changes);
         Ok(sums.add(&scene.pen, &self.lists, &mut self.pace, progress)?)
     }

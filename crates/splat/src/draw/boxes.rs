@@ -33,19 +33,23 @@ impl Pen<'_> {
             }
             let share = mul_shift(mul_shift(image.share, part_of.share, 24), exact as u32, 24);
             let mut part = Image { share, dither: image.dither.wrapping_add(index as u32), ..*image };
-            // Within the part the light leans toward where the weight is.
-            let lean = |k: usize| part_of.mean[k] + tilt[k] * part_of.variance[k] / weight;
+            // Within the part the light leans toward where the weight is, and stays within it however little there is.
+            let lean = |k: usize| {
+                let most = (part_of.half[k] >> 2) as i32;
+                part_of.mean[k] + (tilt[k] * part_of.variance[k] / weight).clamp(-most, most)
+            };
             part.shift([lean(0), lean(1)]);
             let stretched = |k: usize| {
                 let slope = (tilt[k] * depth_share) >> 14;
                 let factor = (ONE + ((slope * part_of.mean[k]) >> 14)).abs().max(ONE / 16) as u32;
                 mul_shift(node.half_size[k] as u32, factor, 14).min(LARGEST_HALF)
             };
-            self.draw_box(&part, [stretched(0), stretched(1)], part_of.half, paper, sign);
+            let half = part_of.half.map(|half| mul_shift(image.radius.unsigned_abs(), half, 16));
+            self.draw_box(&part, [stretched(0), stretched(1)], half, paper, sign);
         }
     }
 
-    /// One box of the light, mean and variance that a partly occluded node sends.
+    /// One box of the light, mean and variance that a partly occluded node sends, within a pixel of its image.
     #[inline(always)]
     pub fn draw_seen_box<W: Word>(&self, image: &mut Image, paper: &mut Paper<W>, sign: i32) {
         let seen = &self.seen[image.node.cells as usize];
@@ -53,11 +57,17 @@ impl Pen<'_> {
         image.share = seen.share;
         let half_size = image.node.half_size;
         let half_size = [u32::from(half_size[0]) >> image.level, u32::from(half_size[1]) >> image.level];
-        let half = [u32::from(seen.half[0]) << 2, u32::from(seen.half[1]) << 2];
+        // Little of what is seen on one side and much on the other has its mean near a side, and spreads no further than the image.
+        let radius = image.radius.unsigned_abs();
+        let half = [0, 1].map(|k| {
+            let beyond_mean = (ONE - i32::from(seen.mean[k]).abs()) as u32;
+            let most = mul_shift(radius, beyond_mean, 14) + PIXEL as u32;
+            mul_shift(radius, seen.half[k].into(), 14).min(most)
+        });
         self.draw_box(image, half_size, half, paper, sign);
     }
 
-    /// A box of the variance of footprint and aperture together; `half` of the aperture as [`BoxPart::half`](super::pen::BoxPart::half).
+    /// A box of the variance of footprint and aperture together: half the sides of a box of either, 1/4096 px.
     #[inline(always)]
     pub fn draw_box<W: Word>(
         &self,
@@ -67,8 +77,6 @@ impl Pen<'_> {
         paper: &mut Paper<W>,
         sign: i32,
     ) {
-        let radius = image.radius.unsigned_abs();
-        let half = [mul_shift(radius, half[0], 16), mul_shift(radius, half[1], 16)];
         let filled = image.filled_pixel(half_size, half);
         if let Some([column, row]) = filled.filter(|at| paper.rows.has_column(at[0])) {
             // What such a box is, without its arithmetic.

@@ -174,11 +174,15 @@ fn too_blurred(level: u32) -> u32 {
     return half - (half >> (2u * level));
 }
 
+fn scaled(image: ptr<function, Image>, share: vec2<u32>, bits: u32) -> vec2<u32> {
+    let radius = u32(abs((*image).radius));
+    return vec2<u32>(mul_shift(radius, share.x, bits), mul_shift(radius, share.y, bits));
+}
+
 fn draw_box(image: ptr<function, Image>, half_size: vec2<u32>, of_aperture: vec2<u32>) {
     let less = too_blurred((*image).level);
-    let radius = u32(abs((*image).radius));
-    let half_x = max(hypotenuse(half_size.x, mul_shift(radius, of_aperture.x, 16u), less), SMALLEST_HALF);
-    let half_y = max(hypotenuse(half_size.y, mul_shift(radius, of_aperture.y, 16u), less), SMALLEST_HALF);
+    let half_x = max(hypotenuse(half_size.x, of_aperture.x, less), SMALLEST_HALF);
+    let half_y = max(hypotenuse(half_size.y, of_aperture.y, less), SMALLEST_HALF);
     let center = (*image).center;
     let top = center.y - i32(half_y);
     let bottom = center.y + i32(half_y);
@@ -202,11 +206,12 @@ fn draw_box(image: ptr<function, Image>, half_size: vec2<u32>, of_aperture: vec2
 }
 
 fn draw_seen_box(image: ptr<function, Image>, through: u32) {
-    let mean = cells[through + 9u];
-    shift_to(image, vec2<i32>(low_half(mean), high_half(mean)));
+    let mean = vec2<i32>(low_half(cells[through + 9u]), high_half(cells[through + 9u]));
+    shift_to(image, mean);
     (*image).share = cells[through + 8u];
     let half = vec2<u32>(cells[through + 10u] & 0xFFFFu, cells[through + 10u] >> 16u);
-    draw_box(image, (*image).node.half_size >> vec2<u32>((*image).level), half << vec2<u32>(2u));
+    let most = scaled(image, vec2<u32>(ONE - abs(mean)), 14u) + u32(PIXEL);
+    draw_box(image, (*image).node.half_size >> vec2<u32>((*image).level), min(scaled(image, half, 14u), most));
 }
 
 fn stretched(half_size: u32, tilt: i32, mean: i32, depth_share: i32) -> u32 {
@@ -228,10 +233,11 @@ fn draw_parts(image: ptr<function, Image>, depth_share: i32) {
         var part = *image;
         part.share = mul_shift(mul_shift((*image).share, of_part.share, 24u), u32(exact), 24u);
         part.dither = (*image).dither + index;
-        shift_to(&part, of_part.mean + tilt * of_part.variance / vec2<i32>(weight));
+        let most = vec2<i32>(of_part.half >> vec2<u32>(2u));
+        shift_to(&part, of_part.mean + clamp(tilt * of_part.variance / vec2<i32>(weight), -most, most));
         let half_x = stretched(node.half_size.x, tilt.x, of_part.mean.x, depth_share);
         let half_y = stretched(node.half_size.y, tilt.y, of_part.mean.y, depth_share);
-        draw_box(&part, vec2<u32>(half_x, half_y), of_part.half);
+        draw_box(&part, vec2<u32>(half_x, half_y), scaled(image, of_part.half, 16u));
     }
 }
 
@@ -427,7 +433,7 @@ fn draw_asked(image: ptr<function, Image>, asked: Asked) {
         } else {
             lean(image);
             shift_to(image, pen.mean);
-            draw_box(image, (*image).node.half_size, pen.half);
+            draw_box(image, (*image).node.half_size, scaled(image, pen.half, 16u));
         }
     }
 }

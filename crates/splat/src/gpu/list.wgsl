@@ -163,11 +163,18 @@ fn is_below_drawn(at: u32) -> bool {
     return false;
 }
 
-fn is_within(center: i32, half_size: u32, placed: Placed, side: i32) -> bool {
+fn is_within(center: i32, half_size: u32, leaning: i32, placed: Placed, side: i32) -> bool {
     let middle = center >> POSITION_BITS;
-    let reach = (abs(placed.radius) >> POSITION_BITS) * 65 / 64
+    let reach = (abs(placed.radius) >> POSITION_BITS) * 33 / 32 + leaning
         + i32(half_size >> (POSITION_BITS - 1u)) + (5i << placed.level);
     return clamp(middle - reach, 0, side) < clamp(middle + reach + 1, 0, side);
+}
+
+// How far beyond its image a node's light may lean along a row.
+fn leaning_of(node: Node, placed: Placed) -> i32 {
+    let radius = abs(placed.radius) >> POSITION_BITS;
+    let is_flat = abs(node.tilt.x) + abs(node.tilt.y) <= ONE / 8;
+    return select(select(radius, radius / 3, node.base == ONE), radius / 16, is_flat);
 }
 
 fn is_even(node: Node) -> bool {
@@ -283,8 +290,8 @@ fn list(@builtin(global_invocation_id) id: vec3<u32>, @builtin(local_invocation_
         let painted = focus_of(index);
         placed = place(at, painted);
         node = node_at(at);
-        let is_seen = is_within(node.center.x, node.half_size.x, placed, lens.size.x)
-            && is_within(node.center.y, node.half_size.y, placed, lens.size.y);
+        let is_seen = is_within(node.center.x, node.half_size.x, leaning_of(node, placed), placed, lens.size.x)
+            && is_within(node.center.y, node.half_size.y, 0, placed, lens.size.y);
         if is_seen && (is_leaf(at) || may_merge(at, painted, placed.radius)) && !is_below_drawn(at) {
             piece_count = 1u;
             flags = select(0u, 8u, placed.is_standard && !node.is_open) | (placed.level << 8u);

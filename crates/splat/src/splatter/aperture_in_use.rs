@@ -48,6 +48,6 @@ impl ApertureInUse {
         camera: &Camera,
     ) -> Scene<'a> {
         let size = [camera.width, camera.height];
-        Scene { pen: self.pen(nodes, lens), lens, paint, size, part_of: None }
+        Scene { pen: self.pen(nodes, lens), lens, paint, size }
     }
 }

@@ -74,7 +74,7 @@ impl Mattes {
         let mut below = Vec::new();
         for drawn in self.0.lists.iter().flat_map(|list| &list.drawn) {
             let node = &nodes.nodes[drawn.index as usize];
-            let window = [drawn.placed.wide_columns(node, size[1]), drawn.placed.reach(node, 1, size[0])];
+            let window = [0, 1].map(|axis| drawn.placed.reach(node, axis, size[1 - axis]));
             below.push(drawn.index);
             while let Some(index) = below.pop() {
                 let node = &nodes.nodes[index as usize];

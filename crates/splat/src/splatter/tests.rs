@@ -472,7 +472,7 @@ fn light_stays_within_reach() {
         (hash >> 8) as f32 / (1 << 24) as f32
     };
     let mut levels = [0; salf::tree::LEVELS];
-    for trial in 0..600 {
+    for trial in 0..1800 {
         // Cells of the margin are large: some are drawn in pieces.
         let (center, half) = match trial % 3 {
             0 => (Vec2::new(-30.0 * random(), 20.0 + 150.0 * random()), 4.0),
@@ -483,12 +483,14 @@ fn light_stays_within_reach() {
             0 => Visibility::Open,
             _ => Visibility::Cells { words: Box::new([seen << 32 | seen >> 7]) },
         };
+        // The light of what is edge-on leans far.
+        let [weight, steep] = if trial % 4 < 2 { [1.0, 1.0] } else { [0.2 * random(), 2.0] };
         let sample = Sample {
             center,
             half_size: half * Vec2::new(0.5 + 2.0 * random(), 0.5 + random()),
             inverse_depth: 0.5 + (random() - 0.5) * 0.6 * random(),
-            weight: 1.0,
-            tilt: Vec2::new(random() - 0.5, random() - 0.5),
+            weight,
+            tilt: steep * Vec2::new(random() - 0.5, random() - 0.5),
             radiance: Vec3::ONE,
             surface: Some(SurfacePoint { triangle: 0, barycentric: DVec2::ZERO }),
             is_carried: false,
