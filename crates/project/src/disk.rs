@@ -1,7 +1,7 @@
 //! Reading whole files within limits, and writing them atomically.
 
 use crate::ProjectError;
-use atomic_write_file::AtomicWriteFile;
+use crate::replacement::replacement;
 use std::fs::File;
 use std::io::{Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
@@ -49,12 +49,7 @@ pub(crate) fn write_verified(
     verify: impl FnOnce(&[u8]) -> Result<(), String>,
 ) -> Result<(), ProjectError> {
     let error = |source| ProjectError::Write { file: file.to_owned(), source };
-    // Through a link, the file behind it is replaced.
-    let target: PathBuf = std::fs::canonicalize(file).unwrap_or_else(|_| file.to_owned());
-    if target.is_dir() {
-        return Err(error(std::io::ErrorKind::IsADirectory.into()));
-    }
-    let mut new = AtomicWriteFile::options().read(true).open(&target).map_err(error)?;
+    let mut new = replacement(file).map_err(error)?;
     let written = new.write_all(bytes).and_then(|()| new.sync_all());
     written.map_err(error)?;
     let mut back = Vec::with_capacity(bytes.len());

@@ -4,7 +4,7 @@ use crate::ProjectError;
 use crate::exr_file::{ExrAttribute, all_attributes};
 use crate::exr_form::{ExrForm, half_of};
 use crate::exr_header;
-use atomic_write_file::AtomicWriteFile;
+use crate::replacement::replacement;
 use exr::block::BlockIndex;
 use exr::image::write::channels::{ChannelsWriter, WritableChannels};
 use exr::math::RoundingMode;
@@ -44,8 +44,7 @@ pub(crate) fn write_exr_in_bands<E: From<ProjectError> + Send>(
     let size = (head.size[0] as usize, head.size[1] as usize);
     let layer = ox::Layer::new(size, of_layer, head.form.compression.encoding(), channels);
     let image = ox::Image::new(of_image, layer);
-    let target = std::fs::canonicalize(file).unwrap_or_else(|_| file.to_owned());
-    let mut new = AtomicWriteFile::options().read(true).open(&target).map_err(error)?;
+    let mut new = replacement(file).map_err(error)?;
     let written = image.write().to_buffered(BufWriter::new(&mut *new));
     let source = image.layer_data.channel_data.source.into_inner().unwrap_or_else(PoisonError::into_inner);
     if let Some(failed) = source.failed {

@@ -46,6 +46,7 @@ mod presets;
 mod project_file;
 mod recipe;
 mod recovery;
+mod replacement;
 mod scene_checksum;
 mod scene_path;
 mod strokes_file;

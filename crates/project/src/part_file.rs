@@ -11,6 +11,7 @@
 //! A part is written from beginning to end, and is there only once it is whole.
 
 use crate::ProjectError;
+use crate::replacement::replacement;
 use atomic_write_file::AtomicWriteFile;
 use serde_json::Value;
 use sha2::{Digest, Sha256};
@@ -50,8 +51,7 @@ impl PartWriter {
     /// The file cannot be written.
     pub fn begin(file: &Path) -> Result<Self, ProjectError> {
         let error = |source| ProjectError::Write { file: file.to_owned(), source };
-        let target = std::fs::canonicalize(file).unwrap_or_else(|_| file.to_owned());
-        let out = BufWriter::new(AtomicWriteFile::open(target).map_err(error)?);
+        let out = BufWriter::new(replacement(file).map_err(error)?);
         let mut new = Self { file: file.to_owned(), out, hash: Sha256::new(), written: 0 };
         new.put(MAGIC)?;
         Ok(new)
