@@ -222,7 +222,7 @@ impl Radiance for PhotographLight {
         let position = point.position(&self.scene);
         let outgoing = toward(position, eye);
         let normal = self.scene.shading_normal(point).as_vec3();
-        let (mut sum, mut carried, mut carried_share) = (Vec3::ZERO, Vec3::ZERO, 0.0);
+        let (mut sum, mut mirrored, mut carried_share) = (Vec3::ZERO, 0.0, 0.0);
         for (texel, share) in around {
             if share == 0.0 {
                 continue;
@@ -230,16 +230,19 @@ impl Radiance for PhotographLight {
             let texel = texel as usize;
             let mut light = self.constant[texel];
             for residual in self.residuals.of_texel(texel) {
-                let direction = toward(position, self.eyes[usize::from(residual.view)]);
-                let factor = self.residuals.kernel.at(direction.distance(outgoing));
+                let toward = (self.eyes[usize::from(residual.view)] - position).as_vec3();
+                let factor = self.residuals.kernel.between(toward, outgoing);
                 if factor > 0.0 {
                     light += residual.alpha() * factor;
                 }
             }
             sum += light * share;
-            carried += self.mirrored.at(texel, normal, outgoing) * share;
-            carried_share += self.mirrored.share(texel, normal, outgoing) * share;
+            let strength = self.mirrored.strength(texel);
+            mirrored += strength * share;
+            carried_share += self.mirrored.share_of(strength, normal, outgoing) * share;
         }
+        let carried =
+            if mirrored > 0.0 { self.mirrored.sent(normal, outgoing) * mirrored } else { Vec3::ZERO };
         // What was left over may be below 0 where less is mirrored than was thought.
         let own = sum.max(-carried);
         Leaving { own, carried, carried_share, ..Leaving::default() }

@@ -60,6 +60,17 @@ impl Kernel {
         let rest = (1.0 - share) * (1.0 - share);
         rest * rest * (4.0 * share + 1.0)
     }
+
+    /// k between the direction of `toward`, which may be of any length, and a unit `direction`: |u − v|² = 2 − 2·u·v.
+    pub fn between(&self, toward: Vec3, direction: Vec3) -> f32 {
+        let (dot, square) = (toward.dot(direction), toward.length_squared());
+        // u·v at which |u − v| is the reach. x·|x| grows with x: what is out of reach is known without a root.
+        let least = 1.0 - 0.5 * self.reach * self.reach;
+        if dot * dot.abs() <= least * least.abs() * square {
+            return 0.0;
+        }
+        self.at((2.0 - 2.0 * dot / square.sqrt()).max(0.0).sqrt())
+    }
 }
 
 impl Regression {
@@ -144,6 +155,24 @@ pub(crate) fn toward(from: DVec3, eye: DVec3) -> Vec3 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_kernel_between_directions_is_that_at_their_distance() {
+        let direction = Vec3::new(0.36, -0.48, 0.8);
+        let aside = Vec3::new(0.8, 0.6, 0.0);
+        for reach in [0.6, 1.0, 1.6] {
+            let kernel = Kernel { reach, noise: 0.1 };
+            for angle in (0..=180).map(|degree| (degree as f32).to_radians()) {
+                let unit = direction * angle.cos() + aside * angle.sin();
+                for length in [1e-3, 1.0, 40.0] {
+                    let (found, wanted) =
+                        (kernel.between(unit * length, direction), kernel.at(unit.distance(direction)));
+                    assert!((found - wanted).abs() < 1e-5, "{reach} {angle}: {found}, {wanted}");
+                }
+            }
+        }
+        assert_eq!(Kernel { reach: 1.6, noise: 0.1 }.between(Vec3::ZERO, direction), 0.0);
+    }
 
     fn known(count: usize) -> Vec<Known> {
         (0..count)

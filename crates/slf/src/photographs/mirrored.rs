@@ -118,20 +118,20 @@ impl Mirrored {
         self
     }
 
+    /// s: how strongly a texel mirrors.
+    pub fn strength(&self, texel: usize) -> f32 {
+        self.strength.get(texel).copied().unwrap_or(0.0)
+    }
+
     /// What a texel mirrors toward a direction with this normal.
     pub fn at(&self, texel: usize, normal: Vec3, outgoing: Vec3) -> Vec3 {
-        match self.strength.get(texel) {
-            Some(&strength) if strength > 0.0 => self.sent(normal, outgoing) * strength,
+        match self.strength(texel) {
+            strength if strength > 0.0 => self.sent(normal, outgoing) * strength,
             _ => Vec3::ZERO,
         }
     }
 
-    /// How strongly a texel mirrors: the share that a mirror at normal incidence would have, [0, 1].
-    pub fn share(&self, texel: usize, normal: Vec3, outgoing: Vec3) -> f32 {
-        self.share_of(self.strength.get(texel).copied().unwrap_or(0.0), normal, outgoing)
-    }
-
-    /// The same of a strength s.
+    /// How strongly a surface of s mirrors: the share that a mirror at normal incidence would have, [0, 1].
     pub fn share_of(&self, strength: f32, normal: Vec3, outgoing: Vec3) -> f32 {
         (strength * fresnel(normal.dot(outgoing).abs())).min(1.0)
     }
