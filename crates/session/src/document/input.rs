@@ -387,10 +387,15 @@ impl Input {
         let tracer = Arc::new(Tracer::new(self.scene.clone()));
         let project = self.project.as_ref();
         let takes_a_while = self.scene.triangles.len() >= MANY_TRIANGLES;
-        if takes_a_while && project.is_none_or(|project| project.atlas.is_none()) {
+        let is_unwrapped = project.is_some_and(|project| project.atlas.is_some());
+        if takes_a_while && !is_unwrapped {
             steps.seen(&tracer, &self.camera);
         }
         let atlas = self.atlas(unwrap, steps)?;
+        if takes_a_while && is_unwrapped {
+            keep_photographs_at(&tracer, &atlas);
+            steps.seen(&tracer, &self.camera);
+        }
         let map = match project.and_then(|project| project.focus_map.clone()) {
             Some(map) => map,
             None => {

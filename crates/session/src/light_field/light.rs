@@ -34,6 +34,9 @@ pub(crate) fn light(
         match (photographed::known(tracer), quality) {
             (Some(light), _) => return Ok(light),
             (None, LightQuality::Fine) => return photographed::looked_up(tracer, progress),
+            (None, LightQuality::Rough) if photographed::is_kept(tracer) => {
+                return photographed::looked_up(tracer, progress);
+            }
             (None, LightQuality::Rough) => {}
         }
     }
@@ -60,8 +63,15 @@ pub(crate) fn light_at_once(tracer: &Arc<Tracer>, camera: &Camera) -> Light {
     })
 }
 
-/// Light of the bare surface, nothing known and nothing begun: exact and noisy.
-pub(crate) fn bare_light(tracer: &Arc<Tracer>, camera: &Camera) -> Light {
+/// Light for a first look: of photographs, if theirs was kept from another time; else that of the bare surface, nothing known and
+/// nothing begun: exact and noisy.
+pub(crate) fn first_light(tracer: &Arc<Tracer>, camera: &Camera, progress: &dyn Progress) -> Light {
+    if is_photographed(tracer)
+        && photographed::is_kept(tracer)
+        && let Ok(light) = photographed::looked_up(tracer, progress)
+    {
+        return light;
+    }
     Arc::new(transport(tracer, camera, 4 * PATHS, ROUGH_LIGHT_SAMPLES))
 }
 

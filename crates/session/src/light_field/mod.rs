@@ -30,7 +30,7 @@ pub(crate) use baking::bake_with;
 pub(crate) use changes::Changes;
 pub(crate) use field_watch::{FieldWatch, Standing};
 pub(crate) use kept_light::LightQuality;
-pub(crate) use light::{bare_light, is_photographed, light, light_for_many_points};
+pub(crate) use light::{first_light, is_photographed, light, light_for_many_points};
 pub(crate) use photographed::{
     if_known as photograph_light_if_known, keep_at as keep_photographs_at, wait as photograph_light,
 };

@@ -9,6 +9,7 @@ use progress::Progress;
 use scene::PhotoLookup;
 use sha2::Digest;
 use slf::{DirectPhotographs, PhotographError, PhotographLight, PhotographOptions};
+use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError, Weak};
 use trace::{Radiance, Tracer};
 
@@ -21,6 +22,7 @@ struct Kept {
     /// An atlas of the scene, if there is one by the time that it is needed.
     atlas: OnceLock<Arc<Atlas>>,
     has_begun: OnceLock<()>,
+    file: OnceLock<Option<PathBuf>>,
     found: OnceLock<Result<Arc<PhotographLight>, String>>,
     /// The same, looked up in the photographs, once that was asked for.
     direct: Mutex<Option<Arc<DirectPhotographs>>>,
@@ -43,6 +45,7 @@ fn of(tracer: &Arc<Tracer>) -> Arc<Kept> {
         tracer: Arc::downgrade(tracer),
         atlas: OnceLock::new(),
         has_begun: OnceLock::new(),
+        file: OnceLock::new(),
         found: OnceLock::new(),
         direct: Mutex::new(None),
         work: Arc::default(),
@@ -96,6 +99,18 @@ pub(super) fn looked_up(tracer: &Arc<Tracer>, progress: &dyn Progress) -> Result
 }
 
 impl Kept {
+    /// Where the light is kept, of the atlas that is known by now.
+    fn file(&self, tracer: &Tracer) -> Option<&Path> {
+        let of_atlas = || {
+            FILES.file(|hash| {
+                hash.update(photographs_hash(tracer.scene()));
+                let options = PhotographOptions::default();
+                hash.update(format!("{options:?} {:?}", self.atlas.get().map(|atlas| &atlas.hash)));
+            })
+        };
+        self.file.get_or_init(of_atlas).as_deref()
+    }
+
     fn direct(&self) -> MutexGuard<'_, Option<Arc<DirectPhotographs>>> {
         self.direct.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -111,6 +126,12 @@ pub(crate) fn wait(
         || "light from photographs could not be made: a fault of the program (open the capture again)".into();
     let found = kept.work.wait(progress, || kept.found.get().cloned())?.unwrap_or_else(|| Err(failed()));
     found.map_err(SessionError::BadInput)
+}
+
+/// Whether the light, kept at the texels of an atlas that is known, only has to be read.
+pub(super) fn is_kept(tracer: &Arc<Tracer>) -> bool {
+    let kept = of(tracer);
+    kept.atlas.get().is_some() && kept.file(tracer).is_some_and(Path::exists)
 }
 
 fn begun(tracer: &Arc<Tracer>) -> Arc<Kept> {
@@ -132,12 +153,8 @@ const FILES: KeptFiles = KeptFiles { name: "photographs", budget_bytes: 2 << 30 
 
 fn solve(kept: &Kept, tracer: &Arc<Tracer>, progress: &dyn Progress) -> Result<Arc<PhotographLight>, String> {
     let scene = tracer.scene();
-    let options = PhotographOptions::default();
-    let file = FILES.file(|hash| {
-        hash.update(photographs_hash(scene));
-        hash.update(format!("{options:?} {:?}", kept.atlas.get().map(|atlas| &atlas.hash)));
-    });
-    let found = file.as_ref().and_then(|file| FILES.read(file));
+    let file = kept.file(tracer);
+    let found = file.and_then(|file| FILES.read(file));
     if let Some(light) = found.and_then(|bytes| PhotographLight::from_bytes(&bytes, scene)) {
         return Ok(Arc::new(light));
     }
@@ -148,10 +165,10 @@ fn solve(kept: &Kept, tracer: &Arc<Tracer>, progress: &dyn Progress) -> Result<A
             Arc::new(made.map_err(|error| format!("{}: {error}", scene.path.display()))?)
         }
     };
-    let made = PhotographLight::solve(tracer, &atlas, &scene.views, &options, progress);
+    let made = PhotographLight::solve(tracer, &atlas, &scene.views, &PhotographOptions::default(), progress);
     let light = made.map_err(|error| error.to_string())?;
     if let Some(file) = file {
-        FILES.write(&file, &light.to_bytes());
+        FILES.write(file, &light.to_bytes());
     }
     Ok(Arc::new(light))
 }

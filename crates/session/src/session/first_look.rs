@@ -6,7 +6,7 @@ use super::state::Session;
 use crate::display::{Content, Patch, to_screen};
 use crate::error::SessionError;
 use crate::jobs::{JobId, JobProgress, JobSteps, Steps, Waker};
-use crate::light_field::bare_light;
+use crate::light_field::first_light;
 use baselines::FirstHits;
 use focus::Focus;
 use lens::{Camera, FocusOffset, Picture};
@@ -44,8 +44,8 @@ impl Steps for OpeningSteps<'_> {
     fn seen(&self, tracer: &Arc<Tracer>, camera: &Camera) {
         let camera = scaled_within(camera, SIDE_PX);
         let focus = Focus::constant(tracer.scene().clone(), FocusOffset::STANDARD);
-        let light = bare_light(tracer, &camera);
         let progress = self.begin("first look");
+        let light = first_light(tracer, &camera, &*progress);
         if let Ok(hits) = FirstHits::trace(tracer, &*light, &focus, &camera, &*progress) {
             self.shown(&hits.picture());
         }
