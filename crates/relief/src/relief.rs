@@ -5,10 +5,12 @@ use crate::corners::Corner;
 use crate::error::ReliefError;
 use crate::frame::Frame;
 use crate::hidden::{Hidden, hidden};
+use crate::matte::Mixed;
 use crate::other_view::OtherView;
-use crate::texture::{Behind, Surface};
+use crate::other_views::{Asked, Seen};
+use crate::texture::{Texture, texture};
 use crate::triangulation::{Metric, Triangulation};
-use crate::{jumps, steps};
+use crate::{jumps, matte, steps};
 use glam::Vec2;
 use progress::{Progress, Stage};
 use std::collections::HashMap;
@@ -60,8 +62,12 @@ pub struct Relief {
     pub vertices: Vec<ReliefVertex>,
     /// Corners, counter-clockwise as the picture shows them.
     pub triangles: Vec<[u32; 3]>,
+    /// The same of what is there in part.
+    pub translucent: Vec<[u32; 3]>,
     /// Linear RGB of both layers, row by row, the picture first.
     pub texture: Vec<[f32; 3]>,
+    /// By texel of the first layer, how much of it is there, in (0, 1]: less than 1 beneath the triangles that say so.
+    pub opacity: Vec<f32>,
     /// By texel of both layers, whether some picture shows it; what is not was invented.
     pub is_seen: Vec<bool>,
 }
@@ -90,22 +96,47 @@ impl Relief {
         let frame = Frame::of(size, options.margin_px);
         let grid = frame.grid;
         let jump = options.jump_px / options.reach;
-        let (mut front, mut shown) = (frame.continued(disparity), frame.continued(picture));
+        let (mut front, shown) = (frame.continued(disparity), frame.continued(picture));
         jumps::snap(grid, &mut front, &shown, jump);
         steps::even_out(grid, &mut front, jump);
         let links = jumps::links(grid, &front, jump);
+        let reach = options.reach * options.beyond;
+        let edges = matte::edges(grid, &front, &links, &shown, jump);
         progress.check().map_err(ReliefError::Cancelled)?;
-        let hidden = hidden(grid, &front, &links, options.reach * options.beyond, jump);
-        let stage = Stage::new(progress, 0.1, 0.8);
-        let surface = Surface { frame: &frame, front: &front, hidden: &hidden, jump };
-        let Behind { colors, is_seen } = surface.complete(&mut shown, views, &stage)?;
+
+        // What else is to be shown: beside the picture, behind it, and what edges are told apart by. They may move by a cell.
+        let behind = hidden(grid, &front, &links, reach, 1.0, jump);
+        let beside = (0..grid.count()).filter(|&cell| !frame.is_in_picture(cell));
+        let beside = beside.map(|cell| (cell, Asked { cell, disparity: front[cell] }));
+        let lies_open = |edge: &&Mixed| edge.is_beyond && behind.disparity[edge.cell].is_nan();
+        let beyond = edges.iter().filter(lies_open).map(|edge| (edge.cell, front[edge.cell]));
+        let behind = behind.order.iter().map(|&cell| (cell, behind.disparity[cell])).chain(beyond);
+        let behind = behind.map(|(cell, disparity)| (grid.count() + cell, Asked { cell, disparity }));
+        let asked = beside.chain(behind).filter(|(_, asked)| !asked.disparity.is_nan());
+        let (places, asked): (Vec<usize>, Vec<Asked>) = asked.unzip();
+        let seen = Seen { frame: &frame, front: &front, jump };
+        let looks = seen.looks(&asked, views, &Stage::new(progress, 0.1, 0.8))?;
+        let mut told = vec![None; TEXTURE_LAYERS * grid.count()];
+        places.into_iter().zip(looks).for_each(|(place, look)| told[place] = look);
+
+        let edges: Vec<Mixed> = edges
+            .into_iter()
+            .map(|edge| Mixed { behind: told[grid.count() + edge.cell].unwrap_or(edge.behind), ..edge })
+            .collect();
+        let mixed = matte::mixtures(grid, &mut front, &links, &shown, &edges, jump);
+        let links = jumps::links(grid, &front, jump);
+        let hidden = hidden(grid, &front, &links, reach, 0.0, jump);
+        progress.check().map_err(ReliefError::Cancelled)?;
+        let is_in_picture = |cell| frame.is_in_picture(cell);
+        let Texture { colors, is_seen, opacity } =
+            texture(grid, shown, is_in_picture, &hidden, &mixed, &told);
         progress.check().map_err(ReliefError::Cancelled)?;
         let Hidden { disparity: back, links: back_links, onward, .. } = hidden;
         let cells = Cells { grid, disparity: [front, back], links: [links, back_links], onward };
         let mut mesh = Mesh::of(grid);
         let metric = Metric { reach: options.reach, offset: options.offset };
         for layer in 0..TEXTURE_LAYERS {
-            mesh.add(&cells, layer, metric, options.tolerance_px);
+            mesh.add(&cells, layer, metric, options.tolerance_px, &opacity);
         }
         progress.report(1.0);
         let corner = Vec2::splat(frame.margin as f32);
@@ -115,7 +146,9 @@ impl Relief {
             margin: frame.margin,
             vertices: mesh.vertices,
             triangles: mesh.triangles,
-            texture: [shown, colors].concat(),
+            translucent: mesh.translucent,
+            texture: colors.concat(),
+            opacity,
             is_seen,
         })
     }
@@ -130,6 +163,7 @@ impl Relief {
 struct Mesh {
     vertices: Vec<ReliefVertex>,
     triangles: Vec<[u32; 3]>,
+    translucent: Vec<[u32; 3]>,
     /// Corners in a row of the grid.
     row: usize,
     /// The first layer's first point at each corner of the grid; most corners have no other.
@@ -144,7 +178,14 @@ impl Mesh {
     fn of(grid: Grid) -> Self {
         let row = grid.width + 1;
         let first = vec![NONE; row * (grid.height + 1)];
-        Self { vertices: Vec::new(), triangles: Vec::new(), row, first, others: HashMap::new() }
+        Self {
+            vertices: Vec::new(),
+            triangles: Vec::new(),
+            translucent: Vec::new(),
+            row,
+            first,
+            others: HashMap::new(),
+        }
     }
 
     fn vertex(&mut self, layer: u8, corner: Corner) -> u32 {
@@ -161,8 +202,9 @@ impl Mesh {
         *known
     }
 
-    fn add(&mut self, cells: &Cells, layer: usize, metric: Metric, tolerance: f32) {
-        for triangle in Triangulation::of(cells, layer, metric).triangles(tolerance) {
+    fn add(&mut self, cells: &Cells, layer: usize, metric: Metric, tolerance: f32, opacity: &[f32]) {
+        let is_whole = |cell: usize| layer > 0 || opacity[cell] == 1.0;
+        for triangle in Triangulation::of(cells, layer, metric, &is_whole).triangles(tolerance) {
             // Of the points at a corner it has that of its own cell there: towards its middle.
             let sum = [0, 1].map(|axis| triangle.corners.iter().map(|at| at[axis]).sum::<usize>());
             let corners = triangle
@@ -170,7 +212,12 @@ impl Mesh {
                 .map(|at| cells.corner_at(layer, at, [3 * at[0] > sum[0], 3 * at[1] > sum[1]]));
             let [Some(a), Some(b), Some(c)] = corners else { continue };
             let corners = [a, b, c].map(|corner| self.vertex(layer as u8, corner));
-            self.triangles.push(corners);
+            // A triangle over a cell that is there in part is half of that cell.
+            let least = [0, 1].map(|axis| triangle.corners.iter().map(|at| at[axis]).min().unwrap_or(0));
+            match is_whole(cells.grid.at(least[0], least[1])) {
+                true => self.triangles.push(corners),
+                false => self.translucent.push(corners),
+            }
         }
     }
 }
