@@ -30,6 +30,7 @@ mod look;
 mod matte;
 mod other_view;
 mod other_views;
+mod outline;
 mod relief;
 mod repair;
 mod steps;

@@ -11,8 +11,12 @@ use crate::cells::{Grid, Links};
 use crate::look::{Look, Looks, distance, noise};
 use rayon::prelude::*;
 
+/// From this share on a pixel shows one side only.
+const WHOLE: f32 = 0.9;
 /// How far around a pixel what its two sides look like is looked for.
 const AROUND: isize = 3;
+/// The same where nothing is there.
+const FAR_AROUND: isize = 12;
 /// The standard deviation of a share where only depth tells it: an edge anywhere within a pixel.
 const BY_DEPTH: f32 = 0.3;
 /// So many standard deviations off 0 or 1 it is a mixture.
@@ -64,23 +68,42 @@ pub(crate) fn mixtures(
     edges: &[Mixed],
     jump: f32,
 ) -> Vec<Mixed> {
+    let told: Vec<Mixed> = edges.iter().filter_map(|edge| mixed(colors[edge.cell], *edge)).collect();
+    take_across(grid, disparity, links, told.iter().filter(|told| told.is_beyond), jump);
+    told
+}
+
+/// Puts edges of depth where the picture has them: pixels that show only what is on the other side of their jump belong there.
+pub(crate) fn snap(grid: Grid, disparity: &mut [f32], links: &Links, colors: &[[f32; 3]], jump: f32) {
+    let told = edges(grid, disparity, links, colors, jump);
+    let told: Vec<Mixed> = told.into_iter().filter_map(|edge| mixed(colors[edge.cell], edge)).collect();
+    let is_wrong = |told: &&Mixed| match told.is_beyond {
+        true => told.share >= WHOLE,
+        false => told.share <= 1.0 - WHOLE,
+    };
+    take_across(grid, disparity, links, told.iter().filter(is_wrong), jump);
+}
+
+/// Gives pixels beside jumps the disparity of what is on the other side.
+fn take_across<'a>(
+    grid: Grid,
+    disparity: &mut [f32],
+    links: &Links,
+    pixels: impl Iterator<Item = &'a Mixed>,
+    jump: f32,
+) {
     let was = disparity.to_vec();
-    let told = edges.iter().filter_map(|edge| mixed(colors[edge.cell], *edge));
-    told.filter(|told| {
-        if told.is_beyond {
-            // It goes on from what stands before it.
-            let (own, mut sum, mut count) = (was[told.cell], 0.0, 0.0);
-            for (side, other) in grid.around(told.cell) {
-                if !links.has(told.cell, side) && was[other] - own > jump {
-                    sum += was[other];
-                    count += 1.0;
-                }
+    for pixel in pixels {
+        let (mut sum, mut count) = (0.0, 0.0);
+        for (side, other) in grid.around(pixel.cell) {
+            let step = was[other] - was[pixel.cell];
+            if !links.has(pixel.cell, side) && if pixel.is_beyond { step > jump } else { step < -jump } {
+                sum += was[other];
+                count += 1.0;
             }
-            disparity[told.cell] = sum / count;
         }
-        true
-    })
-    .collect()
+        disparity[pixel.cell] = sum / count;
+    }
 }
 
 /// A mixture, told anew: once it is known what lies behind. The colours of both sides, of which it is made exactly.
@@ -138,7 +161,7 @@ impl Jumps {
     }
 }
 
-/// What the two sides of a cell's jump look like around it.
+/// What the two sides of a cell's jump, of these disparities, look like around it.
 fn sides(
     grid: Grid,
     disparity: &[f32],
@@ -149,31 +172,27 @@ fn sides(
     [before, behind]: [f32; 2],
 ) -> Option<[Look; 2]> {
     let [x, y] = [cell % grid.width, cell / grid.width].map(|at| at as isize);
-    let mut plain = [Looks::default(), Looks::default()];
-    let mut all = Looks::default();
-    for (dy, dx) in (-AROUND..=AROUND).flat_map(|dy| (-AROUND..=AROUND).map(move |dx| (dy, dx))) {
-        let (x, y) = (x + dx, y + dy);
-        if x < 0 || y < 0 || x >= grid.width as isize || y >= grid.height as isize {
-            continue;
+    // Of what lies in one depth around it, so far: the whole pixels, or all.
+    let around = |level: f32, reach: isize, of_all: bool| {
+        let mut looks = Looks::default();
+        for (dy, dx) in (-reach..=reach).flat_map(|dy| (-reach..=reach).map(move |dx| (dy, dx))) {
+            let (x, y) = (x + dx, y + dy);
+            if x < 0 || y < 0 || x >= grid.width as isize || y >= grid.height as isize {
+                continue;
+            }
+            let other = grid.at(x as usize, y as usize);
+            if (disparity[other] - level).abs() <= jump && (of_all || jumps.is_plain(other)) {
+                // Nearer ones tell more.
+                looks.add(colors[other], 1.0 / (1.0 + (dx * dx + dy * dy) as f32));
+            }
         }
-        let other = grid.at(x as usize, y as usize);
-        let side = match disparity[other] {
-            d if (d - before).abs() <= jump => 0,
-            d if (d - behind).abs() <= jump => 1,
-            _ => continue,
-        };
-        // Nearer ones tell more.
-        let weight = 1.0 / (1.0 + (dx * dx + dy * dy) as f32);
-        if jumps.is_plain(other) {
-            plain[side].add(colors[other], weight);
-        }
-        if side == 0 {
-            all.add(colors[other], weight);
-        }
-    }
-    let behind = plain[1].look()?;
-    // Too thin to have an inside: what there is of it tells less.
-    let before = plain[0].look().or_else(|| all.look())?;
+        looks.look()
+    };
+    let behind = around(behind, AROUND, false)?;
+    // What is too thin to have an inside goes on elsewhere, as hair on a head; or it is told by what there is of it.
+    let before = around(before, AROUND, false)
+        .or_else(|| around(before, FAR_AROUND, false))
+        .or_else(|| around(before, AROUND, true))?;
     Some([before, behind])
 }
 

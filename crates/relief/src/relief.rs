@@ -10,10 +10,13 @@ use crate::other_view::OtherView;
 use crate::other_views::{Asked, Seen};
 use crate::texture::{Texture, texture};
 use crate::triangulation::{Metric, Triangulation};
-use crate::{jumps, matte, steps};
+use crate::{jumps, matte, outline, steps};
 use glam::Vec2;
 use progress::{Progress, Stage};
 use std::collections::HashMap;
+
+/// Edges of depth are off the picture's by so many pixels at most.
+const SNAPPED: usize = 2;
 
 /// How a surface is made.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -68,6 +71,8 @@ pub struct Relief {
     pub texture: Vec<[f32; 3]>,
     /// By texel of the first layer, how much of it is there, in (0, 1]: less than 1 beneath the triangles that say so.
     pub opacity: Vec<f32>,
+    /// By texel of the first layer, whether the picture shows there what is behind it, too: its colour is not the picture's.
+    pub is_told_apart: Vec<bool>,
     /// By texel of both layers, whether some picture shows it; what is not was invented.
     pub is_seen: Vec<bool>,
 }
@@ -99,7 +104,11 @@ impl Relief {
         let (mut front, shown) = (frame.continued(disparity), frame.continued(picture));
         jumps::snap(grid, &mut front, &shown, jump);
         steps::even_out(grid, &mut front, jump);
-        let links = jumps::links(grid, &front, jump);
+        let mut links = jumps::links(grid, &front, jump);
+        for _ in 0..SNAPPED {
+            matte::snap(grid, &mut front, &links, &shown, jump);
+            links = jumps::links(grid, &front, jump);
+        }
         let reach = options.reach * options.beyond;
         let edges = matte::edges(grid, &front, &links, &shown, jump);
         progress.check().map_err(ReliefError::Cancelled)?;
@@ -128,15 +137,26 @@ impl Relief {
         let hidden = hidden(grid, &front, &links, reach, 0.0, jump);
         progress.check().map_err(ReliefError::Cancelled)?;
         let is_in_picture = |cell| frame.is_in_picture(cell);
-        let Texture { colors, is_seen, opacity } =
+        let Texture { colors, is_seen, mut opacity } =
             texture(grid, shown, is_in_picture, &hidden, &mixed, &told);
         progress.check().map_err(ReliefError::Cancelled)?;
         let Hidden { disparity: back, links: back_links, onward, .. } = hidden;
         let cells = Cells { grid, disparity: [front, back], links: [links, back_links], onward };
         let mut mesh = Mesh::of(grid);
         let metric = Metric { reach: options.reach, offset: options.offset };
+        let is_told_apart: Vec<bool> = opacity.iter().map(|share| *share < 1.0).collect();
         for layer in 0..TEXTURE_LAYERS {
-            mesh.add(&cells, layer, metric, options.tolerance_px, &opacity);
+            let is_whole = |cell: usize| layer > 0 || !is_told_apart[cell];
+            mesh.add(&cells, layer, metric, options.tolerance_px, &is_whole);
+        }
+        for (cell, outline) in outlines(&cells, &opacity, jump).collect::<Vec<_>>() {
+            match outline {
+                Some(outline) => {
+                    mesh.add_part(&cells, cell, &outline);
+                    opacity[cell] = 1.0;
+                }
+                None => mesh.add_translucent(&cells, cell),
+            }
         }
         progress.report(1.0);
         let corner = Vec2::splat(frame.margin as f32);
@@ -149,6 +169,7 @@ impl Relief {
             translucent: mesh.translucent,
             texture: colors.concat(),
             opacity,
+            is_told_apart,
             is_seen,
         })
     }
@@ -202,9 +223,21 @@ impl Mesh {
         *known
     }
 
-    fn add(&mut self, cells: &Cells, layer: usize, metric: Metric, tolerance: f32, opacity: &[f32]) {
-        let is_whole = |cell: usize| layer > 0 || opacity[cell] == 1.0;
-        for triangle in Triangulation::of(cells, layer, metric, &is_whole).triangles(tolerance) {
+    /// A layer's triangles, but for cells that are not whole.
+    fn add(
+        &mut self,
+        cells: &Cells,
+        layer: usize,
+        metric: Metric,
+        tolerance: f32,
+        is_whole: &(dyn Fn(usize) -> bool + Sync),
+    ) {
+        for triangle in Triangulation::of(cells, layer, metric, is_whole).triangles(tolerance) {
+            // A triangle over a cell that is not whole is half of that cell.
+            let least = [0, 1].map(|axis| triangle.corners.iter().map(|at| at[axis]).min().unwrap_or(0));
+            if !is_whole(cells.grid.at(least[0], least[1])) {
+                continue;
+            }
             // Of the points at a corner it has that of its own cell there: towards its middle.
             let sum = [0, 1].map(|axis| triangle.corners.iter().map(|at| at[axis]).sum::<usize>());
             let corners = triangle
@@ -212,12 +245,69 @@ impl Mesh {
                 .map(|at| cells.corner_at(layer, at, [3 * at[0] > sum[0], 3 * at[1] > sum[1]]));
             let [Some(a), Some(b), Some(c)] = corners else { continue };
             let corners = [a, b, c].map(|corner| self.vertex(layer as u8, corner));
-            // A triangle over a cell that is there in part is half of that cell.
-            let least = [0, 1].map(|axis| triangle.corners.iter().map(|at| at[axis]).min().unwrap_or(0));
-            match is_whole(cells.grid.at(least[0], least[1])) {
-                true => self.triangles.push(corners),
-                false => self.translucent.push(corners),
-            }
+            self.triangles.push(corners);
         }
     }
+
+    /// A cell of the first layer that is there in part.
+    fn add_translucent(&mut self, cells: &Cells, cell: usize) {
+        let corners = [[false, false], [false, true], [true, true], [true, false]];
+        let [a, b, c, d] = corners.map(|at| self.vertex(0, cells.corner(0, cell, at)));
+        self.translucent.extend([[a, b, c], [a, c, d]]);
+    }
+
+    /// Part of a cell of the first layer: the outline, in it.
+    fn add_part(&mut self, cells: &Cells, cell: usize, outline: &[Vec2]) {
+        let grid = cells.grid;
+        let corner = Vec2::new((cell % grid.width) as f32, (cell / grid.width) as f32);
+        let around = [[false, false], [true, false], [false, true], [true, true]];
+        let around = around.map(|at| cells.corner(0, cell, at));
+        let vertices: Vec<u32> = outline
+            .iter()
+            .map(|place| {
+                let is_at = |at: &&Corner| Vec2::new(at.at[0] as f32, at.at[1] as f32) == corner + *place;
+                if let Some(&shared) = around.iter().find(is_at) {
+                    return self.vertex(0, shared);
+                }
+                let [a, b, c, d] = around.map(|corner| corner.disparity);
+                let (above, below) = (a + (b - a) * place.x, c + (d - c) * place.x);
+                let disparity = above + (below - above) * place.y;
+                self.vertices.push(ReliefVertex { place: corner + *place, disparity, layer: 0 });
+                self.vertices.len() as u32 - 1
+            })
+            .collect();
+        for pair in vertices[1..].windows(2) {
+            self.triangles.push([vertices[0], pair[0], pair[1]]);
+        }
+    }
+}
+
+/// Of cells of the first layer that are there in part, where in them, if a line tells.
+fn outlines<'a>(
+    cells: &'a Cells,
+    opacity: &'a [f32],
+    jump: f32,
+) -> impl Iterator<Item = (usize, Option<Vec<Vec2>>)> + 'a {
+    let (grid, front) = (cells.grid, &cells.disparity[0]);
+    let shares = move |cell: usize| {
+        let (x, y) = (cell % grid.width, cell / grid.width);
+        let mut shares = [[0.0; 3]; 3];
+        for (dy, row) in shares.iter_mut().enumerate() {
+            for (dx, share) in row.iter_mut().enumerate() {
+                // The border goes on.
+                let x = (x + dx).saturating_sub(1).min(grid.width - 1);
+                let y = (y + dy).saturating_sub(1).min(grid.height - 1);
+                let step = front[grid.at(x, y)] - front[cell];
+                *share = match step {
+                    // What stands before it hides what it would tell.
+                    step if step > jump => return None,
+                    step if step >= -jump => opacity[grid.at(x, y)],
+                    _ => 0.0,
+                };
+            }
+        }
+        Some(shares)
+    };
+    let in_part = (0..grid.count()).filter(|&cell| opacity[cell] < 1.0);
+    in_part.map(move |cell| (cell, shares(cell).and_then(|shares| outline::before(&shares))))
 }

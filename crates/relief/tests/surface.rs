@@ -235,6 +235,14 @@ fn soft_card(left: f32, right: f32, card: [f32; 3], wall: impl Fn(f32) -> [f32; 
     (0..SIZE[0] * SIZE[1]).map(at).collect()
 }
 
+/// How much of a pixel what stands before covers.
+fn share_of_card(relief: &Relief, x: usize, y: usize) -> f32 {
+    let places = (0..400).map(|k| Vec2::new((k % 20) as f32, (k / 20) as f32) / 20.0 + 0.0251);
+    let at = |place: Vec2| first_layer(relief, place + Vec2::new(x as f32, y as f32));
+    let covered = places.filter(|place| at(*place).1 > 0).count();
+    relief.opacity[y * SIZE[0] + x] * covered as f32 / 400.0
+}
+
 #[test]
 fn pixels_that_show_both_sides_of_a_jump_are_there_in_part() {
     // 0.7 of the last pixel on the left, 0.3 of one beyond the last on the right.
@@ -247,8 +255,8 @@ fn pixels_that_show_both_sides_of_a_jump_are_there_in_part() {
     for y in 14..31 {
         for (x, share) in [(20, 0.7), (50, 0.3)] {
             let cell = y * SIZE[0] + x;
-            let opacity = relief.opacity[cell];
-            assert!((opacity - share).abs() < 0.02, "{opacity} at {x} {y}");
+            let opacity = share_of_card(&relief, x, y);
+            assert!((opacity - share).abs() < 0.03, "{opacity} at {x} {y}");
             for c in 0..3 {
                 let (before, behind) = (relief.texture[cell][c], relief.texture[second + cell][c]);
                 assert!(
@@ -256,14 +264,11 @@ fn pixels_that_show_both_sides_of_a_jump_are_there_in_part() {
                     "{before} {behind}"
                 );
                 let whole = opacity * before + (1.0 - opacity) * behind;
-                assert!((whole - picture[cell][c]).abs() < 1e-6, "in focus it is the picture");
+                assert!((whole - picture[cell][c]).abs() < 0.02, "in focus it is the picture");
             }
         }
     }
-    let there_in_part = relief.opacity.iter().filter(|opacity| **opacity < 1.0).count();
-    assert_eq!(relief.translucent.len(), 2 * there_in_part);
-    assert!(there_in_part <= 2 * 21, "{there_in_part}");
-    assert!((first_layer(&relief, Vec2::new(50.8, 20.3)).0 - 2.0).abs() < 1e-3, "it is part of the card");
+    assert!((first_layer(&relief, Vec2::new(50.1, 20.3)).0 - 2.0).abs() < 1e-3, "it is part of the card");
 }
 
 #[test]
@@ -274,16 +279,17 @@ fn whole_pixels_and_textures_are_there_as_a_whole() {
         Relief::of::<Infallible>(SIZE, &disparity, picture, &[], &options, &Unwatched).unwrap()
     };
     let sharp = relief(&soft_card(20.0, 50.0, [0.8, 0.1, 0.05], |_| [0.05, 0.2, 0.6]));
-    assert!(sharp.translucent.is_empty());
+    assert!(!sharp.is_told_apart.contains(&true));
     // Colours that are alike tell nothing.
     let alike = relief(&soft_card(20.5, 50.5, [0.3, 0.3, 0.3], |_| [0.3, 0.301, 0.3]));
-    assert!(alike.translucent.is_empty());
+    assert!(!alike.is_told_apart.contains(&true));
     // Neither do those that vary as much as they differ.
     let grain = |x: usize, y: usize| ((x * 7919 + y * 104_729) % 101) as f32 / 101.0;
     let grain: Vec<[f32; 3]> =
         (0..SIZE[0] * SIZE[1]).map(|cell| [grain(cell % SIZE[0], cell / SIZE[0]); 3]).collect();
     let grainy = relief(&grain);
-    assert!(grainy.translucent.len() / 2 <= 4, "{}", grainy.translucent.len() / 2);
+    let told_apart = grainy.is_told_apart.iter().filter(|is_told_apart| **is_told_apart).count();
+    assert!(told_apart <= 4, "{told_apart}");
 }
 
 /// [`card`], but for a wall that is upright.
@@ -311,7 +317,51 @@ fn what_other_views_show_behind_an_edge_tells_how_much_of_it_is_there() {
     let views = [3.0, 4.0].map(view);
     let relief = Relief::of(SIZE, &disparity, &picture, &views, &options, &Unwatched).unwrap();
     let cell = 20 * SIZE[0] + 49;
-    assert!((relief.opacity[cell] - 0.4).abs() < 0.05, "{}", relief.opacity[cell]);
+    let share = share_of_card(&relief, 49, 20);
+    assert!((share - 0.4).abs() < 0.05, "{share}");
     let behind = relief.texture[SIZE[0] * SIZE[1] + cell];
     assert!((behind[1] - 0.7).abs() < 0.1, "{behind:?}");
+}
+
+#[test]
+fn edges_of_depth_go_where_the_picture_has_them() {
+    let options = ReliefOptions { reach: 4.0, ..ReliefOptions::default() };
+    let picture = soft_card(20.0, 50.0, [0.8, 0.1, 0.05], |_| [0.05, 0.2, 0.6]);
+    // A pixel too far right on the left, and on the right.
+    let moved = disparities(|x, y| if (21.0..51.0).contains(&x) { card_at(30.0, y) } else { 0.3 });
+    let relief = Relief::of::<Infallible>(SIZE, &moved, &picture, &[], &options, &Unwatched).unwrap();
+    for y in [15.3, 20.4, 29.6] {
+        for (x, wanted) in [(19.6, 0.3), (20.4, 2.0), (49.6, 2.0), (50.4, 0.3)] {
+            let (found, _) = first_layer(&relief, Vec2::new(x, y));
+            assert!((found - wanted).abs() < 0.05, "{found} at {x} {y}");
+        }
+    }
+}
+
+#[test]
+fn a_hair_lets_through_what_is_behind_it() {
+    // A third of a pixel wide, before a wall of two colours.
+    let wall = |x: f32| [0.05, 0.2 + 0.001 * x, 0.6];
+    let picture = soft_card(30.3, 30.65, [0.9, 0.8, 0.1], wall);
+    let whole = soft_card(20.0, 26.0, [0.9, 0.8, 0.1], wall);
+    // The same stands whole beside it, at the same depth.
+    let is_hair = |cell: usize| cell % SIZE[0] == 30;
+    let picture: Vec<[f32; 3]> =
+        (0..picture.len()).map(|cell| if is_hair(cell) { picture[cell] } else { whole[cell] }).collect();
+    let disparity = disparities(|x, y| {
+        let is_near = (20.0..26.0).contains(&x) || (30.0..31.0).contains(&x);
+        if is_near && (12.0..33.0).contains(&y) { 2.0 } else { 0.3 }
+    });
+    let options = ReliefOptions { reach: 4.0, ..ReliefOptions::default() };
+    let relief = Relief::of::<Infallible>(SIZE, &disparity, &picture, &[], &options, &Unwatched).unwrap();
+    for y in 16..29 {
+        let cell = y * SIZE[0] + 30;
+        let [before, behind] = [relief.texture[cell], relief.texture[SIZE[0] * SIZE[1] + cell]];
+        let opacity = relief.opacity[cell];
+        assert!((opacity - 0.35).abs() < 0.1, "{opacity} at {y}");
+        (0..3).for_each(|c| {
+            let both = opacity * before[c] + (1.0 - opacity) * behind[c];
+            assert!((both - picture[cell][c]).abs() < 1e-5, "in focus it is the picture");
+        });
+    }
 }

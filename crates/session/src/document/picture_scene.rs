@@ -239,10 +239,11 @@ fn image(relief: &Relief, shown: &Shown<'_>, behind: usize, rows: usize) -> (Ima
             let in_picture = in_picture.filter(|&(x, y)| x < shown.size[0] && y < shown.size[1]);
             let cell = y / by * width + x / by;
             let opacity = relief.opacity.get(cell).copied().unwrap_or(1.0);
+            let is_picture = relief.is_told_apart.get(cell).is_some_and(|is_told_apart| !is_told_apart);
             let color = match in_picture {
-                Some((x, y)) if opacity == 1.0 => shown.pixels[y * shown.size[0] + x],
+                Some((x, y)) if is_picture => shown.pixels[y * shown.size[0] + x],
                 // Cells may be coarser than the picture: over what is behind them they are the picture again.
-                Some((x, y)) if by > 1 => {
+                Some((x, y)) if by > 1 && opacity < 1.0 => {
                     let (all, back) = (shown.pixels[y * shown.size[0] + x], texture[cell + behind * width]);
                     std::array::from_fn(|c| (all[c] - (1.0 - opacity) * back[c]).max(0.0) / opacity)
                 }
