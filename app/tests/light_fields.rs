@@ -106,6 +106,57 @@ fn a_picture_and_its_depth_are_refocused() {
 }
 
 #[test]
+fn no_scale_or_offset_of_disparities_changes_the_picture() {
+    let place = tempfile::tempdir().unwrap();
+    let folder = place.path();
+    std::fs::write(folder.join("painted.json"), r#"{"default": {"t": 0.7, "anchor": 0.3}}"#).unwrap();
+    // Unless it is told, views are focused on what has disparity 0.
+    std::fs::write(folder.join("camera.json"), r#"{"focus_distance": 1.6, "aperture_radius": 0.05}"#)
+        .unwrap();
+    view([0.0; 2]).save(folder.join("card.png")).unwrap();
+    let rendered = |capture: &str, options: &str| {
+        done(folder, &format!("import {capture} -o moved.fbrush"));
+        done(folder, &format!("render moved.fbrush {options} -o moved.exr --backend cpu"));
+        read_picture(&folder.join("moved.exr")).unwrap().rgb
+    };
+    let rmse = |a: &[[f32; 3]], b: &[[f32; 3]]| {
+        let off =
+            |(a, b): (&[f32; 3], &[f32; 3])| (0..3).map(|c| f64::from(a[c] - b[c]).powi(2)).sum::<f64>();
+        (a.iter().zip(b).map(off).sum::<f64>() / (3 * a.len()) as f64).sqrt()
+    };
+    // Of views: the pictures are moved, too, by a few pixels at most.
+    let moves = [(1.0, 0.0), (0.1, 0.3), (10.0, -3.0), (1.0, 3.0), (3.0, -3.0)];
+    for options in ["--camera camera.json", "--camera camera.json --focus painted.json"] {
+        let mut plain = Vec::new();
+        for (scale, offset) in moves {
+            card_light_field::write_moved(&folder.join("card"), scale, offset);
+            let found = rendered("card", options);
+            if plain.is_empty() {
+                plain = found;
+                continue;
+            }
+            let off = rmse(&plain, &found);
+            assert!(off < 0.005, "{off} for {scale} {offset} {options}");
+        }
+        // Of a picture and its disparities alone.
+        let mut plain = Vec::new();
+        for (scale, offset) in [(1.0, 0.0), (0.1, 3.0), (10.0, -3.0), (0.1, -3.0), (10.0, 3.0)] {
+            pfm(&folder.join("disparity.pfm"), |disparity| scale * disparity + offset);
+            let found = rendered("card.png --disparity disparity.pfm", options);
+            if plain.is_empty() {
+                plain = found;
+                continue;
+            }
+            let off = rmse(&plain, &found);
+            assert!(off < 0.005, "{off} of one picture for {scale} {offset} {options}");
+        }
+        // Negative control: other disparities are another picture.
+        pfm(&folder.join("disparity.pfm"), |disparity| -disparity);
+        assert!(rmse(&plain, &rendered("card.png --disparity disparity.pfm", options)) > 0.005);
+    }
+}
+
+#[test]
 fn two_eyes_see_what_they_fixate_at_one_place() {
     let place = tempfile::tempdir().unwrap();
     let folder = place.path();

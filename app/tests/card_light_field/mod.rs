@@ -24,9 +24,14 @@ pub fn shown(x: f64, y: f64, [u, v]: [f64; 2]) -> ([f64; 3], f64) {
 
 /// A pixel of a view, by 4 × 4 places in it.
 pub fn pixel(x: u32, y: u32, view: [f64; 2]) -> [f64; 3] {
+    pixel_at(x.into(), y.into(), view)
+}
+
+/// The same of one whose upper left corner is at a place.
+fn pixel_at(x: f64, y: f64, view: [f64; 2]) -> [f64; 3] {
     let mut sum = [0.0; 3];
     for k in 0..16u32 {
-        let at = |at: u32, k: u32| f64::from(at) + (f64::from(k) + 0.5) / 4.0;
+        let at = |at: f64, k: u32| at + (f64::from(k) + 0.5) / 4.0;
         let (color, _) = shown(at(x, k % 4), at(y, k / 4), view);
         (0..3).for_each(|c| sum[c] += color[c] / 16.0);
     }
@@ -63,4 +68,30 @@ pub fn write(folder: &Path) {
         }
     }
     pfm(&folder.join("disparity.pfm"), |disparity| disparity);
+}
+
+/// The same scene by cameras that are turned inward so much, and counted in other steps: of each disparity d the views and the map have
+/// `scale`·d + `offset`, of each place a `scale`-th.
+#[allow(dead_code, reason = "not every test moves it")]
+pub fn write_moved(folder: &Path, scale: f64, offset: f64) {
+    std::fs::create_dir_all(folder).unwrap();
+    let mut views = Vec::new();
+    for v in -STEPS..=STEPS {
+        for u in -STEPS..=STEPS {
+            let (u, v) = (f64::from(u), f64::from(v));
+            let [across, down] = [u, v].map(|at| at * offset / scale);
+            let file = format!("view {u} {v}.png");
+            let picture = RgbImage::from_fn(SIZE[0], SIZE[1], |x, y| {
+                Rgb(pixel_at(f64::from(x) + across, f64::from(y) + down, [u, v]).map(encoded))
+            });
+            picture.save(folder.join(&file)).unwrap();
+            views.push(format!("{{\"file\": \"{file}\", \"position\": [{}, {}]}}", u / scale, v / scale));
+        }
+    }
+    let list = format!(
+        "{{\"views\": [{}], \"reference\": \"view 0 0.png\", \"disparity\": \"middle.pfm\"}}",
+        views.join(", ")
+    );
+    std::fs::write(folder.join("views.json"), list).unwrap();
+    pfm(&folder.join("middle.pfm"), |disparity| scale * disparity + offset);
 }

@@ -33,8 +33,15 @@ pub(crate) fn number(side: Side) -> usize {
 }
 
 /// Continues what lies behind jumps. `reach` is the aperture's radius (disparity times it is a parallax, px), `jump` the least step of
-/// disparity that is a jump.
-pub(crate) fn hidden(grid: Grid, front: &[f32], links: &Links, reach: f32, jump: f32) -> Hidden {
+/// disparity that is a jump, `further` so many cells beyond.
+pub(crate) fn hidden(
+    grid: Grid,
+    front: &[f32],
+    links: &Links,
+    reach: f32,
+    further: f32,
+    jump: f32,
+) -> Hidden {
     let mut disparity = vec![f32::NAN; grid.count()];
     let mut distance = vec![u32::MAX; grid.count()];
     let mut onward = vec![[false; 4]; grid.count()];
@@ -64,7 +71,10 @@ pub(crate) fn hidden(grid: Grid, front: &[f32], links: &Links, reach: f32, jump:
         for (side, other) in grid.around(cell) {
             let parallax = (front[other] - behind) * reach;
             let is_behind = front[other] - behind > jump && links.has(cell, side);
-            if is_behind && distance[other] == u32::MAX && distance[cell] as f32 <= parallax + MARGIN {
+            if is_behind
+                && distance[other] == u32::MAX
+                && distance[cell] as f32 <= parallax + MARGIN + further
+            {
                 distance[other] = distance[cell] + 1;
                 disparity[other] = behind;
                 queue.push_back(other);
@@ -131,7 +141,7 @@ mod tests {
         let front: Vec<f32> =
             (0..grid.count()).map(|cell| if (15..30).contains(&(cell % 40)) { 2.0 } else { 0.5 }).collect();
         let links = jumps::links(grid, &front, 0.25);
-        let hidden = hidden(grid, &front, &links, 2.0, 0.25);
+        let hidden = hidden(grid, &front, &links, 2.0, 0.0, 0.25);
         // 1.5 of disparity by a radius of 2 and the margin: six cells from either side of the card.
         let row: Vec<usize> = (0..40).filter(|&x| !hidden.disparity[grid.at(x, 4)].is_nan()).collect();
         assert_eq!(row, [15, 16, 17, 18, 19, 20, 24, 25, 26, 27, 28, 29]);

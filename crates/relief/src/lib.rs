@@ -5,10 +5,11 @@
 //! the middle of the aperture and its rim.
 //!
 //! ```text
-//! disparities ─▶ jumps ─▶ hidden ─▶ corners ─▶ triangulation ─▶ Relief
-//!  (a pixel each)  │        │                                     ▲
-//!                  │        └──────▶ texture (from other views, or ┘
-//!                  │                          invented)
+//! disparities ─▶ jumps ─▶ matte ─▶ hidden ─▶ corners ─▶ triangulation ─▶ Relief
+//!  (a pixel each)  │       │          │                                   ▲
+//!                  │       │          └──────▶ texture (from other_views, ┘
+//!                  │       │                            or invented)
+//!                  │       └ pixels that show both sides told apart
 //!                  └ cut where depth jumps, pixels between put on one side
 //! ```
 //!
@@ -25,7 +26,11 @@ mod filling;
 mod frame;
 mod hidden;
 mod jumps;
+mod look;
+mod matte;
 mod other_view;
+mod other_views;
+mod outline;
 mod relief;
 mod repair;
 mod steps;

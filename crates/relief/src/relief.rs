@@ -5,13 +5,18 @@ use crate::corners::Corner;
 use crate::error::ReliefError;
 use crate::frame::Frame;
 use crate::hidden::{Hidden, hidden};
+use crate::matte::Mixed;
 use crate::other_view::OtherView;
-use crate::texture::{Behind, Surface};
+use crate::other_views::{Asked, Seen};
+use crate::texture::{Texture, texture};
 use crate::triangulation::{Metric, Triangulation};
-use crate::{jumps, steps};
+use crate::{jumps, matte, outline, steps};
 use glam::Vec2;
 use progress::{Progress, Stage};
 use std::collections::HashMap;
+
+/// Edges of depth are off the picture's by so many pixels at most.
+const SNAPPED: usize = 2;
 
 /// How a surface is made.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -60,8 +65,14 @@ pub struct Relief {
     pub vertices: Vec<ReliefVertex>,
     /// Corners, counter-clockwise as the picture shows them.
     pub triangles: Vec<[u32; 3]>,
+    /// The same of what is there in part.
+    pub translucent: Vec<[u32; 3]>,
     /// Linear RGB of both layers, row by row, the picture first.
     pub texture: Vec<[f32; 3]>,
+    /// By texel of the first layer, how much of it is there, in (0, 1]: less than 1 beneath the triangles that say so.
+    pub opacity: Vec<f32>,
+    /// By texel of the first layer, whether the picture shows there what is behind it, too: its colour is not the picture's.
+    pub is_told_apart: Vec<bool>,
     /// By texel of both layers, whether some picture shows it; what is not was invented.
     pub is_seen: Vec<bool>,
 }
@@ -90,22 +101,62 @@ impl Relief {
         let frame = Frame::of(size, options.margin_px);
         let grid = frame.grid;
         let jump = options.jump_px / options.reach;
-        let (mut front, mut shown) = (frame.continued(disparity), frame.continued(picture));
+        let (mut front, shown) = (frame.continued(disparity), frame.continued(picture));
         jumps::snap(grid, &mut front, &shown, jump);
         steps::even_out(grid, &mut front, jump);
-        let links = jumps::links(grid, &front, jump);
+        let mut links = jumps::links(grid, &front, jump);
+        for _ in 0..SNAPPED {
+            matte::snap(grid, &mut front, &links, &shown, jump);
+            links = jumps::links(grid, &front, jump);
+        }
+        let reach = options.reach * options.beyond;
+        let edges = matte::edges(grid, &front, &links, &shown, jump);
         progress.check().map_err(ReliefError::Cancelled)?;
-        let hidden = hidden(grid, &front, &links, options.reach * options.beyond, jump);
-        let stage = Stage::new(progress, 0.1, 0.8);
-        let surface = Surface { frame: &frame, front: &front, hidden: &hidden, jump };
-        let Behind { colors, is_seen } = surface.complete(&mut shown, views, &stage)?;
+
+        // What else is to be shown: beside the picture, behind it, and what edges are told apart by. They may move by a cell.
+        let behind = hidden(grid, &front, &links, reach, 1.0, jump);
+        let beside = (0..grid.count()).filter(|&cell| !frame.is_in_picture(cell));
+        let beside = beside.map(|cell| (cell, Asked { cell, disparity: front[cell] }));
+        let lies_open = |edge: &&Mixed| edge.is_beyond && behind.disparity[edge.cell].is_nan();
+        let beyond = edges.iter().filter(lies_open).map(|edge| (edge.cell, front[edge.cell]));
+        let behind = behind.order.iter().map(|&cell| (cell, behind.disparity[cell])).chain(beyond);
+        let behind = behind.map(|(cell, disparity)| (grid.count() + cell, Asked { cell, disparity }));
+        let asked = beside.chain(behind).filter(|(_, asked)| !asked.disparity.is_nan());
+        let (places, asked): (Vec<usize>, Vec<Asked>) = asked.unzip();
+        let seen = Seen { frame: &frame, front: &front, jump };
+        let looks = seen.looks(&asked, views, &Stage::new(progress, 0.1, 0.8))?;
+        let mut told = vec![None; TEXTURE_LAYERS * grid.count()];
+        places.into_iter().zip(looks).for_each(|(place, look)| told[place] = look);
+
+        let edges: Vec<Mixed> = edges
+            .into_iter()
+            .map(|edge| Mixed { behind: told[grid.count() + edge.cell].unwrap_or(edge.behind), ..edge })
+            .collect();
+        let mixed = matte::mixtures(grid, &mut front, &links, &shown, &edges, jump);
+        let links = jumps::links(grid, &front, jump);
+        let hidden = hidden(grid, &front, &links, reach, 0.0, jump);
+        progress.check().map_err(ReliefError::Cancelled)?;
+        let is_in_picture = |cell| frame.is_in_picture(cell);
+        let Texture { colors, is_seen, mut opacity } =
+            texture(grid, shown, is_in_picture, &hidden, &mixed, &told);
         progress.check().map_err(ReliefError::Cancelled)?;
         let Hidden { disparity: back, links: back_links, onward, .. } = hidden;
         let cells = Cells { grid, disparity: [front, back], links: [links, back_links], onward };
         let mut mesh = Mesh::of(grid);
         let metric = Metric { reach: options.reach, offset: options.offset };
+        let is_told_apart: Vec<bool> = opacity.iter().map(|share| *share < 1.0).collect();
         for layer in 0..TEXTURE_LAYERS {
-            mesh.add(&cells, layer, metric, options.tolerance_px);
+            let is_whole = |cell: usize| layer > 0 || !is_told_apart[cell];
+            mesh.add(&cells, layer, metric, options.tolerance_px, &is_whole);
+        }
+        for (cell, outline) in outlines(&cells, &opacity, jump).collect::<Vec<_>>() {
+            match outline {
+                Some(outline) => {
+                    mesh.add_part(&cells, cell, &outline);
+                    opacity[cell] = 1.0;
+                }
+                None => mesh.add_translucent(&cells, cell),
+            }
         }
         progress.report(1.0);
         let corner = Vec2::splat(frame.margin as f32);
@@ -115,7 +166,10 @@ impl Relief {
             margin: frame.margin,
             vertices: mesh.vertices,
             triangles: mesh.triangles,
-            texture: [shown, colors].concat(),
+            translucent: mesh.translucent,
+            texture: colors.concat(),
+            opacity,
+            is_told_apart,
             is_seen,
         })
     }
@@ -130,6 +184,7 @@ impl Relief {
 struct Mesh {
     vertices: Vec<ReliefVertex>,
     triangles: Vec<[u32; 3]>,
+    translucent: Vec<[u32; 3]>,
     /// Corners in a row of the grid.
     row: usize,
     /// The first layer's first point at each corner of the grid; most corners have no other.
@@ -144,7 +199,14 @@ impl Mesh {
     fn of(grid: Grid) -> Self {
         let row = grid.width + 1;
         let first = vec![NONE; row * (grid.height + 1)];
-        Self { vertices: Vec::new(), triangles: Vec::new(), row, first, others: HashMap::new() }
+        Self {
+            vertices: Vec::new(),
+            triangles: Vec::new(),
+            translucent: Vec::new(),
+            row,
+            first,
+            others: HashMap::new(),
+        }
     }
 
     fn vertex(&mut self, layer: u8, corner: Corner) -> u32 {
@@ -161,8 +223,21 @@ impl Mesh {
         *known
     }
 
-    fn add(&mut self, cells: &Cells, layer: usize, metric: Metric, tolerance: f32) {
-        for triangle in Triangulation::of(cells, layer, metric).triangles(tolerance) {
+    /// A layer's triangles, but for cells that are not whole.
+    fn add(
+        &mut self,
+        cells: &Cells,
+        layer: usize,
+        metric: Metric,
+        tolerance: f32,
+        is_whole: &(dyn Fn(usize) -> bool + Sync),
+    ) {
+        for triangle in Triangulation::of(cells, layer, metric, is_whole).triangles(tolerance) {
+            // A triangle over a cell that is not whole is half of that cell.
+            let least = [0, 1].map(|axis| triangle.corners.iter().map(|at| at[axis]).min().unwrap_or(0));
+            if !is_whole(cells.grid.at(least[0], least[1])) {
+                continue;
+            }
             // Of the points at a corner it has that of its own cell there: towards its middle.
             let sum = [0, 1].map(|axis| triangle.corners.iter().map(|at| at[axis]).sum::<usize>());
             let corners = triangle
@@ -173,4 +248,66 @@ impl Mesh {
             self.triangles.push(corners);
         }
     }
+
+    /// A cell of the first layer that is there in part.
+    fn add_translucent(&mut self, cells: &Cells, cell: usize) {
+        let corners = [[false, false], [false, true], [true, true], [true, false]];
+        let [a, b, c, d] = corners.map(|at| self.vertex(0, cells.corner(0, cell, at)));
+        self.translucent.extend([[a, b, c], [a, c, d]]);
+    }
+
+    /// Part of a cell of the first layer: the outline, in it.
+    fn add_part(&mut self, cells: &Cells, cell: usize, outline: &[Vec2]) {
+        let grid = cells.grid;
+        let corner = Vec2::new((cell % grid.width) as f32, (cell / grid.width) as f32);
+        let around = [[false, false], [true, false], [false, true], [true, true]];
+        let around = around.map(|at| cells.corner(0, cell, at));
+        let vertices: Vec<u32> = outline
+            .iter()
+            .map(|place| {
+                let is_at = |at: &&Corner| Vec2::new(at.at[0] as f32, at.at[1] as f32) == corner + *place;
+                if let Some(&shared) = around.iter().find(is_at) {
+                    return self.vertex(0, shared);
+                }
+                let [a, b, c, d] = around.map(|corner| corner.disparity);
+                let (above, below) = (a + (b - a) * place.x, c + (d - c) * place.x);
+                let disparity = above + (below - above) * place.y;
+                self.vertices.push(ReliefVertex { place: corner + *place, disparity, layer: 0 });
+                self.vertices.len() as u32 - 1
+            })
+            .collect();
+        for pair in vertices[1..].windows(2) {
+            self.triangles.push([vertices[0], pair[0], pair[1]]);
+        }
+    }
+}
+
+/// Of cells of the first layer that are there in part, where in them, if a line tells.
+fn outlines<'a>(
+    cells: &'a Cells,
+    opacity: &'a [f32],
+    jump: f32,
+) -> impl Iterator<Item = (usize, Option<Vec<Vec2>>)> + 'a {
+    let (grid, front) = (cells.grid, &cells.disparity[0]);
+    let shares = move |cell: usize| {
+        let (x, y) = (cell % grid.width, cell / grid.width);
+        let mut shares = [[0.0; 3]; 3];
+        for (dy, row) in shares.iter_mut().enumerate() {
+            for (dx, share) in row.iter_mut().enumerate() {
+                // The border goes on.
+                let x = (x + dx).saturating_sub(1).min(grid.width - 1);
+                let y = (y + dy).saturating_sub(1).min(grid.height - 1);
+                let step = front[grid.at(x, y)] - front[cell];
+                *share = match step {
+                    // What stands before it hides what it would tell.
+                    step if step > jump => return None,
+                    step if step >= -jump => opacity[grid.at(x, y)],
+                    _ => 0.0,
+                };
+            }
+        }
+        Some(shares)
+    };
+    let in_part = (0..grid.count()).filter(|&cell| opacity[cell] < 1.0);
+    in_part.map(move |cell| (cell, shares(cell).and_then(|shares| outline::before(&shares))))
 }

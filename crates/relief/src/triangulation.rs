@@ -29,8 +29,13 @@ pub(crate) struct LayerTriangle {
 }
 
 impl Triangulation {
-    /// How far off the corners of a layer's cells are.
-    pub fn of(cells: &Cells, layer: usize, metric: Metric) -> Self {
+    /// How far off the corners of a layer's cells are. Cells that are not whole have triangles of their own.
+    pub fn of(
+        cells: &Cells,
+        layer: usize,
+        metric: Metric,
+        is_whole: &(dyn Fn(usize) -> bool + Sync),
+    ) -> Self {
         let grid = cells.grid;
         let side = grid.width.max(grid.height).next_power_of_two().max(2);
         let row = grid.width + 1;
@@ -52,10 +57,17 @@ impl Triangulation {
             let of_cell = || cells.corner_at(layer, [x, y], [x > middle[0], y > middle[1]]);
             if joint.is_nan() { of_cell().map_or(joint, |corner| corner.disparity) } else { joint }
         };
+        // Whether the cells around a corner are.
+        let are_whole = |x: usize, y: usize| {
+            let columns = x.saturating_sub(1)..(x + 1).min(grid.width);
+            let mut rows = y.saturating_sub(1)..(y + 1).min(grid.height);
+            rows.all(|y| columns.clone().all(|x| is_whole(grid.at(x, y))))
+        };
         let mut errors = vec![0.0; (side + 1) * (side + 1)];
         errors.par_chunks_mut(side + 1).enumerate().for_each(|(y, errors)| {
             for (x, error) in errors.iter_mut().enumerate() {
-                *error = if at(x, y).is_nan() { f32::INFINITY } else { 0.0 };
+                let is_needed = at(x, y).is_nan() || !are_whole(x, y);
+                *error = if is_needed { f32::INFINITY } else { 0.0 };
             }
         });
         let mut step = 2;

@@ -36,7 +36,7 @@ fn first_layer(relief: &Relief, at: Vec2) -> (f32, usize) {
 /// The disparity of a layer at a place, and how many triangles are there.
 fn of_layer(relief: &Relief, layer: u8, at: Vec2) -> (f32, usize) {
     let mut found = (f32::NAN, 0);
-    for corners in &relief.triangles {
+    for corners in relief.triangles.iter().chain(&relief.translucent) {
         let [a, b, c] = corners.map(|v| relief.vertices[v as usize]);
         if a.layer != layer {
             continue;
@@ -221,4 +221,147 @@ fn where_there_is_no_disparity_there_is_no_surface() {
     assert!(relief.vertices.iter().all(|vertex| vertex.disparity.is_finite()));
     let nothing = surface(&vec![f32::NAN; SIZE[0] * SIZE[1]], &ReliefOptions::default());
     assert!(nothing.triangles.is_empty());
+}
+
+/// A card of one colour before a wall, whose sides lie within pixels: left and right so far.
+fn soft_card(left: f32, right: f32, card: [f32; 3], wall: impl Fn(f32) -> [f32; 3]) -> Vec<[f32; 3]> {
+    let at = |cell: usize| {
+        let (x, y) = ((cell % SIZE[0]) as f32, cell / SIZE[0]);
+        let across = ((x + 1.0).min(right) - x.max(left)).clamp(0.0, 1.0);
+        let share = if (12..33).contains(&y) { across } else { 0.0 };
+        let wall = wall(x + 0.5);
+        std::array::from_fn(|c| share * card[c] + (1.0 - share) * wall[c])
+    };
+    (0..SIZE[0] * SIZE[1]).map(at).collect()
+}
+
+/// How much of a pixel what stands before covers.
+fn share_of_card(relief: &Relief, x: usize, y: usize) -> f32 {
+    let places = (0..400).map(|k| Vec2::new((k % 20) as f32, (k / 20) as f32) / 20.0 + 0.0251);
+    let at = |place: Vec2| first_layer(relief, place + Vec2::new(x as f32, y as f32));
+    let covered = places.filter(|place| at(*place).1 > 0).count();
+    relief.opacity[y * SIZE[0] + x] * covered as f32 / 400.0
+}
+
+#[test]
+fn pixels_that_show_both_sides_of_a_jump_are_there_in_part() {
+    // 0.7 of the last pixel on the left, 0.3 of one beyond the last on the right.
+    let (card, wall) = ([0.8, 0.1, 0.05], [0.05, 0.2, 0.6]);
+    let picture = soft_card(20.3, 50.3, card, |_| wall);
+    let disparity = disparities(card_at);
+    let options = ReliefOptions { reach: 4.0, ..ReliefOptions::default() };
+    let relief = Relief::of::<Infallible>(SIZE, &disparity, &picture, &[], &options, &Unwatched).unwrap();
+    let second = SIZE[0] * SIZE[1];
+    for y in 14..31 {
+        for (x, share) in [(20, 0.7), (50, 0.3)] {
+            let cell = y * SIZE[0] + x;
+            let opacity = share_of_card(&relief, x, y);
+            assert!((opacity - share).abs() < 0.03, "{opacity} at {x} {y}");
+            for c in 0..3 {
+                let (before, behind) = (relief.texture[cell][c], relief.texture[second + cell][c]);
+                assert!(
+                    (before - card[c]).abs() < 0.03 && (behind - wall[c]).abs() < 0.03,
+                    "{before} {behind}"
+                );
+                let whole = opacity * before + (1.0 - opacity) * behind;
+                assert!((whole - picture[cell][c]).abs() < 0.02, "in focus it is the picture");
+            }
+        }
+    }
+    assert!((first_layer(&relief, Vec2::new(50.1, 20.3)).0 - 2.0).abs() < 1e-3, "it is part of the card");
+}
+
+#[test]
+fn whole_pixels_and_textures_are_there_as_a_whole() {
+    let options = ReliefOptions { reach: 4.0, ..ReliefOptions::default() };
+    let disparity = disparities(card_at);
+    let relief = |picture: &[[f32; 3]]| {
+        Relief::of::<Infallible>(SIZE, &disparity, picture, &[], &options, &Unwatched).unwrap()
+    };
+    let sharp = relief(&soft_card(20.0, 50.0, [0.8, 0.1, 0.05], |_| [0.05, 0.2, 0.6]));
+    assert!(!sharp.is_told_apart.contains(&true));
+    // Colours that are alike tell nothing.
+    let alike = relief(&soft_card(20.5, 50.5, [0.3, 0.3, 0.3], |_| [0.3, 0.301, 0.3]));
+    assert!(!alike.is_told_apart.contains(&true));
+    // Neither do those that vary as much as they differ.
+    let grain = |x: usize, y: usize| ((x * 7919 + y * 104_729) % 101) as f32 / 101.0;
+    let grain: Vec<[f32; 3]> =
+        (0..SIZE[0] * SIZE[1]).map(|cell| [grain(cell % SIZE[0], cell / SIZE[0]); 3]).collect();
+    let grainy = relief(&grain);
+    let told_apart = grainy.is_told_apart.iter().filter(|is_told_apart| **is_told_apart).count();
+    assert!(told_apart <= 4, "{told_apart}");
+}
+
+/// [`card`], but for a wall that is upright.
+fn card_at(x: f32, y: f32) -> f32 {
+    if card(x, y) == 2.0 { 2.0 } else { 0.3 }
+}
+
+#[test]
+fn what_other_views_show_behind_an_edge_tells_how_much_of_it_is_there() {
+    // The wall is bright only where the card hides it, but for its last pixel: from the picture alone one cannot know.
+    let wall = |x: f32| if (25.0..50.0).contains(&x) { [0.1, 0.7, 0.2] } else { [0.05, 0.2, 0.6] };
+    let card = [0.8, 0.1, 0.05];
+    let shown = |offset: f32| {
+        // By the disparity of the card it lies further left, the wall by its own.
+        let (near, far) = (2.0 * offset, 0.3 * offset);
+        soft_card(20.0 - near, 49.4 - near, card, |x| wall(x + far))
+    };
+    let disparity = disparities(card_at);
+    let view = |offset: f32| OtherView::<Infallible> {
+        offset: [offset, 0.0],
+        read: Box::new(move || Ok(shown(offset))),
+    };
+    let options = ReliefOptions { reach: 4.0, ..ReliefOptions::default() };
+    let picture = shown(0.0);
+    let views = [3.0, 4.0].map(view);
+    let relief = Relief::of(SIZE, &disparity, &picture, &views, &options, &Unwatched).unwrap();
+    let cell = 20 * SIZE[0] + 49;
+    let share = share_of_card(&relief, 49, 20);
+    assert!((share - 0.4).abs() < 0.05, "{share}");
+    let behind = relief.texture[SIZE[0] * SIZE[1] + cell];
+    assert!((behind[1] - 0.7).abs() < 0.1, "{behind:?}");
+}
+
+#[test]
+fn edges_of_depth_go_where_the_picture_has_them() {
+    let options = ReliefOptions { reach: 4.0, ..ReliefOptions::default() };
+    let picture = soft_card(20.0, 50.0, [0.8, 0.1, 0.05], |_| [0.05, 0.2, 0.6]);
+    // A pixel too far right on the left, and on the right.
+    let moved = disparities(|x, y| if (21.0..51.0).contains(&x) { card_at(30.0, y) } else { 0.3 });
+    let relief = Relief::of::<Infallible>(SIZE, &moved, &picture, &[], &options, &Unwatched).unwrap();
+    for y in [15.3, 20.4, 29.6] {
+        for (x, wanted) in [(19.6, 0.3), (20.4, 2.0), (49.6, 2.0), (50.4, 0.3)] {
+            let (found, _) = first_layer(&relief, Vec2::new(x, y));
+            assert!((found - wanted).abs() < 0.05, "{found} at {x} {y}");
+        }
+    }
+}
+
+#[test]
+fn a_hair_lets_through_what_is_behind_it() {
+    // A third of a pixel wide, before a wall of two colours.
+    let wall = |x: f32| [0.05, 0.2 + 0.001 * x, 0.6];
+    let picture = soft_card(30.3, 30.65, [0.9, 0.8, 0.1], wall);
+    let whole = soft_card(20.0, 26.0, [0.9, 0.8, 0.1], wall);
+    // The same stands whole beside it, at the same depth.
+    let is_hair = |cell: usize| cell % SIZE[0] == 30;
+    let picture: Vec<[f32; 3]> =
+        (0..picture.len()).map(|cell| if is_hair(cell) { picture[cell] } else { whole[cell] }).collect();
+    let disparity = disparities(|x, y| {
+        let is_near = (20.0..26.0).contains(&x) || (30.0..31.0).contains(&x);
+        if is_near && (12.0..33.0).contains(&y) { 2.0 } else { 0.3 }
+    });
+    let options = ReliefOptions { reach: 4.0, ..ReliefOptions::default() };
+    let relief = Relief::of::<Infallible>(SIZE, &disparity, &picture, &[], &options, &Unwatched).unwrap();
+    for y in 16..29 {
+        let cell = y * SIZE[0] + 30;
+        let [before, behind] = [relief.texture[cell], relief.texture[SIZE[0] * SIZE[1] + cell]];
+        let opacity = relief.opacity[cell];
+        assert!((opacity - 0.35).abs() < 0.1, "{opacity} at {y}");
+        (0..3).for_each(|c| {
+            let both = opacity * before[c] + (1.0 - opacity) * behind[c];
+            assert!((both - picture[cell][c]).abs() < 1e-5, "in focus it is the picture");
+        });
+    }
 }

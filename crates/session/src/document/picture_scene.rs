@@ -124,14 +124,24 @@ pub(super) fn picture_scene(
         alpha: AlphaMode::Opaque,
         ..Material::of_unlit()
     };
-    let triangles: Vec<_> = relief.triangles.iter().map(|&vertices| Triangle { vertices, part: 0 }).collect();
-    let part = Part {
-        node: 0,
-        material: 0,
-        triangles: 0..triangles.len() as u32,
-        has_uv: [true, false],
-        mirrored: false,
-    };
+    let translucent = Material { alpha: AlphaMode::Blend, ..material.clone() };
+    let (mut triangles, mut parts) = (Vec::new(), Vec::new());
+    // What is there in part has a material of its own: nothing else is asked for its opacity.
+    for (number, corners) in [&relief.triangles, &relief.translucent].into_iter().enumerate() {
+        let (number, first) = (number as u32, triangles.len() as u32);
+        if number > 0 && corners.is_empty() {
+            continue;
+        }
+        triangles.extend(corners.iter().map(|&vertices| Triangle { vertices, part: number }));
+        parts.push(Part {
+            node: 0,
+            material: number,
+            triangles: first..triangles.len() as u32,
+            has_uv: [true, false],
+            mirrored: false,
+        });
+    }
+    let materials = [material, translucent].into_iter().take(parts.len()).collect();
     let camera = SceneCamera {
         name: "picture".into(),
         index: None,
@@ -147,9 +157,9 @@ pub(super) fn picture_scene(
         normals: vec![glam::Vec3::ZERO; relief.vertices.len()],
         uv: [relief.vertices.iter().map(|vertex| uv(vertex.place, vertex.layer)).collect(), Vec::new()],
         triangles,
-        parts: vec![part],
+        parts,
         nodes: vec![Node { name: named.name.into(), index: 0, world: DMat4::IDENTITY }],
-        materials: vec![material],
+        materials,
         images: vec![image],
         cameras: vec![camera],
         picture: Some(PictureTexture {
@@ -227,11 +237,20 @@ fn image(relief: &Relief, shown: &Shown<'_>, behind: usize, rows: usize) -> (Ima
         for (x, texel) in row.as_chunks_mut::<4>().0.iter_mut().enumerate() {
             let in_picture = x.checked_sub(margin * by).zip(y.checked_sub(margin * by));
             let in_picture = in_picture.filter(|&(x, y)| x < shown.size[0] && y < shown.size[1]);
-            let [r, g, b] = match in_picture {
-                Some((x, y)) => shown.pixels[y * shown.size[0] + x],
-                None => texture[y / by * width + x / by],
+            let cell = y / by * width + x / by;
+            let opacity = relief.opacity.get(cell).copied().unwrap_or(1.0);
+            let is_picture = relief.is_told_apart.get(cell).is_some_and(|is_told_apart| !is_told_apart);
+            let color = match in_picture {
+                Some((x, y)) if is_picture => shown.pixels[y * shown.size[0] + x],
+                // Cells may be coarser than the picture: over what is behind them they are the picture again.
+                Some((x, y)) if by > 1 && opacity < 1.0 => {
+                    let (all, back) = (shown.pixels[y * shown.size[0] + x], texture[cell + behind * width]);
+                    std::array::from_fn(|c| (all[c] - (1.0 - opacity) * back[c]).max(0.0) / opacity)
+                }
+                _ => texture[cell],
             };
-            texel[..3].copy_from_slice(&[r, g, b].map(encoded));
+            texel[..3].copy_from_slice(&color.map(encoded));
+            texel[3] = (opacity * f32::from(u16::MAX)).round() as u16;
         }
     });
     let image = Image {
