@@ -7,7 +7,7 @@ use super::sequence_arguments::{KeysArguments, SequenceArguments};
 use clap::{Args, Parser, ValueEnum};
 use project::{ColorSpace, Compression};
 use scene::{BackFaces, PhotoLookup};
-use session::{Aov, CameraChoice, CocConvention, Renderer, TileGrid, VariantChoice};
+use session::{Aov, CameraChoice, CocConvention, LightQuality, Renderer, TileGrid, VariantChoice};
 use splat::Integers;
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -98,6 +98,25 @@ pub struct SceneLook {
     /// themselves for each point (slower; what texels cannot show finely enough)
     #[arg(long, value_name = "texels|direct", default_value = "texels", value_parser = named(PhotoLookup::ALL))]
     pub photos: PhotoLookup,
+}
+
+/// How well light is found.
+#[derive(Debug, Args)]
+pub struct LightArguments {
+    /// Refine the light by so many passes of paths: without, it is as what is kept for every camera tells it, at once and a little
+    /// off; with them it is off by their noise alone, half as much for four times as many (0: none; a pass is four paths a pixel)
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=1 << 16))]
+    pub light_passes: u32,
+}
+
+impl LightArguments {
+    /// How well light is to be found.
+    pub fn quality(&self) -> LightQuality {
+        match self.light_passes {
+            0 => LightQuality::Fine,
+            passes => LightQuality::Refined { passes },
+        }
+    }
 }
 
 impl SceneLook {
@@ -254,6 +273,8 @@ pub struct BakeArguments {
     pub output: PathBuf,
     #[command(flatten)]
     pub shot: ShotArguments,
+    #[command(flatten)]
+    pub light: LightArguments,
     /// Write counts and timings as JSON to stdout
     #[arg(long)]
     pub json: bool,
@@ -297,6 +318,8 @@ pub struct RenderArguments {
     pub output: PathBuf,
     #[command(flatten)]
     pub shot: ShotArguments,
+    #[command(flatten)]
+    pub light: LightArguments,
     /// What draws it: the splatted light field or the ray-traced ground truth; or, to compare with: a blur of the pinhole
     /// picture by depth, the same in layers, shifted pinhole views, or every ray of the light field thrown at one pixel
     #[arg(long, value_name = "NAME", default_value = "splat", value_parser = named(Renderer::ALL))]

@@ -5,7 +5,7 @@ use super::console::{Console, path_text, say_json};
 use super::failure::Failure;
 use super::shot::{check_folder, opened, shot};
 use serde_json::json;
-use session::{InputKind, RenderOptions, bake, write_salf};
+use session::{InputKind, RenderOptions, write_salf};
 use std::sync::Arc;
 use std::time::Instant;
 use trace::Tracer;
@@ -24,7 +24,8 @@ pub fn run(arguments: &BakeArguments, console: &Console) -> Result<(), Failure> 
     let open_seconds = start.elapsed().as_secs_f64();
     let baking = Instant::now();
     let tracer = Arc::new(Tracer::new(input.scene.clone()));
-    let salf = Arc::new(bake(&tracer, &camera, &focus, RenderOptions::default().tolerance_px, console)?);
+    let options = RenderOptions { light: arguments.light.quality(), ..RenderOptions::default() };
+    let salf = Arc::new(options.bake(&tracer, &camera, &focus, console)?);
     let bake_seconds = baking.elapsed().as_secs_f64();
     let bytes = write_salf(&arguments.output, &arguments.file, &input.scene, &salf)?;
     let statistics = salf.statistics();

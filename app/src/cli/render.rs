@@ -105,12 +105,18 @@ pub fn options(
         (Some(_), _) => 1,
         (None, cells) => cells.unwrap_or(usual.cells_a_side),
     };
+    if input.salf.is_some() && arguments.light.light_passes > 0 {
+        let what =
+            "is baked already, with its light (leave out --light-passes, or give the scene or project)";
+        return Err(Failure::bad(format!("{}: {what}", arguments.file.display())));
+    }
     if input.salf.is_some() && arguments.overscan > 0 {
         let what = "is baked for the frame alone (leave out --overscan, or give the scene or project)";
         return Err(Failure::bad(format!("{}: {what}", arguments.file.display())));
     }
     Ok(RenderOptions {
         cells_a_side,
+        light: arguments.light.quality(),
         gpu,
         renderer: arguments.renderer,
         truth: truth_options(arguments),
@@ -184,6 +190,10 @@ fn truth_options(arguments: &RenderArguments) -> TruthOptions {
 pub fn check_output(arguments: &RenderArguments) -> Result<(), Failure> {
     if arguments.aov.contains(&Aov::StandardError) && arguments.renderer != Renderer::Truth {
         let what = "--aov stderr: only the ground truth knows its standard error (use --renderer truth)";
+        return Err(Failure::usage(what));
+    }
+    if arguments.light.light_passes > 0 && arguments.renderer == Renderer::Truth {
+        let what = "--light-passes: the ground truth keeps no light that could be refined (leave it out, or use --spp)";
         return Err(Failure::usage(what));
     }
     let needs_paths = |aov: &&Aov| aov.needs_paths() && !arguments.renderer.tells_paths();

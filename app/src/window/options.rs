@@ -16,6 +16,8 @@ pub struct WindowOptions {
     pub preview_size: Option<u32>,
     /// For how long nothing must change until the exact picture is drawn; none: never.
     pub exact_after: Option<Duration>,
+    /// By how many passes its light is refined then, at most; 0: not at all.
+    pub light_passes: u32,
     /// Where light fields are kept from one run to the next; none: they are baked every time.
     pub light_fields: Option<session::LightFieldStore>,
     /// Where the live picture is summed.
@@ -40,6 +42,7 @@ impl Default for WindowOptions {
             remember: true,
             preview_size: None,
             exact_after: Some(Duration::from_millis(500)),
+            light_passes: 256,
             light_fields: None,
             backend: splat::BackendChoice::Auto,
             unwrap: atlas::UnwrapOptions::default(),

@@ -113,6 +113,7 @@ impl Shell {
             unwrap: options.unwrap,
             preview_size: options.preview_size.unwrap_or(settings.preview_size),
             exact_after: options.exact_after,
+            light_passes: options.light_passes,
             light_fields: options.light_fields,
             gpu: gpu.ok().flatten(),
             waker: Arc::new(move || context.request_repaint()),

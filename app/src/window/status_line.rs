@@ -3,7 +3,7 @@
 use super::inspector::selected;
 use super::{Action, controls};
 use egui::{Align, Layout, ProgressBar, Ui};
-use session::{Command, JobStatus, Preview, PreviewKind, Quality, Session};
+use session::{Command, DrawingCosts, JobStatus, Preview, PreviewKind, Quality, Session};
 
 /// What lies under the pointer.
 #[derive(Clone, Debug, PartialEq)]
@@ -107,12 +107,22 @@ fn standing(preview: &Preview, drawing_exactly: Option<f32>) -> String {
     let took = controls::seconds(preview.seconds);
     let close = preview.costs.viewing_psnr.map(|psnr| format!(" · {psnr:.0} dB")).unwrap_or_default();
     let exact = drawing_exactly.map(|share| format!(" · exact {:.0} %", 100.0 * share)).unwrap_or_default();
+    let light = light(preview.costs);
     match (preview.kind, preview.quality) {
         (PreviewKind::Pinhole, _) => format!("no blur yet · {took}"),
         (_, Quality::Coarse) => format!("rough · {took}"),
-        (_, Quality::Viewing) => format!("live · {took}{close}{exact}"),
-        (_, Quality::Exact) => format!("exact · {took}"),
+        (_, Quality::Viewing) => format!("live · {took}{close}{exact}{light}"),
+        (_, Quality::Exact) => format!("exact · {took}{light}"),
     }
+}
+
+/// By how many passes the light was refined, and how far that at once was from it.
+fn light(costs: DrawingCosts) -> String {
+    let at_once = costs.light_psnr.map(|psnr| format!(", at once {psnr:.0} dB")).unwrap_or_default();
+    if costs.light_passes == 0 {
+        return String::new();
+    }
+    format!(" · light of {} passes{at_once}", costs.light_passes)
 }
 
 fn job_ui(ui: &mut Ui, job: &JobStatus, actions: &mut Vec<Action>) {

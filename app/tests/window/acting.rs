@@ -56,6 +56,7 @@ impl Person {
             remember: false,
             preview_size: Some(180),
             exact_after: None,
+            light_passes: 0,
             system_dialogs: false,
             ..WindowOptions::default()
         }

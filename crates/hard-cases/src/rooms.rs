@@ -32,6 +32,12 @@ pub const CASES: &[Case] = &[
         check: borders,
     },
     Case {
+        name: "refined light has no floor",
+        reason: "What is kept is a control variate of the paths that refine it: whatever it is off, their mean is that of whole paths.",
+        control: "as many paths that trust what is kept",
+        check: refined,
+    },
+    Case {
         name: "a sun of five texels",
         reason: "A sun of 5 texels among 131,072 is drawn as often as it matters: it neither vanishes nor sparkles.",
         control: "the sky without it",
@@ -133,6 +139,37 @@ fn borders(effort: Effort, progress: &dyn Progress) -> Result<Finding, Cancelled
     let control = step(&transport(scene, world, 4), 50);
     let expected = format!("≤ 1 % between neighbours of {count} points along each wall");
     Ok(Finding::of(expected, [("step", 0.01)], [step(&kept, count)], [control]))
+}
+
+fn refined(effort: Effort, progress: &dyn Progress) -> Result<Finding, Cancelled> {
+    let room = Mesh::cuboid(DVec3::ZERO, DVec3::new(2.0, 1.0, 1.5)).turned();
+    let block = Mesh::cuboid(DVec3::new(0.5, 0.0, 0.5), DVec3::new(0.9, 0.6, 0.9));
+    let lamp = Mesh::cuboid(DVec3::new(1.3, 0.7, 0.6), DVec3::new(1.5, 0.8, 0.8));
+    let glow = Material { emissive: Vec3::splat(8.0), ..lambert(0.0) };
+    let scene = made_of([(&room, lambert(0.7)), (&block, lambert(0.6)), (&lamp, glow)]);
+    let dark = World::uniform(Vec3::ZERO);
+    // So few patches that they are far off where surfaces meet.
+    let options = IrradianceOptions { patches: 24, rays: 64 };
+    let known = Irradiance::solve(&transport(scene.clone(), dark.clone(), 1), options, progress)?;
+    let known = Arc::new(known);
+    let light = |paths| transport(scene.clone(), dark.clone(), paths);
+    let eye = DVec3::new(1.0, 0.5, 1.3);
+    let sent = |transport: &Transport| -> Vec<f64> {
+        let places = (0..48).map(|k| SurfacePoint { triangle: k % 12, barycentric: spread(k) * 0.5 });
+        places.map(|point| f64::from(transport.toward(point, eye).y)).collect()
+    };
+    let paths = effort.pick(2048, 512);
+    let truth = sent(&light(8 * paths));
+    let mean = truth.iter().sum::<f64>() / truth.len() as f64;
+    let off = |transport: &Transport| {
+        let squares = sent(transport).iter().zip(&truth).map(|(a, b)| (a - b).powi(2)).sum::<f64>();
+        (squares / truth.len() as f64).sqrt() / mean
+    };
+    let found = off(&light(paths).checking(known.clone()));
+    let control = off(&light(paths).with_irradiance(known));
+    let limit = effort.pick(0.022, 0.045);
+    let expected = format!("RMS of {paths} paths a point within {} % of theirs in the mean", 100.0 * limit);
+    Ok(Finding::of(expected, [("off", limit)], [found], [control]))
 }
 
 fn sun(effort: Effort, progress: &dyn Progress) -> Result<Finding, Cancelled> {

@@ -1,9 +1,11 @@
 //! All lobes of a point together.
 
+mod coat;
 mod glass;
 mod odds;
 pub(crate) mod toward;
 
+use coat::CoatAxes;
 use odds::{Choice, Odds};
 
 use crate::albedo::Gloss;
@@ -81,6 +83,8 @@ struct Seen {
     frame: Frame,
     o: DVec3,
     side: Side,
+    /// Those of the coat, in the frame.
+    coat: CoatAxes,
     from_front: bool,
 }
 
@@ -92,8 +96,6 @@ pub struct Parts {
     /// Of all others.
     pub sharp: Split,
 }
-
-const COAT_F0: f64 = 0.04;
 
 impl<'a> Bsdf<'a> {
     /// Of a point's material as it lies there. `interface` says what lies on either side: of the material's own index of
@@ -176,10 +178,11 @@ impl<'a> Bsdf<'a> {
         let frame = self.frame.facing(outgoing);
         let from_front = self.frame.geometric.dot(outgoing) >= 0.0;
         let o = frame.local(outgoing);
-        Seen { o, side: self.side(o), frame, from_front }
+        let coat = CoatAxes::of(&frame);
+        Seen { o, side: self.side(o, &coat), frame, coat, from_front }
     }
 
-    fn side(&self, w: DVec3) -> Side {
+    fn side(&self, w: DVec3, coat: &CoatAxes) -> Side {
         let (mut shares, mut beneath, f0) = (DVec2::ZERO, DVec3::ONE, self.f0_toward(w));
         if let Some(means) = &self.means {
             shares = self.gloss_shares(w);
@@ -187,7 +190,7 @@ impl<'a> Bsdf<'a> {
             let back = f0[1] * shares.x + self.surface.specular * shares.y + multiple;
             beneath = (DVec3::ONE - back).clamp(DVec3::ZERO, DVec3::ONE);
         }
-        Side { w, f0, shares, beneath, coat: self.coat_albedo(w), sheen: self.sheen_albedo(w) }
+        Side { w, f0, shares, beneath, coat: self.coat_albedo(coat.local(w)), sheen: self.sheen_albedo(w) }
     }
 
     /// Light sent toward `outgoing` for light from `incident`, 1/sr, without the cosine; mirrors and clear glass, which have
@@ -217,11 +220,11 @@ impl<'a> Bsdf<'a> {
         let o = seen.o;
         let (i, crosses) = match choice {
             Choice::Coat if self.coat.is_smooth() => {
-                return self.mirrored(seen, self.coat_mirror(o) / odds.coat);
+                return self.mirrored_by_coat(seen, odds.coat);
             }
-            Choice::Coat => (mirror(o, self.coat.visible_normal(o, place)), false),
+            Choice::Coat => (self.from_coat(seen, place), false),
             Choice::Gloss if self.ggx.is_smooth() => {
-                return self.mirrored(seen, self.gloss_mirror(o) / odds.gloss);
+                return self.mirrored(seen, self.gloss_mirror(seen) / odds.gloss);
             }
             Choice::Gloss => (mirror(o, self.ggx.visible_normal(o, place)), false),
             Choice::Spread => (cosine_weighted(place), false),
@@ -342,16 +345,6 @@ impl<'a> Bsdf<'a> {
         self.means.map_or(DVec3::ZERO, |means| means.multiple[which])
     }
 
-    fn coat_albedo(&self, w: DVec3) -> f64 {
-        let Some(coat) = self.surface.clearcoat else { return 0.0 };
-        let shares = if self.coat.is_smooth() {
-            DVec2::new(1.0 - rise(w.z.abs()), rise(w.z.abs()))
-        } else {
-            Gloss { roughness: coat.roughness, anisotropy: 0.0 }.shares(w)
-        };
-        coat.factor * (COAT_F0 * shares.x + shares.y)
-    }
-
     fn sheen_albedo(&self, w: DVec3) -> f64 {
         self.surface
             .sheen
@@ -375,7 +368,7 @@ impl<'a> Bsdf<'a> {
         if o.z <= 0.0 || i.z == 0.0 || same_side != (i.z > 0.0) {
             return Parts::default();
         }
-        let (eye, light) = (&seen.side, &self.side(i));
+        let (eye, light) = (&seen.side, &self.side(i, &seen.coat));
         let beneath = self.beneath(eye, light);
         if !same_side {
             let sharp = (self.across(seen, o, i) + self.diffuse_across(eye, light)) * beneath;
@@ -387,11 +380,7 @@ impl<'a> Bsdf<'a> {
             let left = (1.0 - eye.coat).min(1.0 - light.coat);
             spread += cloth.color * sheen::value(o, i, cloth.roughness) * left;
         }
-        if let (Some(coat), false, Some(h)) = (self.surface.clearcoat, self.coat.is_smooth(), half(o, i)) {
-            let mirrored = COAT_F0 + (1.0 - COAT_F0) * rise(o.dot(h));
-            let light = coat.factor * mirrored * self.microfacets(&self.coat, o, i, h);
-            sharp += Split::mirrored(DVec3::splat(light), self.coat.mean_alpha());
-        }
+        sharp += self.coated(seen, i);
         let share = seen.frame.terminator(incident);
         Parts { spread: spread * share, sharp: sharp * share }
     }
@@ -471,12 +460,9 @@ impl<'a> Bsdf<'a> {
         Split::own(self.surface.diffuse_transmission_color * self.coupled(eye, light)) * share
     }
 
-    fn coat_mirror(&self, o: DVec3) -> DVec3 {
-        DVec3::splat(self.coat_albedo(o))
-    }
-
-    fn gloss_mirror(&self, o: DVec3) -> DVec3 {
-        self.mirrored_at(o.z) * self.beneath(&self.side(o), &self.side(o))
+    fn gloss_mirror(&self, seen: &Seen) -> DVec3 {
+        let mirrored = self.side(mirror(seen.o, DVec3::Z), &seen.coat);
+        self.mirrored_at(seen.o.z) * self.beneath(&seen.side, &mirrored)
     }
 
     /// A mirror's direction.
@@ -528,10 +514,10 @@ impl<'a> Bsdf<'a> {
             if odds.returned > 0.0 { odds.returned * self.density_of_returned(seen, i) } else { 0.0 };
         if i.z > 0.0 {
             let mut density = odds.spread * i.z * FRAC_1_PI + returned;
-            let Some(h) = half(o, i) else { return density };
-            if odds.coat > 0.0 && !self.coat.is_smooth() {
-                density += odds.coat * of_mirror(&self.coat, h);
+            if odds.coat > 0.0 {
+                density += odds.coat * self.density_of_coat(seen, i);
             }
+            let Some(h) = half(o, i) else { return density };
             if odds.gloss > 0.0 && !self.ggx.is_smooth() {
                 density += odds.gloss * of_mirror(&self.ggx, h);
             }

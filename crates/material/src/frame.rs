@@ -13,6 +13,8 @@ pub struct Frame {
     pub normal: DVec3,
     /// Across the shading normal.
     pub tangent: DVec3,
+    /// Of a coat, which may have bumps of its own.
+    pub coat: DVec3,
 }
 
 impl Frame {
@@ -20,7 +22,12 @@ impl Frame {
     pub fn new(geometric: DVec3, normal: DVec3, tangent: DVec3) -> Self {
         let upright = tangent - normal * normal.dot(tangent);
         let tangent = upright.try_normalize().unwrap_or_else(|| normal.any_orthonormal_vector());
-        Self { geometric, normal, tangent }
+        Self { geometric, normal, tangent, coat: normal }
+    }
+
+    /// The same under a coat of this normal.
+    pub fn coated(self, coat: DVec3) -> Self {
+        Self { coat, ..self }
     }
 
     /// Of one normal.
@@ -28,22 +35,32 @@ impl Frame {
         Self::new(normal, normal, DVec3::ZERO)
     }
 
-    /// The frame as seen from `outgoing`: on its side, and with a shading normal that does not turn away from it. One that does is
+    /// The frame as seen from `outgoing`: on its side, and with shading normals that do not turn away from it. One that does is
     /// moved toward the geometric normal until it stands at a right angle, just so (as Keller et al. 2017 bend it): what is
     /// seen is never shaded as if from behind.
     pub(crate) fn facing(&self, outgoing: DVec3) -> Self {
         let side = if self.geometric.dot(outgoing) < 0.0 { -1.0 } else { 1.0 };
-        let (geometric, normal) = (self.geometric * side, self.normal * side);
-        let [toward, turned] = [geometric.dot(outgoing), normal.dot(outgoing)];
-        // A direction in the geometric plane itself sees nothing, whichever normal is taken.
-        const LEAST: f64 = 1e-3;
-        if turned >= LEAST * toward || toward <= 0.0 {
-            return Self { geometric, normal, ..*self };
-        }
-        // (1 − s)·turned + s·toward = LEAST·toward.
-        let share = (LEAST * toward - turned) / (toward - turned);
-        let bent = normal.lerp(geometric, share).normalize_or(geometric);
-        Self::new(geometric, bent, self.tangent)
+        let geometric = self.geometric * side;
+        let toward = geometric.dot(outgoing);
+        let [normal, coat] = [self.normal, self.coat].map(|normal| {
+            let normal = normal * side;
+            let turned = normal.dot(outgoing);
+            // A direction in the geometric plane itself sees nothing, whichever normal is taken.
+            const LEAST: f64 = 1e-3;
+            if turned >= LEAST * toward || toward <= 0.0 {
+                return normal;
+            }
+            // (1 − s)·turned + s·toward = LEAST·toward.
+            let share = (LEAST * toward - turned) / (toward - turned);
+            normal.lerp(geometric, share).normalize_or(geometric)
+        });
+        let is_bent = normal != self.normal * side;
+        let own = if is_bent {
+            Self::new(geometric, normal, self.tangent)
+        } else {
+            Self { geometric, normal, ..*self }
+        };
+        own.coated(coat)
     }
 
     /// A direction in the frame's own axes: tangent, bitangent, normal.

@@ -65,9 +65,9 @@ fn deviations(counts: &[f64], expected: &[f64]) -> f64 {
 
 /// How far the drawn directions are from their density, in standard deviations: of the density as it is, and of one that is off
 /// by a cosine, where the lobe is wide enough to tell.
-fn drawn(name: &str, surface: &Surface, cos: f64) -> (f64, Option<f64>) {
+fn drawn(name: &str, surface: &Surface, frame: Frame, cos: f64) -> (f64, Option<f64>) {
     let interface = interface(surface);
-    let bsdf = Bsdf::new(surface, Frame::flat(DVec3::Z), &interface);
+    let bsdf = Bsdf::new(surface, frame, &interface);
     let outgoing = toward(cos, 0.3);
     let mut random = Random(11);
     let mut counts = vec![0.0; BANDS * SECTORS];
@@ -93,7 +93,7 @@ fn drawn(name: &str, surface: &Surface, cos: f64) -> (f64, Option<f64>) {
 fn directions_are_drawn_as_their_density_says() {
     let test = |(name, surface): &(&str, Surface)| {
         for cos in COSINES {
-            let (off, control) = drawn(name, surface, cos);
+            let (off, control) = drawn(name, surface, Frame::flat(DVec3::Z), cos);
             assert!(off < 5.0, "{name}, cos {cos}: {off} standard deviations");
             assert!(control.is_none_or(|off| off > 5.0), "{name}, cos {cos}: the control passes");
         }
@@ -104,6 +104,65 @@ fn directions_are_drawn_as_their_density_says() {
         threads.spawn(|| some.iter().for_each(test));
         others.iter().for_each(test);
     });
+}
+
+/// A frame under a coat whose normal leans by about 20° toward +x.
+fn bumped() -> Frame {
+    Frame::flat(DVec3::Z).coated(DVec3::new(0.36, 0.05, 1.0).normalize())
+}
+
+#[test]
+fn a_coat_with_bumps_of_its_own_mirrors_by_its_own_normal() {
+    // Smooth, over black: it mirrors about its normal, and what lies beneath about the other one.
+    let coat = Some(Clearcoat { factor: 1.0, roughness: 0.0 });
+    let black = Surface { clearcoat: coat, base_color: DVec3::ZERO, ..metal(1.0) };
+    let interface = interface(&black);
+    let outgoing = toward(0.8, 0.3);
+    let mirrored = |frame: Frame| {
+        let bsdf = Bsdf::new(&black, frame, &interface);
+        let mut random = Random(3);
+        let drawn = (0..200).filter_map(|_| bsdf.sample(outgoing, random.three()));
+        drawn.filter(|scattered| scattered.density.is_none()).collect::<Vec<_>>()
+    };
+    let about = |normal: DVec3| normal * (2.0 * normal.dot(outgoing)) - outgoing;
+    let found = mirrored(bumped());
+    assert!(!found.is_empty() && found.iter().all(|one| one.incident.distance(about(bumped().coat)) < 1e-12));
+    // The control: bumps beneath it are none of its own.
+    let beneath = Frame::new(DVec3::Z, bumped().coat, DVec3::X).coated(DVec3::Z);
+    let found = mirrored(beneath);
+    assert!(!found.is_empty() && found.iter().all(|one| one.incident.distance(about(DVec3::Z)) < 1e-12));
+    assert!(about(DVec3::Z).distance(about(bumped().coat)) > 0.3, "the two are apart");
+
+    // Rough, its directions are drawn as their density says, weighted as it is evaluated, and no light is made.
+    for roughness in [0.3, 0.6] {
+        let coat = Some(Clearcoat { factor: 1.0, roughness });
+        for surface in [Surface { clearcoat: coat, ..black }, Surface { clearcoat: coat, ..plastic(0.5) }] {
+            let bsdf = Bsdf::new(&surface, bumped(), &interface);
+            for cos in COSINES {
+                let (off, _) = drawn("bumped coat", &surface, bumped(), cos);
+                assert!(off < 5.0, "roughness {roughness}, cos {cos}: {off} standard deviations");
+                let outgoing = toward(cos, 0.3);
+                let mut random = Random(17);
+                let mut sent = 0.0;
+                for _ in 0..20_000 {
+                    let Some(scattered) = bsdf.sample(outgoing, random.three()) else { continue };
+                    let density = bsdf.density(outgoing, scattered.incident);
+                    let value = bsdf.evaluate(outgoing, scattered.incident).total();
+                    let wanted = value * scattered.incident.z.abs() / density;
+                    let off = (wanted - scattered.weight.total()).abs().max_element();
+                    assert!(off < 1e-9 * wanted.max_element().max(1.0), "roughness {roughness}: {off}");
+                    sent += scattered.weight.total().x / 20_000.0;
+                }
+                assert!(sent < 1.02, "roughness {roughness}, cos {cos}: {sent}");
+            }
+            // The control: the density of a coat without bumps.
+            let flat = Bsdf::new(&surface, Frame::flat(DVec3::Z), &interface);
+            let outgoing = toward(0.75, 0.3);
+            let at = about(bumped().coat);
+            let [own, other] = [&bsdf, &flat].map(|bsdf| bsdf.density(outgoing, at));
+            assert!((own / other - 1.0).abs() > 0.02, "roughness {roughness}: {own} and {other}");
+        }
+    }
 }
 
 #[test]

@@ -96,7 +96,7 @@ impl Sent {
             [(self.own, 1.0 - share, false), (self.carried, share, true)].into_iter().zip(self.by_chance);
         kinds.filter(|((_, share, _), _)| *share > 0.0).map(|((light, share, is_carried), by_chance)| {
             Outgoing {
-                radiance: light / share,
+                radiance: sent(light / share),
                 share,
                 is_carried,
                 by_chance: by_chance / share,
@@ -104,6 +104,11 @@ impl Sent {
             }
         })
     }
+}
+
+/// Light that is told by paths which correct what was known may come out below 0, and is then nearer to the truth at 0.
+fn sent(light: Vec3) -> Vec3 {
+    light.max(Vec3::ZERO)
 }
 
 /// How many cells a side the carried light of a point of inverse depth `inverse_depth` is asked for on, whose narrowest lobe is
@@ -245,7 +250,7 @@ impl TowardCells {
         self.join([0, 0], self.side, differs, &mut parts);
         let share = self.all.share();
         let part = |(light, by_chance, word): (Vec3, Vec3, u64)| Outgoing {
-            radiance: light / share,
+            radiance: sent(light / share),
             share,
             is_carried: true,
             by_chance: by_chance / share,

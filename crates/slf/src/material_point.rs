@@ -51,7 +51,15 @@ fn frame(scene: &Scene, point: SurfacePoint) -> Frame {
         let direction = along(scene, anisotropy, point);
         Some(tangent * direction.x + bitangent * direction.y)
     });
-    Frame::new(geometric, normal, tangent.unwrap_or(DVec3::ZERO))
+    let frame = Frame::new(geometric, normal, tangent.unwrap_or(DVec3::ZERO));
+    match &material.clearcoat {
+        None => frame,
+        // The bumps of what lies beneath are none of the coat's.
+        Some(coat) => frame.coated(match &coat.normal_map {
+            Some(map) => scene.bumped_normal(map, point),
+            None => scene.shading_normal(point),
+        }),
+    }
 }
 
 /// The direction of anisotropy in tangent space.

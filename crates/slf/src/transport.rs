@@ -1,7 +1,9 @@
 //! Light transport: what surfaces send by themselves and what they scatter of each other's light, by paths.
 
 mod beside;
+mod following;
 mod gathered;
+mod known;
 mod receiving;
 
 use crate::irradiance::Irradiance;
@@ -11,12 +13,13 @@ use crate::lights::{LightSample, Lights};
 use crate::material_point::{MaterialPoint, emitted};
 use crate::media::{Inside, Media};
 use crate::path_random::PathRandom;
-use gathered::{Gathered, split};
+use gathered::{Gathered, most, split};
 use glam::{DVec3, Vec3};
-use material::{Bsdf, Frame, Scattered, Scattering, Split, Surface, Toward};
+use known::{Kept, Known};
+use material::{Bsdf, Frame, Parts, Scattered, Scattering, Split, Surface, Toward};
 use scene::{Scene, SurfacePoint, World};
 use std::sync::{Arc, OnceLock};
-use trace::{Among, Hit, Leaving, Radiance, Received, Spot, Tracer};
+use trace::{Among, Leaving, Radiance, Received, Spot, Tracer};
 
 /// How light is gathered.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -52,14 +55,15 @@ impl Default for TransportOptions {
 ///
 /// With [`Irradiance`] a path ends where it comes to what is known, that is, at the next diffuse surface; and what arrives at a
 /// point's own diffuse lobes from other surfaces is known as well. That is faster by far, and off by what patches do not tell:
-/// their mean stands for every point of them.
+/// their mean stands for every point of them. Where that is to be refined ([`Self::checking`]), what is known is a control variate:
+/// paths end there, too, but some of them, drawn by chance, go on and count for all by how far off they found it.
 pub struct Transport {
     tracer: Arc<Tracer>,
     world: World,
     options: TransportOptions,
     lights: Lights,
     media: Media,
-    irradiance: Option<Arc<Irradiance>>,
+    kept: Kept,
     /// Directions of the sky, once they are asked for.
     sky: OnceLock<Vec<LightSample>>,
 }
@@ -101,34 +105,6 @@ struct Step {
     density: Option<f64>,
 }
 
-/// What of the scene's light is known.
-#[derive(Clone, Copy)]
-enum Known<'a> {
-    Nothing,
-    /// Where it will be.
-    Patches(&'a Patches),
-    All(&'a Irradiance),
-}
-
-/// A place that a path came to, where what arrives at diffuse lobes is known or will be.
-struct Reached {
-    place: Place,
-    /// Irradiance/π there; 0 where it is not solved for yet.
-    irradiance: Vec3,
-}
-
-/// What a path found.
-struct Arriving {
-    /// Light that came straight from where lights are drawn, too.
-    drawn: DVec3,
-    /// Other light.
-    other: DVec3,
-    /// How far the first surface is.
-    distance: f64,
-    /// Where what arrives at diffuse lobes is known, and what of that is sent on.
-    onward: Option<(Reached, DVec3)>,
-}
-
 /// What a patch finds in one direction, as irradiance/π.
 pub(crate) struct Found {
     pub drawn: Vec3,
@@ -138,22 +114,24 @@ pub(crate) struct Found {
     pub onward: Option<(Place, Vec3, f64)>,
 }
 
-/// After so many scatterings Russian roulette begins.
-const SURE_SCATTERINGS: u32 = 3;
-/// A surface that is nearer than so many patches is too near for them to tell.
-const NEAR: f64 = 2.0;
-
 impl Transport {
     /// Prepares the scene in `tracer` in a world.
     pub fn new(tracer: Arc<Tracer>, world: World, options: TransportOptions) -> Self {
         let scene = tracer.scene();
         let (lights, media) = (Lights::of(scene, &world), Media::of(scene));
-        Self { tracer, world, options, lights, media, irradiance: None, sky: OnceLock::new() }
+        Self { tracer, world, options, lights, media, kept: Kept::Nothing, sky: OnceLock::new() }
     }
 
     /// The same with light that is known already, of the same scene and world.
     pub fn with_irradiance(self, irradiance: Arc<Irradiance>) -> Self {
-        Self { irradiance: Some(irradiance), ..self }
+        Self { kept: Kept::Trusted(irradiance), ..self }
+    }
+
+    /// The same with light that is known but not trusted: what it tells is used, and one path of a few checks it by going on to the
+    /// end. So the mean over points and paths is exact, as without it, whatever it tells; the noise is that of
+    /// [`TransportOptions::paths`].
+    pub fn checking(self, irradiance: Arc<Irradiance>) -> Self {
+        Self { kept: Kept::Checked(irradiance), ..self }
     }
 
     /// The scene it lights.
@@ -218,6 +196,7 @@ impl Transport {
         at: &MaterialPoint,
         outgoing: DVec3,
         path: &mut Path,
+        known: Known<'_>,
     ) -> Gathered {
         let dispersed = self.disperse(at, path);
         let is_front = at.frame.geometric.dot(outgoing) >= 0.0;
@@ -227,8 +206,8 @@ impl Transport {
         let mut sum = Gathered { light: self.direct(point, at, &lobes, path), by_chance: Split::default() };
         if let Some(scattered) = lobes.sample(path.random.next3()) {
             let step = self.step(point, at, &scattered, path);
-            let Arriving { drawn, other, .. } = self.arriving(step, path, Known::Nothing);
-            sum += Gathered::by(&scattered, drawn, other);
+            let arriving = self.arriving(step, path, known);
+            sum += Gathered::by(&scattered, arriving.drawn + arriving.sent_on(), arriving.other);
         }
         sum.split(dispersed)
     }
@@ -268,6 +247,22 @@ impl Transport {
             let (sent, own) = lobes.scatter(sample.from);
             sent * sample.density.map_or(1.0, |density| heuristic(density, own))
         })
+    }
+
+    /// What of it is carried, as far as drawing a direction for sharp lobes alone does not find it.
+    fn direct_carried(
+        &self,
+        point: SurfacePoint,
+        at: &MaterialPoint,
+        lobes: &Toward<'_, '_>,
+        path: &mut Path,
+    ) -> DVec3 {
+        let sent = self.direct_by(point, at, path, true, |sample| {
+            let (Parts { sharp, .. }, own) = lobes.scatter_parts(sample.from);
+            let share = sample.density.map_or(1.0, |density| heuristic(density, own));
+            Split { own: DVec3::ZERO, carried: sharp.carried * share }
+        });
+        sent.carried
     }
 
     /// The same by what is sent on of the light of a sample.
@@ -326,135 +321,12 @@ impl Transport {
         let light = emitted(self.scene(), hit.point, -direction).as_dvec3() * share;
         light * self.media.attenuation(&path.inside, hit.t)
     }
-
-    /// The radiance that arrives along a step, and all that comes after it as far as it is not known.
-    fn arriving(&self, mut step: Step, path: &mut Path, known: Known<'_>) -> Arriving {
-        let scene = self.scene();
-        let most = self.world.bounces.unwrap_or(u32::MAX);
-        let mut found =
-            Arriving { drawn: DVec3::ZERO, other: DVec3::ZERO, distance: f64::INFINITY, onward: None };
-        let mut throughput = DVec3::ONE;
-        let mut widest = step.density;
-        for scatterings in 1u32.. {
-            let hit = self.tracer.first_met(step.from, step.direction);
-            let length = hit.map_or(f64::INFINITY, |hit| hit.t);
-            throughput *= self.media.attenuation(&path.inside, length);
-            let Some(Hit { point, t }) = hit else {
-                let of_light = self.lights.density_of_environment(&self.world, step.direction);
-                let light = throughput * self.world.radiance(step.direction).as_dvec3();
-                let often = path.lights.sky;
-                found.add(light, step.density, [of_light, often], scatterings);
-                return found;
-            };
-            if scatterings == 1 {
-                found.distance = t;
-            }
-            let outgoing = -step.direction;
-            let shines = emitted(scene, point, outgoing).as_dvec3();
-            if shines != DVec3::ZERO {
-                let place = point.position(scene);
-                let of_light = self.lights.density_of_emitter(point.triangle, place, step.position);
-                let often = path.lights.lamps;
-                found.add(throughput * shines, step.density, [of_light, often], scatterings);
-            }
-            if scatterings > most || scene.material_of(point.triangle).unlit {
-                return found;
-            }
-            let mut at = MaterialPoint::of(scene, point, self.options.scattering);
-            if let (Known::All(_), Some(density)) = (known, widest) {
-                at.surface = at.surface.no_sharper_than(as_seen_by(density));
-            }
-            throughput *= self.disperse(&at, path);
-            let is_front = at.frame.geometric.dot(outgoing) >= 0.0;
-            let interface = self.media.interface(at.material, &path.inside, is_front);
-            let bsdf = Bsdf::new(&at.surface, at.frame, interface);
-            let lobes = bsdf.toward(outgoing);
-            let scattered = match known.reached(scene, point, is_front, t) {
-                None => {
-                    found.other += throughput * self.direct(point, &at, &lobes, path).total();
-                    let Some(scattered) = lobes.sample(path.random.next3()) else { return found };
-                    throughput *= scattered.weight.total();
-                    scattered
-                }
-                Some(reached) => {
-                    // What is own is known; what is carried is followed.
-                    let Split { own, carried } = lobes.albedo();
-                    let [of_own, of_carried] = [own, carried].map(DVec3::element_sum);
-                    if of_carried > 0.0 {
-                        found.other += throughput * self.direct(point, &at, &lobes, path).carried;
-                    }
-                    let ends = of_own / (of_own + of_carried);
-                    if of_carried == 0.0 || path.random.next() < ends {
-                        let share = if of_carried == 0.0 { 1.0 } else { ends };
-                        found.onward = (of_own > 0.0).then_some((reached, throughput * own / share));
-                        return found;
-                    }
-                    let Some(scattered) = lobes.sample_sharp(path.random.next3()) else { return found };
-                    throughput *= scattered.weight.carried / (1.0 - ends);
-                    scattered
-                }
-            };
-            if scatterings >= SURE_SCATTERINGS || throughput == DVec3::ZERO {
-                let lives = throughput.max_element().min(0.95);
-                if path.random.next() >= lives {
-                    return found;
-                }
-                throughput /= lives;
-            }
-            step = self.step(point, &at, &scattered, path);
-            widest = match (widest, step.density) {
-                (Some(so_far), Some(density)) => Some(so_far.min(density)),
-                (so_far, density) => so_far.or(density),
-            };
-        }
-        found
-    }
-}
-
-impl Arriving {
-    /// Light that was found after so many scatterings by a direction of some density; lights find it with another, and are drawn
-    /// so often for the first direction.
-    fn add(&mut self, light: DVec3, density: Option<f64>, [of_light, often]: [f64; 2], scatterings: u32) {
-        let drawn = if scatterings == 1 { of_light * often } else { of_light };
-        let light = light * density.map_or(1.0, |own| heuristic(own, drawn));
-        let sum = if scatterings == 1 && of_light > 0.0 { &mut self.drawn } else { &mut self.other };
-        *sum += light;
-    }
-}
-
-impl Known<'_> {
-    /// A place that a path came to over a distance, if what arrives there is known.
-    fn reached(self, scene: &Scene, point: SurfacePoint, is_front: bool, distance: f64) -> Option<Reached> {
-        let spacing = match self {
-            Self::Nothing => return None,
-            Self::Patches(patches) => patches.spacing(),
-            Self::All(irradiance) => irradiance.spacing(),
-        };
-        if distance < NEAR * spacing {
-            return None;
-        }
-        let place = Place::of(scene, point, is_front);
-        let irradiance = match self {
-            Self::Nothing => None,
-            Self::Patches(patches) => patches.knows(&place).then_some(Vec3::ZERO),
-            Self::All(irradiance) => irradiance.total(&place),
-        };
-        irradiance.map(|irradiance| Reached { place, irradiance })
-    }
 }
 
 /// How many of `wanted` each of so many points takes, whose mean is wanted: as many as it would alone, up to four points.
 fn each_of(among: Among, wanted: u32) -> u32 {
     const ALONE: u32 = 4;
     (wanted * ALONE).div_ceil(among.count.max(ALONE)).max(1)
-}
-
-/// How rough what is reflected may be taken for, perceptually, where a lobe reflects it that is so wide: of a density, 1/sr, in the
-/// direction it was drawn in. A lamp in a mirror in rough metal is then found by drawing lamps, and not by chance, for a little
-/// blur of what is blurred anyway (path space regularisation, Kaplanyan and Dachsbacher 2013; the widths are those of Cycles).
-fn as_seen_by(density: f64) -> f64 {
-    let alpha = 0.5 * (1.0 - density).max(0.0).sqrt();
-    alpha.sqrt()
 }
 
 /// The share of a way of sampling with density `own` in what another with density `other` finds as well (Veach and Guibas 1995,
@@ -482,7 +354,7 @@ impl Radiance for Transport {
         let interface = self.media.interface(at.material, &inside, is_front);
         let bsdf = Bsdf::new(&at.surface, at.frame, interface);
         let lobes = bsdf.toward(outgoing);
-        let known = self.irradiance.as_deref().and_then(|known| {
+        let known = self.kept.trusted().and_then(|known| {
             let irradiance = match among.received {
                 Some(received) => known.received(&self.world, &received, lobes.normal()),
                 None => known.indirect(&Place::of(scene, point, is_front))?.as_dvec3(),
@@ -510,11 +382,22 @@ impl Radiance for Transport {
             }
             None => {
                 let paths = each_of(among, self.options.paths);
+                let known = self.kept.to_be_checked().map_or(Known::Nothing, Known::Checked);
+                // Of another number of paths all are others: how far two means are apart tells their noise.
+                let seed =
+                    if known.is_to_be_checked() { among.seed ^ u64::from(paths) << 1 } else { among.seed };
                 let mut sum = Gathered::default();
+                let mut most_by_chance = Split::default();
                 for index in 0..paths {
-                    let random = PathRandom::new(among.seed, among.index * paths + index);
+                    let random = PathRandom::new(seed, among.index * paths + index);
                     let mut path = Path { random, inside, lights: LightsAPath::each(1.0) };
-                    sum += self.scattered(point, &at, outgoing, &mut path);
+                    let found = self.scattered(point, &at, outgoing, &mut path, known);
+                    most_by_chance = most(most_by_chance, found.by_chance);
+                    sum += found;
+                }
+                if known.is_to_be_checked() {
+                    // Many paths together are no chance: one that found more than all others may be.
+                    sum.by_chance = most_by_chance;
                 }
                 sum * (1.0 / f64::from(paths))
             }
@@ -535,7 +418,9 @@ impl Radiance for Transport {
     fn varies_within(&self, point: SurfacePoint) -> bool {
         let scene = self.scene();
         let material = scene.material_of(point.triangle);
-        material.unlit || !scene.colors.is_empty() || material.has_textures()
+        // Where few points would be taken for all, the mean would not be exact.
+        let is_exact = self.kept.to_be_checked().is_some();
+        is_exact || material.unlit || !scene.colors.is_empty() || material.has_textures()
     }
 
     fn carried_width(&self, point: SurfacePoint) -> Option<f64> {

@@ -138,7 +138,7 @@ impl Bsdf<'_> {
 
     /// One of clear glass; `odds` of the glass.
     pub(super) fn clear(&self, seen: &Seen, odds: f64, is_mirrored: bool, i: DVec3) -> Option<Scattered> {
-        let scale = self.shares[2] * self.beneath(&seen.side, &self.side(i)) / odds;
+        let scale = self.shares[2] * self.beneath(&seen.side, &self.side(i, &seen.coat)) / odds;
         let weight = match is_mirrored {
             true => DVec3::splat(scale),
             false if self.surface.is_thin => self.surface.base_color * scale,

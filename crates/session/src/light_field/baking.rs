@@ -19,7 +19,7 @@ pub fn bake(
     steps: &dyn Steps,
 ) -> Result<Salf, SessionError> {
     let options = BakeOptions { tolerance_px, ..BakeOptions::for_focus(tracer, camera, focus) };
-    bake_with(tracer, camera, &options, steps)
+    bake_with(tracer, camera, &options, LightQuality::Fine, steps)
 }
 
 /// The same light field with samples as they were found, not packed: what the saving is measured against.
@@ -31,17 +31,24 @@ pub fn bake_unpacked(
     steps: &dyn Steps,
 ) -> Result<Salf, SessionError> {
     let margin = BakeOptions::for_focus(tracer, camera, focus);
-    bake_with(tracer, camera, &BakeOptions { tolerance_px, packs: false, ..margin }, steps)
+    bake_with(
+        tracer,
+        camera,
+        &BakeOptions { tolerance_px, packs: false, ..margin },
+        LightQuality::Fine,
+        steps,
+    )
 }
 
-/// The same with these options.
+/// The same with these options, and light as well as that.
 pub(crate) fn bake_with(
     tracer: &Arc<Tracer>,
     camera: &Camera,
     options: &BakeOptions,
+    quality: LightQuality,
     steps: &dyn Steps,
 ) -> Result<Salf, SessionError> {
-    let light = light(tracer, camera, LightQuality::Fine, &*steps.begin("light"))?;
+    let light = light(tracer, camera, quality, &*steps.begin("light"))?;
     let (salf, outliers) = salf::bake_and_tell(tracer, &*light, camera, options, &*steps.begin("baking"))?;
     if outliers.samples > 0 {
         let (samples, percent) = (outliers.samples, 100.0 * outliers.share());

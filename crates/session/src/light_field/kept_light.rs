@@ -35,12 +35,18 @@ impl Kept {
 }
 
 /// How well light is to be solved for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum LightQuality {
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum LightQuality {
     /// Well enough for a picture that is soon replaced; better, if that is known.
     Rough,
-    /// As well as it is going to be.
+    /// As well as what is kept for every camera tells it: at once, and off by what that is off.
+    #[default]
     Fine,
+    /// By paths that check what is kept: off by their noise alone, which falls with the root of their number.
+    Refined {
+        /// Each is a path for a point of surface that is asked alone, four a pixel.
+        passes: u32,
+    },
 }
 
 /// Light of few patches and rays: in a fraction of a second.

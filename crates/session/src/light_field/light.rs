@@ -33,7 +33,9 @@ pub(crate) fn light(
     if is_photographed(tracer) {
         match (photographed::known(tracer), quality) {
             (Some(light), _) => return Ok(light),
-            (None, LightQuality::Fine) => return photographed::looked_up(tracer, progress),
+            (None, LightQuality::Fine | LightQuality::Refined { .. }) => {
+                return photographed::looked_up(tracer, progress);
+            }
             (None, LightQuality::Rough) if photographed::is_kept(tracer) => {
                 return photographed::looked_up(tracer, progress);
             }
@@ -41,12 +43,16 @@ pub(crate) fn light(
         }
     }
     let light_samples = if quality == LightQuality::Rough { ROUGH_LIGHT_SAMPLES } else { LIGHT_SAMPLES };
-    let transport = transport(tracer, camera, PATHS, light_samples);
+    let paths = if let LightQuality::Refined { passes } = quality { passes } else { PATHS };
+    let transport = transport(tracer, camera, paths, light_samples);
     if !needs_light(tracer) {
         return Ok(Arc::new(transport));
     }
     let irradiance = kept_light::wait(tracer, &world(tracer, camera), quality, progress)?;
-    Ok(Arc::new(transport.with_irradiance(irradiance)))
+    Ok(Arc::new(match quality {
+        LightQuality::Refined { .. } => transport.checking(irradiance),
+        LightQuality::Rough | LightQuality::Fine => transport.with_irradiance(irradiance),
+    }))
 }
 
 /// The same as far as it is known at once: without irradiance, where that is not solved for yet, it is exact and noisy.
@@ -91,6 +97,11 @@ pub(crate) fn light_for_many_points(
 /// Whether photographs light the scene.
 pub(crate) fn is_photographed(tracer: &Tracer) -> bool {
     !tracer.scene().views.is_empty()
+}
+
+/// Whether the light of a scene can be refined: there is some, and no photographs tell it.
+pub(crate) fn may_be_refined(tracer: &Tracer) -> bool {
+    !is_photographed(tracer) && needs_light(tracer)
 }
 
 /// Whether any surface scatters light at all.

@@ -22,6 +22,7 @@ mod store;
 
 pub use aperture_image::{ApertureCell, ApertureImage, KeptVisibility};
 pub use baking::{bake, bake_unpacked};
+pub use kept_light::LightQuality;
 pub use modelled::{DENSE_SAMPLE_BYTES, Modelled, ModelledRow, TexelStatistics};
 pub use salf_file::write_salf;
 pub use store::LightFieldStore;
@@ -29,11 +30,11 @@ pub use store::LightFieldStore;
 pub(crate) use baking::bake_with;
 pub(crate) use changes::Changes;
 pub(crate) use field_watch::{FieldWatch, Standing};
-pub(crate) use kept_light::LightQuality;
-pub(crate) use light::{first_light, is_photographed, light, light_for_many_points};
+pub(crate) use light::{first_light, is_photographed, light, light_for_many_points, may_be_refined};
 pub(crate) use photographed::{
     if_known as photograph_light_if_known, keep_at as keep_photographs_at, wait as photograph_light,
 };
 pub(crate) use reach::Reach;
 pub(crate) use running_sum::{BakedField, Brought, FieldOptions, LightField, Plan};
 pub(crate) use serves::serves;
+pub(crate) use store::LIGHT_PASSES;

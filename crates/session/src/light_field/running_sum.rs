@@ -84,6 +84,8 @@ pub(crate) struct LightField {
     reach: Option<Reach>,
     /// Seconds that the last whole sum took.
     whole_seconds: f64,
+    /// Passes that its light was refined by; 0 of light as it is kept for every camera.
+    light_passes: u32,
 }
 
 impl From<SplatError> for SessionError {
@@ -113,7 +115,18 @@ impl LightField {
         let radiance = light(&stage.tracer, camera, how.light, &Share::new(progress, 0.0, LIGHT_SHARE))?;
         let baking = Share::new(progress, LIGHT_SHARE, 1.0);
         let salf = salf::bake(&stage.tracer, &*radiance, camera, &options, &baking)?;
-        Ok(Self::of(stage, Arc::new(salf), how.tolerance, how.gpu))
+        let passes = if let LightQuality::Refined { passes } = how.light { passes } else { 0 };
+        Ok(Self { light_passes: passes, ..Self::of(stage, Arc::new(salf), how.tolerance, how.gpu) })
+    }
+
+    /// The same, whose light was refined before by so many passes.
+    pub fn refined(self, light_passes: u32) -> Self {
+        Self { light_passes, ..self }
+    }
+
+    /// Passes that its light was refined by; 0 of light as it is kept for every camera.
+    pub fn light_passes(&self) -> u32 {
+        self.light_passes
     }
 
     /// A light field that was baked before.
@@ -140,12 +153,14 @@ impl LightField {
             unseen: Changes::default(),
             reach: None,
             whole_seconds: f64::INFINITY,
+            light_passes: 0,
         }
     }
 
     /// The same light field and hierarchy, to be summed without tolerance.
     pub fn exact(&self) -> Self {
-        Self::unsummed(self.splatter.twin(), self.index.clone(), self.modelled)
+        let twin = Self::unsummed(self.splatter.twin(), self.index.clone(), self.modelled);
+        twin.refined(self.light_passes)
     }
 
     /// See [`Splatter::prepare`].

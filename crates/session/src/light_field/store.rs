@@ -19,6 +19,9 @@ use std::time::{Duration, SystemTime};
 /// Bytes that the folder may hold: half a dozen light fields of 1920 × 1080 pixels.
 const BUDGET_BYTES: u64 = 2 << 30;
 
+/// Passes that light is refined by, one after the other, each in place of the one before.
+pub(crate) const LIGHT_PASSES: [u32; 5] = [4, 16, 64, 256, 1024];
+
 /// What is baked in less time is baked again.
 const SHORTEST_BAKE: Duration = Duration::from_secs(2);
 
@@ -41,31 +44,47 @@ impl LightFieldStore {
         Self { shortest_bake, ..self }
     }
 
-    /// The file of a light field; none where builds of the program cannot be told apart.
-    fn file(&self, stage: &Stage, camera: &Camera) -> Option<PathBuf> {
+    /// The file of a light field whose light was refined by so many passes; none where builds of the program cannot be told apart.
+    fn file(&self, stage: &Stage, camera: &Camera, light_passes: u32) -> Option<PathBuf> {
         let mut hash = Sha256::new();
         hash.update(build()?);
         hash.update(format!("{:?}", common(camera)));
         hash.update(stage.light_hash());
+        hash.update(light_passes.to_le_bytes());
         let name: String = hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect();
         Some(self.folder.join(name).with_extension("salf"))
     }
 
     /// Whether there is a light field of the stage for `camera`.
     pub(crate) fn has(&self, stage: &Stage, camera: &Camera) -> bool {
-        self.file(stage, camera).is_some_and(|file| file.exists())
+        self.file(stage, camera, 0).is_some_and(|file| file.exists())
     }
 
     /// The light field of the stage for `camera`, if one is kept that reaches at least `least_margin_px` beyond the frame and tells
-    /// carried light as finely as is wanted. One that cannot be read is as good as none.
+    /// carried light as finely as is wanted: of those the one whose light was refined most, and by how many passes. One that cannot be
+    /// read is as good as none.
     pub(crate) fn find(
         &self,
         stage: &Stage,
         camera: &Camera,
         least_margin_px: f64,
         carried: Carried,
+    ) -> Option<(Salf, u32)> {
+        let passes = LIGHT_PASSES.into_iter().rev().chain([0]);
+        passes
+            .into_iter()
+            .find_map(|passes| Some((self.find_of(stage, camera, passes, least_margin_px, carried)?, passes)))
+    }
+
+    fn find_of(
+        &self,
+        stage: &Stage,
+        camera: &Camera,
+        light_passes: u32,
+        least_margin_px: f64,
+        carried: Carried,
     ) -> Option<Salf> {
-        let path = self.file(stage, camera)?;
+        let path = self.file(stage, camera, light_passes)?;
         let file = File::open(&path).ok()?;
         // It was looked for: it goes last. Where that cannot be noted, it goes by when it was written.
         let _ = file.set_modified(SystemTime::now());
@@ -79,17 +98,17 @@ impl LightFieldStore {
     }
 
     /// Keeps a light field that took `bake` to make, on a thread of its own. That it cannot be kept only costs time later.
-    pub(crate) fn keep(&self, stage: &Arc<Stage>, salf: &Arc<Salf>, bake: Duration) {
+    pub(crate) fn keep(&self, stage: &Arc<Stage>, salf: &Arc<Salf>, light_passes: u32, bake: Duration) {
         if bake < self.shortest_bake {
             return;
         }
         let (store, stage, salf) = (self.clone(), stage.clone(), salf.clone());
-        let write = move || store.write(&stage, &salf);
+        let write = move || store.write(&stage, &salf, light_passes);
         let _ = std::thread::Builder::new().name("keeping light field".into()).spawn(write);
     }
 
-    fn write(&self, stage: &Stage, salf: &Arc<Salf>) {
-        let Some(path) = self.file(stage, &salf.camera) else { return };
+    fn write(&self, stage: &Stage, salf: &Arc<Salf>, light_passes: u32) {
+        let Some(path) = self.file(stage, &salf.camera, light_passes) else { return };
         let made = std::fs::create_dir_all(&self.folder).is_ok();
         if made && write_salf(&path, &stage.scene.path, &stage.scene, salf).is_ok() {
             tidy(&self.folder, "salf", self.budget_bytes, &path);

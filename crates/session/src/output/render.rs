@@ -8,7 +8,7 @@ use crate::document::Input;
 use crate::error::SessionError;
 use crate::jobs::Steps;
 use crate::light_field::{
-    LightQuality, bake, bake_with, is_photographed, light, light_for_many_points, photograph_light, serves,
+    LightQuality, bake_with, is_photographed, light, light_for_many_points, photograph_light, serves,
 };
 use baselines::{BaselineError, FirstHits, LayeredOptions, ScatterOptions, ViewsOptions};
 use focus::Focus;
@@ -45,6 +45,8 @@ pub struct RenderOptions {
     pub truth: TruthOptions,
     /// How coarse the light field may be, px (see [`BakeOptions::tolerance_px`]).
     pub tolerance_px: f64,
+    /// How well its light is found; the ground truth's is whole paths.
+    pub light: LightQuality,
     /// How coarse its splat may be.
     pub splat_tolerance: Tolerance,
     /// A light field that is to be baked is sampled on a grid of n × n cells a pixel, n from 1 to [`MOST_CELLS_A_SIDE`],
@@ -73,6 +75,7 @@ impl Default for RenderOptions {
             renderer: Renderer::Splat,
             truth: TruthOptions { samples_per_pixel: 64, ..TruthOptions::default() },
             tolerance_px: BakeOptions::TOLERANCE_PX,
+            light: LightQuality::Fine,
             splat_tolerance: Tolerance::NONE,
             cells_a_side: 1,
             gpu: None,
@@ -124,8 +127,8 @@ impl RenderOptions {
         focus: &Focus,
         steps: &dyn Steps,
     ) -> Result<Salf, SessionError> {
-        let finer = self.finer(camera)?;
-        bake(tracer, &finer, focus, self.tolerance_px * f64::from(self.cells_a_side), steps)
+        let needed = BakeOptions::for_focus(tracer, &self.finer(camera)?, focus);
+        self.bake_as(tracer, camera, needed, steps)
     }
 
     /// The same for a margin, and light carried as finely, as `needed` says of the finer camera.
@@ -137,7 +140,7 @@ impl RenderOptions {
         steps: &dyn Steps,
     ) -> Result<Salf, SessionError> {
         let tolerance_px = self.tolerance_px * f64::from(self.cells_a_side);
-        bake_with(tracer, &self.finer(camera)?, &BakeOptions { tolerance_px, ..needed }, steps)
+        bake_with(tracer, &self.finer(camera)?, &BakeOptions { tolerance_px, ..needed }, self.light, steps)
     }
 
     /// The camera whose light field is baked for `camera`.
@@ -239,15 +242,15 @@ pub fn render(
             estimate.insert(found).picture.clone()
         }
         Renderer::Blur => {
-            let hits = first_hits(tracer, camera, focus, steps)?;
+            let hits = first_hits(tracer, camera, focus, options.light, steps)?;
             baselines::gather(&hits, camera, &*steps.begin("blurring"))?
         }
         Renderer::Layers => {
-            let hits = first_hits(tracer, camera, focus, steps)?;
+            let hits = first_hits(tracer, camera, focus, options.light, steps)?;
             baselines::layered(&hits, camera, &options.layered, &*steps.begin("blurring"))?
         }
         Renderer::Views => {
-            let radiance = light(tracer, camera, LightQuality::Fine, &*steps.begin("light"))?;
+            let radiance = light(tracer, camera, options.light, &*steps.begin("light"))?;
             let progress = steps.begin("views");
             baselines::shift_and_add(tracer, &*radiance, focus, camera, &options.views, &*progress)?
         }
@@ -440,7 +443,7 @@ fn finish(
     steps: &dyn Steps,
 ) -> Result<Rendered, SessionError> {
     let asks = options.aovs.iter().any(|aov| aov.needs_first_hits());
-    let hits = asks.then(|| first_hits(tracer, camera, focus, steps)).transpose()?;
+    let hits = asks.then(|| first_hits(tracer, camera, focus, options.light, steps)).transpose()?;
     let is_captured = is_photographed(tracer) || tracer.scene().picture.is_some();
     let is_seen_asked = options.aovs.contains(&Aov::Seen) && is_captured;
     let seen = is_seen_asked.then(|| {
@@ -529,8 +532,9 @@ fn first_hits(
     tracer: &Arc<Tracer>,
     camera: &Camera,
     focus: &Focus,
+    quality: LightQuality,
     steps: &dyn Steps,
 ) -> Result<FirstHits, SessionError> {
-    let light = light(tracer, camera, LightQuality::Fine, &*steps.begin("light"))?;
+    let light = light(tracer, camera, quality, &*steps.begin("light"))?;
     Ok(FirstHits::trace(tracer, &*light, focus, camera, &*steps.begin("first hits"))?)
 }

@@ -33,6 +33,32 @@ pub(crate) struct Refined {
     pub outcome: Result<Exact, SessionError>,
 }
 
+/// What becomes of light that was to be refined.
+pub(crate) struct RefinedLight {
+    /// What was made; or why there is nothing.
+    pub made: Result<Finer, SessionError>,
+    /// The epoch in which it was asked for.
+    pub epoch: u64,
+}
+
+/// A light field of refined light, summed.
+pub(crate) struct Finer {
+    pub field: LightField,
+    /// How far it and the light at once are from the truth, if that is known.
+    pub errors: Option<LightErrors>,
+    /// Seconds that the bake took.
+    pub seconds: f64,
+}
+
+/// How far pictures are from what refined light comes to in the end, the mean square of linear values.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct LightErrors {
+    /// The one that the light was refined for, by the noise of paths.
+    pub refined: f64,
+    /// The one that stood before.
+    pub standing: f64,
+}
+
 /// An exact picture, beside the field that holds it.
 pub(crate) struct Exact {
     pub map_serial: u64,

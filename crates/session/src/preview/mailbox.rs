@@ -1,7 +1,7 @@
 //! What the session and the preview's threads share: one mailbox for wishes, one for news.
 
 use super::activity::PreviewActivity;
-use super::deliveries::{Between, Delivery, Refined};
+use super::deliveries::{Between, Delivery, Refined, RefinedLight};
 use super::news::{News, Published};
 use super::picture::{PictureTimes, Preview, Quality};
 use super::wishes::{Stops, Wishes};
@@ -10,7 +10,7 @@ use crate::jobs::{JobProgress, Waker};
 use crate::light_field::{BakedField, FieldWatch};
 use progress::{Cancelled, Progress};
 use splat::Gpu;
-use std::sync::atomic::{AtomicBool, AtomicU8, AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU8, AtomicU32, AtomicUsize, Ordering};
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
@@ -25,6 +25,10 @@ pub(crate) struct Shared {
     /// Of the exact picture.
     pub refining: JobProgress,
     is_refining: AtomicBool,
+    /// Of light that is refined.
+    pub light: JobProgress,
+    /// By how many passes; 0: none is.
+    light_passes: AtomicU32,
     /// Pictures that are being made for the user, which the exact one on screen waits for.
     exports: AtomicUsize,
     activity: AtomicU8,
@@ -52,6 +56,8 @@ impl Shared {
             progress: JobProgress::default(),
             refining: JobProgress::default(),
             is_refining: AtomicBool::new(false),
+            light: JobProgress::default(),
+            light_passes: AtomicU32::new(0),
             exports: AtomicUsize::new(0),
             activity: AtomicU8::new(PreviewActivity::Idle as u8),
             helper: AtomicU8::new(PreviewActivity::Idle as u8),
@@ -97,6 +103,7 @@ impl Shared {
             wishes.stops = true;
             self.quick.cancel();
             self.progress.cancel();
+            self.light.cancel();
         }
         self.wake.notify_one();
     }
@@ -130,6 +137,30 @@ impl Shared {
         self.is_refining.store(true, Ordering::Relaxed);
         (self.waker)();
         true
+    }
+
+    /// Notes that light is begun to be refined by so many passes; false if something was wished meanwhile.
+    pub fn begin_light(&self, passes: u32) -> bool {
+        let wishes = lock(&self.wishes);
+        if wishes.is_posted {
+            return false;
+        }
+        self.light.reset();
+        self.light_passes.store(passes, Ordering::Relaxed);
+        (self.waker)();
+        true
+    }
+
+    /// It is refined, or given up.
+    pub fn refined_light(&self, refined: RefinedLight) {
+        self.light_passes.store(0, Ordering::Relaxed);
+        self.post(Stops::Nothing, |wishes| wishes.refined_light = Some(refined));
+    }
+
+    /// By how many passes light is being refined, and how far that is.
+    pub fn refining_light(&self) -> Option<(u32, &JobProgress)> {
+        let passes = self.light_passes.load(Ordering::Relaxed);
+        (passes > 0).then_some((passes, &self.light))
     }
 
     /// The exact picture is done, or given up.
@@ -217,6 +248,7 @@ impl Shared {
     pub fn begin_export(&self) {
         self.exports.fetch_add(1, Ordering::Relaxed);
         self.refining.cancel();
+        self.light.cancel();
     }
 
     /// It is made: there is time again.

@@ -13,7 +13,7 @@ use salf::Carried;
 use splat::Tolerance;
 use std::sync::Arc;
 use std::thread::JoinHandle;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 /// What is begun with.
 pub(crate) enum Begin {
@@ -55,6 +55,14 @@ impl LightFieldMaker {
     /// Whether the light field need not be baked.
     pub fn has_stored(&self, stage: &Stage, camera: &Camera) -> bool {
         self.store.as_ref().is_some_and(|store| store.has(stage, camera))
+    }
+
+    /// Keeps a light field of refined light, if there is a store.
+    pub fn keep(&self, stage: &Arc<Stage>, field: &LightField, bake_seconds: f64) {
+        if let Some(store) = &self.store {
+            let bake = Duration::from_secs_f64(bake_seconds);
+            store.keep(stage, &field.baked().salf, field.light_passes(), bake);
+        }
     }
 
     /// Whether a light field is being made.
@@ -144,7 +152,7 @@ fn make(order: Order, shared: &Shared, store: Option<&LightFieldStore>) -> Resul
         let share = Share::new(&shared.progress, done, BAKE_SHARE);
         let field = LightField::bake(&stage, &camera, &focus, how(least_margin_px), &share)?;
         if let Some(store) = store {
-            store.keep(&stage, &field.baked().salf, start.elapsed());
+            store.keep(&stage, &field.baked().salf, 0, start.elapsed());
         }
         Ok::<_, SessionError>(field)
     };
@@ -157,7 +165,9 @@ fn make(order: Order, shared: &Shared, store: Option<&LightFieldStore>) -> Resul
             let carried = Carried::of(&focus);
             let stored = store.and_then(|store| store.find(&stage, &camera, least_margin_px, carried));
             match stored {
-                Some(salf) => LightField::of(&stage, Arc::new(salf), tolerance, shared.gpu()),
+                Some((salf, passes)) => {
+                    LightField::of(&stage, Arc::new(salf), tolerance, shared.gpu()).refined(passes)
+                }
                 None => bake(least_margin_px)?,
             }
         }

@@ -12,7 +12,8 @@
 //! paint            updated until the fine one is there   updated
 //! ```
 //!
-//! When nothing has changed for a while, the fine one is summed once more without tolerance (`refinement.rs`).
+//! When nothing has changed for a while, the fine one is summed once more without tolerance (`refinement.rs`), and then its light is
+//! refined (`light_refinement.rs`).
 //! So a dab or a turned ring shows at once and sharpens by itself, however large the scene. The thread works on
 //! snapshots of the focus map (tiles are shared until one is painted on): neither ever waits for the other. What
 //! a newer wish makes useless is stopped. The last good picture is never taken away.
@@ -20,6 +21,7 @@
 mod activity;
 mod coarse;
 mod deliveries;
+mod light_refinement;
 mod mailbox;
 mod maker;
 mod news;

@@ -61,6 +61,10 @@ pub struct DrawingCosts {
     pub viewing_psnr: Option<f64>,
     /// Seconds to draw all of the exact picture.
     pub exact_seconds: Option<f64>,
+    /// Passes that its light was refined by; 0: it is that at once.
+    pub light_passes: u32,
+    /// PSNR, dB, of the light at once against light that is refined for ever, as far as passes have told it.
+    pub light_psnr: Option<f64>,
 }
 
 /// When a finished picture was made.

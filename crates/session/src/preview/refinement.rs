@@ -131,13 +131,18 @@ fn draw(field: &mut LightField, task: Task, shared: &Shared) -> Result<Exact, Se
 
 /// How far `picture` is from `exact`, of the same size: PSNR in dB of linear values clipped to [0, 1].
 fn psnr_between(picture: &Picture, exact: &Picture, exposure: Exposure) -> f64 {
+    project::psnr(square_between(picture, exact, exposure))
+}
+
+/// The mean square of how far two pictures of one size are apart, of linear values clipped to [0, 1].
+pub(super) fn square_between(picture: &Picture, exact: &Picture, exposure: Exposure) -> f64 {
     let [a, b] = [picture, exact].map(|picture| picture.exposed(exposure));
     let square = |(a, b): (&[f32; 3], &[f32; 3])| -> f64 {
         let of = |k: usize| f64::from(a[k].clamp(0.0, 1.0)) - f64::from(b[k].clamp(0.0, 1.0));
         (0..3).map(|k| of(k) * of(k)).sum()
     };
     let sum: f64 = a.par_iter().zip(&b).map(square).sum();
-    project::psnr(sum / (3 * a.len()).max(1) as f64)
+    sum / (3 * a.len()).max(1) as f64
 }
 
 #[cfg(test)]

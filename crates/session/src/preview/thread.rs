@@ -25,10 +25,11 @@ pub(crate) struct PreviewThread {
 
 impl PreviewThread {
     /// Starts the thread. `exact_after`: for how long nothing must change until the exact picture is drawn; none: never.
-    /// `store`: where light fields are kept. `gpu`: what pictures are summed on; none: the processor.
+    /// Then light is refined, by at most `light_passes`. `store`: where light fields are kept. `gpu`: what pictures are summed on; none: the processor.
     pub fn start(
         waker: Waker,
         exact_after: Option<Duration>,
+        light_passes: u32,
         store: Option<LightFieldStore>,
         gpu: Option<Gpu>,
     ) -> Result<Self, SessionError> {
@@ -37,7 +38,7 @@ impl PreviewThread {
         let thread = std::thread::Builder::new()
             .name("preview".into())
             .stack_size(16 << 20)
-            .spawn(move || pool.install(|| Worker::new(theirs, exact_after, store).run()))
+            .spawn(move || pool.install(|| Worker::new(theirs, exact_after, light_passes, store).run()))
             .map_err(|e| SessionError::TryAgain(format!("no preview thread: {e} (try again)")))?;
         Ok(Self { shared, thread: Some(thread) })
     }
@@ -86,6 +87,17 @@ impl PreviewThread {
     /// Stops what is going on; the last picture stays.
     pub fn cancel(&self) {
         self.shared.post(Stops::Everything, |wishes| wishes.hold = true);
+    }
+
+    /// Refines no light until another scene or camera is looked at.
+    pub fn stop_light(&self) {
+        self.shared.post(Stops::Nothing, |wishes| wishes.hold_light = true);
+        self.shared.light.cancel();
+    }
+
+    /// By how many passes light is being refined, and how far that is.
+    pub fn refining_light(&self) -> Option<(u32, &JobProgress)> {
+        self.shared.refining_light()
     }
 
     /// What is going on, and how far it is.

@@ -1,6 +1,6 @@
 //! What is wanted of the preview, joined until its thread looks.
 
-use super::deliveries::{Between, Delivery, Refined};
+use super::deliveries::{Between, Delivery, Refined, RefinedLight};
 use crate::display::Tone;
 use crate::document::Stage;
 use crate::light_field::Changes;
@@ -36,6 +36,10 @@ pub(crate) struct Wishes {
     pub between: Option<Between>,
     /// What became of the exact picture.
     pub refined: Option<Refined>,
+    /// What became of light that was to be refined.
+    pub refined_light: Option<RefinedLight>,
+    /// The user wants no light refined for now.
+    pub hold_light: bool,
     /// Work under way was told to stop when these were posted.
     pub stops: bool,
     pub is_posted: bool,

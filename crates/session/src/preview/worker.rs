@@ -2,7 +2,8 @@
 
 use super::activity::PreviewActivity;
 use super::coarse::{between_of, coarse_of};
-use super::deliveries::{Between, Delivery, Refined};
+use super::deliveries::{Between, Delivery, Finer, Refined};
+use super::light_refinement::{self, LightRefinement};
 use super::mailbox::Shared;
 use super::maker::{Begin, LightFieldMaker, Order};
 use super::picture::{PreviewKind, Quality};
@@ -14,7 +15,7 @@ use crate::document::Stage;
 use crate::error::SessionError;
 use crate::jobs::guarded;
 use crate::light_field::{
-    Brought, FieldOptions, LightField, LightFieldStore, LightQuality, Modelled, Plan, light,
+    Brought, FieldOptions, LightField, LightFieldStore, LightQuality, Modelled, Plan, light, may_be_refined,
 };
 use baselines::FirstHits;
 use focus::{Focus, FocusMap};
@@ -48,7 +49,13 @@ pub(crate) struct Worker {
     delivery: Option<Delivery>,
     /// Draws the exact picture of the fine light field.
     refinement: Refinement,
-    /// For how long nothing must change until it does; none: never.
+    /// Refines the light of the fine light field.
+    light: LightRefinement,
+    /// By how many passes at most.
+    light_passes: u32,
+    /// The user wants no light refined until another scene or camera is looked at.
+    is_light_held: bool,
+    /// For how long nothing must change until either is done; none: never.
     exact_after: Option<Duration>,
     /// A stroke goes on.
     is_painting: bool,
@@ -70,7 +77,12 @@ pub(crate) struct Worker {
 impl Worker {
     /// `exact_after`: for how long nothing must change until the exact picture is drawn; none: never.
     /// `store`: where light fields are kept.
-    pub fn new(shared: Arc<Shared>, exact_after: Option<Duration>, store: Option<LightFieldStore>) -> Self {
+    pub fn new(
+        shared: Arc<Shared>,
+        exact_after: Option<Duration>,
+        light_passes: u32,
+        store: Option<LightFieldStore>,
+    ) -> Self {
         Self {
             presenter: Presenter::new(shared.clone()),
             shared,
@@ -83,6 +95,9 @@ impl Worker {
             maker: LightFieldMaker::new(store),
             delivery: None,
             refinement: Refinement::default(),
+            light: LightRefinement::default(),
+            light_passes,
+            is_light_held: false,
             exact_after,
             is_painting: false,
             tolerance: Tolerance::VIEWING,
@@ -96,7 +111,7 @@ impl Worker {
 
     /// Follows wishes until the session goes.
     pub fn run(mut self) {
-        while let Some(wishes) = self.shared.next(self.exact_after.filter(|_| self.may_refine())) {
+        while let Some(wishes) = self.shared.next(self.exact_after.filter(|_| self.is_idle_of_use())) {
             self.presenter.begun = Instant::now();
             let followed = guarded("drawing the preview", || self.follow(wishes));
             self.tell_loss();
@@ -114,6 +129,7 @@ impl Worker {
         // They were cancelled with everything else.
         self.maker.join();
         self.refinement.join();
+        self.light.join();
     }
 
     /// Tells the user once that the card was lost.
@@ -141,6 +157,10 @@ impl Worker {
         }
         if is_idle && self.may_refine() {
             self.refine(camera, focus);
+            return Ok(());
+        }
+        if is_idle && let Some(passes) = self.may_refine_light() {
+            self.refine_light(passes, stage, camera, focus);
             return Ok(());
         }
 
@@ -188,11 +208,13 @@ impl Worker {
         if is_opened || wishes.bake {
             (self.coarse, self.fine) = (None, None);
             self.refinement.forget();
+            self.light.forget();
             self.epoch += 1;
             self.bakes_anew = wishes.bake;
         }
         let wants_work = self.stage.is_some() && (wishes.camera.is_some() || wishes.bake || wishes.settle);
         self.is_held = wishes.hold || (self.is_held && !wants_work);
+        self.is_light_held = wishes.hold_light || (self.is_light_held && !wants_work);
         let is_complete = wishes.settle || is_opened;
         self.is_painting = !is_complete && (self.is_painting || wishes.map.is_some());
         // A stroke that goes on is no time for more.
@@ -210,11 +232,15 @@ impl Worker {
         }
         self.maker.note(&wishes.changed);
         self.refinement.note(&wishes.changed);
+        self.light.note(&wishes.changed);
+        if let Some(refined_light) = wishes.refined_light {
+            self.light.take_back(refined_light);
+        }
         if let Some(between) = wishes.between {
             self.take_up_between(between);
         }
         self.delivery = wishes.delivery.or(self.delivery.take());
-        let taken_up = self.take_up();
+        let taken_up = self.take_up().and_then(|()| self.take_up_light());
         self.refinement.tidy(self.fine.as_ref());
         taken_up
     }
@@ -247,6 +273,31 @@ impl Worker {
         }
     }
 
+    /// Takes up the light field of refined light, if it is better; not while a stroke goes on, or the old one is worked with.
+    fn take_up_light(&mut self) -> Result<(), SessionError> {
+        let (Some(fine), Some(camera), Some(stage)) = (&self.fine, &self.camera, &self.stage) else {
+            return Ok(());
+        };
+        if self.is_painting || self.maker.is_at_work() {
+            return Ok(());
+        }
+        let standing = fine.light_passes();
+        let Some(finer) = self.light.take_up(self.epoch, standing)? else { return Ok(()) };
+        let Finer { mut field, errors, seconds } = finer;
+        if !field.serves(camera) || field.light_passes() <= standing {
+            return Ok(());
+        }
+        self.maker.keep(stage, &field, seconds);
+        if standing == 0 {
+            self.presenter.costs.light_psnr = errors.map(|errors| project::psnr(errors.standing));
+        }
+        field.set_tolerance(self.tolerance);
+        self.shared.publish_field(self.presenter.generation, field.baked());
+        self.fine = Some(field);
+        self.is_new = true;
+        Ok(())
+    }
+
     /// Brings the fine picture up to date; then, after an edit, sees whether another light field would serve better.
     fn show_fine(
         &mut self,
@@ -259,10 +310,15 @@ impl Worker {
         self.shared.begin(PreviewActivity::Splatting)?;
         let start = Instant::now();
         let brought = fine.carry_out(plan, camera, &focus, &self.shared.quick)?;
+        let light_passes = fine.light_passes();
         let is_new = std::mem::take(&mut self.is_new);
         if brought != Brought::Nothing || is_new {
             let is_exact = self.tolerance == Tolerance::NONE;
             let costs = &mut self.presenter.costs;
+            costs.light_passes = light_passes;
+            if light_passes == 0 {
+                costs.light_psnr = None;
+            }
             if brought == Brought::Whole || is_new {
                 costs.viewing_psnr = None;
                 let known = if is_exact { &mut costs.exact_seconds } else { &mut costs.viewing_seconds };
@@ -379,6 +435,41 @@ impl Worker {
         let is_quiet = !self.is_held && !self.is_painting && !self.maker.is_at_work();
         let is_quiet = is_quiet && !self.shared.is_exporting();
         is_viewing && is_up_to_date && is_quiet && !self.refinement.is_at_work()
+    }
+
+    /// Whether there is anything to do while nothing is wished.
+    fn is_idle_of_use(&self) -> bool {
+        self.may_refine() || self.may_refine_light().is_some()
+    }
+
+    /// By how many passes the light of the picture may be refined, which is exact but for that.
+    fn may_refine_light(&self) -> Option<u32> {
+        let (fine, camera, stage) = (self.fine.as_ref()?, self.camera.as_ref()?, self.stage.as_ref()?);
+        let is_exact = self.presenter.shown().is_some_and(|shown| shown.quality == Quality::Exact);
+        let is_quiet = !self.is_held && !self.is_light_held && !self.is_painting && !self.maker.is_at_work();
+        let is_quiet = is_quiet && !self.shared.is_exporting() && !self.light.is_at_work();
+        let may = is_exact && is_quiet && fine.is_up_to_date(camera) && may_be_refined(&stage.tracer);
+        self.light.next_passes(fine.light_passes(), self.light_passes).filter(|_| may)
+    }
+
+    /// Begins to refine the light, if nothing was wished meanwhile.
+    fn refine_light(&mut self, passes: u32, stage: Arc<Stage>, camera: Camera, focus: Focus) {
+        let (tolerance, epoch, exposure) = (self.tolerance, self.epoch, self.presenter.exposure());
+        let Some(fine) = &mut self.fine else { return };
+        let margin_px = f64::from(fine.baked().salf.margin_px);
+        let Ok(standing) = fine.brought().cloned().map(Arc::new) else { return };
+        let task = light_refinement::Task {
+            stage,
+            camera,
+            focus,
+            tolerance,
+            standing,
+            exposure,
+            margin_px,
+            passes,
+            epoch,
+        };
+        self.light.start(&self.shared, task);
     }
 
     /// Begins to draw the exact picture, if nothing was wished meanwhile.

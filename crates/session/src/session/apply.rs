@@ -1,7 +1,7 @@
 //! Commands, and what each sets going.
 
 use super::restaged::{Cause, Restaging};
-use super::state::{PREVIEW_JOB, Session};
+use super::state::{LIGHT_JOB, PREVIEW_JOB, Session};
 use crate::commands::{Command, Event};
 use crate::document::CameraEdit;
 use crate::error::SessionError;
@@ -98,6 +98,10 @@ impl Session {
             }
             Command::Cancel(PREVIEW_JOB) => {
                 self.preview_thread.cancel();
+                Ok(())
+            }
+            Command::Cancel(LIGHT_JOB) => {
+                self.preview_thread.stop_light();
                 Ok(())
             }
             Command::Cancel(id) => {

@@ -45,7 +45,7 @@ impl AtHand {
         let live = self.live.clone().filter(|salf| serves(&salf.camera, camera));
         let found = live.or_else(|| {
             let store = self.store.as_ref()?;
-            store.find(&self.stage, camera, 0.0, Carried::of(focus)).map(Arc::new)
+            store.find(&self.stage, camera, 0.0, Carried::of(focus)).map(|(salf, _)| Arc::new(salf))
         });
         found.filter(|salf| tells_all(salf, camera, focus))
     }
@@ -73,7 +73,7 @@ impl AtHand {
                 let start = Instant::now();
                 let salf = Arc::new(bake(tracer, camera, focus, BakeOptions::TOLERANCE_PX, steps)?);
                 if let Some(store) = &self.store {
-                    store.keep(&self.stage, &salf, start.elapsed());
+                    store.keep(&self.stage, &salf, 0, start.elapsed());
                 }
                 salf
             }

@@ -37,6 +37,8 @@ pub struct SessionOptions {
     pub keep_after: Duration,
     /// For how long nothing must change until the exact picture is drawn; none: the one within the tolerance is enough.
     pub exact_after: Option<Duration>,
+    /// By how many passes its light is refined then, at most; 0: not at all.
+    pub light_passes: u32,
     /// Where light fields are kept from one run to the next; none: they are baked every time.
     pub light_fields: Option<LightFieldStore>,
     /// The graphics card that the preview is summed on, and shown from; none: the processor sums.
@@ -53,6 +55,7 @@ impl Default for SessionOptions {
             undo_budget_bytes: Document::UNDO_BUDGET_BYTES,
             keep_after: Duration::from_secs(15),
             exact_after: None,
+            light_passes: 0,
             light_fields: None,
             gpu: None,
             waker: Arc::new(|| {}),
@@ -62,6 +65,9 @@ impl Default for SessionOptions {
 
 /// The job id of the preview's own work.
 pub(super) const PREVIEW_JOB: JobId = JobId(0);
+
+/// And light that is refined another.
+pub(super) const LIGHT_JOB: JobId = JobId(u64::MAX);
 
 /// An open document and the work on it. See the crate's documentation.
 pub struct Session {
@@ -120,6 +126,7 @@ impl Session {
             preview_thread: PreviewThread::start(
                 options.waker.clone(),
                 options.exact_after,
+                options.light_passes,
                 options.light_fields.clone(),
                 options.gpu.clone(),
             )?,
@@ -233,7 +240,19 @@ impl Session {
             let (label, fraction) = (label.into(), progress.fraction());
             JobStatus { id: PREVIEW_JOB, label, step, fraction, seconds_left, can_cancel: true }
         });
-        baking.into_iter().chain(self.jobs.iter().map(Job::status)).collect()
+        let light = self.preview_thread.refining_light().map(|(passes, progress)| {
+            let (_, seconds_left) = progress.standing();
+            let (label, step) = ("refining the light".into(), format!("{passes} passes"));
+            JobStatus {
+                id: LIGHT_JOB,
+                label,
+                step,
+                fraction: progress.fraction(),
+                seconds_left,
+                can_cancel: true,
+            }
+        });
+        baking.into_iter().chain(light).chain(self.jobs.iter().map(Job::status)).collect()
     }
 
     /// The document, to be changed.

@@ -2,7 +2,7 @@
 
 use crate::error::SessionError;
 use crate::jobs::Steps;
-use crate::light_field::{LightQuality, light};
+use crate::light_field::light;
 use crate::output::{RenderOptions, WantedMattes};
 use focus::Focus;
 use lens::Camera;
@@ -36,7 +36,7 @@ impl Lit {
             tolerance_px: options.tolerance_px * f64::from(options.cells_a_side),
             ..BakeOptions::for_focus(tracer, &finer, &focus)
         };
-        let light = light(tracer, &finer, LightQuality::Fine, &*steps.begin("light"))?;
+        let light = light(tracer, &finer, options.light, &*steps.begin("light"))?;
         let mattes = options.wanted_mattes();
         Ok(Self { tracer: tracer.clone(), finer, focus, options, mattes, light, bake })
     }

@@ -147,6 +147,17 @@ pub fn lit(quads: &[Quad]) -> Vec<u8> {
     container(&doc, &bin)
 }
 
+/// The bytes of a GLB with these quads of rough metal, which no light of their own shines on: the studio does.
+#[allow(dead_code, reason = "not every test that has the scene has it of metal")]
+pub fn metal(quads: &[Quad]) -> Vec<u8> {
+    let (mut doc, bin) = parts(&glb(quads));
+    for material in doc["materials"].as_array_mut().expect("a list") {
+        material["pbrMetallicRoughness"]["roughnessFactor"] = json!(0.4);
+        material.as_object_mut().expect("an object").remove("extensions");
+    }
+    container(&doc, &bin)
+}
+
 /// The bytes of a GLB with these quads, the first of which are wall, card and dot, in motion ("slide", 1 s): the card goes right by 0.5 and turns about its
 /// own axis, the dot is hidden from half a second on, the camera comes nearer by 0.5. Another animation, "stay", moves nothing.
 #[allow(dead_code, reason = "not every test that has the scene has it in motion")]

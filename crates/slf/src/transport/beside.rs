@@ -145,8 +145,6 @@ impl Transport {
         let Some(scattered) = lobes.sample_sharp(path.random.next3()) else { return Gathered::default() };
         let step = self.step(point, at, &scattered, path);
         let arriving = self.arriving(step, path, Known::All(irradiance));
-        let sent_on =
-            arriving.onward.map_or(DVec3::ZERO, |(reached, share)| share * reached.irradiance.as_dvec3());
-        Gathered::by(&scattered, arriving.drawn + sent_on, arriving.other)
+        Gathered::by(&scattered, arriving.drawn + arriving.sent_on(), arriving.other)
     }
 }

@@ -51,3 +51,8 @@ impl Mul<f64> for Gathered {
 pub(super) fn split(light: Split, share: DVec3) -> Split {
     Split { own: light.own * share, carried: light.carried * share }
 }
+
+/// The larger of either, channel by channel.
+pub(super) fn most(a: Split, b: Split) -> Split {
+    Split { own: a.own.max(b.own), carried: a.carried.max(b.carried) }
+}

@@ -34,7 +34,7 @@ impl Transport {
     /// What spots receive that are of one surface with others.
     pub(super) fn receive(&self, spots: &[Spot], eye: DVec3) -> Vec<Option<Received>> {
         let mut received = vec![None; spots.len()];
-        let Some(irradiance) = self.irradiance.as_deref() else { return received };
+        let Some(irradiance) = self.kept.trusted() else { return received };
         let scene = self.scene();
         let mut surfaces: BTreeMap<(u32, bool, u8), Vec<usize>> = BTreeMap::new();
         let mut asked = Asked {

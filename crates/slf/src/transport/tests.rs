@@ -9,6 +9,7 @@ use std::f64::consts::{FRAC_1_PI, PI};
 
 mod mirrors;
 mod receiving;
+mod refining;
 mod rooms;
 
 fn grey() -> Material {

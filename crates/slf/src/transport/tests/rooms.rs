@@ -141,6 +141,62 @@ fn a_slab_of_glass_lets_through_what_its_faces_do() {
     assert!((thin.y - 0.96 / 1.04).abs() < 4e-3, "{thin}");
 }
 
+/// What a dielectric in air mirrors (Fresnel).
+fn mirrored(cos: f64, ior: f64) -> f64 {
+    let cos_within = (1.0 - (1.0 - cos * cos) / (ior * ior)).sqrt();
+    let upright = (cos - ior * cos_within) / (cos + ior * cos_within);
+    let level = (ior * cos - cos_within) / (ior * cos + cos_within);
+    (upright * upright + level * level) / 2.0
+}
+
+#[test]
+fn a_pane_without_thickness_mirrors_as_one_face_tints_and_bends_nothing() {
+    // glTF's thin wall is one interface, R, where a real pane's two faces mirror 2R/(1 + R). It is tinted by its base colour, once.
+    let tint = Vec3::new(0.9, 0.5, 0.2);
+    let pane = |roughness: f32| Material {
+        transmission: Scalar::plain(1.0),
+        workflow: Workflow::MetallicRoughness {
+            metallic: Scalar::plain(0.0),
+            roughness: Scalar::plain(roughness),
+        },
+        base_color: tint.extend(1.0),
+        double_sided: true,
+        ..Material::default()
+    };
+    // A floor that glows to one side of x = 0 alone, far below the pane.
+    let glow = Material { emissive: Vec3::ONE, base_color: Vec4::ZERO, ..Material::of_lambert() };
+    let scene = |roughness: f32| {
+        let floor =
+            Rectangle(DVec3::new(0.0, -4.0, 200.0), DVec3::X * 400.0, DVec3::Z * -400.0, glow.clone());
+        scene_of(&[super::floor(pane(roughness)), floor], &[])
+    };
+    let sky = Vec3::new(0.25, 0.5, 1.0);
+    for cos in [1.0f64, 0.5, 0.2] {
+        let from = DVec3::new((1.0 - cos * cos).sqrt(), cos, 0.0) * 50.0;
+        let found =
+            |sky: Vec3, eye: DVec3| transport(scene(0.0), World::uniform(sky), 1 << 13).toward(MIDDLE, eye);
+        let share = mirrored(cos, 1.5) as f32;
+        // Seen from +x the ray goes on to −x, which is dark but for the sky; from −x straight on to the glow.
+        let through = found(Vec3::ZERO, from * DVec3::new(-1.0, 1.0, 1.0) - DVec3::X * 1e-3);
+        assert!((through - tint * (1.0 - share)).abs().max_element() < 0.012, "cos {cos}: {through}");
+        if cos < 1.0 {
+            let beside = found(Vec3::ZERO, from);
+            assert_eq!(beside, Vec3::ZERO, "nothing is bent toward the glow");
+            let mirror = found(sky, from);
+            let expected = sky * share + tint * (1.0 - share) * sky;
+            assert!((mirror - expected).abs().max_element() < 0.012, "cos {cos}: {mirror}, not {expected}");
+        }
+        // The control: two faces.
+        let slab = 2.0 * share / (1.0 + share);
+        assert!((through - tint * (1.0 - slab)).max_element() > 0.02, "cos {cos}: it is as a real pane's");
+    }
+    // A rough one blurs what is behind it: at the glow's edge half of it shows, and beside it what a smooth one does not.
+    let eye = DVec3::new(0.2, 50.0, 0.0);
+    let blurred = transport(scene(0.5), dark(), 1 << 13).toward(MIDDLE, eye).x;
+    let sharp = transport(scene(0.0), dark(), 1 << 13).toward(MIDDLE, eye).x;
+    assert!((0.3..0.6).contains(&(blurred / tint.x)) && sharp == 0.0, "{blurred} and {sharp}");
+}
+
 #[test]
 fn a_body_within_another_of_its_kind_is_not_seen() {
     // Between equal media nothing is mirrored: a block in a block lets through what one block does, but for its own colour.
