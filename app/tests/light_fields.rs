@@ -157,6 +157,25 @@ fn no_scale_or_offset_of_disparities_changes_the_picture() {
 }
 
 #[test]
+fn disparities_found_in_views_are_compared_with_those_that_came_along() {
+    let place = tempfile::tempdir().unwrap();
+    let folder = place.path().join("card");
+    card_light_field::write(&folder);
+    let error = |folder: &Path| {
+        let input = session::Input::open(folder, &progress::Unwatched).unwrap();
+        input.disparity_error(&progress::Unwatched).unwrap()
+    };
+    let told = error(&folder).expect("they came along");
+    assert!(told.bad_007 < 0.12 && told.bad_003 >= told.bad_007, "{told:?}");
+    // Negative control: a map that is off everywhere.
+    pfm(&folder.join("disparity.pfm"), |disparity| disparity + 0.1);
+    assert!(error(&folder).unwrap().bad_007 > 0.8);
+    // None came.
+    std::fs::remove_file(folder.join("disparity.pfm")).unwrap();
+    assert_eq!(error(&folder), None);
+}
+
+#[test]
 fn two_eyes_see_what_they_fixate_at_one_place() {
     let place = tempfile::tempdir().unwrap();
     let folder = place.path();

@@ -9,7 +9,7 @@
 //!  (a pixel each)  │       │          │                                   ▲
 //!                  │       │          └──────▶ texture (from other_views, ┘
 //!                  │       │                            or invented)
-//!                  │       └ pixels that show both sides told apart
+//!                  │       └ pixels that show both sides told apart (cut by an outline, or there in part)
 //!                  └ cut where depth jumps, pixels between put on one side
 //! ```
 //!

@@ -73,15 +73,18 @@ pub(crate) fn mixtures(
     told
 }
 
-/// Puts edges of depth where the picture has them: pixels that show only what is on the other side of their jump belong there.
-pub(crate) fn snap(grid: Grid, disparity: &mut [f32], links: &Links, colors: &[[f32; 3]], jump: f32) {
+/// Puts edges of depth where the picture has them: pixels that show only what is on the other side of their jump belong there. Tells whether
+/// there were any.
+pub(crate) fn snap(grid: Grid, disparity: &mut [f32], links: &Links, colors: &[[f32; 3]], jump: f32) -> bool {
     let told = edges(grid, disparity, links, colors, jump);
-    let told: Vec<Mixed> = told.into_iter().filter_map(|edge| mixed(colors[edge.cell], edge)).collect();
-    let is_wrong = |told: &&Mixed| match told.is_beyond {
+    let is_wrong = |told: &Mixed| match told.is_beyond {
         true => told.share >= WHOLE,
         false => told.share <= 1.0 - WHOLE,
     };
-    take_across(grid, disparity, links, told.iter().filter(is_wrong), jump);
+    let told = told.into_iter().filter_map(|edge| mixed(colors[edge.cell], edge));
+    let wrong: Vec<Mixed> = told.filter(is_wrong).collect();
+    take_across(grid, disparity, links, wrong.iter(), jump);
+    !wrong.is_empty()
 }
 
 /// Gives pixels beside jumps the disparity of what is on the other side.

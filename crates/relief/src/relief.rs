@@ -106,7 +106,9 @@ impl Relief {
         steps::even_out(grid, &mut front, jump);
         let mut links = jumps::links(grid, &front, jump);
         for _ in 0..SNAPPED {
-            matte::snap(grid, &mut front, &links, &shown, jump);
+            if !matte::snap(grid, &mut front, &links, &shown, jump) {
+                break;
+            }
             links = jumps::links(grid, &front, jump);
         }
         let reach = options.reach * options.beyond;

@@ -13,7 +13,7 @@
 //! [`run_engine`] measures the splat engine alone, against its own converged picture.
 //!
 //! The road of the data: `subject` opens a scene with its camera and focuses, `plan` lists what to measure, `reference`
-//! makes the ground truth of each picture with its own error, `contender` draws and is timed, `live` watches the preview, `photographs` leaves some of a capture out, `store` keeps every finished
+//! makes the ground truth of each picture with its own error, `contender` draws and is timed, `live` watches the preview, `photographs` leaves some of a capture out, `views` asks those of a light field, `store` keeps every finished
 //! measurement at once (so that a run that was stopped goes on where it was), `findings` draws conclusions, `page` and
 //! `tables` write them down with `plot`.
 
@@ -46,6 +46,7 @@ mod subject;
 mod summary;
 mod table;
 mod tables;
+mod views;
 mod write;
 
 pub use contender::Contender;
@@ -58,3 +59,4 @@ pub use record::{Record, Series};
 pub use report::Report;
 pub use run::run;
 pub use summary::{FocusSummary, SceneSummary};
+pub use views::{Disparity, Views};

@@ -86,7 +86,7 @@ impl Photographs {
             seconds: left_out.seconds,
             peak_bytes,
             told,
-            sparse: Sparse::of(scene),
+            sparse: Sparse::of(scene, &scene.views),
             pictures: Vec::new(),
         };
         photographs.find_pictures(name, store);
@@ -113,9 +113,8 @@ fn files(store: &Store, name: &str, photograph: &str) -> [PathBuf; 2] {
 }
 
 impl Sparse {
-    /// Of the photographs of a scene; none of fewer than two.
-    pub fn of(scene: &Scene) -> Option<Self> {
-        let views = &scene.views;
+    /// Of some of the photographs of a scene; none of fewer than two.
+    pub fn of(scene: &Scene, views: &[View]) -> Option<Self> {
         let (low, high) = scene.bounds();
         let middle = 0.5 * (low + high);
         let to_next = |view: &View| {

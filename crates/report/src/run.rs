@@ -18,6 +18,7 @@ use crate::store::{Store, file_part};
 use crate::subdivision::subdivided;
 use crate::subject::{Subject, first_hits};
 use crate::summary::{FocusSummary, ModelledScene, Reference, SceneSummary};
+use crate::views::Views;
 use crate::write::write_report;
 use focus::Focus;
 use progress::Progress;
@@ -99,6 +100,7 @@ impl Runner<'_> {
             subject.focuses.iter().map(|named| fingerprint::of_focus(&named.focus)).collect();
         let live = self.live(request, &subject, &scene_print)?;
         let photographs = self.photographs(&subject, &scene_print)?;
+        let views = Views::of(&subject.input, &subject.name, self.steps)?;
         let settings = settings(&subject, self.options);
         let total: usize = settings.iter().map(|setting| setting.contenders.len()).sum();
         let mut done = 0;
@@ -169,6 +171,7 @@ impl Runner<'_> {
             focuses,
             live,
             photographs,
+            views,
             modelled,
             warnings: subject.warnings.clone(),
         });

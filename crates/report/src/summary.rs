@@ -3,6 +3,7 @@
 use crate::live::ShownPicture;
 use crate::photographs::Photographs;
 use crate::reference::ReferenceError;
+use crate::views::Views;
 use lens::Camera;
 use serde::{Deserialize, Serialize};
 use session::Modelled;
@@ -44,6 +45,8 @@ pub struct SceneSummary {
     pub live: Vec<ShownPicture>,
     /// How its photographs tell those that are left out; none where there are too few.
     pub photographs: Option<Photographs>,
+    /// What the views of a light field tell; none of others.
+    pub views: Option<Views>,
     /// What was modelled of it.
     pub modelled: ModelledScene,
     /// What is odd but does no harm.

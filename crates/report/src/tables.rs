@@ -7,6 +7,7 @@ use crate::plot::{bytes, seconds, significant, with_minus};
 use crate::record::Record;
 use crate::summary::{ModelledScene, SceneSummary};
 use crate::table::Table;
+use crate::views::Disparity;
 use hard_cases::Outcome;
 
 /// The scenes and their references.
@@ -112,6 +113,15 @@ pub fn photographs(photographs: &Photographs) -> Table {
         let psnr = format!("{:.2}", photographs.together(&way.told_by));
         table.push(["all".into(), way.told_by.clone(), String::new(), psnr, String::new()]);
     }
+    table
+}
+
+/// How far disparities that views tell are from those that came with them.
+pub fn disparity(found: &Disparity) -> Table {
+    let mut table = Table::new(&["disparities", "#off by > 0.07", "#by > 0.03", "#mean square × 100"]);
+    let percent = |share: f64| format!("{:.2} %", 100.0 * share);
+    let mean_square = format!("{:.3}", 100.0 * found.mean_square);
+    table.push(["found in the views".into(), percent(found.bad_007), percent(found.bad_003), mean_square]);
     table
 }
 

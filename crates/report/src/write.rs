@@ -97,6 +97,15 @@ fn markdown(report: &Report) -> String {
         );
     }
     for scene in &report.scenes {
+        let Some(views) = &scene.views else { continue };
+        let table =
+            views.disparity.as_ref().map_or_else(String::new, |found| tables::disparity(found).to_markdown());
+        section(
+            &format!("Views of the light field: {}", scene.name),
+            format!("{table}\n{}\n", page::views_sentence(views)),
+        );
+    }
+    for scene in &report.scenes {
         let modelled = &scene.modelled;
         section(
             &format!("What was modelled: {}", scene.name),

@@ -39,8 +39,9 @@ pub use display::{
     ToneCurve, to_screen,
 };
 pub use document::{
-    Beginning, CameraChoice, CameraEdit, Document, HistoryStep, Input, InputKind, NearQuestion, Stage,
-    SurfaceHit, VariantChoice, camera_between, camera_of, chief_ray, is_capture, load_scene, pick, view_ray,
+    Beginning, CameraChoice, CameraEdit, DisparityError, Document, HistoryStep, Input, InputKind,
+    NearQuestion, Stage, SurfaceHit, VariantChoice, camera_between, camera_of, chief_ray, is_capture,
+    load_scene, pick, view_ray,
 };
 pub use editing::{FillRegion, StrokePoint, StrokeTarget, rectangle, replay};
 pub use error::SessionError;

@@ -13,6 +13,7 @@ use crate::record::{Record, Series};
 use crate::report::{Measured, Report};
 use crate::summary::{ModelledScene, SceneSummary};
 use crate::tables;
+use crate::views::Views;
 use hard_cases::Outcome;
 use session::{DENSE_SAMPLE_BYTES, SessionError};
 
@@ -145,6 +146,13 @@ fn scene_section(scene: &SceneSummary, measured: &[Measured]) -> Result<String, 
             pictures::left_out(photographs)?
         );
     }
+    if let Some(views) = &scene.views {
+        html += &format!(
+            "<h3>Views of the light field</h3>\n{}<p class=\"caption\">{}</p>\n",
+            views.disparity.as_ref().map_or_else(String::new, |found| tables::disparity(found).to_html()),
+            escaped(&views_sentence(views))
+        );
+    }
     html += &format!(
         "<h3>What was modelled</h3>\n{}<p class=\"caption\">{}</p>\n",
         tables::modelled(&scene.modelled).to_html(),
@@ -166,18 +174,39 @@ pub fn photographs_sentence(photographs: &Photographs) -> String {
         text += &format!(" and {}", bytes(*peak as f64));
     }
     text += ".";
-    if let Some(Sparse { depth, spacing, ghost_free: [near, far] }) = sparse {
-        let told = |depth: &Option<f64>| depth.map_or_else(|| "infinity".into(), significant);
-        text += &format!(
-            " As a light field of views that are shifted and added up, photographs {} apart would show what lies at {} without \
-             ghosts only if focused between {} and {}. The surface light field has no such bound.",
-            significant(*spacing),
-            significant(*depth),
-            told(near),
-            told(far),
-        );
+    if let Some(sparse) = sparse {
+        text += &format!(" {}", sparse_sentence("photographs", sparse));
     }
     text
+}
+
+/// What is told of the views of a light field.
+pub fn views_sentence(views: &Views) -> String {
+    let Views { count, disparity, sparse } = views;
+    let mut text = match disparity {
+        Some(_) => format!(
+            "Disparities found in the {count} views alone, against those that came with them, px a step."
+        ),
+        None => format!("{count} views; no disparities came with them to compare with."),
+    };
+    if let Some(sparse) = sparse {
+        text += &format!(" {}", sparse_sentence("views", sparse));
+    }
+    text
+}
+
+/// Where pictures that are shifted and added up do not ghost.
+fn sparse_sentence(pictures: &str, sparse: &Sparse) -> String {
+    let Sparse { depth, spacing, ghost_free: [near, far] } = sparse;
+    let told = |depth: &Option<f64>| depth.map_or_else(|| "infinity".into(), significant);
+    format!(
+        "As a light field of views that are shifted and added up, {pictures} {} apart would show what lies at {} without \
+         ghosts only if focused between {} and {}. The surface light field has no such bound.",
+        significant(*spacing),
+        significant(*depth),
+        told(near),
+        told(far),
+    )
 }
 
 /// A plot, and what has no place in it.

@@ -2,6 +2,7 @@
 
 use super::camera_path::camera_between;
 use super::depth_scene::load_depth_picture;
+use super::disparity_error::{DisparityError, disparity_error};
 use super::light_field_scene::load_light_field;
 use super::of_picture::OfPicture;
 use crate::error::SessionError;
@@ -12,7 +13,7 @@ use capture::{
 };
 use glam::{DVec2, DVec3};
 use lens::{Camera, Intrinsics};
-use progress::Progress;
+use progress::{Progress, Stage};
 use project::CaptureChoices;
 use scene::{LoadOptions, Scene, View};
 use std::path::Path;
@@ -47,6 +48,23 @@ pub(crate) struct CaptureScene {
 /// Whether a file or folder is a capture that can be opened: of a picture, whether it has depth.
 pub fn is_capture(path: &Path) -> bool {
     capture::capture_kind(path).is_ok()
+}
+
+/// How far the disparities that the views of a light field tell are from those that came with them; none of other captures, and where
+/// none came.
+pub(crate) fn disparity_error_of(
+    path: &Path,
+    choices: &CaptureChoices,
+    progress: &dyn Progress,
+) -> Result<Option<DisparityError>, SessionError> {
+    let named = choices.kind.as_deref().and_then(CaptureKind::named);
+    let kind = named.map_or_else(|| capture::capture_kind(path), Ok)?;
+    if kind != CaptureKind::LightField {
+        return Ok(None);
+    }
+    let options = LightFieldOptions { disparity: choices.disparity.clone(), ..Default::default() };
+    let field = capture::open_light_field(path, &options, &Stage::new(progress, 0.0, 0.1))?;
+    disparity_error(&field, &options.load, &Stage::new(progress, 0.1, 1.0))
 }
 
 /// Reads a capture: a folder of photographs, of views of a light field, or a picture with its depth.

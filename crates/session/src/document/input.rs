@@ -1,6 +1,7 @@
 //! What can be opened: a scene, a project or a light field, as the renderers need it.
 
-use super::capture_scene::{CaptureScene, PHOTOGRAPH, load_capture, photograph_camera};
+use super::capture_scene::{CaptureScene, PHOTOGRAPH, disparity_error_of, load_capture, photograph_camera};
+use super::disparity_error::DisparityError;
 use super::kept_atlas::unwrapped;
 use super::scene_camera::camera_of;
 use super::stage::{Stage, atlas_error, load_variant};
@@ -12,6 +13,7 @@ use crate::light_field::{is_photographed, keep_photographs_at};
 use atlas::{Atlas, UnwrapOptions};
 use focus::{Focus, FocusMap, FocusRecipe, RecipeEntry};
 use lens::{Camera, Exposure, FocusOffset};
+use progress::Progress;
 use project::{CaptureChoices, FocusFile, ProjectError, ProjectFile, SceneState, read_camera, read_focus};
 use salf::{Salf, SalfFile};
 use scene::{BackFaces, Fault, PhotoLookup, Scene, SceneError, World};
@@ -133,6 +135,18 @@ impl Input {
         let camera = camera.unwrap_or_else(|| camera_of(&scene.cameras[0], &Camera::default()));
         let input = Self::new(path, scene, camera, warnings);
         Ok(Self { capture: Some(choices), is_incomplete, ..input })
+    }
+
+    /// How far the disparities that the views of a light field tell by themselves are from those that came with them; none where none did.
+    ///
+    /// # Errors
+    /// The views cannot be read, or `progress` says to stop.
+    pub fn disparity_error(&self, progress: &dyn Progress) -> Result<Option<DisparityError>, SessionError> {
+        let of_project = self.project.as_ref().and_then(|project| project.capture.as_ref());
+        match (self.capture.as_ref().or(of_project), &self.scene.picture) {
+            (Some(choices), Some(_)) => disparity_error_of(&self.scene.path, choices, progress),
+            _ => Ok(None),
+        }
     }
 
     /// Neither project nor light field nor capture, and complete.
