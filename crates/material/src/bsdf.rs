@@ -222,7 +222,7 @@ impl<'a> Bsdf<'a> {
             Choice::Coat if self.coat.is_smooth() => {
                 return self.mirrored_by_coat(seen, odds.coat);
             }
-            Choice::Coat => (self.from_coat(seen, place), false),
+            Choice::Coat => (self.drawn_by_coat(seen, place), false),
             Choice::Gloss if self.ggx.is_smooth() => {
                 return self.mirrored(seen, self.gloss_mirror(seen) / odds.gloss);
             }

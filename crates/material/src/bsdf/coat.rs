@@ -63,7 +63,7 @@ impl Bsdf<'_> {
     }
 
     /// A direction that a rough one mirrors toward the eye.
-    pub(super) fn from_coat(&self, seen: &Seen, u: DVec2) -> DVec3 {
+    pub(super) fn drawn_by_coat(&self, seen: &Seen, u: DVec2) -> DVec3 {
         let of_eye = seen.coat.local(seen.o);
         seen.coat.back(mirror(of_eye, self.coat.visible_normal(of_eye, u)))
     }
