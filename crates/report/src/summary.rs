@@ -3,6 +3,7 @@
 use crate::live::ShownPicture;
 use crate::photographs::Photographs;
 use crate::reference::ReferenceError;
+use crate::refined::RefinedLight;
 use lens::Camera;
 use serde::{Deserialize, Serialize};
 use session::Modelled;
@@ -44,6 +45,8 @@ pub struct SceneSummary {
     pub live: Vec<ShownPicture>,
     /// How its photographs tell those that are left out; none where there are too few.
     pub photographs: Option<Photographs>,
+    /// How far its light at once is off; none where no light is found.
+    pub light: Option<RefinedLight>,
     /// What was modelled of it.
     pub modelled: ModelledScene,
     /// What is odd but does no harm.
