@@ -60,10 +60,35 @@ impl RefinedLight {
     /// In a sentence.
     pub fn sentence(&self) -> String {
         let Self { passes, at_once_psnr, noise_psnr, at_once_mean, seconds: [at_once, refined] } = *self;
+        // What is smaller than the noise is not known.
+        let off = if at_once_psnr > noise_psnr {
+            "nearer than their noise tells to".into()
+        } else {
+            format!("{at_once_psnr:.1} dB from")
+        };
         format!(
-            "The light at once ({at_once:.1} s) is {at_once_psnr:.1} dB from what passes of paths come to in the end, {:+.2} % in the mean; \
+            "The light at once ({at_once:.1} s) is {off} what passes of paths come to in the end, {:+.2} % in the mean; \
              {passes} passes ({refined:.1} s) have {noise_psnr:.1} dB of noise left.",
             100.0 * at_once_mean
         )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_less_than_the_noise_is_not_told() {
+        let light = |at_once_psnr| RefinedLight {
+            passes: 64,
+            at_once_psnr,
+            noise_psnr: 48.0,
+            at_once_mean: -0.005,
+            seconds: [0.5, 20.0],
+        };
+        assert!(light(46.9).sentence().contains("is 46.9 dB from"), "{}", light(46.9).sentence());
+        let unknown = light(55.0).sentence();
+        assert!(!unknown.contains("55") && unknown.contains("-0.50 %"), "{unknown}");
     }
 }
