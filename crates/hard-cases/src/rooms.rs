@@ -168,7 +168,8 @@ fn refined(effort: Effort, progress: &dyn Progress) -> Result<Finding, Cancelled
     let found = off(&light(paths).checking(known.clone()));
     let control = off(&light(paths).with_irradiance(known));
     let limit = effort.pick(0.022, 0.045);
-    let expected = format!("RMS of {paths} paths a point within {} % of theirs in the mean", 100.0 * limit);
+    let expected =
+        format!("RMS of {paths} paths a point within {:.1} % of theirs in the mean", 100.0 * limit);
     Ok(Finding::of(expected, [("off", limit)], [found], [control]))
 }
 

@@ -5,10 +5,10 @@ mod glass;
 mod odds;
 pub(crate) mod toward;
 
-use coat::CoatAxes;
 use odds::{Choice, Odds};
 
 use crate::albedo::Gloss;
+use crate::coat_axes::CoatAxes;
 use crate::fresnel::{dielectric_reflectance, reflectance_of_ior, rise, schlick, schlick_mean};
 use crate::ggx::{Ggx, SMOOTHEST};
 use crate::interface::{RoughGlass, refracted};
@@ -222,7 +222,7 @@ impl<'a> Bsdf<'a> {
             Choice::Coat if self.coat.is_smooth() => {
                 return self.mirrored_by_coat(seen, odds.coat);
             }
-            Choice::Coat => (self.drawn_by_coat(seen, place), false),
+            Choice::Coat => (self.toward_coat(seen, place), false),
             Choice::Gloss if self.ggx.is_smooth() => {
                 return self.mirrored(seen, self.gloss_mirror(seen) / odds.gloss);
             }

@@ -7,7 +7,7 @@
 //! * [`Split`]: what obeys the paint (*own*: scattered diffusely, and rough gloss) and what does not (*carried*: mirrored, let
 //!   through).
 //! * `ggx`: microfacets. `fresnel`: what an interface mirrors. `albedo`: what a lobe sends back in all, tabulated. `interface`: the
-//!   two sides of glass. `sheen`: cloth. `film`: iridescence.
+//!   two sides of glass. `sheen`: cloth. `film`: iridescence. `coat_axes`: how a coat lies.
 //!
 //! Energy is neither made nor lost: what single scattering on microfacets loses is given back by reciprocal lobes (Kulla and
 //! Conty 2017), and what an upper lobe mirrors is taken from what lies beneath it on both ways. [`Scattering::Single`] is
@@ -15,6 +15,7 @@
 
 mod albedo;
 mod bsdf;
+mod coat_axes;
 mod film;
 mod frame;
 mod fresnel;

@@ -37,6 +37,7 @@ mod plan;
 mod plot;
 mod record;
 mod reference;
+mod refined;
 mod report;
 mod run;
 mod stopwatch;

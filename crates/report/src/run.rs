@@ -13,6 +13,7 @@ use crate::photographs::{self, Photographs};
 use crate::plan::{Setting, settings};
 use crate::record::{Record, Series};
 use crate::reference::{conserved, trace_reference};
+use crate::refined::RefinedLight;
 use crate::report::{Measured, Report};
 use crate::store::{Store, file_part};
 use crate::subdivision::subdivided;
@@ -24,7 +25,7 @@ use focus::Focus;
 use progress::Progress;
 use project::{LinearPicture, compare, read_picture, write_error_map, write_rgb};
 use salf::Salf;
-use session::{Modelled, RenderOptions, SessionError, Steps, bake, bake_unpacked};
+use session::{Modelled, RenderOptions, SessionError, Steps, bake, bake_unpacked, may_be_refined};
 use splat::Splatter;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
@@ -153,6 +154,7 @@ impl Runner<'_> {
             }
         }
         let modelled = self.modelled(&subject, &scene_print)?;
+        let light = self.light(&subject, &scene_print)?;
         let Subject { camera, .. } = &subject;
         report.scenes.push(SceneSummary {
             name: subject.name.clone(),
@@ -172,6 +174,7 @@ impl Runner<'_> {
             live,
             photographs,
             views,
+            light,
             modelled,
             warnings: subject.warnings.clone(),
         });
@@ -325,6 +328,25 @@ impl Runner<'_> {
         let live = live::watch(request, subject, &self.options.unwrap, &*bar)?;
         self.store.put(&name, &live)?;
         Ok(live)
+    }
+
+    /// How far the light at once is off.
+    fn light(&self, subject: &Subject, scene_print: &str) -> Result<Option<RefinedLight>, SessionError> {
+        if !may_be_refined(&subject.tracer) {
+            return Ok(None);
+        }
+        let passes: u32 = if self.options.is_quick { 16 } else { 64 };
+        let print = self.print_of(subject, scene_print).add(&passes.to_le_bytes()).name();
+        let name = format!("{}-light-{print}", file_part(&subject.name));
+        if let Some(kept) = self.store.get(&name) {
+            return Ok(Some(kept));
+        }
+        let bar = self.steps.begin(&format!("{}: its light", subject.name));
+        let one = OneBar { bar: &*bar, furthest: Mutex::new(0.0) };
+        let standard = &subject.focuses[0].focus;
+        let found = RefinedLight::of(&subject.tracer, &subject.camera, standard, passes, &one)?;
+        self.store.put(&name, &found)?;
+        Ok(Some(found))
     }
 
     /// What was modelled under the standard lens, and what the saving cost.

@@ -3,6 +3,7 @@
 use crate::live::ShownPicture;
 use crate::photographs::Photographs;
 use crate::reference::ReferenceError;
+use crate::refined::RefinedLight;
 use crate::views::Views;
 use lens::Camera;
 use serde::{Deserialize, Serialize};
@@ -47,6 +48,8 @@ pub struct SceneSummary {
     pub photographs: Option<Photographs>,
     /// What the views of a light field tell; none of others.
     pub views: Option<Views>,
+    /// How far its light at once is off; none where no light is found.
+    pub light: Option<RefinedLight>,
     /// What was modelled of it.
     pub modelled: ModelledScene,
     /// What is odd but does no harm.

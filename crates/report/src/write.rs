@@ -106,6 +106,9 @@ fn markdown(report: &Report) -> String {
         );
     }
     for scene in &report.scenes {
+        if let Some(light) = &scene.light {
+            section(&format!("Light at once and refined: {}", scene.name), format!("{}\n", light.sentence()));
+        }
         let modelled = &scene.modelled;
         section(
             &format!("What was modelled: {}", scene.name),

@@ -108,6 +108,14 @@ fn broken_ones_are_told_in_one_sentence() {
         }
     }
     assert!(refused > tried / 8, "{refused} of {tried}");
+    assert!(most_memory().is_none_or(|bytes| bytes < 1 << 30), "{:?} bytes", most_memory());
+}
+
+/// The most memory that this process has held so far, where the system tells it.
+fn most_memory() -> Option<u64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
+    Some(line.trim().strip_suffix(" kB")?.parse::<u64>().ok()? << 10)
 }
 
 #[test]

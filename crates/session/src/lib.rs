@@ -48,8 +48,8 @@ pub use error::SessionError;
 pub use jobs::{JobId, JobProgress, JobStatus, Steps, Waker, guarded};
 pub use kept_files::keep_work_in;
 pub use light_field::{
-    ApertureCell, ApertureImage, DENSE_SAMPLE_BYTES, KeptVisibility, LightFieldStore, LightQuality, Modelled,
-    ModelledRow, TexelStatistics, bake, bake_unpacked, write_salf,
+    ApertureCell, ApertureImage, DENSE_SAMPLE_BYTES, KeptVisibility, LightErrors, LightFieldStore,
+    LightQuality, Modelled, ModelledRow, TexelStatistics, bake, bake_unpacked, may_be_refined, write_salf,
 };
 pub use output::{
     Aov, BlurHistogram, CocConvention, LeftOut, LeftOutPicture, MOST_CELLS_A_SIDE, Reference, ReferenceKind,

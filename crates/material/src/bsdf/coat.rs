@@ -1,39 +1,13 @@
 //! The coat, which lies over all and may have bumps of its own (KHR_materials_clearcoat's normal texture).
 
 use super::{Bsdf, Scattered, Seen, half, mirror};
+use crate::Split;
 use crate::albedo::Gloss;
 use crate::fresnel::rise;
-use crate::{Frame, Split};
 use glam::{DVec2, DVec3};
 
 /// What a coat of index 1.5 mirrors of light that falls on it straight.
 const COAT_F0: f64 = 0.04;
-
-/// The axes of a coat in the frame of what lies beneath: none where they are the same.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct CoatAxes(Option<[DVec3; 3]>);
-
-impl CoatAxes {
-    /// Of a frame that faces the eye.
-    pub fn of(frame: &Frame) -> Self {
-        if frame.coat == frame.normal {
-            return Self(None);
-        }
-        let normal = frame.local(frame.coat).normalize_or(DVec3::Z);
-        let (tangent, bitangent) = normal.any_orthonormal_pair();
-        Self(Some([tangent, bitangent, normal]))
-    }
-
-    /// A direction of the frame by these axes.
-    pub fn local(&self, w: DVec3) -> DVec3 {
-        self.0.map_or(w, |axes| DVec3::from_array(axes.map(|axis| axis.dot(w))))
-    }
-
-    /// And back.
-    fn back(&self, w: DVec3) -> DVec3 {
-        self.0.map_or(w, |[x, y, z]| x * w.x + y * w.y + z * w.z)
-    }
-}
 
 impl Bsdf<'_> {
     /// What it mirrors in all toward a direction of its own axes.
@@ -63,7 +37,7 @@ impl Bsdf<'_> {
     }
 
     /// A direction that a rough one mirrors toward the eye.
-    pub(super) fn drawn_by_coat(&self, seen: &Seen, u: DVec2) -> DVec3 {
+    pub(super) fn toward_coat(&self, seen: &Seen, u: DVec2) -> DVec3 {
         let of_eye = seen.coat.local(seen.o);
         seen.coat.back(mirror(of_eye, self.coat.visible_normal(of_eye, u)))
     }

@@ -153,6 +153,9 @@ fn scene_section(scene: &SceneSummary, measured: &[Measured]) -> Result<String, 
             escaped(&views_sentence(views))
         );
     }
+    if let Some(light) = &scene.light {
+        html += &format!("<h3>Light at once and refined</h3>\n<p>{}</p>\n", escaped(&light.sentence()));
+    }
     html += &format!(
         "<h3>What was modelled</h3>\n{}<p class=\"caption\">{}</p>\n",
         tables::modelled(&scene.modelled).to_html(),

@@ -100,7 +100,7 @@ pub(crate) fn is_photographed(tracer: &Tracer) -> bool {
 }
 
 /// Whether the light of a scene can be refined: there is some, and no photographs tell it.
-pub(crate) fn may_be_refined(tracer: &Tracer) -> bool {
+pub fn may_be_refined(tracer: &Tracer) -> bool {
     !is_photographed(tracer) && needs_light(tracer)
 }
 

@@ -9,6 +9,7 @@ mod changes;
 mod field_watch;
 mod kept_light;
 mod light;
+mod light_errors;
 mod light_file;
 mod modelled;
 mod photographed;
@@ -23,6 +24,8 @@ mod store;
 pub use aperture_image::{ApertureCell, ApertureImage, KeptVisibility};
 pub use baking::{bake, bake_unpacked};
 pub use kept_light::LightQuality;
+pub use light::may_be_refined;
+pub use light_errors::LightErrors;
 pub use modelled::{DENSE_SAMPLE_BYTES, Modelled, ModelledRow, TexelStatistics};
 pub use salf_file::write_salf;
 pub use store::LightFieldStore;
@@ -30,7 +33,7 @@ pub use store::LightFieldStore;
 pub(crate) use baking::bake_with;
 pub(crate) use changes::Changes;
 pub(crate) use field_watch::{FieldWatch, Standing};
-pub(crate) use light::{first_light, is_photographed, light, light_for_many_points, may_be_refined};
+pub(crate) use light::{first_light, is_photographed, light, light_for_many_points};
 pub(crate) use photographed::{
     if_known as photograph_light_if_known, keep_at as keep_photographs_at, wait as photograph_light,
 };

@@ -1,7 +1,7 @@
 //! What the helpers of the preview's thread hand over to it.
 
 use crate::error::SessionError;
-use crate::light_field::LightField;
+use crate::light_field::{LightErrors, LightField};
 use lens::Camera;
 
 /// The share of making a light field that the bake is; the rest is the first sum.
@@ -48,15 +48,6 @@ pub(crate) struct Finer {
     pub errors: Option<LightErrors>,
     /// Seconds that the bake took.
     pub seconds: f64,
-}
-
-/// How far pictures are from what refined light comes to in the end, the mean square of linear values.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct LightErrors {
-    /// The one that the light was refined for, by the noise of paths.
-    pub refined: f64,
-    /// The one that stood before.
-    pub standing: f64,
 }
 
 /// An exact picture, beside the field that holds it.

@@ -5,13 +5,13 @@
 //! noise of the later one; how far it is from the picture that stands, what that one is off. From when on it is the nearer one to the
 //! truth, it stands. Paint and lenses do not stop it: they are of no concern to light.
 
-use super::deliveries::{Finer, LightErrors, RefinedLight};
+use super::deliveries::{Finer, RefinedLight};
 use super::mailbox::Shared;
 use super::refinement::square_between;
 use crate::document::Stage;
 use crate::error::SessionError;
 use crate::jobs::{Urgency, among_others, guarded};
-use crate::light_field::{Changes, FieldOptions, LIGHT_PASSES, LightField, LightQuality};
+use crate::light_field::{Changes, FieldOptions, LIGHT_PASSES, LightErrors, LightField, LightQuality};
 use focus::Focus;
 use lens::{Camera, Exposure, Picture};
 use progress::Stage as Share;
@@ -19,10 +19,6 @@ use splat::Tolerance;
 use std::sync::Arc;
 use std::thread::JoinHandle;
 use std::time::Instant;
-
-/// Noise of four times as many paths over that of as many, as mean squares: a quarter, but for single paths that carry much, of which many
-/// are needed to see any; so it is taken for more.
-const NOISE_OF_NEXT: f64 = 0.5;
 
 /// The share of a pass that the bake is; the rest is the sum.
 const BAKE_SHARE: f32 = 0.9;
@@ -63,9 +59,10 @@ impl LightRefinement {
         self.thread.is_some() || self.made.is_some()
     }
 
-    /// By how many passes light is to be refined next that stands by so many, if `most` allows it.
-    pub fn next_passes(&self, standing: u32, most: u32) -> Option<u32> {
-        let made = self.last.as_ref().map_or(0, LightField::light_passes).max(standing);
+    /// By how many passes the light of what `camera` sees is to be refined next that stands by so many, if `most` allows it.
+    pub fn next_passes(&self, camera: &Camera, standing: u32, most: u32) -> Option<u32> {
+        let last = self.last.as_ref().filter(|last| last.serves(camera));
+        let made = last.map_or(0, LightField::light_passes).max(standing);
         LIGHT_PASSES.into_iter().find(|&passes| passes > made).filter(|&passes| passes <= most)
     }
 
@@ -157,17 +154,10 @@ fn make(task: Task, last: Option<LightField>, shared: &Shared) -> Result<Finer, 
         last.bring_up(&camera, &focus, &summing)?;
         let refined = field.brought()?;
         let apart = square_between(last.brought()?, refined, exposure);
-        errors = Some(told(apart, square_between(&standing, refined, exposure)));
+        errors = Some(LightErrors::told(apart, square_between(&standing, refined, exposure)));
     }
     field.prepare()(&shared.light);
     Ok(Finer { field, errors, seconds })
-}
-
-/// What light of some passes is off, and a picture that stands, by how far the former is from light of a quarter of its passes, and how far
-/// from the latter: errors that have nothing to do with each other add as squares.
-fn told(from_last: f64, from_standing: f64) -> LightErrors {
-    let refined = from_last * NOISE_OF_NEXT / (1.0 + NOISE_OF_NEXT);
-    LightErrors { refined, standing: (from_standing - refined).max(0.0) }
 }
 
 #[cfg(test)]
@@ -175,20 +165,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn noise_is_told_from_what_is_off() {
-        // Light of 4 passes has a noise of 4, of 16 one of 2; what stands is 8 off, or hardly.
-        let errors = told(6.0, 10.0);
-        assert!((errors.refined - 2.0).abs() < 1e-12 && (errors.standing - 8.0).abs() < 1e-12, "{errors:?}");
-        let errors = told(6.0, 2.4);
-        assert!(errors.refined > errors.standing, "{errors:?}");
-        assert_eq!(told(6.0, 0.5).standing, 0.0);
-    }
-
-    #[test]
     fn passes_are_four_times_as_many_until_there_are_enough() {
         let refinement = LightRefinement::default();
-        let next = |standing| refinement.next_passes(standing, 256);
+        let camera = Camera::default();
+        let next = |standing| refinement.next_passes(&camera, standing, 256);
         assert_eq!([next(0), next(4), next(64), next(256)], [Some(4), Some(16), Some(256), None]);
-        assert_eq!(refinement.next_passes(0, 0), None, "it is never refined");
+        assert_eq!(refinement.next_passes(&camera, 0, 0), None, "it is never refined");
     }
 }

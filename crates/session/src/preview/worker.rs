@@ -449,7 +449,7 @@ impl Worker {
         let is_quiet = !self.is_held && !self.is_light_held && !self.is_painting && !self.maker.is_at_work();
         let is_quiet = is_quiet && !self.shared.is_exporting() && !self.light.is_at_work();
         let may = is_exact && is_quiet && fine.is_up_to_date(camera) && may_be_refined(&stage.tracer);
-        self.light.next_passes(fine.light_passes(), self.light_passes).filter(|_| may)
+        self.light.next_passes(camera, fine.light_passes(), self.light_passes).filter(|_| may)
     }
 
     /// Begins to refine the light, if nothing was wished meanwhile.

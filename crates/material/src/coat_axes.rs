@@ -1,0 +1,30 @@
+//! How a coat lies over what is beneath it.
+
+use crate::Frame;
+use glam::DVec3;
+
+/// The axes of a coat in the frame of what lies beneath: none where they are the same.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct CoatAxes(Option<[DVec3; 3]>);
+
+impl CoatAxes {
+    /// Of a frame that faces the eye.
+    pub fn of(frame: &Frame) -> Self {
+        if frame.coat == frame.normal {
+            return Self(None);
+        }
+        let normal = frame.local(frame.coat).normalize_or(DVec3::Z);
+        let (tangent, bitangent) = normal.any_orthonormal_pair();
+        Self(Some([tangent, bitangent, normal]))
+    }
+
+    /// A direction of the frame by these axes.
+    pub fn local(&self, w: DVec3) -> DVec3 {
+        self.0.map_or(w, |axes| DVec3::from_array(axes.map(|axis| axis.dot(w))))
+    }
+
+    /// And back.
+    pub fn back(&self, w: DVec3) -> DVec3 {
+        self.0.map_or(w, |[x, y, z]| x * w.x + y * w.y + z * w.z)
+    }
+}
