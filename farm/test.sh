@@ -43,7 +43,7 @@ begin() {
     [ "$busy" -le "$3" ] || busy=$3
     FARM_STATE="$work/$1-state"
     FARM_KILLS=$(((busy + 2) / 3))
-    FARM_SPAN=$(awk -v all="$seconds" -v busy="$busy" 'BEGIN { print all / busy }')
+    FARM_SPAN=$(awk -v all="$seconds" -v busy="$busy" 'BEGIN { print 0.7 * all / busy }')
     export FARM_STATE FARM_KILLS FARM_SPAN
 }
 
