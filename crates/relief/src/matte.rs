@@ -105,7 +105,9 @@ fn take_across<'a>(
                 count += 1.0;
             }
         }
-        disparity[pixel.cell] = sum / count;
+        if count > 0.0 {
+            disparity[pixel.cell] = sum / count;
+        }
     }
 }
 
