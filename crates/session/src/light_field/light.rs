@@ -33,13 +33,8 @@ pub(crate) fn light(
     if is_photographed(tracer) {
         match (photographed::known(tracer), quality) {
             (Some(light), _) => return Ok(light),
-            (None, LightQuality::Fine | LightQuality::Refined { .. }) => {
-                return photographed::looked_up(tracer, progress);
-            }
-            (None, LightQuality::Rough) if photographed::is_kept(tracer) => {
-                return photographed::looked_up(tracer, progress);
-            }
-            (None, LightQuality::Rough) => {}
+            (None, LightQuality::Rough) if !photographed::is_kept(tracer) => {}
+            (None, _) => return photographed::looked_up(tracer, progress),
         }
     }
     let light_samples = if quality == LightQuality::Rough { ROUGH_LIGHT_SAMPLES } else { LIGHT_SAMPLES };

@@ -129,24 +129,26 @@ impl Shared {
 
     /// Notes that the exact picture is begun; false if something was wished meanwhile.
     pub fn begin_refining(&self) -> bool {
-        let wishes = lock(&self.wishes);
-        if wishes.is_posted {
-            return false;
-        }
-        self.refining.reset();
-        self.is_refining.store(true, Ordering::Relaxed);
-        (self.waker)();
-        true
+        self.begin_if_quiet(|| {
+            self.refining.reset();
+            self.is_refining.store(true, Ordering::Relaxed);
+        })
     }
 
     /// Notes that light is begun to be refined by so many passes; false if something was wished meanwhile.
     pub fn begin_light(&self, passes: u32) -> bool {
+        self.begin_if_quiet(|| {
+            self.light.reset();
+            self.light_passes.store(passes, Ordering::Relaxed);
+        })
+    }
+
+    fn begin_if_quiet(&self, begin: impl FnOnce()) -> bool {
         let wishes = lock(&self.wishes);
         if wishes.is_posted {
             return false;
         }
-        self.light.reset();
-        self.light_passes.store(passes, Ordering::Relaxed);
+        begin();
         (self.waker)();
         true
     }
