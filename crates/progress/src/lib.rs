@@ -11,10 +11,25 @@ pub trait Progress: Sync {
     /// Whether the work is no longer wanted. Cheap: called in inner loops.
     fn cancelled(&self) -> bool;
 
+    /// A part of the work begins: what it is called, in a word, and the share of the whole that it goes from and to. Who shows no names
+    /// does nothing.
+    fn begin_part(&self, _part: &Part) {}
+
     /// `Err(Cancelled)` once the work is no longer wanted.
     fn check(&self) -> Result<(), Cancelled> {
         if self.cancelled() { Err(Cancelled) } else { Ok(()) }
     }
+}
+
+/// A part of long work.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Part {
+    /// A word.
+    pub name: &'static str,
+    /// The share of the whole that is done when it begins, in [0, 1].
+    pub from: f32,
+    /// And when it ends.
+    pub to: f32,
 }
 
 /// The work was stopped because nobody wants its result any more.
@@ -51,13 +66,26 @@ impl<'a> Stage<'a> {
     pub fn new(whole: &'a dyn Progress, start: f32, end: f32) -> Self {
         Self { whole, start, end }
     }
+
+    /// The same, which begins now and is called by a word.
+    pub fn named(whole: &'a dyn Progress, name: &'static str, start: f32, end: f32) -> Self {
+        whole.begin_part(&Part { name, from: start, to: end });
+        Self { whole, start, end }
+    }
+
+    fn of_whole(&self, fraction: f32) -> f32 {
+        self.start + (self.end - self.start) * fraction.clamp(0.0, 1.0)
+    }
 }
 
 impl Progress for Stage<'_> {
     fn report(&self, fraction: f32) {
-        self.whole.report(self.start + (self.end - self.start) * fraction.clamp(0.0, 1.0));
+        self.whole.report(self.of_whole(fraction));
     }
     fn cancelled(&self) -> bool {
         self.whole.cancelled()
+    }
+    fn begin_part(&self, part: &Part) {
+        self.whole.begin_part(&Part { from: self.of_whole(part.from), to: self.of_whole(part.to), ..*part });
     }
 }

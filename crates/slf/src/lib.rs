@@ -23,7 +23,8 @@ mod transport;
 pub use irradiance::Irradiance;
 pub use material::Scattering;
 pub use photographs::{
-    DirectPhotographs, Exposure, PhotographError, PhotographLight, PhotographModel, PhotographOptions,
+    DirectPhotographs, Exposure, LightTexture, PhotographError, PhotographLight, PhotographModel,
+    PhotographOptions, Poses,
 };
 pub use solving::IrradianceOptions;
 pub use transport::{Transport, TransportOptions};

@@ -2,8 +2,8 @@
 //!
 //! ```text
 //! views ─▶ kept_picture ─┐
-//!    └──▶ depth_picture ─┴▶ sightings ─▶ gains ─▶ constant ─▶ mirrored ─▶ residuals ─▶ PhotographLight
-//!                           (by texel)     └▶ beyond  └▶ filling             └ directions
+//!    └──▶ depth_picture ─┴▶ sightings ─▶ gains ─▶ odd ─▶ alignment ─▶ constant ─▶ mirrored ─▶ residuals ─▶ PhotographLight
+//!                           (by texel)     └▶ beyond                   └▶ filling             └ directions
 //! ```
 //!
 //! A texel sends what it sends toward all directions (`constant`: a robust mean), what it mirrors of the surroundings (`mirrored`: one
@@ -12,8 +12,9 @@
 //! that are left out are told better with it. Where directions are far from all photographs, only the first two remain.
 //!
 //! `budget` decides how fine all is kept, `stored` has it as bytes. `direct` looks up points in the
-//! photographs themselves; `reading` reads these, `odd` tells what does not belong in them. `blocks` has numbers that change slowly over the atlas, `sphere` those that go with direction.
+//! photographs themselves; `reading` reads these, `odd` tells what does not belong in them, `alignment` where in them things really are. `blocks` has numbers that change slowly over the atlas, `sphere` those that go with direction.
 
+mod alignment;
 mod beyond;
 mod blocks;
 mod budget;
@@ -30,6 +31,7 @@ mod median;
 mod mirrored;
 mod odd;
 mod one_view;
+mod positive;
 mod ramp;
 mod reading;
 mod residuals;
@@ -37,12 +39,15 @@ mod sightings;
 mod sphere;
 mod stored;
 mod texels;
+mod texture;
 mod told;
 
 pub use direct::DirectPhotographs;
 pub use error::PhotographError;
 pub use gains::Exposure;
+pub use texture::LightTexture;
 
+use alignment::Displacement;
 use atlas::Atlas;
 use budget::Budget;
 use calibrated::Calibrated;
@@ -50,7 +55,7 @@ use directions::toward;
 use glam::{DVec3, Vec3};
 use mirrored::Mirrored;
 use odd::Belonging;
-use progress::{Progress, Stage};
+use progress::{Cancelled, Progress, Stage};
 use reading::Reading;
 use residuals::Residuals;
 use scene::{LoadOptions, Scene, SurfacePoint, View};
@@ -68,6 +73,8 @@ pub struct PhotographOptions {
     pub load: LoadOptions,
     /// What is told of a texel.
     pub model: PhotographModel,
+    /// How far poses are believed.
+    pub poses: Poses,
     /// Bytes that the work may hold at once, the scene, its hierarchy and the atlas not counted. Photographs and texels are made coarser
     /// where they would not fit.
     pub max_memory: u64,
@@ -76,7 +83,12 @@ pub struct PhotographOptions {
 impl Default for PhotographOptions {
     /// 1.6 GiB.
     fn default() -> Self {
-        Self { load: LoadOptions::default(), model: PhotographModel::default(), max_memory: 1600 << 20 }
+        Self {
+            load: LoadOptions::default(),
+            model: PhotographModel::default(),
+            poses: Poses::default(),
+            max_memory: 1600 << 20,
+        }
     }
 }
 
@@ -91,12 +103,24 @@ pub enum PhotographModel {
     OneView,
 }
 
+/// How far the poses of photographs, and the surface, are believed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Poses {
+    /// To a few pixels: photographs are aligned with each other where that has them agree better.
+    #[default]
+    Aligned,
+    /// As they are given. What texturing tools are compared by, [`PhotographModel::OneView`], always believes that.
+    Given,
+}
+
 /// Radiance of a surface as photographs of it show it, kept at the texels of an atlas.
 pub struct PhotographLight {
     scene: Arc<Scene>,
     grid: TexelGrid,
     exposures: Vec<Exposure>,
     eyes: Vec<DVec3>,
+    /// By view, how far it is off.
+    displacements: Vec<Displacement>,
     /// By view, what of it belongs.
     belonging: Vec<Belonging>,
     /// By texel: what goes toward all directions alike.
@@ -135,24 +159,29 @@ impl PhotographLight {
             return Err(PhotographError::TooMany { count: views.len() });
         }
         let scene = tracer.scene();
-        let stage = |from, to| Stage::new(progress, from, to);
+        let stage = |name, from, to| Stage::named(progress, name, from, to);
         let sphere = Sphere::of_rows(SPHERE_ROWS);
         let budget = Budget::of(scene, atlas, views, options.max_memory);
         let texels = Texels::of(scene, atlas, budget.texel_scale);
         progress.check()?;
         let reading = Reading { load: &options.load, reduction: budget.reduction, at_once: budget.at_once };
-        let mut sightings = Sightings::of(scene, &texels, &sphere, views, &reading, &stage(0.0, 0.25))?;
-        let exposures = gains::exposures(&texels, &sightings, &sphere, views, &stage(0.25, 0.33))?;
+        let mut sightings =
+            Sightings::of(scene, &texels, &sphere, views, &reading, &stage("photographs", 0.0, 0.25))?;
+        let exposures =
+            gains::exposures(&texels, &sightings, &sphere, views, &stage("exposures", 0.25, 0.33))?;
         let eyes: Vec<DVec3> = views.iter().map(View::position).collect();
         let most = views.iter().zip(&exposures).map(|(view, exposure)| exposure.most_to_radiance(view));
-        let undone = |number: usize, pixel| exposures[number].to_radiance(&views[number], pixel);
-        sightings.scale(&texels, views, most.fold(1.0, f32::max), undone);
-        let belonging = match options.model {
+        sightings.scale(&texels, views, most.fold(1.0, f32::max), |number, pixel| {
+            exposures[number].to_radiance(&views[number], pixel)
+        });
+        let (displacements, belonging) = match options.model {
             PhotographModel::Light => {
-                let radiance = Calibrated { texels: &texels, sightings: &sightings, eyes: &eyes };
-                odd::belonging(&radiance, views)
+                let places = Places { texels: &texels, views, exposures: &exposures, eyes: &eyes };
+                places.told(&mut sightings, options.poses, &Stage::new(progress, 0.33, 0.4))?
             }
-            PhotographModel::OneView => views.iter().map(Belonging::whole).collect(),
+            PhotographModel::OneView => {
+                (views.iter().map(Displacement::none).collect(), views.iter().map(Belonging::whole).collect())
+            }
         };
         progress.check()?;
         if !belonging.iter().all(Belonging::is_whole) {
@@ -161,7 +190,7 @@ impl PhotographLight {
         let radiance = Calibrated { texels: &texels, sightings: &sightings, eyes: &eyes };
         let seeing = (0..texels.count()).map(|texel| sightings.range(texel).len() as u16).collect();
         let Told { mut constant, seen, mirrored, residuals } = match options.model {
-            PhotographModel::Light => told(&radiance, &stage(0.33, 0.98))?,
+            PhotographModel::Light => told(&radiance, &Stage::new(progress, 0.4, 0.98))?,
             PhotographModel::OneView => one_view::told(&radiance),
         };
         let beyond = beyond::beyond(&sphere, views, &exposures, &sightings.pictures, &sightings.beyond);
@@ -172,6 +201,7 @@ impl PhotographLight {
             grid: texels.grid,
             exposures,
             eyes,
+            displacements,
             belonging,
             constant,
             seen,
@@ -186,6 +216,11 @@ impl PhotographLight {
     /// How each photograph renders light, by view.
     pub fn exposures(&self) -> &[Exposure] {
         &self.exposures
+    }
+
+    /// By photograph, how many pixels it was moved at most to agree with the others; 0 where it is as its camera says.
+    pub fn moved_px(&self) -> Vec<f64> {
+        self.displacements.iter().map(Displacement::most).collect()
     }
 
     /// How far a point was photographed: 1 it was, 0 it is filled from around.
@@ -213,6 +248,47 @@ impl PhotographLight {
     fn interpolated(&self, point: SurfacePoint, of: impl Fn(usize) -> f32) -> f32 {
         let around = self.grid.around(point);
         around.map_or(0.0, |around| around.iter().map(|&(texel, share)| of(texel as usize) * share).sum())
+    }
+}
+
+/// What it takes to tell what is where in photographs.
+struct Places<'a> {
+    texels: &'a Texels,
+    views: &'a [View],
+    exposures: &'a [Exposure],
+    eyes: &'a [DVec3],
+}
+
+impl Places<'_> {
+    /// How far each photograph is off, and what of it belongs. The sightings are of the photographs as they are afterwards.
+    fn told(
+        &self,
+        sightings: &mut Sightings,
+        poses: Poses,
+        progress: &dyn Progress,
+    ) -> Result<(Vec<Displacement>, Vec<Belonging>), Cancelled> {
+        let Self { texels, views, exposures, eyes } = *self;
+        let belonging = |sightings: &Sightings, progress: &dyn Progress| {
+            odd::belonging(&Calibrated { texels, sightings, eyes }, views, progress)
+        };
+        let before = belonging(sightings, &Stage::named(progress, "strangers", 0.0, 0.3))?;
+        if poses == Poses::Given {
+            return Ok((views.iter().map(Displacement::none).collect(), before));
+        }
+        let aligning = Stage::named(progress, "alignment", 0.3, 1.0);
+        let radiance = Calibrated { texels, sightings, eyes };
+        let displacements =
+            alignment::displacements(&radiance, views, exposures, &before, &Stage::new(&aligning, 0.0, 0.7))?;
+        if displacements.iter().all(Displacement::is_none) {
+            return Ok((displacements, before));
+        }
+        sightings.look_again(texels, views, |number, pixel| {
+            let displacement = &displacements[number];
+            let factor = || exposures[number].to_radiance(&views[number], pixel);
+            (!displacement.is_none()).then(|| (pixel + displacement.at(pixel), factor()))
+        });
+        let after = belonging(sightings, &Stage::new(&aligning, 0.8, 1.0))?;
+        Ok((displacements, after))
     }
 }
 

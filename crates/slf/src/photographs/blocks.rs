@@ -33,6 +33,11 @@ impl Blocks {
         y * self.columns + x
     }
 
+    /// Whether a block is a white field, were they a chess board.
+    pub fn is_white(&self, block: usize) -> bool {
+        (block % self.columns + block / self.columns).is_multiple_of(2)
+    }
+
     /// Of a product and a square by block their quotient, those of the blocks around joined in, within bounds; the lower bound where
     /// nothing is known.
     pub fn quotients(&self, sums: &[(f32, f32)], [low, high]: [f32; 2]) -> Vec<f32> {

@@ -10,7 +10,7 @@ use super::directions::{Known, toward};
 use super::error::PhotographError;
 use super::reading::{ReadView, Reading};
 use super::residuals::Work;
-use super::sightings::Look;
+use super::sightings::{Look, from_border};
 use super::told::SEEN;
 use super::{PhotographLight, PhotographOptions};
 use glam::{DVec3, Vec3};
@@ -59,9 +59,15 @@ impl DirectPhotographs {
         let sample = |(number, weight): (usize, f32)| {
             let (view, picture) = (&views[number], &self.read[number].picture);
             let pixel = view.project(position)?;
-            let shown = picture.at(picture.place(pixel));
+            let displacement = &self.light.displacements[number];
+            let place = picture.place(pixel + displacement.at(pixel));
+            let shown = picture.at(place);
             let light = shown.light * self.light.exposures[number].to_radiance(view, pixel);
-            let weight = (weight * self.light.belonging[number].at(pixel)).max(LEAST_WEIGHT);
+            let mut weight = weight * self.light.belonging[number].at(pixel);
+            if !displacement.is_none() {
+                weight *= from_border(picture, place);
+            }
+            let weight = weight.max(LEAST_WEIGHT);
             Some((number, Sample { light, weight, clipped: shown.clipped.clamp(0.0, 1.0) }))
         };
         seen.into_iter().filter_map(sample).collect()

@@ -54,6 +54,27 @@ impl KeptPicture {
         Self { width, height, reduction, brightest, pixels }
     }
 
+    /// The same with half as many pixels each way, each the mean of up to four.
+    pub fn halved(&self) -> Self {
+        let [width, height] = [self.width, self.height].map(|side| side.div_ceil(2));
+        let mut pixels = Vec::with_capacity(width as usize * height as usize);
+        for y in 0..height {
+            for x in 0..width {
+                let (mut sum, mut count, mut is_clipped) = (Vec3::ZERO, 0.0, false);
+                for row in 2 * y..(2 * y + 2).min(self.height) {
+                    for column in 2 * x..(2 * x + 2).min(self.width) {
+                        let (light, is_at_limit) = self.pixel((row * self.width + column) as usize);
+                        is_clipped |= is_at_limit;
+                        sum += light;
+                        count += 1.0;
+                    }
+                }
+                pixels.push(packed(sum / (count * self.brightest), is_clipped));
+            }
+        }
+        Self { width, height, reduction: 2 * self.reduction, brightest: self.brightest, pixels }
+    }
+
     /// Where a pixel position of the photograph lies in here, from the corner of the upper left pixel.
     pub fn place(&self, pixel: DVec2) -> DVec2 {
         pixel / f64::from(self.reduction)
@@ -128,5 +149,8 @@ mod tests {
         let (light, is_clipped) = kept.pixel(0);
         assert!((light.x - 4.0).abs() < 0.02 && !is_clipped, "{light}");
         assert_eq!((kept.width, kept.height, kept.place(DVec2::ONE)), (1, 1, DVec2::splat(0.5)));
+        let halved = KeptPicture::of(&photograph(&[0.0, 4.0, 8.0, 4.0]), 1).halved();
+        assert_eq!((halved.width, halved.height, halved.reduction), (1, 1, 2));
+        assert!((halved.pixel(0).0.x - light.x).abs() < 0.02);
     }
 }

@@ -22,6 +22,7 @@ use super::directions::{Kernel, Known, toward};
 use super::median::median;
 use super::residuals::{LEAST_ERROR, Work};
 use glam::DVec2;
+use progress::{Cancelled, Progress};
 use rayon::prelude::*;
 use scene::View;
 
@@ -59,7 +60,7 @@ const FEWEST: f32 = 4.0;
 /// A texel that fewer photographs see says nothing: none of them can be called odd.
 const FEWEST_VIEWS: usize = 5;
 /// What others lead to expect: near photographs, much noise.
-const KERNEL: Kernel = Kernel { reach: 0.6, noise: 0.5 };
+pub(crate) const KERNEL: Kernel = Kernel { reach: 0.6, noise: 0.5 };
 /// S.
 const ODD: f32 = 2.6;
 /// One sighting says no more than this.
@@ -115,15 +116,20 @@ impl Belonging {
 }
 
 /// How far the places of each view belong.
-pub(crate) fn belonging(radiance: &Calibrated<'_>, views: &[View]) -> Vec<Belonging> {
+pub(crate) fn belonging(
+    radiance: &Calibrated<'_>,
+    views: &[View],
+    progress: &dyn Progress,
+) -> Result<Vec<Belonging>, Cancelled> {
     let texels = radiance.texels;
     let blocks = Blocks::of(texels.size());
     let said: Vec<(usize, Vec<Said>)> = (0..texels.count())
         .into_par_iter()
         .step_by(ASKED)
-        .filter(|&texel| radiance.sightings.range(texel).len() >= FEWEST_VIEWS)
+        .filter(|&texel| radiance.sightings.range(texel).len() >= FEWEST_VIEWS && !progress.cancelled())
         .map_init(Work::new, |work, texel| (texel, said(radiance, texel, work)))
         .collect();
+    progress.check()?;
     let scale = |off: fn(&Said) -> f32| -> Vec<f32> {
         let mut all = vec![Vec::new(); blocks.count()];
         for (texel, said) in &said {
@@ -143,7 +149,7 @@ pub(crate) fn belonging(radiance: &Calibrated<'_>, views: &[View]) -> Vec<Belong
             sums[number].add(pixel, score, said.weight);
         }
     }
-    sums.into_par_iter().map(Sums::belonging).collect()
+    Ok(sums.into_par_iter().map(Sums::belonging).collect())
 }
 
 fn said(radiance: &Calibrated<'_>, texel: usize, work: &mut Work) -> Vec<Said> {

@@ -115,6 +115,28 @@ impl Sightings {
         });
     }
 
+    /// Has what views show looked up anew at other places: each view at a pixel position tells where else, and by what it is multiplied,
+    /// or nothing. What lies near the border there counts less.
+    pub fn look_again(
+        &mut self,
+        texels: &Texels,
+        views: &[View],
+        elsewhere: impl Fn(usize, DVec2) -> Option<(DVec2, Vec3)> + Sync,
+    ) {
+        let (brightest, pictures) = (self.brightest, std::mem::take(&mut self.pictures));
+        self.change(texels, views, |sighting, number, pixel| {
+            if let Some((pixel, factor)) = elsewhere(number, pixel) {
+                let picture = &pictures[number];
+                let place = picture.place(pixel);
+                let shown = picture.at(place);
+                sighting.root = root_of(shown.light * factor, brightest);
+                sighting.clipped = by_255ths(shown.clipped.clamp(0.0, 1.0));
+                sighting.weight = by_255ths(sighting.weight() * from_border(picture, place)).max(1);
+            }
+        });
+        self.pictures = pictures;
+    }
+
     /// Has views count by shares in [0, 1], each at a pixel position.
     pub fn weigh(&mut self, texels: &Texels, views: &[View], share: impl Fn(usize, DVec2) -> f32 + Sync) {
         self.change(texels, views, |sighting, number, pixel| {
@@ -236,9 +258,14 @@ impl Look<'_> {
         if is_masked {
             return 0.0;
         }
-        let size = DVec2::new(f64::from(self.read.picture.width), f64::from(self.read.picture.height));
-        ramp(place.min(size - place).min_element() as f32, FROM_BORDER)
+        from_border(&self.read.picture, place)
     }
+}
+
+/// How a place counts that is so near the picture's border.
+pub(crate) fn from_border(picture: &KeptPicture, place: DVec2) -> f32 {
+    let size = DVec2::new(f64::from(picture.width), f64::from(picture.height));
+    ramp(place.min(size - place).min_element() as f32, FROM_BORDER)
 }
 
 fn by_255ths(share: f32) -> u8 {

@@ -1,6 +1,7 @@
 //! Light from photographs as bytes, for the program that made it: lists as they lie in memory, each behind its length (u64).
 
 use super::PhotographLight;
+use super::alignment::Displacement;
 use super::blocks::Blocks;
 use super::directions::Kernel;
 use super::gains::Exposure;
@@ -15,7 +16,7 @@ use glam::{DVec3, Vec2, Vec3};
 use scene::Scene;
 use std::sync::Arc;
 
-const MAGIC: &[u8; 8] = b"FBPHOTO1";
+const MAGIC: &[u8; 8] = b"FBPHOTO2";
 
 /// What is there once.
 #[derive(Clone, Copy, Pod, Zeroable)]
@@ -49,6 +50,7 @@ impl PhotographLight {
         add(&mut bytes, &grid.index);
         add(&mut bytes, &self.exposures);
         add(&mut bytes, &self.eyes);
+        self.displacements.iter().for_each(|displacement| add(&mut bytes, displacement.nodes()));
         self.belonging.iter().for_each(|belonging| add(&mut bytes, belonging.tiles()));
         add(&mut bytes, &self.constant);
         add(&mut bytes, &self.seen);
@@ -73,6 +75,8 @@ impl PhotographLight {
         let index = list(&mut rest)?;
         let exposures: Vec<Exposure> = list(&mut rest)?;
         let eyes: Vec<DVec3> = list(&mut rest)?;
+        let mut of_view = |view| Displacement::of_nodes(view, list(&mut rest)?);
+        let displacements = scene.views.iter().map(&mut of_view).collect::<Option<Vec<_>>>()?;
         let mut of_view = |view| Belonging::of_tiles(view, list(&mut rest)?);
         let belonging = scene.views.iter().map(&mut of_view).collect::<Option<Vec<_>>>()?;
         let constant: Vec<Vec3> = list(&mut rest)?;
@@ -95,6 +99,7 @@ impl PhotographLight {
             },
             exposures,
             eyes,
+            displacements,
             belonging,
             constant,
             seen,

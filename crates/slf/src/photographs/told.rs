@@ -28,22 +28,25 @@ pub(crate) fn seen(radiance: &Calibrated<'_>) -> Vec<f32> {
 pub(crate) const SEEN: f32 = 0.25;
 
 /// The robust means of what photographs show of each texel.
-fn means(radiance: &Calibrated<'_>) -> Vec<Vec3> {
+fn means(radiance: &Calibrated<'_>, progress: &dyn Progress) -> Result<Vec<Vec3>, Cancelled> {
     let mean = |(samples, belonging): &mut (Vec<_>, Vec<_>), texel| {
+        progress.check()?;
         radiance.samples_into(texel, samples);
-        robust_mean(samples, belonging)
+        Ok(robust_mean(samples, belonging))
     };
     (0..radiance.texels.count()).into_par_iter().map_init(Default::default, mean).collect()
 }
 
 /// All that photographs carry.
 pub(crate) fn told(radiance: &Calibrated<'_>, progress: &dyn Progress) -> Result<Told, Cancelled> {
-    let mut constant = means(radiance);
+    let texels = Stage::named(progress, "texels", 0.0, 0.15);
+    let mut constant = means(radiance, &texels)?;
     let seen = seen(radiance);
-    progress.report(0.15);
-    let (mirrored, beside_mirrored) = Mirrored::of(radiance, &constant, &Stage::new(progress, 0.15, 0.45))?;
+    texels.report(1.0);
+    let mirrors = Stage::named(progress, "mirrors", 0.15, 0.45);
+    let (mirrored, beside_mirrored) = Mirrored::of(radiance, &constant, &mirrors)?;
     let ways = Ways { radiance, plain: &constant, beside_mirrored: &beside_mirrored, mirrored: &mirrored };
-    let (share, residuals) = ways.residuals(&Stage::new(progress, 0.45, 1.0))?;
+    let (share, residuals) = ways.residuals(&Stage::named(progress, "gloss", 0.45, 1.0))?;
     for ((constant, beside), share) in constant.iter_mut().zip(beside_mirrored).zip(&share) {
         *constant = constant.lerp(beside, *share);
     }

@@ -1,0 +1,202 @@
+//! The displacement of one photograph that makes it show what others lead to expect: one step of Gauss and Newton.
+//!
+//! ```text
+//! Σᵢ wᵢ·(e(xᵢ) − I(xᵢ + u) − ∇I·(d(xᵢ) − u) − o(tile))² / σ²  +  Σ |dⱼ − dₖ|²/s²  +  Σ |dⱼ|²/h²        → least
+//! ```
+//!
+//! | symbol | meaning | unit |
+//! | --- | --- | --- |
+//! | I, ∇I | what the photograph shows, and how it changes | root of radiance, per px |
+//! | e | what others lead to expect | root of radiance |
+//! | u, d | displacement before and after, linear between nodes j, k | px |
+//! | o | what the photograph is brighter by around there: gloss and exposure are no displacement | root of radiance |
+//! | σ | robust scale of what is off | root of radiance |
+//! | s, h | how much neighbours differ, and how far a photograph is off | px |
+//!
+//! Zhou and Koltun 2014 ("Color map optimization for 3D reconstruction with consumer depth cameras"), without poses of their own: the
+//! lattice has those of small errors in it. o falls out: of every tile only differences from its weighted mean count.
+
+use super::lattice::{Displacement, InCell, Lattice};
+use crate::photographs::median::median;
+use crate::photographs::positive::solve_positive;
+use glam::{DVec2, Vec2};
+use scene::View;
+
+/// A place where a photograph is compared with what others lead to expect.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Compared {
+    /// Where its camera says that it is.
+    pub pixel: DVec2,
+    /// e − I.
+    pub off: f64,
+    /// ∇I.
+    pub slope: DVec2,
+    /// How it counts, > 0.
+    pub weight: f64,
+}
+
+/// Tiles along a side of a cell.
+const TILES: usize = 2;
+/// Neighbouring points are off in the same way: each says as much as so much of one by itself.
+const COUNTS: f64 = 0.05;
+/// σ is thought to be no smaller: 8 bits and JPEG.
+const LEAST_SCALE: f64 = 0.006;
+/// What is off by more scales is something else (Cauchy's weights, squared).
+const ELSE: f64 = 2.0;
+/// s and h, px as they are kept.
+const NEIGHBOURS_DIFFER: f64 = 0.5;
+const OFF: f64 = 4.0;
+/// No node is off by more px as they are kept: what poses are off by is less, and what is farther off is not found by slopes.
+const MOST_OFF: f64 = 6.0;
+
+/// The unknowns of a cell: two for each corner.
+const OF_CELL: usize = 8;
+
+/// Sums over a tile.
+#[derive(Clone, Copy, Default)]
+struct Sums {
+    matrix: [[f64; OF_CELL]; OF_CELL],
+    right: [f64; OF_CELL],
+    row: [f64; OF_CELL],
+    off: f64,
+    weight: f64,
+}
+
+impl Sums {
+    fn add(&mut self, row: [f64; OF_CELL], off: f64, weight: f64) {
+        for i in 0..OF_CELL {
+            for j in 0..=i {
+                self.matrix[i][j] += weight * row[i] * row[j];
+            }
+            self.right[i] += weight * row[i] * off;
+            self.row[i] += weight * row[i];
+        }
+        self.off += weight * off;
+        self.weight += weight;
+    }
+
+    /// i ≥ j.
+    fn matrix(&self, i: usize, j: usize) -> f64 {
+        self.matrix[i][j] - self.row[i] * self.row[j] / self.weight
+    }
+
+    fn right(&self, i: usize) -> f64 {
+        self.right[i] - self.row[i] * self.off / self.weight
+    }
+}
+
+/// The displacement after a step from the one `before`. Pixels are kept `reduction` to one each way.
+pub(crate) fn fitted(
+    view: &View,
+    before: &Displacement,
+    compared: &[Compared],
+    reduction: u32,
+) -> Option<Displacement> {
+    let lattice = Lattice::of(view);
+    let places: Vec<(usize, InCell)> = compared.iter().map(|place| lattice.cell(place.pixel)).collect();
+    let tile = |(cell, at): &(usize, InCell)| {
+        let [column, row] =
+            [at.share.x, at.share.y].map(|share| ((share * TILES as f64) as usize).min(TILES - 1));
+        (cell * TILES + row) * TILES + column
+    };
+    let mut means = vec![(0.0, 0.0); lattice.cells() * TILES * TILES];
+    for (compared, place) in compared.iter().zip(&places) {
+        let mean = &mut means[tile(place)];
+        *mean = (mean.0 + compared.weight * compared.off, mean.1 + compared.weight);
+    }
+    let beside_mean: Vec<f64> = compared
+        .iter()
+        .zip(&places)
+        .map(|(compared, place)| {
+            let (sum, weight) = means[tile(place)];
+            (compared.off - sum / weight).abs()
+        })
+        .collect();
+    // Of a normal distribution.
+    let scale = (1.4826 * median(&mut beside_mean.clone(), f64::total_cmp)?).max(LEAST_SCALE);
+    let mut sums = vec![Sums::default(); means.len()];
+    for ((compared, place), beside_mean) in compared.iter().zip(&places).zip(beside_mean) {
+        let belongs = 1.0 / (1.0 + (beside_mean / (ELSE * scale)).powi(2)).powi(2);
+        let shares = place.1.shares();
+        let row = std::array::from_fn(|i| shares[i / 2] * compared.slope[i % 2]);
+        let off = compared.off + compared.slope.dot(before.at(compared.pixel));
+        sums[tile(place)].add(row, off, compared.weight * belongs);
+    }
+    let n = 2 * lattice.nodes();
+    let (mut matrix, mut right) = (vec![0.0; n * n], vec![0.0; n]);
+    let says = COUNTS / (scale * scale);
+    let mut is_done = vec![false; means.len()];
+    for place in &places {
+        let number = tile(place);
+        if std::mem::replace(&mut is_done[number], true) {
+            continue;
+        }
+        let unknown = |i: usize| 2 * place.1.nodes[i / 2] + i % 2;
+        for i in 0..OF_CELL {
+            right[unknown(i)] += says * sums[number].right(i);
+            for j in 0..=i {
+                let value = says * sums[number].matrix(i, j);
+                matrix[unknown(i) * n + unknown(j)] += value;
+                if i != j {
+                    matrix[unknown(j) * n + unknown(i)] += value;
+                }
+            }
+        }
+    }
+    let unit = f64::from(reduction);
+    let [differ, off] = [NEIGHBOURS_DIFFER, OFF].map(|px| 1.0 / (px * unit).powi(2));
+    for unknown in 0..n {
+        matrix[unknown * n + unknown] += off;
+    }
+    for [a, b] in lattice.neighbours() {
+        for (a, b) in [(2 * a, 2 * b), (2 * a + 1, 2 * b + 1)] {
+            matrix[a * n + a] += differ;
+            matrix[b * n + b] += differ;
+            matrix[a * n + b] -= differ;
+            matrix[b * n + a] -= differ;
+        }
+    }
+    solve_positive(&mut matrix, &mut right);
+    let most = (MOST_OFF * unit) as f32;
+    let node = |node: &[f64; 2]| Vec2::new(node[0] as f32, node[1] as f32).clamp_length_max(most);
+    Displacement::of_nodes(view, right.as_chunks::<2>().0.iter().map(node).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::lattice::tests::view;
+    use super::*;
+
+    #[test]
+    fn a_shift_is_found_whatever_is_brighter_and_what_hides_it() {
+        let view = view([320, 240]);
+        let pattern = |p: DVec2| 0.4 + 0.1 * (0.31 * p.x + 0.05 * p.y).sin() + 0.1 * (0.27 * p.y).cos();
+        let slope = |p: DVec2| {
+            let along = 0.1 * (0.31 * p.x + 0.05 * p.y).cos();
+            DVec2::new(0.31 * along, 0.05 * along - 0.027 * (0.27 * p.y).sin())
+        };
+        let shift = |p: DVec2| DVec2::new(0.8 - 0.002 * p.x, -0.5 + 0.001 * p.y);
+        let found = |has_card: bool| {
+            let mut displacement = Displacement::none(&view);
+            for _ in 0..4 {
+                let compared: Vec<Compared> = (0..80 * 60)
+                    .map(|k| {
+                        let pixel = DVec2::new(4.0 * f64::from(k % 80) + 2.0, 4.0 * f64::from(k / 80) + 2.0);
+                        let at = pixel + displacement.at(pixel);
+                        let is_card = has_card && (100.0..180.0).contains(&at.x) && at.y > 150.0;
+                        // What is expected at p is found at p + shift(p), brighter on the right.
+                        let shown = if is_card { 0.9 } else { pattern(at) + 0.0002 * at.x };
+                        let expected = pattern(pixel + shift(pixel));
+                        Compared { pixel, off: expected - shown, slope: slope(at), weight: 1.0 }
+                    })
+                    .collect();
+                displacement = fitted(&view, &displacement, &compared, 1).unwrap();
+            }
+            let places = [[30.0, 40.0], [160.0, 120.0], [300.0, 60.0], [250.0, 200.0]].map(DVec2::from);
+            places.map(|p| (displacement.at(p) - shift(p)).length()).into_iter().fold(0.0, f64::max)
+        };
+        assert!(found(false) < 0.08, "{}", found(false));
+        assert!(found(true) < 0.15, "{}", found(true));
+        assert!(fitted(&view, &Displacement::none(&view), &[], 1).is_none(), "nothing is known");
+    }
+}

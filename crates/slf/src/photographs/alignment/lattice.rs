@@ -1,0 +1,156 @@
+//! How far each place of a photograph is off: a coarse lattice over it, interpolated between its nodes.
+
+use glam::{DVec2, Vec2};
+use scene::View;
+
+/// A lattice over a photograph.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Lattice {
+    /// Nodes.
+    columns: usize,
+    rows: usize,
+    /// Between nodes, px of the photograph.
+    side_px: f64,
+}
+
+/// Cells along the longer side of a photograph: what poses are off by changes slowly over it.
+const CELLS: f64 = 8.0;
+
+/// A place in a lattice.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct InCell {
+    /// Nodes at its corners: upper left and right, lower left and right.
+    pub nodes: [usize; 4],
+    /// Where in it, in [0, 1].
+    pub share: DVec2,
+}
+
+/// How far each place of a photograph is off.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Displacement {
+    lattice: Lattice,
+    /// By node, px of the photograph; none where it is as its camera says.
+    nodes: Vec<Vec2>,
+}
+
+impl Lattice {
+    pub fn of(view: &View) -> Self {
+        let [width, height] = view.lens.size_px().map(f64::from);
+        let side_px = (width.max(height) / CELLS).max(1.0);
+        let [columns, rows] = [width, height].map(|side| (side / side_px).ceil() as usize + 1);
+        Self { columns, rows, side_px }
+    }
+
+    pub fn nodes(&self) -> usize {
+        self.columns * self.rows
+    }
+
+    pub fn cells(&self) -> usize {
+        (self.columns - 1) * (self.rows - 1)
+    }
+
+    /// The number of the cell that a pixel position is in, and where in it; beyond the border that beside it.
+    pub fn cell(&self, pixel: DVec2) -> (usize, InCell) {
+        let place = pixel / self.side_px;
+        let within = |at: f64, nodes: usize| (at.max(0.0) as usize).min(nodes - 2);
+        let (column, row) = (within(place.x, self.columns), within(place.y, self.rows));
+        let share = (place - DVec2::new(column as f64, row as f64)).clamp(DVec2::ZERO, DVec2::ONE);
+        let first = row * self.columns + column;
+        let nodes = [first, first + 1, first + self.columns, first + self.columns + 1];
+        (row * (self.columns - 1) + column, InCell { nodes, share })
+    }
+
+    /// Nodes beside each other.
+    pub fn neighbours(&self) -> impl Iterator<Item = [usize; 2]> {
+        let Self { columns, rows, .. } = *self;
+        (0..columns * rows).flat_map(move |node| {
+            let right = (node % columns + 1 < columns).then_some([node, node + 1]);
+            let below = (node / columns + 1 < rows).then_some([node, node + columns]);
+            [right, below].into_iter().flatten()
+        })
+    }
+}
+
+impl InCell {
+    /// How much each corner counts here.
+    pub fn shares(&self) -> [f64; 4] {
+        let DVec2 { x, y } = self.share;
+        [(1.0 - x) * (1.0 - y), x * (1.0 - y), (1.0 - x) * y, x * y]
+    }
+}
+
+impl Displacement {
+    /// Of a photograph that is as its camera says.
+    pub fn none(view: &View) -> Self {
+        Self { lattice: Lattice::of(view), nodes: Vec::new() }
+    }
+
+    /// Of nodes, row by row, px; none if they are too many or too few, or one is not a number. None at all are those of [`Self::none`].
+    pub fn of_nodes(view: &View, nodes: Vec<Vec2>) -> Option<Self> {
+        let lattice = Lattice::of(view);
+        let is_one = nodes.is_empty() || nodes.len() == lattice.nodes();
+        (is_one && nodes.iter().all(|node| node.is_finite())).then_some(Self { lattice, nodes })
+    }
+
+    pub fn nodes(&self) -> &[Vec2] {
+        &self.nodes
+    }
+
+    pub fn is_none(&self) -> bool {
+        self.nodes.is_empty()
+    }
+
+    /// How far what the camera sees at a pixel position is found beside it, px.
+    pub fn at(&self, pixel: DVec2) -> DVec2 {
+        if self.is_none() {
+            return DVec2::ZERO;
+        }
+        let (_, cell) = self.lattice.cell(pixel);
+        let corner = |(node, share): (usize, f64)| self.nodes[node].as_dvec2() * share;
+        cell.nodes.into_iter().zip(cell.shares()).map(corner).sum()
+    }
+
+    /// Its largest, px.
+    pub fn most(&self) -> f64 {
+        self.nodes.iter().map(|node| f64::from(node.length())).fold(0.0, f64::max)
+    }
+}
+
+#[cfg(test)]
+pub(super) mod tests {
+    use super::*;
+    use glam::DMat4;
+    use lens::CalibratedLens;
+
+    /// A photograph that was never taken.
+    pub fn view(size: [u32; 2]) -> View {
+        View {
+            name: "a".into(),
+            picture: "a".into(),
+            orientation: 1,
+            exif_orientation: 1,
+            lens: CalibratedLens::pinhole(size, 100.0).unwrap(),
+            camera_to_world: DMat4::IDENTITY,
+            mask: None,
+            exposure_hint: None,
+        }
+    }
+
+    #[test]
+    fn what_is_linear_is_interpolated_exactly_and_goes_on_beyond_the_border() {
+        let view = view([160, 90]);
+        let lattice = Lattice::of(&view);
+        assert_eq!((lattice.nodes(), lattice.cells()), (9 * 6, 8 * 5));
+        let plane = |x: f64, y: f64| Vec2::new((0.1 * x - 0.03 * y) as f32, (1.0 + 0.02 * x) as f32);
+        let nodes = (0..lattice.nodes()).map(|n| plane(20.0 * (n % 9) as f64, 20.0 * (n / 9) as f64));
+        let displacement = Displacement::of_nodes(&view, nodes.collect()).unwrap();
+        for [x, y] in [[0.0, 0.0], [33.0, 71.5], [20.0, 40.0], [159.9, 89.9]] {
+            let off = displacement.at(DVec2::new(x, y)) - plane(x, y).as_dvec2();
+            assert!(off.length() < 1e-5, "{x} {y}: {off}");
+        }
+        assert_eq!(displacement.at(DVec2::new(-9.0, 40.0)), displacement.at(DVec2::new(0.0, 40.0)));
+        assert_eq!(Displacement::none(&view).at(DVec2::new(3.0, 4.0)), DVec2::ZERO);
+        assert!(Displacement::of_nodes(&view, vec![Vec2::ONE; 53]).is_none());
+        assert!(Displacement::of_nodes(&view, vec![Vec2::NAN; 54]).is_none());
+    }
+}

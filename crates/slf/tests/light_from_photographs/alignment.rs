@@ -1,0 +1,82 @@
+//! Photographs whose poses are a few pixels off.
+
+use crate::place::{Photographs, floor, floor_places, gauge, solve_with, tracer};
+use glam::{DMat3, DMat4, DQuat, DVec3, Vec3};
+use scene::{Scene, SurfacePoint, View};
+use slf::{DirectPhotographs, PhotographLight, PhotographOptions, Poses};
+use std::sync::Arc;
+use trace::{Radiance, Tracer};
+
+/// A floor with a pattern as fine as pixels can tell, beneath a plain box.
+fn patterned(scene: &Scene, point: SurfacePoint, _eye: DVec3) -> Vec3 {
+    let position = point.position(scene);
+    if point.triangle < 2 { pattern(position.x, position.z) } else { Vec3::new(0.6, 0.08, 0.08) }
+}
+
+fn pattern(x: f64, z: f64) -> Vec3 {
+    let wave = (7.0 * x + 1.5 * z).sin() * (8.0 * z).sin() + 0.6 * (4.3 * x - 5.1 * z).sin();
+    Vec3::new(0.25, 0.3, 0.2) * (1.0 + 0.5 * wave as f32)
+}
+
+/// The same photographs, thought to look some two pixels past where they do.
+fn perturbed(views: &[View]) -> Vec<View> {
+    let turned = |(number, view): (usize, &View)| {
+        // Angles of 0.013 rad and more are 1.4 px and more; they are 0 in the mean.
+        let (up, aside) = (0.021 * (2.4 * number as f64).sin(), 0.021 * (2.4 * number as f64).cos());
+        let turn = DMat3::from_quat(DQuat::from_euler(glam::EulerRot::XYZ, up, aside, 0.5 * up));
+        let axes = DMat3::from_mat4(view.camera_to_world) * turn;
+        View { camera_to_world: DMat4::from_mat3_translation(axes, view.position()), ..view.clone() }
+    };
+    views.iter().enumerate().map(turned).collect()
+}
+
+/// RMS of what the floor sends beside what it should.
+fn error(radiance: &dyn Radiance) -> f64 {
+    let (mut sum, mut count) = (0.0, 0.0);
+    for [x, z] in floor_places() {
+        let found = radiance.leaving(floor(x, z), DVec3::new(0.7, 4.0, 3.1)).total() / gauge();
+        sum += f64::from(found.distance_squared(pattern(x, z)));
+        count += 1.0;
+    }
+    (sum / count).sqrt()
+}
+
+fn solve(tracer: &Tracer, views: &[View], poses: Poses) -> PhotographLight {
+    solve_with(tracer, views, &PhotographOptions { poses, ..PhotographOptions::default() })
+}
+
+#[test]
+fn photographs_that_are_off_are_aligned() {
+    let plain = tracer();
+    let photographs = Photographs::take("aligned", &plain, patterned, false);
+    let views = perturbed(&photographs.views);
+    let scene = Arc::new(Scene { views: views.clone(), ..Scene::clone(plain.scene()) });
+    let tracer = Tracer::new(scene.clone());
+    let [given, aligned] = [Poses::Given, Poses::Aligned].map(|poses| solve(&tracer, &views, poses));
+    let exact = error(&solve(&tracer, &photographs.views, Poses::Given));
+    let (before, after) = (error(&given), error(&aligned));
+    assert!(after < 0.5 * before, "{before} {after}, {exact} with exact poses");
+    assert!(given.moved_px().iter().all(|&px| px == 0.0));
+    let moved = aligned.moved_px();
+    assert!(moved.iter().filter(|&&px| (0.5..6.0).contains(&px)).count() > 15, "{moved:?}");
+    // It is kept with the light, and looked up alike in the photographs themselves.
+    let again = PhotographLight::from_bytes(&aligned.to_bytes(), &scene).unwrap();
+    assert_eq!(again.moved_px(), moved);
+    let options = PhotographOptions::default();
+    let direct = DirectPhotographs::of(Arc::new(again), &options, &progress::Unwatched).unwrap();
+    let directly = error(&direct);
+    assert!(directly < 0.5 * before, "{before} {directly}");
+}
+
+#[test]
+fn photographs_that_are_not_off_stay_as_they_are() {
+    let tracer = tracer();
+    for (name, sends) in [("exact", patterned as crate::place::Sends), ("exact_gloss", crate::place::glossy)]
+    {
+        let photographs = Photographs::take(name, &tracer, sends, false);
+        let [given, aligned] =
+            [Poses::Given, Poses::Aligned].map(|poses| solve(&tracer, &photographs.views, poses));
+        assert_eq!(aligned.moved_px(), [0.0; 20], "{name}");
+        assert!(given.to_bytes() == aligned.to_bytes(), "{name}");
+    }
+}

@@ -1,0 +1,191 @@
+//! Light from photographs of a made-up place.
+
+mod alignment;
+mod place;
+
+use atlas::{Atlas, Density, UnwrapOptions};
+use glam::{DVec2, DVec3};
+use place::{
+    Photographs, SKY, UNDERSIDE, floor, floor_color, floor_places, gain_stops, gauge, glossy, matte, solve,
+    tracer,
+};
+use progress::{Part, Progress, Unwatched};
+use scene::{Scene, SurfacePoint, View};
+use slf::{PhotographError, PhotographLight, PhotographOptions};
+use std::sync::{Arc, Mutex};
+use trace::{Radiance, Tracer};
+
+#[test]
+fn gains_are_found_and_what_stands_before_a_texel_leaves_no_colour_on_it() {
+    let tracer = tracer();
+    let photographs = Photographs::take("gains", &tracer, matte, false);
+    let light = solve(&tracer, &photographs.views);
+    let mean = f64::from(gauge().log2());
+    for (number, exposure) in light.exposures().iter().enumerate() {
+        for gain in exposure.gain_stops {
+            assert!((gain - (gain_stops(number) - mean)).abs() < 0.05, "{number}: {gain}");
+        }
+    }
+    // From many sides the red box stands before the floor; where that is not told, red rises from 0.1 to 0.2 and more.
+    for [x, z] in floor_places() {
+        let found = light.constant(floor(x, z)) / gauge();
+        assert!(found.distance(floor_color(x, z)) < 0.04, "{x} {z}: {found}");
+    }
+}
+
+#[test]
+fn a_card_in_a_fifth_of_the_pictures_is_left_out() {
+    let tracer = tracer();
+    let [without, with] = [("no_card", false), ("card", true)].map(|(name, has_card)| {
+        let photographs = Photographs::take(name, &tracer, matte, has_card);
+        solve(&tracer, &photographs.views)
+    });
+    let (mut sum, mut count) = (0.0, 0.0);
+    for [x, z] in floor_places() {
+        let [without, with] =
+            [&without, &with].map(|light| light.toward(floor(x, z), DVec3::new(0.5, 4.0, 3.0)));
+        sum += without.distance_squared(with);
+        count += 1.0;
+    }
+    // A fifth of the card's difference (1.05 in length), where the card is seen, is what a mean would show.
+    let off = (sum / count as f32).sqrt();
+    assert!(off > 0.0 && off < 0.04, "{off}");
+}
+
+#[test]
+fn what_no_photograph_shows_is_filled_and_known_as_such() {
+    let tracer = tracer();
+    let photographs = Photographs::take("filled", &tracer, matte, false);
+    let light = solve(&tracer, &photographs.views);
+    for triangle in UNDERSIDE {
+        let point = SurfacePoint { triangle, barycentric: DVec2::splat(1.0 / 3.0) };
+        assert_eq!(light.seen(point), 0.0);
+        let filled = light.toward(point, DVec3::new(0.0, -5.0, 1.0));
+        assert!(filled.is_finite() && filled.max_element() > 0.05, "{filled}");
+    }
+    assert_eq!(light.seen(floor(1.5, 0.3)), 1.0);
+    // Past the floor's edge, as camera 0 sees it.
+    let sky = light.from_infinity(DVec3::new(0.25, -0.25, -1.0)) / gauge();
+    assert!(sky.distance(SKY) < 0.03, "{sky}");
+}
+
+#[test]
+fn gloss_is_kept_where_photographs_show_it_and_changes_smoothly() {
+    let tracer = tracer();
+    let photographs = Photographs::take("gloss", &tracer, glossy, false);
+    let light = solve(&tracer, &photographs.views);
+    let point = floor(1.2, 1.0);
+    let position = point.position(tracer.scene());
+    let [to_lamp, away] = [DVec3::new(0.0, 3.5, 3.5), DVec3::new(0.0, 3.5, -3.5)].map(|step| position + step);
+    let truth = glossy(tracer.scene(), point, to_lamp);
+    let [found, flat] = [light.toward(point, to_lamp), light.constant(point)].map(|light| light / gauge());
+    assert!(found.distance(truth) < 0.8 * flat.distance(truth), "{found} {flat} for {truth}");
+    let [found, truth] = [light.toward(point, away) / gauge(), glossy(tracer.scene(), point, away)];
+    assert!(found.distance(truth) < 0.1, "{found} for {truth}");
+    // Over an aperture between photographs nothing pops.
+    let along = |k: u32| light.toward(point, to_lamp.lerp(away, f64::from(k) / 400.0));
+    let steepest = (0..400).map(|k| along(k).distance(along(k + 1))).fold(0.0, f32::max);
+    assert!(steepest < 0.02 && steepest > 0.0, "{steepest}");
+}
+
+#[test]
+fn light_does_not_depend_on_the_number_of_threads() {
+    let tracer = tracer();
+    let photographs = Photographs::take("threads", &tracer, glossy, false);
+    let [one, three] = [1, 3].map(|threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| solve(&tracer, &photographs.views))
+    });
+    assert_eq!(one.exposures(), three.exposures());
+    for [x, z] in floor_places() {
+        let [one, three] = [&one, &three].map(|light| light.leaving(floor(x, z), DVec3::new(1.0, 3.0, 2.0)));
+        assert_eq!(one, three, "{x} {z}");
+    }
+}
+
+#[test]
+fn nothing_comes_of_no_photographs_and_of_what_is_stopped() {
+    let tracer = tracer();
+    let photographs = Photographs::take("stopped", &tracer, matte, false);
+    let options = UnwrapOptions { density: Density::Side(64), ..UnwrapOptions::default() };
+    let atlas = Atlas::unwrap(tracer.scene(), &options, &Unwatched).unwrap();
+    let solve = |views: &[View], progress: &dyn Progress| {
+        PhotographLight::solve(&tracer, &atlas, views, &PhotographOptions::default(), progress)
+    };
+    assert!(matches!(solve(&[], &Unwatched), Err(PhotographError::None)));
+    let stopped = solve(&photographs.views, &Parts::stopping_in(""));
+    assert!(matches!(stopped, Err(PhotographError::Cancelled)));
+}
+
+#[test]
+fn light_comes_back_from_its_bytes_and_from_no_others() {
+    let tracer = tracer();
+    let photographs = Photographs::take("stored", &tracer, matte, false);
+    let scene = Arc::new(Scene { views: photographs.views.clone(), ..Scene::clone(tracer.scene()) });
+    let tracer = Tracer::new(scene.clone());
+    let light = solve(&tracer, &photographs.views);
+    let bytes = light.to_bytes();
+    let again = PhotographLight::from_bytes(&bytes, &scene).unwrap();
+    assert_eq!(again.to_bytes(), bytes);
+    assert_eq!(again.exposures(), light.exposures());
+    let eye = DVec3::new(0.3, 2.0, 1.5);
+    for (x, z) in [(0.1, 0.2), (-1.7, 1.1), (1.9, -1.9)] {
+        let [a, b] = [&light, &again].map(|light| light.leaving(floor(x, z), eye));
+        assert_eq!((a.own, a.carried), (b.own, b.carried));
+    }
+    for length in (0..bytes.len()).step_by(bytes.len() / 97) {
+        assert!(PhotographLight::from_bytes(&bytes[..length], &scene).is_none(), "{length}");
+    }
+    let other = Arc::new(Scene { triangles: scene.triangles[1..].to_vec(), ..Scene::clone(&scene) });
+    assert!(PhotographLight::from_bytes(&bytes, &other).is_none());
+}
+
+/// The parts that begun, and whether one of them is where to stop; the empty name stops at once.
+struct Parts {
+    begun: Mutex<Vec<Part>>,
+    stop_in: Option<&'static str>,
+}
+
+impl Parts {
+    fn stopping_in(part: &'static str) -> Self {
+        Self { begun: Mutex::default(), stop_in: Some(part) }
+    }
+
+    fn names(&self) -> Vec<&'static str> {
+        self.begun.lock().unwrap().iter().map(|part| part.name).collect()
+    }
+}
+
+impl Progress for Parts {
+    fn report(&self, _fraction: f32) {}
+    fn cancelled(&self) -> bool {
+        self.stop_in.is_some_and(|stop| stop.is_empty() || self.names().contains(&stop))
+    }
+    fn begin_part(&self, part: &Part) {
+        self.begun.lock().unwrap().push(*part);
+    }
+}
+
+#[test]
+fn every_part_has_a_name_and_a_share_and_can_be_stopped() {
+    let tracer = tracer();
+    let photographs = Photographs::take("parts", &tracer, glossy, false);
+    let options = UnwrapOptions { density: Density::Side(64), ..UnwrapOptions::default() };
+    let atlas = Atlas::unwrap(tracer.scene(), &options, &Unwatched).unwrap();
+    let solve = |progress: &Parts| {
+        let options = PhotographOptions::default();
+        PhotographLight::solve(&tracer, &atlas, &photographs.views[..7], &options, progress).map(drop)
+    };
+    let parts = Parts { begun: Mutex::default(), stop_in: None };
+    solve(&parts).unwrap();
+    let names = ["photographs", "exposures", "strangers", "alignment", "texels", "mirrors", "gloss"];
+    assert_eq!(parts.names(), names);
+    let begun = parts.begun.into_inner().unwrap();
+    assert!(begun.windows(2).all(|two| (two[0].to - two[1].from).abs() < 1e-6), "{begun:?}");
+    assert!(begun[0].from == 0.0 && begun[6].to > 0.9 && begun.iter().all(|part| part.from < part.to));
+    for name in names {
+        let parts = Parts::stopping_in(name);
+        assert!(matches!(solve(&parts), Err(PhotographError::Cancelled)), "{name}");
+        assert_eq!(parts.names().last(), Some(&name), "nothing begins after it");
+    }
+}
