@@ -3,7 +3,7 @@
 use super::arguments::ProgressName;
 use super::stopping;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use progress::Progress;
+use progress::{Part, Progress};
 use serde_json::{Value, json};
 use session::Steps;
 use std::borrow::Cow;
@@ -105,8 +105,7 @@ impl Steps for Console {
             bar.set_message(label.to_owned());
             Box::new(Bar(bar))
         } else {
-            eprintln!("{label}…");
-            Box::new(Lines { label: label.to_owned(), last: Mutex::new((Instant::now(), 0.0)) })
+            Box::new(Lines::begin(label))
         }
     }
 
@@ -136,6 +135,9 @@ impl Progress for Bar {
     fn cancelled(&self) -> bool {
         stopping::is_asked_for()
     }
+    fn begin_part(&self, part: &Part) {
+        self.0.set_message(part.name);
+    }
 }
 
 impl Drop for Bar {
@@ -146,21 +148,44 @@ impl Drop for Bar {
 
 /// Plain lines where there is no terminal.
 struct Lines {
-    label: String,
-    /// When the last line was written, and the furthest that was reported.
-    last: Mutex<(Instant, f32)>,
+    last: Mutex<Line>,
+}
+
+/// What was told last.
+struct Line {
+    /// What is being done, and the share of the step that is done when it begins and ends.
+    part: Cow<'static, str>,
+    shares: [f32; 2],
+    told: Instant,
+    furthest: f32,
+}
+
+impl Lines {
+    fn begin(label: &str) -> Self {
+        eprintln!("{label}…");
+        let part = label.to_owned().into();
+        Self { last: Mutex::new(Line { part, shares: [0.0, 1.0], told: Instant::now(), furthest: 0.0 }) }
+    }
 }
 
 impl Progress for Lines {
     fn report(&self, fraction: f32) {
         let Ok(mut last) = self.last.try_lock() else { return };
-        if fraction > last.1 && last.0.elapsed() >= REPORT_EVERY {
-            *last = (Instant::now(), fraction);
-            eprintln!("{} {:.0} %", self.label, fraction * 100.0);
+        if fraction > last.furthest && last.told.elapsed() >= REPORT_EVERY {
+            (last.told, last.furthest) = (Instant::now(), fraction);
+            let [from, to] = last.shares;
+            let done = if to > from { ((fraction - from) / (to - from)).clamp(0.0, 1.0) } else { 1.0 };
+            eprintln!("{} {:.0} %", last.part, done * 100.0);
         }
     }
     fn cancelled(&self) -> bool {
         stopping::is_asked_for()
+    }
+    fn begin_part(&self, part: &Part) {
+        eprintln!("{}…", part.name);
+        if let Ok(mut last) = self.last.lock() {
+            (last.part, last.shares, last.told) = (part.name.into(), [part.from, part.to], Instant::now());
+        }
     }
 }
 
@@ -188,6 +213,9 @@ impl Progress for Events {
     }
     fn cancelled(&self) -> bool {
         stopping::is_asked_for()
+    }
+    fn begin_part(&self, part: &Part) {
+        tell_json(&json!({ "step": self.label, "part": part.name, "done": part.from }));
     }
 }
 

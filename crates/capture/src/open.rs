@@ -58,7 +58,7 @@ pub fn open(path: &Path, options: &CaptureOptions, progress: &dyn Progress) -> R
     candidates.sort_by_key(|cameras| !cameras.file().starts_with(&within));
     let mut remarks = Vec::new();
     let (cameras, views) =
-        views(&folder, &candidates, options, &Stage::new(progress, 0.0, 0.5), &mut remarks)?;
+        views(&folder, &candidates, options, &Stage::named(progress, "pictures", 0.0, 0.5), &mut remarks)?;
     let used = cameras.file();
     let others = candidates.iter().map(Cameras::file).filter(|file| *file != used);
     remarks.extend(Remark::about(others.map(|file| file.display().to_string()).collect(), false, |names| {
@@ -69,7 +69,8 @@ pub fn open(path: &Path, options: &CaptureOptions, progress: &dyn Progress) -> R
         Some(mesh) => mesh.clone(),
         None => mesh_file::find(&folder, &mut remarks)?,
     };
-    let mut scene = mesh_file::read(&mesh, &options.load, &Stage::new(progress, 0.5, 1.0), &mut remarks)?;
+    let reading = Stage::named(progress, "surface", 0.5, 1.0);
+    let mut scene = mesh_file::read(&mesh, &options.load, &reading, &mut remarks)?;
     let upright = upright(&views);
     scene.set_upright(upright);
     remarks.extend(unseen(&scene, &views, &mesh));

@@ -1,6 +1,6 @@
 //! Progress and cancellation of background work, shared between it and its watchers.
 
-use progress::Progress;
+use progress::{Part, Progress};
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
@@ -88,11 +88,16 @@ impl Progress for JobProgress {
     fn cancelled(&self) -> bool {
         self.cancelled.load(Ordering::Relaxed)
     }
+    fn begin_part(&self, part: &Part) {
+        *self.step() = Step { label: part.name.into(), begun: Instant::now(), shares: [part.from, part.to] };
+        self.report(part.from);
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use progress::Stage;
 
     #[test]
     fn what_is_left_follows_from_what_is_done() {
@@ -108,5 +113,9 @@ mod tests {
         assert_eq!((progress.standing().0.as_str(), progress.fraction()), ("baking", 0.5));
         progress.report(0.4);
         assert_eq!(progress.fraction(), 0.5, "it never runs back");
+        let baking = Stage::new(&progress, 0.5, 0.9);
+        Stage::named(&baking, "rays", 0.25, 0.75).report(0.5);
+        let (label, _) = progress.standing();
+        assert_eq!((label.as_str(), progress.fraction(), progress.step().shares), ("rays", 0.7, [0.6, 0.8]));
     }
 }

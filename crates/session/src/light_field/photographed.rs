@@ -5,7 +5,7 @@ use crate::document::{photographs_hash, unwrapped};
 use crate::error::SessionError;
 use crate::kept_files::KeptFiles;
 use atlas::{Atlas, UnwrapOptions};
-use progress::Progress;
+use progress::{Progress, Stage};
 use scene::PhotoLookup;
 use sha2::Digest;
 use slf::{DirectPhotographs, PhotographError, PhotographLight, PhotographOptions};
@@ -158,14 +158,18 @@ fn solve(kept: &Kept, tracer: &Arc<Tracer>, progress: &dyn Progress) -> Result<A
     if let Some(light) = found.and_then(|bytes| PhotographLight::from_bytes(&bytes, scene)) {
         return Ok(Arc::new(light));
     }
-    let atlas = match kept.atlas.get() {
-        Some(atlas) => atlas.clone(),
+    // The share of unwrapping, where that is left to do.
+    let (atlas, unwrapping) = match kept.atlas.get() {
+        Some(atlas) => (atlas.clone(), 0.0),
         None => {
-            let made = unwrapped(scene, &UnwrapOptions::default(), progress);
-            Arc::new(made.map_err(|error| format!("{}: {error}", scene.path.display()))?)
+            let share = 0.3;
+            let stage = Stage::named(progress, "unwrapping", 0.0, share);
+            let made = unwrapped(scene, &UnwrapOptions::default(), &stage);
+            (Arc::new(made.map_err(|error| format!("{}: {error}", scene.path.display()))?), share)
         }
     };
-    let made = PhotographLight::solve(tracer, &atlas, &scene.views, &PhotographOptions::default(), progress);
+    let (options, rest) = (PhotographOptions::default(), Stage::new(progress, unwrapping, 1.0));
+    let made = PhotographLight::solve(tracer, &atlas, &scene.views, &options, &rest);
     let light = made.map_err(|error| error.to_string())?;
     if let Some(file) = file {
         FILES.write(file, &light.to_bytes());

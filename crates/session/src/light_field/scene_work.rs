@@ -1,9 +1,9 @@
 //! Work on a scene on a thread of its own, which goes on whoever stops waiting, as long as the scene is open.
 
-use progress::{Cancelled, Progress};
+use progress::{Cancelled, Part, Progress};
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 use trace::Tracer;
 
@@ -12,6 +12,8 @@ use trace::Tracer;
 pub(super) struct SceneWork {
     /// Bits of an f32.
     done: AtomicU32,
+    /// What it is at.
+    part: Mutex<Option<Part>>,
     has_ended: AtomicBool,
 }
 
@@ -45,6 +47,7 @@ impl SceneWork {
         progress: &dyn Progress,
         found: impl Fn() -> Option<T>,
     ) -> Result<Option<T>, Cancelled> {
+        let mut told = None;
         loop {
             // Looked at first: what was found before the end is there by then.
             let has_ended = self.has_ended.load(Ordering::Acquire);
@@ -55,9 +58,19 @@ impl SceneWork {
                 return Ok(None);
             }
             progress.check()?;
+            let part = *self.part();
+            if let Some(part) = part.filter(|_| part != told) {
+                progress.begin_part(&part);
+                told = Some(part);
+            }
             progress.report(f32::from_bits(self.done.load(Ordering::Relaxed)));
             std::thread::sleep(Duration::from_millis(5));
         }
+    }
+
+    /// A poisoned lock only means that a panic passed by: what it guards is replaced as a whole.
+    fn part(&self) -> MutexGuard<'_, Option<Part>> {
+        self.part.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
@@ -75,5 +88,9 @@ impl Progress for Watch<'_> {
 
     fn cancelled(&self) -> bool {
         Arc::strong_count(&self.tracer) <= 1 + self.own_references
+    }
+
+    fn begin_part(&self, part: &Part) {
+        *self.work.part() = Some(*part);
     }
 }

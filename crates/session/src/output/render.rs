@@ -500,8 +500,24 @@ pub(crate) fn light_of_photographs(
     tracer: &Arc<Tracer>,
     steps: &dyn Steps,
 ) -> Result<Option<Arc<PhotographLight>>, SessionError> {
-    let is_texture = tracer.scene().picture.is_some();
-    (!is_texture).then(|| photograph_light(tracer, &*steps.begin("light"))).transpose()
+    if tracer.scene().picture.is_some() {
+        return Ok(None);
+    }
+    let light = photograph_light(tracer, &*steps.begin("light"))?;
+    if let Some(sentence) = told_moved(&light.moved_px()) {
+        steps.tell(&sentence);
+    }
+    Ok(Some(light))
+}
+
+/// How many photographs were aligned, if any, and by how much.
+fn told_moved(moved_px: &[f64]) -> Option<String> {
+    let count = moved_px.iter().filter(|&&px| px > 0.0).count();
+    let most = moved_px.iter().copied().fold(0.0, f64::max);
+    let all = moved_px.len();
+    (count > 0).then(|| {
+        format!("{count} of {all} photographs are off, by up to {most:.1} px: aligned with the others")
+    })
 }
 
 /// How far the surface along each pixel's chief ray was photographed, in the photographs of `light`, or else in the picture that it was
