@@ -3,6 +3,7 @@
 mod program;
 mod wall_capture;
 
+use glam::{DVec2, Vec2};
 use program::{done, run};
 use project::read_picture;
 use serde_json::Value;
@@ -71,4 +72,43 @@ fn what_is_missing_is_told_and_the_rest_goes_on() {
     std::fs::write(folder.join("wall/mesh.ply"), wider).unwrap();
     let info: Value = serde_json::from_str(&done(folder, "info wall.fbrush --json")).unwrap();
     assert_eq!(info["project"]["scene_state"], "changed");
+}
+
+#[test]
+fn a_captures_surface_is_written_with_its_light_as_a_texture() {
+    let place = tempfile::tempdir().unwrap();
+    let folder = place.path();
+    wall_capture::write(&folder.join("wall"));
+    done(folder, "import wall -o wall.fbrush");
+    done(folder, "export wall.fbrush --glb wall.glb");
+    let options = scene::LoadOptions::default();
+    let scene = scene::load(&folder.join("wall.glb"), &options, &progress::Unwatched).unwrap();
+    assert!(scene.triangles.len() == 2 && scene.warnings.is_empty(), "{:?}", scene.warnings);
+    assert!(scene.materials[0].unlit && scene.materials[0].double_sided);
+    for [x, y] in [[0.0, 0.0], [0.4, 0.3], [-0.5, 0.2], [0.3, -0.35]] {
+        let point = on_wall(&scene, x, y);
+        let vertices = scene.triangles[point.triangle as usize].vertices;
+        let places = vertices.iter().zip(point.weights());
+        let place: Vec2 = places.map(|(&v, weight)| scene.uv[0][v as usize] * weight as f32).sum();
+        let found = scene.images[0].sample(place, [scene::Wrap::Clamp; 2], false, true);
+        let told = wall_capture::wall(x, y).map(|v| v as f32);
+        let off = (0..3).map(|c| (found[c] - told[c]).abs()).fold(0.0, f32::max);
+        assert!(off < 0.02, "{x} {y}: {found:?} for {told:?}");
+    }
+    let output = run(folder, "export wall.fbrush --glb wall.obj");
+    let errors = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.code() == Some(3) && errors.contains("are written as .glb"), "{errors}");
+}
+
+/// The point of a scene's surface at (x, y, 0).
+fn on_wall(scene: &scene::Scene, x: f64, y: f64) -> scene::SurfacePoint {
+    let place = DVec2::new(x, y);
+    let of_triangle = |triangle: u32| {
+        let [a, b, c] = scene.corners(triangle).map(|corner| corner.truncate());
+        let area = (b - a).perp_dot(c - a);
+        let barycentric = DVec2::new((place - a).perp_dot(c - a), (b - a).perp_dot(place - a)) / area;
+        let is_in = barycentric.min_element() >= 0.0 && barycentric.element_sum() <= 1.0;
+        is_in.then_some(scene::SurfacePoint { triangle, barycentric })
+    };
+    (0..scene.triangles.len() as u32).find_map(of_triangle).unwrap()
 }

@@ -7,7 +7,7 @@ use super::shot::{check_folder, unwrap_options};
 use focus::FocusMap;
 use lens::{FocusOffset, Picture};
 use project::{FocusMapFile, Layer, PictureOptions, write_focus_map, write_picture};
-use session::{Aov, Input, InputKind, RenderOptions, Rendered, render_input, write_unwrapped};
+use session::{Aov, Input, InputKind, RenderOptions, Rendered, render_input};
 use std::path::Path;
 
 /// Writes what was asked for; what fails does not keep the rest from being written.
@@ -68,8 +68,7 @@ fn focus_map(input: &Input, path: &Path, console: &Console) -> Result<(), Failur
 
 fn glb(input: &Input, path: &Path, console: &Console) -> Result<(), Failure> {
     check_folder(path)?;
-    let atlas = input.atlas(&unwrap_options(None), console)?;
-    Ok(write_unwrapped(path, &input.scene, &atlas, Some(&input.camera), console)?)
+    Ok(input.export_glb(path, &unwrap_options(None), console)?)
 }
 
 fn photograph(input: &Input, name: &str, path: &Path, console: &Console) -> Result<(), Failure> {

@@ -9,7 +9,7 @@ pub const SIZE: [u32; 2] = [120, 80];
 const FOCAL: f64 = 100.0;
 
 /// What the wall sends at a place, linear.
-fn wall(x: f64, y: f64) -> [f64; 3] {
+pub fn wall(x: f64, y: f64) -> [f64; 3] {
     let wave = |k: f64| 0.3 + 0.2 * (k * x).sin() * (1.3 * k * y).cos();
     [wave(3.0), wave(2.0), 0.5 * wave(1.5) + 0.1]
 }

@@ -47,9 +47,14 @@ pub fn write_amended_glb(
 ) -> Result<(), AtlasError> {
     let bytes = amended_glb_bytes(scene, atlas, amend, progress)?;
     progress.check()?;
+    write_whole(path, &bytes)
+}
+
+/// Writes a file whole: one that is there is replaced only when the new one is complete.
+pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), AtlasError> {
     let write = || {
         let mut file = atomic_write_file::AtomicWriteFile::open(path)?;
-        file.write_all(&bytes)?;
+        file.write_all(bytes)?;
         file.commit()
     };
     write().map_err(|source| AtlasError::Write { path: path.to_owned(), source })

@@ -32,6 +32,11 @@ impl GlbDocument {
         Ok(glb)
     }
 
+    /// A document of nothing, and an empty chunk.
+    pub fn empty() -> Self {
+        Self { root: Map::from_iter([("buffers".to_string(), json!([{}]))]), chunk: Vec::new() }
+    }
+
     /// The document.
     pub fn root_mut(&mut self) -> &mut Map<String, Value> {
         &mut self.root
@@ -122,6 +127,11 @@ impl GlbDocument {
             view["target"] = target.into();
         }
         self.push("bufferViews", view)
+    }
+
+    /// Appends what is no part of a mesh; the index of its view.
+    pub fn add_data_view(&mut self, bytes: &[u8]) -> usize {
+        self.add_view(bytes, None)
     }
 
     /// Appends indices; the index of their view.

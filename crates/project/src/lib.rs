@@ -73,6 +73,7 @@ pub use part_file::{Numbers, PartFile, PartWriter, Section};
 pub use picture_file::{LinearPicture, read_picture};
 pub use picture_output::{PictureOptions, write_picture, write_picture_in_bands, write_rgb};
 pub use picture_seal::{is_finished, seal_picture};
+pub use png_file::texture_png;
 pub use presets::{LensPreset, Preset, PresetContent, PresetKind, PresetShelf, ShelfEntry};
 pub use project_file::{NamedCamera, ProjectFile, SceneState};
 pub use recipe::{FocusFile, read_focus, read_recipe};

@@ -64,6 +64,14 @@ pub(crate) fn encode_rgb8(
     encode_8bit([width, height], rgb, false, text)
 }
 
+/// The bytes of a PNG of sRGB's 8 bits: columns and rows, and red, green, blue and opacity of each pixel, row by row.
+///
+/// # Errors
+/// It has no pixels, or not as many as told: a fault of the program.
+pub fn texture_png(size: [u32; 2], rgba: &[u8]) -> Result<Vec<u8>, String> {
+    encode_8bit(size, rgba, true, &[])
+}
+
 /// The same with or without alpha.
 pub(crate) fn encode_8bit(
     size: [u32; 2],

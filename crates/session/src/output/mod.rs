@@ -27,6 +27,7 @@ pub use renderer::Renderer;
 pub(crate) use stereo::pair;
 pub use stereo::{Stereo, StereoForm, render_stereo};
 pub use thumbnail::thumbnail;
+pub(crate) use unwrapped::write_scene;
 pub use unwrapped::write_unwrapped;
 pub use verification::{Verification, VerifiedError};
 

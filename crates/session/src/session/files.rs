@@ -7,7 +7,7 @@ use crate::commands::Event;
 use crate::document::{Beginning, Document, Input, InputKind, NearQuestion};
 use crate::error::{SessionError, file_name};
 use crate::jobs::JobSteps;
-use crate::output::write_unwrapped;
+use crate::output::write_scene;
 use atlas::UnwrapOptions;
 use lens::Picture;
 use project::{CaptureChoices, FocusMapFile, Thumbnail, write_focus_map};
@@ -148,7 +148,7 @@ impl Session {
         let document = self.opened()?;
         let (stage, camera) = (document.stage.clone(), document.camera.clone());
         self.start(format!("writing {}", file_name(&path)), move |progress| {
-            write_unwrapped(&path, &stage.scene, &stage.atlas, Some(&camera), &JobSteps { progress })?;
+            write_scene(&path, &stage.tracer, &stage.atlas, &camera, &JobSteps { progress })?;
             Ok(Outcome::Written(path, Vec::new()))
         })?;
         Ok(())
