@@ -300,12 +300,15 @@ impl Group {
             _ => self.toward_middle(&asked),
         };
         let mean = |rays: &Range<usize>| mean(rays, |ray| (sent[ray], shares[ray]));
-        let part = |rays: Range<usize>| {
-            mean(&rays).kinds().map(|kind| self.sample(cell, rays.clone(), &shares, kind)).collect::<Vec<_>>()
-        };
         // Few paths tell what a quadrant carries: it may differ by more.
         let even = if width.is_some() { 2.0 } else { 1.0 } * BakeOptions::EVEN_PER_PX * view.tolerance_px;
-        self.parts(cell, even as f32, |rays| mean(rays).total()).into_iter().flat_map(part).collect()
+        let parts = self.parts(cell, even as f32, |rays| mean(rays).total());
+        // Looks are kept for the whole picture, most with one sample: no room for more.
+        let mut found = Vec::with_capacity(parts.len());
+        for rays in parts {
+            found.extend(mean(&rays).kinds().map(|kind| self.sample(cell, rays.clone(), &shares, kind)));
+        }
+        found
     }
 
     /// How much of each member counts.
