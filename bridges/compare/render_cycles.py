@@ -126,11 +126,12 @@ def import_scene(bpy, path):
 
 
 def decode_textures(bpy):
-    """Makes textures of sRGB bytes linear floats: of bytes Cycles interpolates first and decodes afterwards."""
+    """Makes textures of sRGB bytes linear floats: of bytes Cycles interpolates first and decodes afterwards. Those of 16 bits are
+    linear floats already."""
     import numpy
 
     for image in list(bpy.data.images):
-        if image.colorspace_settings.name != "sRGB":
+        if image.colorspace_settings.name != "sRGB" or image.is_float:
             continue
         width, height = image.size
         pixels = numpy.empty(width * height * 4, numpy.float32)
