@@ -53,19 +53,22 @@ fn photographs_that_are_off_are_aligned() {
     let scene = Arc::new(Scene { views: views.clone(), ..Scene::clone(plain.scene()) });
     let tracer = Tracer::new(scene.clone());
     let [given, aligned] = [Poses::Given, Poses::Aligned].map(|poses| solve(&tracer, &views, poses));
-    let exact = error(&solve(&tracer, &photographs.views, Poses::Given));
     let (before, after) = (error(&given), error(&aligned));
-    assert!(after < 0.5 * before, "{before} {after}, {exact} with exact poses");
+    // 0.066 and 0.012; it is 0.005 with exact poses.
+    assert!(after < 0.3 * before, "{before} {after}");
     assert!(given.moved_px().iter().all(|&px| px == 0.0));
     let moved = aligned.moved_px();
     assert!(moved.iter().filter(|&&px| (0.5..6.0).contains(&px)).count() > 15, "{moved:?}");
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+    let by_one = pool.install(|| solve(&tracer, &views, Poses::Aligned));
+    assert!(by_one.to_bytes() == aligned.to_bytes(), "it does not depend on the number of threads");
     // It is kept with the light, and looked up alike in the photographs themselves.
     let again = PhotographLight::from_bytes(&aligned.to_bytes(), &scene).unwrap();
     assert_eq!(again.moved_px(), moved);
     let options = PhotographOptions::default();
     let direct = DirectPhotographs::of(Arc::new(again), &options, &progress::Unwatched).unwrap();
     let directly = error(&direct);
-    assert!(directly < 0.5 * before, "{before} {directly}");
+    assert!(directly < 0.3 * before, "{before} {directly}");
 }
 
 #[test]

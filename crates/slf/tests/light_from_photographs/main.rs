@@ -53,6 +53,23 @@ fn a_card_in_a_fifth_of_the_pictures_is_left_out() {
 }
 
 #[test]
+fn ten_photographs_of_differing_exposures_are_enough() {
+    let tracer = tracer();
+    let photographs = Photographs::take("ten", &tracer, matte, false);
+    let views: Vec<View> = photographs.views.iter().step_by(2).cloned().collect();
+    let light = solve(&tracer, &views);
+    let mean = (0..10).map(|k| gain_stops(2 * k)).sum::<f64>() / 10.0;
+    for (k, exposure) in light.exposures().iter().enumerate() {
+        let off = exposure.gain_stops.map(|gain| (gain - gain_stops(2 * k) + mean).abs());
+        assert!(off.into_iter().all(|off| off < 0.05), "{k}: {off:?}");
+    }
+    for [x, z] in floor_places() {
+        let found = light.toward(floor(x, z), DVec3::new(0.5, 4.0, 3.0)) / mean.exp2() as f32;
+        assert!(found.distance(floor_color(x, z)) < 0.02, "{x} {z}: {found}");
+    }
+}
+
+#[test]
 fn what_no_photograph_shows_is_filled_and_known_as_such() {
     let tracer = tracer();
     let photographs = Photographs::take("filled", &tracer, matte, false);
