@@ -8,6 +8,7 @@
 //! polynomial there less that in the middle.
 
 use super::sightings::Sighting;
+use std::borrow::Cow;
 
 /// Degrees that are tried, 0 among them.
 pub(super) const DEGREES: usize = 5;
@@ -25,6 +26,8 @@ const NOISE: f64 = 0.02;
 /// By a polynomial of this degree, over so many rounds.
 const JUDGES: usize = 2;
 const ROUNDS: usize = 3;
+/// Where no degree leaves less than this of the squared error, no view that is far off is looked for.
+const HOPELESS: f32 = 0.85;
 
 /// Terms of a degree and all below.
 const fn terms_of(degree: usize) -> usize {
@@ -35,14 +38,22 @@ const fn terms_of(degree: usize) -> usize {
 pub(super) struct Regression {
     /// By view; the last is the picture.
     terms: Vec<[f64; TERMS]>,
+    /// What most places have: all views count alike.
+    alike: Factor,
 }
 
-/// A polynomial that is not solved for yet.
-struct Solved {
+/// What follows from places and weights alone.
+#[derive(Clone)]
+struct Factor {
     /// L, row by row.
     triangle: [[f64; TERMS]; TERMS],
     /// By view.
     q: Vec<[f64; TERMS]>,
+}
+
+/// A polynomial that is not solved for yet.
+struct Solved<'a> {
+    factor: Cow<'a, Factor>,
     z: [[f64; 3]; TERMS],
     weights: Vec<f64>,
     all: f64,
@@ -62,7 +73,9 @@ impl Regression {
             }
             terms
         };
-        Self { terms: places.iter().chain([&[0.0; 2]]).map(terms).collect() }
+        let terms: Vec<_> = places.iter().chain([&[0.0; 2]]).map(terms).collect();
+        let alike = Factor::of(&terms, &vec![1.0; terms.len()]);
+        Self { terms, alike }
     }
 
     /// By degree, the mean squared error of views that are left out (all channels); of 0 that of the picture alone. None where that is
@@ -74,11 +87,126 @@ impl Regression {
         if off <= least * seen {
             return None;
         }
-        let solved = self.solved(sightings)?;
+        let first = self.weighted(sightings, self.counts(sightings)?);
+        let errors = first.errors(sightings);
+        if errors[1..].iter().all(|error| *error > HOPELESS * errors[0]) {
+            return Some(errors);
+        }
+        Some(self.without_far_off(sightings, first).errors(sightings))
+    }
+
+    /// The coefficients of the polynomial of a degree, but for the constant.
+    pub fn told(&self, sightings: &[Sighting], degree: usize) -> [[f32; 3]; TERMS - 1] {
+        let mut coefficients = [[0.0; 3]; TERMS];
+        let Some(counts) = self.counts(sightings) else { return [[0.0; 3]; TERMS - 1] };
+        let Solved { factor, z, .. } = self.without_far_off(sightings, self.weighted(sightings, counts));
+        let triangle = &factor.triangle;
+        let count = terms_of(degree);
+        for t in (0..count).rev() {
+            for c in 0..3 {
+                let after: f64 = (t + 1..count).map(|k| triangle[k][t] * coefficients[k][c]).sum();
+                coefficients[t][c] = (z[t][c] - after) / triangle[t][t];
+            }
+        }
+        std::array::from_fn(|t| coefficients[t + 1].map(|value| value as f32))
+    }
+
+    /// How much each view counts, and the picture; none where no view does: the picture alone tells nothing.
+    fn counts(&self, sightings: &[Sighting]) -> Option<Vec<f64>> {
+        let counts = sightings.iter().map(|sighting| f64::from(sighting.weight)).chain([1.0]);
+        sightings.iter().any(|sighting| sighting.weight > 0.0).then(|| counts.collect())
+    }
+
+    /// In rounds: views count less that are far off what was told in the round before.
+    fn without_far_off<'a>(&'a self, sightings: &[Sighting], first: Solved<'a>) -> Solved<'a> {
+        let counts = first.weights.clone();
+        let mut solved = first;
+        for _ in 0..ROUNDS {
+            let off: Vec<f64> =
+                (0..counts.len()).map(|view| solved.off(view, more(sightings, view))).collect();
+            let mut sorted: Vec<f64> =
+                off.iter().zip(&counts).filter(|(_, count)| **count > 0.0).map(|(off, _)| *off).collect();
+            let middle = sorted.len() / 2;
+            let far = FAR_OFF * *sorted.select_nth_unstable_by(middle, f64::total_cmp).1;
+            let far = far.max(NOISE);
+            if off.iter().zip(&counts).all(|(&off, &count)| off <= far || count == 0.0) {
+                break;
+            }
+            let weight = |(&count, &off): (&f64, &f64)| if off > far { count * far / off } else { count };
+            solved = self.weighted(sightings, counts.iter().zip(&off).map(weight).collect());
+        }
+        solved
+    }
+
+    fn weighted(&self, sightings: &[Sighting], weights: Vec<f64>) -> Solved<'_> {
+        let factor = match weights.iter().all(|weight| *weight == 1.0) {
+            true => Cow::Borrowed(&self.alike),
+            false => Cow::Owned(Factor::of(&self.terms, &weights)),
+        };
+        let mut z = [[0.0; 3]; TERMS];
+        // The picture shows no more than itself.
+        for ((sighting, terms), weight) in sightings.iter().zip(&self.terms).zip(&weights) {
+            let more = sighting.more.map(|more| weight * f64::from(more));
+            for (z, term) in z.iter_mut().zip(terms) {
+                (0..3).for_each(|c| z[c] += term * more[c]);
+            }
+        }
+        for i in 0..TERMS {
+            for c in 0..3 {
+                let before: f64 = (0..i).map(|k| factor.triangle[i][k] * z[k][c]).sum();
+                z[i][c] = (z[i][c] - before) / factor.triangle[i][i];
+            }
+        }
+        let all = weights.iter().sum();
+        Solved { factor, z, weights, all }
+    }
+}
+
+/// How much more than the picture a view shows; the last is the picture.
+fn more(sightings: &[Sighting], view: usize) -> [f32; 3] {
+    sightings.get(view).map_or([0.0; 3], |sighting| sighting.more)
+}
+
+impl Factor {
+    fn of(terms: &[[f64; TERMS]], weights: &[f64]) -> Self {
+        let mut triangle = [[0.0; TERMS]; TERMS];
+        for (terms, &weight) in terms.iter().zip(weights).filter(|(_, weight)| **weight > 0.0) {
+            for i in 0..TERMS {
+                let by = weight * terms[i];
+                (0..=i).for_each(|j| triangle[i][j] += by * terms[j]);
+            }
+        }
+        let all: f64 = weights.iter().sum();
+        // The constant is always told: the picture is one of them.
+        (1..TERMS).for_each(|t| triangle[t][t] += RIDGE * all);
+        for i in 0..TERMS {
+            for j in 0..=i {
+                let sum: f64 = (0..j).map(|k| triangle[i][k] * triangle[j][k]).sum();
+                let rest = triangle[i][j] - sum;
+                triangle[i][j] = if i == j { rest.sqrt() } else { rest / triangle[j][j] };
+            }
+        }
+        let forward = |terms: &[f64; TERMS]| {
+            let mut q = *terms;
+            for i in 0..TERMS {
+                let before: f64 = (0..i).map(|k| triangle[i][k] * q[k]).sum();
+                q[i] = (q[i] - before) / triangle[i][i];
+            }
+            q
+        };
+        let q = terms.iter().map(forward).collect();
+        Self { triangle, q }
+    }
+}
+
+impl Solved<'_> {
+    /// See [`Regression::errors`].
+    fn errors(&self, sightings: &[Sighting]) -> [f32; DEGREES] {
         let mut errors = [0.0; DEGREES];
         let mut all = 0.0;
-        let middle = solved.q.last()?;
-        for ((sighting, q), weight) in sightings.iter().zip(&solved.q).zip(&solved.weights) {
+        let Factor { q: of_views, .. } = &*self.factor;
+        let middle = &of_views[sightings.len()];
+        for ((sighting, q), weight) in sightings.iter().zip(of_views).zip(&self.weights) {
             let counts = f64::from(sighting.weight);
             if counts == 0.0 {
                 continue;
@@ -91,8 +219,8 @@ impl Regression {
             for degree in 0..DEGREES {
                 for t in terms_of(degree) - degree - 1..terms_of(degree) {
                     for c in 0..3 {
-                        here[c] += q[t] * solved.z[t][c];
-                        beyond[c] += (q[t] - middle[t]) * solved.z[t][c];
+                        here[c] += q[t] * self.z[t][c];
+                        beyond[c] += (q[t] - middle[t]) * self.z[t][c];
                     }
                     own += q[t] * q[t];
                     own_beyond += (q[t] - middle[t]) * q[t];
@@ -107,99 +235,16 @@ impl Regression {
                 }
             }
         }
-        let error = |degree: usize| match degree == 0 || solved.tells(degree) {
-            true => (errors[degree] / all) as f32,
-            false => f32::INFINITY,
-        };
-        (all > 0.0).then(|| std::array::from_fn(error))
+        let is_told = |degree: usize| degree == 0 || self.tells(degree);
+        std::array::from_fn(
+            |degree| if is_told(degree) { (errors[degree] / all) as f32 } else { f32::INFINITY },
+        )
     }
 
-    /// The coefficients of the polynomial of a degree, but for the constant.
-    pub fn told(&self, sightings: &[Sighting], degree: usize) -> [[f32; 3]; TERMS - 1] {
-        let mut coefficients = [[0.0; 3]; TERMS];
-        let Some(Solved { triangle, z, .. }) = self.solved(sightings) else { return [[0.0; 3]; TERMS - 1] };
-        let count = terms_of(degree);
-        for t in (0..count).rev() {
-            for c in 0..3 {
-                let after: f64 = (t + 1..count).map(|k| triangle[k][t] * coefficients[k][c]).sum();
-                coefficients[t][c] = (z[t][c] - after) / triangle[t][t];
-            }
-        }
-        std::array::from_fn(|t| coefficients[t + 1].map(|value| value as f32))
-    }
-
-    /// In rounds: views count less that are far off what was told in the round before.
-    fn solved(&self, sightings: &[Sighting]) -> Option<Solved> {
-        let picture = Sighting { more: [0.0; 3], weight: 1.0 };
-        let sighting = |view: usize| sightings.get(view).copied().unwrap_or(picture);
-        // The picture alone tells nothing.
-        if sightings.iter().all(|sighting| sighting.weight == 0.0) {
-            return None;
-        }
-        let counts: Vec<f64> = (0..self.terms.len()).map(|view| sighting(view).weight.into()).collect();
-        let mut solved = self.weighted(sighting, counts.clone());
-        for _ in 0..ROUNDS {
-            let off: Vec<f64> = (0..counts.len()).map(|view| solved.off(view, sighting(view).more)).collect();
-            let mut sorted: Vec<f64> =
-                off.iter().zip(&counts).filter(|(_, count)| **count > 0.0).map(|(off, _)| *off).collect();
-            let middle = sorted.len() / 2;
-            let far = FAR_OFF * *sorted.select_nth_unstable_by(middle, f64::total_cmp).1;
-            let far = far.max(NOISE);
-            if off.iter().zip(&counts).all(|(&off, &count)| off <= far || count == 0.0) {
-                break;
-            }
-            let weight = |(&count, &off): (&f64, &f64)| if off > far { count * far / off } else { count };
-            solved = self.weighted(sighting, counts.iter().zip(&off).map(weight).collect());
-        }
-        Some(solved)
-    }
-
-    fn weighted(&self, sighting: impl Fn(usize) -> Sighting, weights: Vec<f64>) -> Solved {
-        let all: f64 = weights.iter().sum();
-        let mut triangle = [[0.0; TERMS]; TERMS];
-        let mut z = [[0.0; 3]; TERMS];
-        for (view, (terms, &weight)) in self.terms.iter().zip(&weights).enumerate() {
-            if weight == 0.0 {
-                continue;
-            }
-            let more = sighting(view).more.map(f64::from);
-            for i in 0..TERMS {
-                let by = weight * terms[i];
-                (0..=i).for_each(|j| triangle[i][j] += by * terms[j]);
-                (0..3).for_each(|c| z[i][c] += by * more[c]);
-            }
-        }
-        // The constant is always told: the picture is one of them.
-        (1..TERMS).for_each(|t| triangle[t][t] += RIDGE * all);
-        for i in 0..TERMS {
-            for j in 0..=i {
-                let sum: f64 = (0..j).map(|k| triangle[i][k] * triangle[j][k]).sum();
-                let rest = triangle[i][j] - sum;
-                triangle[i][j] = if i == j { rest.sqrt() } else { rest / triangle[j][j] };
-            }
-            for c in 0..3 {
-                let before: f64 = (0..i).map(|k| triangle[i][k] * z[k][c]).sum();
-                z[i][c] = (z[i][c] - before) / triangle[i][i];
-            }
-        }
-        let forward = |terms: &[f64; TERMS]| {
-            let mut q = *terms;
-            for i in 0..TERMS {
-                let before: f64 = (0..i).map(|k| triangle[i][k] * q[k]).sum();
-                q[i] = (q[i] - before) / triangle[i][i];
-            }
-            q
-        };
-        let q = self.terms.iter().map(forward).collect();
-        Solved { triangle, q, z, weights, all }
-    }
-}
-
-impl Solved {
     /// How far off a view is that shows so much more, told by the others: what it does to the polynomial itself would hide that.
     fn off(&self, view: usize, more: [f32; 3]) -> f64 {
         let degree = (1..=JUDGES).rev().find(|&degree| self.tells(degree)).unwrap_or(0);
-        let q = &self.q[view][..terms_of(degree)];
+        let q = &self.factor.q[view][..terms_of(degree)];
         let told = |c: usize| -> f64 { q.iter().zip(&self.z).map(|(q, z)| q * z[c]).sum() };
         let square = |c: usize| (f64::from(more[c]) - told(c)).powi(2);
         let own = self.weights[view] * q.iter().map(|q| q * q).sum::<f64>();
