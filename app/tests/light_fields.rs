@@ -3,7 +3,7 @@
 mod card_light_field;
 mod program;
 
-use card_light_field::{CARD, SIZE, STEPS, WALL, pfm, pixel, shown, view};
+use card_light_field::{CARD, SIZE, STEPS, Scene, WALL, glossy, pfm, pixel, pixel_at, shown, view};
 use program::{done, run};
 use project::read_picture;
 use serde_json::Value;
@@ -11,6 +11,10 @@ use std::path::Path;
 
 /// The picture through a disc of radius `reach` steps that is focused on a disparity: the mean of many views.
 fn truth(reach: f64, focus: f64) -> Vec<[f64; 3]> {
+    truth_of(shown, reach, focus)
+}
+
+fn truth_of(scene: Scene, reach: f64, focus: f64) -> Vec<[f64; 3]> {
     let side = 15;
     let at = |k: i32| reach * f64::from(2 * k - side + 1) / f64::from(side);
     let points = (0..side * side).map(|k| [at(k % side), at(k / side)]);
@@ -21,7 +25,7 @@ fn truth(reach: f64, focus: f64) -> Vec<[f64; 3]> {
         for &[u, v] in &points {
             for k in 0..4u32 {
                 let at = |at: u32, k: u32, u: f64| f64::from(at) + (f64::from(k) + 0.5) / 2.0 - focus * u;
-                let (color, _) = shown(at(x, k % 2, u), at(y, k / 2, v), [u, v]);
+                let (color, _) = scene(at(x, k % 2, u), at(y, k / 2, v), [u, v]);
                 (0..3).for_each(|c| sum[c] += color[c] / (4.0 * points.len() as f64));
             }
         }
@@ -290,4 +294,63 @@ fn views_are_looked_through_and_compared_with() {
     let errors =
         String::from_utf8(run(folder, "render card.fbrush --camera photo:none -o x.exr").stderr).unwrap();
     assert!(errors.contains("no photograph is called \"none\""), "{errors}");
+}
+
+#[test]
+fn gloss_moves_with_the_aperture() {
+    let place = tempfile::tempdir().unwrap();
+    let folder = place.path();
+    card_light_field::write_of(glossy, &folder.join("card"));
+    done(folder, "import card -o card.fbrush");
+    let taken = |[u, v]: [f64; 2]| -> Vec<[f64; 3]> {
+        let pixels = (0..SIZE[1]).flat_map(|y| (0..SIZE[0]).map(move |x| (x, y)));
+        pixels.map(|(x, y)| pixel_at(glossy, x.into(), y.into(), [u, v])).collect()
+    };
+    // On the card, away from its edges, where the highlight passes.
+    let on_card = |file: &str, truth: &[[f64; 3]], [u, v]: [f64; 2]| {
+        let picture = read_picture(&folder.join(file)).unwrap();
+        let (mut sum, mut count) = (0.0, 0.0);
+        for (number, (found, wanted)) in picture.rgb.iter().zip(truth).enumerate() {
+            let at = [number as u32 % SIZE[0], number as u32 / SIZE[0]];
+            let [x, y] = [(at[0], u), (at[1], v)].map(|(at, view)| f64::from(at) + 0.5 + CARD * view);
+            if (34.0..58.0).contains(&x) && (24.0..48.0).contains(&y) {
+                sum += (0..3).map(|c| (f64::from(found[c]) - wanted[c]).powi(2)).sum::<f64>();
+                count += 3.0;
+            }
+        }
+        -10.0 * f64::log10(sum / count)
+    };
+    // Looked through views: the middle one as it was taken, others as they were, too. By rays it is the same light.
+    for (name, at, least) in
+        [("02_02", [0.0; 2], 45.0), ("02_04", [2.0, 0.0], 35.0), ("00_00", [-2.0; 2], 33.0)]
+    {
+        let truth = taken(at);
+        for renderer in ["--backend cpu", "--renderer truth --spp 16"] {
+            done(folder, &format!("render card.fbrush --camera photo:{name} {renderer} -o seen.exr"));
+            let seen = on_card("seen.exr", &truth, at);
+            assert!(seen > least, "{name} {renderer}: {seen} dB");
+        }
+        // Negative control: the highlight where the middle view has it.
+        let still = |x: f64, y: f64, [u, v]: [f64; 2]| glossy(x + CARD * u, y + CARD * v, [0.0; 2]);
+        let moved = (0..SIZE[0] * SIZE[1])
+            .map(|n| still(f64::from(n % SIZE[0]) + 0.5, f64::from(n / SIZE[0]) + 0.5, at).0);
+        let off = moved.zip(&truth).map(|(a, b)| (a[0] - b[0]).powi(2)).sum::<f64>();
+        assert!(at == [0.0; 2] || off > 1.0, "{off}");
+    }
+    // In focus the card is as bright as the aperture sees it in the mean, painted sharp, too.
+    let reach = f64::from(STEPS);
+    let (radius, lens) = (truth_of(glossy, reach, CARD), distance(CARD));
+    let info: Value = serde_json::from_str(&done(folder, "info card.fbrush --json")).unwrap();
+    let widest = info["camera"]["aperture_radius"].as_f64().unwrap();
+    // The usual aperture reaches to the corners; this one to the ends of rows.
+    let aperture = widest / 2f64.sqrt();
+    let camera = |focus: f64| format!("{{\"focus_distance\": {focus}, \"aperture_radius\": {aperture}}}");
+    std::fs::write(folder.join("near.json"), camera(lens)).unwrap();
+    std::fs::write(folder.join("far.json"), camera(distance(WALL))).unwrap();
+    std::fs::write(folder.join("sharp.json"), r#"{"default": {"t": 1, "anchor": 1}}"#).unwrap();
+    for options in ["--camera near.json", "--camera far.json --focus sharp.json"] {
+        done(folder, &format!("render card.fbrush {options} --backend cpu -o lens.exr"));
+        let seen = on_card("lens.exr", &radius, [0.0; 2]);
+        assert!(seen > 38.0, "{options}: {seen} dB");
+    }
 }

@@ -93,6 +93,7 @@ pub fn click(
         }
         Tool::SelectFacing => Command::Select(facing, combine),
         Tool::FocusHere => Command::FocusHere(hit),
+        Tool::FixateHere => Command::Fixate(Some(hit)),
         Tool::Pick => Command::Pick(hit),
         _ => return None,
     };

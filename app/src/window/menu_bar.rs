@@ -117,6 +117,7 @@ pub fn is_possible(id: CommandId, state: &MenuState<'_>) -> bool {
         RemoveKeys => state
             .document
             .is_some_and(|document| document.lens_motion.times().any(|seconds| seconds == document.seconds)),
+        ShowStereo => state.document.is_some_and(|document| document.camera.aperture_radius > 0.0),
         _ => state.document.is_some(),
     }
 }

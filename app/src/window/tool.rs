@@ -56,6 +56,8 @@ pub enum Tool {
     SelectDepth,
     /// A click focuses the lens there.
     FocusHere,
+    /// A click lets two eyes look there.
+    FixateHere,
     /// Two clicks have the lens go from one to the other.
     RackFocus,
     /// A click takes the focus from there.
@@ -83,7 +85,7 @@ impl Tool {
             Tool::SelectFacing,
             Tool::SelectDepth,
         ],
-        &[Tool::FocusHere, Tool::RackFocus],
+        &[Tool::FocusHere, Tool::RackFocus, Tool::FixateHere],
         &[Tool::Pick, Tool::Inspect],
     ];
 
@@ -114,6 +116,7 @@ impl Tool {
             Tool::SelectFacing => CommandId::SelectFacing,
             Tool::SelectDepth => CommandId::SelectDepth,
             Tool::FocusHere => CommandId::FocusHere,
+            Tool::FixateHere => CommandId::FixateHere,
             Tool::RackFocus => CommandId::RackFocus,
             Tool::Pick => CommandId::Pick,
             Tool::Inspect => CommandId::Inspect,
@@ -134,6 +137,7 @@ impl Tool {
             Tool::DepthNearer => "Nearer",
             Tool::DepthFarther => "Farther",
             Tool::Inspect => "Inspect",
+            Tool::FixateHere => "Fixate",
             Tool::SelectObject => "Select object",
             Tool::SelectMaterial => "Select material",
             Tool::SelectChart => "Select chart",

@@ -144,11 +144,11 @@ fn paint_header(ui: &mut Ui, session: &Session, settings: &mut ViewSettings) {
 }
 
 /// A menu of the pictures that can be shown.
-fn choose_picture(ui: &mut Ui, session: &Session, name: &str, shown: &mut Shown) {
+fn choose_picture(ui: &mut Ui, session: &Session, name: &str, of: &[Shown], shown: &mut Shown) {
     let combo = egui::ComboBox::from_id_salt(name).selected_text(shown.name()).width(104.0);
     let combo = combo.wrap_mode(egui::TextWrapMode::Truncate);
     let response = combo.show_ui(ui, |ui| {
-        for choice in Shown::ALL.into_iter().filter(|choice| choice.is_of(session.document())) {
+        for choice in of.iter().copied().filter(|choice| choice.is_of(session.document())) {
             ui.selectable_value(shown, choice, choice.name()).on_hover_text(choice.tip());
         }
     });
@@ -157,15 +157,22 @@ fn choose_picture(ui: &mut Ui, session: &Session, name: &str, shown: &mut Shown)
 }
 
 fn picture_header(ui: &mut Ui, session: &Session, picture: &mut PictureView, actions: &mut Vec<Action>) {
-    choose_picture(ui, session, "Shown picture", &mut picture.shown);
+    choose_picture(ui, session, "Shown picture", &Shown::ALL, &mut picture.shown);
     let mut wiping = picture.wipe.is_on;
     let tip = keys::tip(ui.ctx(), CommandId::Wipe);
     if ui.checkbox(&mut wiping, "Compare").on_hover_text(tip).changed() {
         actions.push(CommandId::Wipe.into());
     }
-    ui.add_enabled_ui(wiping, |ui| {
-        choose_picture(ui, session, "Compared picture", &mut picture.wipe.against)
+    ui.add_enabled_ui(wiping && !picture.shown.is_pair(), |ui| {
+        let of: Vec<Shown> = Shown::ALL.into_iter().filter(|shown| !shown.is_pair()).collect();
+        choose_picture(ui, session, "Compared picture", &of, &mut picture.wipe.against)
     });
+    if matches!(picture.shown, Shown::Anaglyph | Shown::SideBySide) && session.is_fixating() {
+        let response = ui.button("Fixated ×");
+        if response.on_hover_text(keys::tip(ui.ctx(), CommandId::FixateFocus)).clicked() {
+            actions.push(CommandId::FixateFocus.into());
+        }
+    }
     let response = ui.add(Button::selectable(picture.verify.is_selecting(), "Verify"));
     if response.on_hover_text(keys::tip(ui.ctx(), CommandId::Verify)).clicked() {
         actions.push(CommandId::Verify.into());

@@ -22,17 +22,34 @@ pub fn shown(x: f64, y: f64, [u, v]: [f64; 2]) -> ([f64; 3], f64) {
     ([0.2, 0.7 * wave(wx, wy, 0.8), wave(wx, wy, 1.1)], WALL)
 }
 
-/// A pixel of a view, by 4 × 4 places in it.
-pub fn pixel(x: u32, y: u32, view: [f64; 2]) -> [f64; 3] {
-    pixel_at(x.into(), y.into(), view)
+/// The same with a highlight on the card, which moves over it as the view does.
+#[allow(dead_code, reason = "not every test wants it")]
+pub fn glossy(x: f64, y: f64, [u, v]: [f64; 2]) -> ([f64; 3], f64) {
+    let (mut color, disparity) = shown(x, y, [u, v]);
+    if disparity == CARD {
+        let at = |at: f64, view: f64, middle: f64| at + CARD * view - middle - 2.0 * view;
+        let (x, y) = (at(x, u, 46.0), at(y, v, 36.0));
+        let light = 0.3 * (-(x * x + y * y) / 40.0).exp();
+        color.iter_mut().for_each(|channel| *channel += light);
+    }
+    (color, disparity)
 }
 
-/// The same of one whose upper left corner is at a place.
-fn pixel_at(x: f64, y: f64, view: [f64; 2]) -> [f64; 3] {
+/// What a view at (u, v) shows at a place, and the disparity of that.
+pub type Scene = fn(f64, f64, [f64; 2]) -> ([f64; 3], f64);
+
+/// A pixel of a view, by 4 × 4 places in it.
+#[allow(dead_code, reason = "not every test wants it")]
+pub fn pixel(x: u32, y: u32, view: [f64; 2]) -> [f64; 3] {
+    pixel_at(shown, x.into(), y.into(), view)
+}
+
+/// The same of a scene of one's own, of a pixel whose upper left corner is at a place.
+pub fn pixel_at(scene: Scene, x: f64, y: f64, view: [f64; 2]) -> [f64; 3] {
     let mut sum = [0.0; 3];
     for k in 0..16u32 {
         let at = |at: f64, k: u32| at + (f64::from(k) + 0.5) / 4.0;
-        let (color, _) = shown(at(x, k % 4), at(y, k / 4), view);
+        let (color, _) = scene(at(x, k % 4), at(y, k / 4), view);
         (0..3).for_each(|c| sum[c] += color[c] / 16.0);
     }
     sum
@@ -44,7 +61,11 @@ fn encoded(linear: f64) -> u8 {
 }
 
 pub fn view(view: [f64; 2]) -> RgbImage {
-    RgbImage::from_fn(SIZE[0], SIZE[1], |x, y| Rgb(pixel(x, y, view).map(encoded)))
+    view_of(shown, view)
+}
+
+fn view_of(scene: Scene, view: [f64; 2]) -> RgbImage {
+    RgbImage::from_fn(SIZE[0], SIZE[1], |x, y| Rgb(pixel_at(scene, x.into(), y.into(), view).map(encoded)))
 }
 
 /// The numbers of the middle view's pixels as a PFM, rows from below.
@@ -61,10 +82,17 @@ pub fn pfm(file: &Path, of: impl Fn(f64) -> f64) {
 
 /// Five by five views, by row and column, and the disparities of the middle one.
 pub fn write(folder: &Path) {
+    write_of(shown, folder);
+}
+
+/// The same of a scene of one's own.
+pub fn write_of(scene: Scene, folder: &Path) {
     std::fs::create_dir_all(folder).unwrap();
     for (row, v) in (-STEPS..=STEPS).enumerate() {
         for (column, u) in (-STEPS..=STEPS).enumerate() {
-            view([u.into(), v.into()]).save(folder.join(format!("{row:02}_{column:02}.png"))).unwrap();
+            view_of(scene, [u.into(), v.into()])
+                .save(folder.join(format!("{row:02}_{column:02}.png")))
+                .unwrap();
         }
     }
     pfm(&folder.join("disparity.pfm"), |disparity| disparity);
@@ -82,7 +110,7 @@ pub fn write_moved(folder: &Path, scale: f64, offset: f64) {
             let [across, down] = [u, v].map(|at| at * offset / scale);
             let file = format!("view {u} {v}.png");
             let picture = RgbImage::from_fn(SIZE[0], SIZE[1], |x, y| {
-                Rgb(pixel_at(f64::from(x) + across, f64::from(y) + down, [u, v]).map(encoded))
+                Rgb(pixel_at(shown, f64::from(x) + across, f64::from(y) + down, [u, v]).map(encoded))
             });
             picture.save(folder.join(&file)).unwrap();
             views.push(format!("{{\"file\": \"{file}\", \"position\": [{}, {}]}}", u / scale, v / scale));

@@ -6,6 +6,7 @@ use egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable;
 use focus_brush::window::Shell;
 use glam::DVec2;
+use session::{ReferenceKind, StereoForm};
 use std::path::Path;
 
 /// Copies the depth of the card over the wall beside it, takes that back, and does it again.
@@ -79,6 +80,53 @@ fn a_light_field_is_painted_and_the_same_when_opened_again() {
     let capture = folder.path().join("card");
     card_light_field::write(&capture);
     is_the_same_when_opened_again(&capture, &folder.path().join("card.fbrush"));
+}
+
+#[test]
+fn two_eyes_look_where_one_clicks() {
+    let folder = tempfile::tempdir().unwrap();
+    let capture = folder.path().join("card");
+    card_light_field::write(&capture);
+    let mut person = Person::opens(&capture);
+    let of = |form| ReferenceKind::Stereo(form);
+    let current = |kind| move |shell: &Shell| shell.session().is_reference_current(kind);
+    let focused = |person: &Person, kind| {
+        let reference = person.shell().session().reference(kind).unwrap();
+        ([reference.picture.width, reference.picture.height], reference.camera.focus_distance)
+    };
+    let [width, height] = card_light_field::SIZE;
+    let lens = person.document().camera.focus_distance;
+    // For glasses, looking at what the lens is focused on.
+    let picture_rect = person.picture_rect();
+    person.presses(Modifiers::ALT, Key::S);
+    person.wait_until("it is drawn for glasses", current(of(StereoForm::Anaglyph)));
+    assert_eq!(focused(&person, of(StereoForm::Anaglyph)), ([width, height], lens));
+    // Then at the card, on which one clicks: the nearest thing, one unit away.
+    person.presses(Modifiers::ALT, Key::H);
+    person.clicks(at(picture_rect, 0.5, 0.5));
+    person.wait_until("they look at the card", current(of(StereoForm::Anaglyph)));
+    let (_, near) = focused(&person, of(StereoForm::Anaglyph));
+    assert!((near - 1.0).abs() < 0.01 && lens > 1.1, "{near} {lens}");
+    assert_eq!(person.document().camera.focus_distance, lens, "the lens stays as it is");
+    assert!(person.document().undo_name().is_none(), "it is no change of the document");
+    // Side by side; in the right one the wall is clicked.
+    person.presses(Modifiers::ALT, Key::S);
+    person.wait_until("it is drawn side by side", current(of(StereoForm::SideBySide)));
+    person.waits();
+    assert_eq!(focused(&person, of(StereoForm::SideBySide)), ([2 * width, height], near));
+    let left = person.picture_rect();
+    assert!(left.width() < picture_rect.width(), "two of them have room");
+    person.clicks(at(left, 1.0 + 0.85, 0.5));
+    person.wait_until("they look at the wall", current(of(StereoForm::SideBySide)));
+    let (_, far) = focused(&person, of(StereoForm::SideBySide));
+    assert!((far - 5.0).abs() < 0.05, "{far}");
+    person.window.get_by_label("Fixated ×").click();
+    person.window.run_steps(3);
+    person.wait_until("they look at the focus again", current(of(StereoForm::SideBySide)));
+    assert_eq!(focused(&person, of(StereoForm::SideBySide)).1, lens);
+    person.presses(Modifiers::ALT, Key::S);
+    assert_eq!(person.shell().picture_view().shown, focus_brush::window::Shown::Painted);
+    assert_eq!(person.complaints(), [""; 0]);
 }
 
 #[test]

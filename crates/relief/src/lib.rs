@@ -15,7 +15,7 @@
 //!
 //! A pixel is a cell between four corners; cells beside each other share corners unless depth jumps between them. Behind what stands before
 //! something, a second layer of cells goes on as far as the aperture may look. Triangles are joined while the surface stays within a
-//! tolerance (`triangulation`). Every layer has the whole picture's place in the texture, one below the other: the texture is an atlas, and
+//! tolerance (`triangulation`). What the picture shows and other views show otherwise is `gloss`. Every layer has the whole picture's place in the texture, one below the other: the texture is an atlas, and
 //! the picture is its upper part.
 
 mod cells;
@@ -24,6 +24,7 @@ mod error;
 mod fading;
 mod filling;
 mod frame;
+mod gloss;
 mod hidden;
 mod jumps;
 mod look;
@@ -40,6 +41,7 @@ mod upsampling;
 
 pub use error::ReliefError;
 pub use filling::filled;
+pub use gloss::{GLOSS_TERMS, Gloss};
 pub use other_view::OtherView;
 pub use relief::{Relief, ReliefOptions, ReliefVertex, TEXTURE_LAYERS};
 pub use repair::{DepthRepair, DepthStroke, repaired};

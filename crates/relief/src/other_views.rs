@@ -70,13 +70,13 @@ impl Seen<'_> {
 }
 
 /// Where a view shows a cell's middle, pixels from its upper left corner.
-fn place(grid: Grid, cell: usize, disparity: f32, [dx, dy]: [f32; 2]) -> [f32; 2] {
+pub(crate) fn place(grid: Grid, cell: usize, disparity: f32, [dx, dy]: [f32; 2]) -> [f32; 2] {
     let (x, y) = ((cell % grid.width) as f32 + 0.5, (cell / grid.width) as f32 + 0.5);
     [x - disparity * dx, y - disparity * dy]
 }
 
 /// The disparity of what is nearest in each pixel of a view, as far as the first layer tells.
-fn nearest(grid: Grid, front: &[f32], offset: [f32; 2]) -> Vec<f32> {
+pub(crate) fn nearest(grid: Grid, front: &[f32], offset: [f32; 2]) -> Vec<f32> {
     let mut nearest = vec![f32::NEG_INFINITY; grid.count()];
     for (cell, &disparity) in front.iter().enumerate().filter(|(_, disparity)| !disparity.is_nan()) {
         // It covers the pixels whose middles are nearer to its own than they are wide, but for a rim that is less than noise.
@@ -110,7 +110,7 @@ fn is_open(grid: Grid, nearest: &[f32], [x, y]: [f32; 2], around: isize, most: f
 }
 
 /// What a picture shows at a place in it.
-fn interpolated(grid: Grid, picture: &[[f32; 3]], [x, y]: [f32; 2]) -> Option<[f32; 3]> {
+pub(crate) fn interpolated(grid: Grid, picture: &[[f32; 3]], [x, y]: [f32; 2]) -> Option<[f32; 3]> {
     let is_in = x >= 0.0 && y >= 0.0 && x <= grid.width as f32 && y <= grid.height as f32;
     if !is_in {
         return None;

@@ -1,9 +1,10 @@
 //! The surface itself.
 
-use crate::cells::{Cells, Grid};
+use crate::cells::{Cells, Grid, Links};
 use crate::corners::Corner;
 use crate::error::ReliefError;
 use crate::frame::Frame;
+use crate::gloss::{Gloss, gloss};
 use crate::hidden::{Hidden, hidden};
 use crate::matte::Mixed;
 use crate::other_view::OtherView;
@@ -75,6 +76,9 @@ pub struct Relief {
     pub is_told_apart: Vec<bool>,
     /// By texel of both layers, whether some picture shows it; what is not was invented.
     pub is_seen: Vec<bool>,
+    /// What the first layer sends otherwise through other parts of the aperture than through the middle; none where other views show nothing
+    /// of it.
+    pub gloss: Option<Gloss>,
 }
 
 /// Layers of the texture.
@@ -126,7 +130,7 @@ impl Relief {
         let asked = beside.chain(behind).filter(|(_, asked)| !asked.disparity.is_nan());
         let (places, asked): (Vec<usize>, Vec<Asked>) = asked.unzip();
         let seen = Seen { frame: &frame, front: &front, jump };
-        let looks = seen.looks(&asked, views, &Stage::new(progress, 0.1, 0.8))?;
+        let looks = seen.looks(&asked, views, &Stage::new(progress, 0.1, 0.5))?;
         let mut told = vec![None; TEXTURE_LAYERS * grid.count()];
         places.into_iter().zip(looks).for_each(|(place, look)| told[place] = look);
 
@@ -141,7 +145,9 @@ impl Relief {
         let is_in_picture = |cell| frame.is_in_picture(cell);
         let Texture { colors, is_seen, mut opacity } =
             texture(grid, shown, is_in_picture, &hidden, &mixed, &told);
-        progress.check().map_err(ReliefError::Cancelled)?;
+        let plain = plain(&frame, &links, &opacity);
+        let seen = Seen { frame: &frame, front: &front, jump };
+        let gloss = gloss(&seen, &colors[0], &plain, views, &Stage::new(progress, 0.5, 0.9))?;
         let Hidden { disparity: back, links: back_links, onward, .. } = hidden;
         let cells = Cells { grid, disparity: [front, back], links: [links, back_links], onward };
         let mut mesh = Mesh::of(grid);
@@ -173,6 +179,7 @@ impl Relief {
             opacity,
             is_told_apart,
             is_seen,
+            gloss,
         })
     }
 
@@ -180,6 +187,19 @@ impl Relief {
     pub fn hidden_triangles(&self) -> usize {
         self.triangles.iter().filter(|corners| self.vertices[corners[0] as usize].layer > 0).count()
     }
+}
+
+/// By cell, whether it is one of the picture's pixels, whole, and hangs together with all around it, as those beside it do: nothing else
+/// is mixed into it in any view.
+fn plain(frame: &Frame, links: &Links, opacity: &[f32]) -> Vec<bool> {
+    let grid = frame.grid;
+    let hangs_together =
+        |cell: usize| opacity[cell] == 1.0 && grid.around(cell).all(|(side, _)| links.has(cell, side));
+    let inner: Vec<bool> = (0..grid.count()).map(hangs_together).collect();
+    let is_plain = |cell: usize| {
+        frame.is_in_picture(cell) && inner[cell] && grid.around(cell).all(|(_, other)| inner[other])
+    };
+    (0..grid.count()).map(is_plain).collect()
 }
 
 /// Triangles as they are found, and the points that they share.

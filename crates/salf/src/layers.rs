@@ -5,6 +5,7 @@ use crate::jitter::Net;
 use crate::occluders::{Depths, Occluders};
 use crate::options::BakeOptions;
 use crate::outgoing::{self, Asked, Outgoing, Sent, TowardCells};
+use crate::own_change::OwnChange;
 use crate::placement::Placement;
 use crate::sample::Sample;
 use crate::samples::Found;
@@ -260,9 +261,9 @@ impl Group {
     }
 
     /// Its samples, as if nothing hid the aperture: one with its mean radiance over its share of the cell; where that
-    /// varies, one a quadrant. Where it sends carried light, too, that has its own ([`Outgoing`]). None if the aperture is a point
-    /// that sees nothing of it. `received` is what its spot receives, where that is known, `shared` the carried light that it has
-    /// in common with its neighbours.
+    /// varies, one a quadrant; where it changes over the aperture, one a part of that. Where it sends carried light, too, that has
+    /// its own ([`Outgoing`]). None if the aperture is a point that sees nothing of it. `received` is what its spot receives, where
+    /// that is known, `shared` the carried light that it has in common with its neighbours.
     pub fn samples(
         &self,
         radiance: &dyn Radiance,
@@ -300,13 +301,22 @@ impl Group {
             _ => self.toward_middle(&asked),
         };
         let mean = |rays: &Range<usize>| mean(rays, |ray| (sent[ray], shares[ray]));
+        let change = nearest(&self.members, self.center(cell))
+            .point
+            .and_then(|point| OwnChange::of(&asked, point, self.mean_inverse_depth()));
         // Few paths tell what a quadrant carries: it may differ by more.
         let even = if width.is_some() { 2.0 } else { 1.0 } * BakeOptions::EVEN_PER_PX * view.tolerance_px;
         let parts = self.parts(cell, even as f32, |rays| mean(rays).total());
         // Looks are kept for the whole picture, most with one sample: no room for more.
         let mut found = Vec::with_capacity(parts.len());
         for rays in parts {
-            found.extend(mean(&rays).kinds().map(|kind| self.sample(cell, rays.clone(), &shares, kind)));
+            let mut add = |kind| found.push(self.sample(cell, rays.clone(), &shares, kind));
+            for kind in mean(&rays).kinds() {
+                match &change {
+                    Some(change) if !kind.is_carried => change.parts(&kind).into_iter().for_each(&mut add),
+                    _ => add(kind),
+                }
+            }
         }
         found
     }

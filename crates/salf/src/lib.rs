@@ -7,6 +7,7 @@
 //! surface address, its weight toward every aperture point, its radiance, and what of the aperture it sees ([`Visibility`]);
 //! they are kept packed ([`Samples`]).
 
+mod aperture_parts;
 mod bake;
 mod baker;
 mod carried;
@@ -19,6 +20,7 @@ mod occluders;
 mod options;
 mod outgoing;
 mod outliers;
+mod own_change;
 mod parts;
 mod placement;
 mod reach;

@@ -1,11 +1,12 @@
 //! What a surface sends toward the aperture, in the least form that tells it.
 //!
-//! Own light changes little over the aperture, and is one radiance. Carried light of a lobe of width ω, as seen from the whole
-//! aperture, which spans the angle δ there, needs about 6 δ/ω radiances a side; where it is thrown as an image of c px, no more
+//! Own light changes little over the aperture, and is one radiance, but where views of a light field told otherwise
+//! (`own_change`). Carried light of a lobe of width ω, as seen from the whole aperture, which spans the angle δ there, needs about 6 δ/ω radiances a side; where it is thrown as an image of c px, no more
 //! than c over the tolerance can be told apart. It is asked for on so many cells, which are joined again where they are alike.
 //!
 //! Own and carried light share the weight of their patch, as they share its coverage, so each is divided by its share.
 
+use crate::aperture_parts::{Cells, MOST_CELLS, Part};
 use crate::carried::Carried;
 use crate::jitter::jitter;
 use crate::sample::Visibility;
@@ -15,14 +16,11 @@ use scene::SurfacePoint;
 use std::f64::consts::FRAC_PI_4;
 use trace::{Among, Leaving, Radiance, Received};
 
-/// Cells a side at most that carried light is told on.
-const MOST_CELLS: usize = 8;
-
 /// Cells that a lobe as wide as the aperture is seen needs, a side.
 const CELLS_A_WIDTH: f64 = 6.0;
 
 /// Cells are joined whose light differs from their mean by at most this share of all the light that is sent.
-const ALIKE: f32 = 0.05;
+pub const ALIKE: f32 = 0.05;
 
 /// Shares of coverage are told in steps of one over this: few of them, so that few planes differ, and exact in 11 bits.
 const STEPS: f32 = 128.0;
@@ -115,13 +113,18 @@ fn sent(light: Vec3) -> Vec3 {
 /// `width` rad wide.
 pub fn cells_a_side(view: &View, inverse_depth: f64, width: f64) -> usize {
     let circle_px = view.circle_px(inverse_depth);
-    let of_lobe = CELLS_A_WIDTH * 2.0 * view.optics.aperture_radius * inverse_depth / width;
+    let of_lobe = cells_of_lobe(view, inverse_depth, width);
     let wanted = match view.carried {
         Carried::Standard => (circle_px / view.tolerance_px).min(of_lobe),
         Carried::Painted => of_lobe,
     };
     // Without an aperture there is nothing to tell apart, 0/0.
     if wanted > 1.0 { (wanted.min(MOST_CELLS as f64).ceil() as usize).next_power_of_two() } else { 1 }
+}
+
+/// How many cells a side the light of a lobe of a width needs.
+pub fn cells_of_lobe(view: &View, inverse_depth: f64, width: f64) -> f64 {
+    CELLS_A_WIDTH * 2.0 * view.optics.aperture_radius * inverse_depth / width
 }
 
 /// Who is asked what the points of a cell send, from where, and what is known of it.
@@ -245,36 +248,17 @@ impl TowardCells {
 
     /// Carried light on as few parts of the aperture as tell it.
     pub fn carried(&self) -> Vec<Outgoing> {
-        let mut parts = Vec::new();
         let differs = ALIKE * self.all.total().max_element();
-        self.join([0, 0], self.side, differs, &mut parts);
+        let cells = Cells { side: self.side, light: &self.carried, by_chance: &self.by_chance };
         let share = self.all.share();
-        let part = |(light, by_chance, word): (Vec3, Vec3, u64)| Outgoing {
+        let part = |Part { light, by_chance, cells }| Outgoing {
             radiance: sent(light / share),
             share,
             is_carried: true,
             by_chance: by_chance / share,
-            toward: Visibility::of(&[word]),
+            toward: Visibility::of(&[cells]),
         };
-        parts.into_iter().map(part).collect()
-    }
-
-    /// Joins the cells of a square of them, if they are alike; else those of its quarters.
-    fn join(&self, [row, column]: [usize; 2], side: usize, differs: f32, parts: &mut Vec<(Vec3, Vec3, u64)>) {
-        let cells = || (0..side * side).map(|k| (row + k / side) * self.side + column + k % side);
-        let mean = |of: &[Vec3]| cells().map(|cell| of[cell]).sum::<Vec3>() / (side * side) as f32;
-        let light = mean(&self.carried);
-        if cells().all(|cell| (self.carried[cell] - light).abs().max_element() <= differs) {
-            let finer = MOST_CELLS / self.side;
-            let bits = u64::MAX >> (64 - side * finer) << (column * finer);
-            let rows = row * finer..(row + side) * finer;
-            parts.push((light, mean(&self.by_chance), rows.fold(0, |word, row| word | bits << (8 * row))));
-            return;
-        }
-        for quarter in 0..4 {
-            let half = side / 2;
-            self.join([row + quarter / 2 * half, column + quarter % 2 * half], half, differs, parts);
-        }
+        cells.parts(differs).into_iter().map(part).collect()
     }
 }
 

@@ -55,6 +55,7 @@ mod own_extras;
 mod own_world;
 mod percent_encoding;
 mod photographed;
+mod picture_gloss;
 mod picture_texture;
 mod pose;
 mod primitive;
@@ -90,6 +91,7 @@ pub use material::{
 pub use mesh_health::MeshHealth;
 pub use model::{Image, ImageLevel, Light, LightKind, Node, Part, Scene, SceneCamera, Triangle};
 pub use own_extras::{CameraLens, EXTRAS_KEY, EXTRAS_VERSION};
+pub use picture_gloss::PictureGloss;
 pub use picture_texture::PictureTexture;
 pub use pose::{Posed, RestTriangle};
 pub use source::{PartSource, Source, StoredElements};

@@ -1,7 +1,10 @@
 //! Surfaces that were made from a picture.
 
+use crate::PictureGloss;
+use std::sync::Arc;
+
 /// The texture of a surface that was made from a picture: the picture, and what goes on behind it below. The first UV set is an atlas.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct PictureTexture {
     /// Columns and rows.
     pub size: [u32; 2],
@@ -15,6 +18,8 @@ pub struct PictureTexture {
     pub origin: String,
     /// By texel, row 0 on top, whether it was photographed; else it was invented.
     pub is_seen: Vec<bool>,
+    /// How what it shows changes over the captured aperture, if there were views to tell it.
+    pub gloss: Option<Arc<PictureGloss>>,
 }
 
 impl PictureTexture {

@@ -43,7 +43,7 @@ impl Default for TransportOptions {
 ///
 /// | surface | radiance |
 /// | --- | --- |
-/// | unlit | its base colour, on both sides |
+/// | unlit | its base colour, on both sides; of a picture's surface + what views showed otherwise from elsewhere |
 /// | emissive | the emitted radiance, on the front; on both sides if double sided |
 /// | any but unlit | + what its lobes scatter of light that arrives ([`Bsdf`]) |
 ///
@@ -346,7 +346,7 @@ impl Radiance for Transport {
         let outgoing = (eye - point.position(scene)).normalize_or_zero();
         let emitted = emitted(scene, point, outgoing);
         if scene.material_of(point.triangle).unlit || outgoing == DVec3::ZERO {
-            return Leaving::own(emitted);
+            return Leaving::own((emitted + scene.picture_gloss(point, eye)).max(Vec3::ZERO));
         }
         let at = MaterialPoint::of(scene, point, self.options.scattering);
         let is_front = at.frame.geometric.dot(outgoing) >= 0.0;
@@ -429,6 +429,12 @@ impl Radiance for Transport {
             return None;
         }
         MaterialPoint::of(scene, point, self.options.scattering).surface.carried_width()
+    }
+
+    fn own_width(&self, point: SurfacePoint) -> Option<f64> {
+        /// Angles of the captured aperture: eight cells of a light field are one.
+        const CAPTURED: f64 = 0.75;
+        self.scene().picture_gloss_angle(point).map(|angle| CAPTURED * angle)
     }
 
     fn from_infinity(&self, direction: DVec3) -> Vec3 {

@@ -52,6 +52,12 @@ pub trait Radiance: Sync {
         None
     }
 
+    /// How fast the own light of a point changes with where the eye is, as [`Self::carried_width`] tells of what is carried. `None` where
+    /// the same leaves toward all of an aperture.
+    fn own_width(&self, _point: SurfacePoint) -> Option<f64> {
+        None
+    }
+
     /// Whether what leaves may differ between neighbouring points that are closer together than a pixel, as it does where there are
     /// textures.
     fn varies_within(&self, _point: SurfacePoint) -> bool {

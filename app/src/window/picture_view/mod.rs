@@ -101,6 +101,18 @@ impl PictureView {
         self.wipe.is_on = !self.wipe.is_on;
     }
 
+    /// Shows the picture for two eyes: in colours, then side by side, then the live one again.
+    pub fn next_stereo(&mut self) {
+        self.shown = match self.shown {
+            Shown::Anaglyph => Shown::SideBySide,
+            Shown::SideBySide => Shown::Painted,
+            _ => Shown::Anaglyph,
+        };
+        if self.wipe.is_on && self.wipe.against == self.shown {
+            self.wipe.against = Shown::Painted;
+        }
+    }
+
     /// As large as fits.
     pub fn fit(&mut self) {
         self.zoom = Zoom::Fit;
@@ -168,12 +180,13 @@ impl PictureView {
         let size = vec2(document.camera.width as f32, document.camera.height as f32);
         self.navigate(ui, &response, size);
         self.image = self.place(size);
-        surroundings(ui, rect, self.image);
+        surroundings(ui, rect, self.whole());
         let tone = Tone { exposure: document.exposure, display };
         self.paint_picture(ui, session, tone, self.shown, rect);
         let painter = ui.painter_at(rect);
         let mut is_wiping = false;
-        if self.wipe.is_on {
+        let is_pair = self.shown.is_pair();
+        if self.wipe.is_on && !is_pair {
             let left = self.wipe.left_of(self.image).intersect(rect);
             self.paint_picture(ui, session, tone, self.wipe.against, left);
             is_wiping = self.wipe.handle(ui, self.image, rect, self.shown);
@@ -183,7 +196,8 @@ impl PictureView {
         let shot = &document.camera;
         let frame = ViewFrame::of(shot);
         let is_selecting = self.verify.is_selecting();
-        let position = |at: Pos2| picture_position(image, at);
+        let whole = self.whole();
+        let position = |at: Pos2| picture_position(image, in_left(is_pair, image, at));
         let screen = |at: DVec2| image.min + vec2(at.x as f32, at.y as f32) * image.size();
         let view = DragView { frame, position: &position, screen: &screen };
         self.verify.select(ui, &response, image, position, actions);
@@ -192,7 +206,7 @@ impl PictureView {
         }
         self.stroke.paint(ui, rect, session, hand, &view);
         let pointer = response.hover_pos().or_else(|| response.interact_pointer_pos());
-        let pointer = pointer.filter(|at| image.contains(*at) && !is_wiping && !is_selecting);
+        let pointer = pointer.filter(|at| whole.contains(*at) && !is_wiping && !is_selecting);
         self.hover = pointer.and_then(|at| hand.hit(session, &view, at));
         let targets = hand.targets(session, self.hover);
         self.highlight.paint(ui, document, (frame, image, rect), &targets);
@@ -219,32 +233,33 @@ impl PictureView {
         let painter = ui.painter_at(part);
         // Another photograph is no picture of this camera.
         let is_other = shown == Shown::Photograph && !session.is_reference_current(ReferenceKind::Photograph);
+        let place = if shown.is_pair() { self.whole() } else { self.image };
         let drawn = self.blitter.as_ref().filter(|_| !is_other).and_then(|blitter| {
             let drawn = self.textures.of(blitter, session, shown, tone)?;
-            let squares = self.image.width() > SQUARES_FROM * drawn.size()[0] as f32;
+            let squares = place.width() > SQUARES_FROM * drawn.size()[0] as f32;
             let filter = if squares { Filter::Nearest } else { Filter::Linear };
-            blitter.paint(&painter, drawn, self.image, filter);
+            blitter.paint(&painter, drawn, place, filter);
             Some(())
         });
         match drawn {
             Some(()) => {}
             None => {
-                painter.rect_filled(self.image, 0.0, egui::Color32::from_gray(28));
+                painter.rect_filled(place, 0.0, egui::Color32::from_gray(28));
                 let text = match shown {
                     Shown::Painted => "Drawing the first picture…",
                     Shown::Standard => "Drawing the ordinary lens…",
                     Shown::Pinhole => "Drawing the pinhole…",
                     Shown::Truth => "Tracing rays…",
-                    Shown::Stereo if session.document().is_some_and(|d| d.camera.aperture_radius <= 0.0) => {
+                    Shown::Anaglyph | Shown::SideBySide if is_pinhole(session) => {
                         "A pinhole has no room for two eyes: open the aperture."
                     }
-                    Shown::Stereo => "Drawing for two eyes…",
+                    Shown::Anaglyph | Shown::SideBySide => "Drawing for two eyes…",
                     Shown::Photograph if session.document().is_some_and(|d| d.photograph().is_none()) => {
                         "Choose a photograph as the camera (Lens, Camera)."
                     }
                     Shown::Photograph => "Reading the photograph…",
                 };
-                hint(ui, part.intersect(self.image), text);
+                hint(ui, part.intersect(place), text);
             }
         }
     }
@@ -252,7 +267,7 @@ impl PictureView {
     /// Asks for the pictures that are shown and not there, or no longer true. A ray-traced one takes long: it is
     /// made once, and again when asked for.
     fn ask_for_pictures(&self, session: &Session, actions: &mut Vec<Action>) {
-        let against = self.wipe.is_on.then_some(self.wipe.against);
+        let against = (self.wipe.is_on && !self.shown.is_pair()).then_some(self.wipe.against);
         for kind in [Some(self.shown), against].into_iter().flatten().filter_map(Shown::kind) {
             let wanted = match kind {
                 ReferenceKind::Truth => session.reference(kind).is_none(),
@@ -310,17 +325,29 @@ impl PictureView {
     /// The zoom that shows the picture at `image`.
     fn free(&self, image: Rect, size: Vec2) -> Zoom {
         let middle = (self.rect.center() - image.min) / image.size();
-        let middle = vec2(middle.x.clamp(0.0, 1.0), middle.y.clamp(0.0, 1.0));
+        let middle = vec2(middle.x.clamp(0.0, self.pictures()), middle.y.clamp(0.0, 1.0));
         Zoom::Free { scale: image.width() / size.x, middle }
     }
 
-    /// Where the picture of `size` px goes.
+    /// How many pictures of the camera are beside each other.
+    fn pictures(&self) -> f32 {
+        if self.shown.is_pair() { 2.0 } else { 1.0 }
+    }
+
+    /// All of what is shown: the picture, or both of a pair.
+    fn whole(&self) -> Rect {
+        Rect::from_min_size(self.image.min, self.image.size() * vec2(self.pictures(), 1.0))
+    }
+
+    /// Where the picture of `size` px goes, of a pair the left one.
     fn place(&self, size: Vec2) -> Rect {
         match self.zoom {
             Zoom::Fit => {
                 let room = self.rect.shrink(8.0).size();
-                let scale = (room.x / size.x).min(room.y / size.y).max(1e-3);
-                Rect::from_center_size(self.rect.center(), size * scale)
+                let whole = size * vec2(self.pictures(), 1.0);
+                let scale = (room.x / whole.x).min(room.y / whole.y).max(1e-3);
+                let corner = Rect::from_center_size(self.rect.center(), whole * scale).min;
+                Rect::from_min_size(corner, size * scale)
             }
             Zoom::Free { scale, middle } => {
                 let drawn = size * scale;
@@ -368,6 +395,15 @@ fn surroundings(ui: &Ui, rect: Rect, image: Rect) {
     for strip in strips.into_iter().filter(Rect::is_positive) {
         ui.painter().rect_filled(strip, 0.0, theme::SURROUNDINGS);
     }
+}
+
+/// A screen position where the left picture of a pair has what the right one has there: with the eyes' disparity between them.
+fn in_left(is_pair: bool, image: Rect, at: Pos2) -> Pos2 {
+    if is_pair && at.x >= image.right() { at - vec2(image.width(), 0.0) } else { at }
+}
+
+fn is_pinhole(session: &Session) -> bool {
+    session.document().is_some_and(|document| document.camera.aperture_radius <= 0.0)
 }
 
 /// A screen position in the picture: (0, 0) its upper left corner, (1, 1) its lower right.

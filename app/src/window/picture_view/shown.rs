@@ -3,7 +3,7 @@
 use crate::window::blit::{Blitter, Drawable};
 use crate::window::picture_view::develop::Developer;
 use lens::Picture;
-use session::{Document, ReferenceKind, Screen, Session, Tone, to_screen};
+use session::{Document, ReferenceKind, Screen, Session, StereoForm, Tone, to_screen};
 use splat::PictureOnCard;
 use std::sync::Arc;
 
@@ -21,14 +21,23 @@ pub enum Shown {
     Truth,
     /// The photograph that the camera looks through.
     Photograph,
-    /// The live picture for two eyes.
-    Stereo,
+    /// The live picture for two eyes, through glasses of red and cyan.
+    Anaglyph,
+    /// The same, one eye's beside the other's.
+    SideBySide,
 }
 
 impl Shown {
     /// All, as a menu offers them.
-    pub const ALL: [Self; 6] =
-        [Self::Painted, Self::Standard, Self::Pinhole, Self::Stereo, Self::Truth, Self::Photograph];
+    pub const ALL: [Self; 7] = [
+        Self::Painted,
+        Self::Standard,
+        Self::Pinhole,
+        Self::Anaglyph,
+        Self::SideBySide,
+        Self::Truth,
+        Self::Photograph,
+    ];
 
     /// What it is called.
     pub fn name(self) -> &'static str {
@@ -38,7 +47,8 @@ impl Shown {
             Self::Pinhole => "Pinhole",
             Self::Truth => "Ray traced",
             Self::Photograph => "Photograph",
-            Self::Stereo => "Stereo",
+            Self::Anaglyph => "Stereo",
+            Self::SideBySide => "Side by side",
         }
     }
 
@@ -49,8 +59,11 @@ impl Shown {
             Self::Standard => "The same lens without any paint.",
             Self::Pinhole => "Everything sharp.",
             Self::Truth => "The picture as painted, by rays: slow and sure (F12 traces it anew).",
-            Self::Stereo => {
-                "The picture as painted for two eyes, through glasses of red (left) and cyan: what the lens is focused on lies in the screen."
+            Self::Anaglyph => {
+                "The picture as painted for two eyes, through glasses of red (left) and cyan: what they fixate (Alt+H and a click) lies in the screen."
+            }
+            Self::SideBySide => {
+                "The picture as painted for two eyes, the left one's on the left: for a stereoscope, or eyes that can do without. What they fixate: Alt+H and a click."
             }
             Self::Photograph => {
                 "The photograph that the camera looks through, exposed as all of them together."
@@ -62,9 +75,16 @@ impl Shown {
     pub fn is_of(self, document: Option<&Document>) -> bool {
         match self {
             Self::Photograph => document.is_some_and(|document| !document.stage.scene.views.is_empty()),
-            Self::Stereo => document.is_some_and(|document| document.camera.aperture_radius > 0.0),
+            Self::Anaglyph | Self::SideBySide => {
+                document.is_some_and(|document| document.camera.aperture_radius > 0.0)
+            }
             _ => true,
         }
+    }
+
+    /// Whether it is two pictures beside each other: nothing else can be laid over it.
+    pub fn is_pair(self) -> bool {
+        self == Self::SideBySide
     }
 
     /// The session's picture of it.
@@ -75,7 +95,8 @@ impl Shown {
             Self::Pinhole => Some(ReferenceKind::Pinhole),
             Self::Truth => Some(ReferenceKind::Truth),
             Self::Photograph => Some(ReferenceKind::Photograph),
-            Self::Stereo => Some(ReferenceKind::Stereo),
+            Self::Anaglyph => Some(ReferenceKind::Stereo(StereoForm::Anaglyph)),
+            Self::SideBySide => Some(ReferenceKind::Stereo(StereoForm::SideBySide)),
         }
     }
 }

@@ -109,6 +109,7 @@ impl Shell {
             | CommandId::SelectFacing
             | CommandId::SelectDepth
             | CommandId::FocusHere
+            | CommandId::FixateHere
             | CommandId::RackFocus
             | CommandId::Pick
             | CommandId::Inspect => self.choose(id),
@@ -211,6 +212,8 @@ impl Shell {
             CommandId::Bake => self.apply(Command::Bake),
             CommandId::Verify => self.picture.verify.toggle_selecting(),
             CommandId::Wipe => self.picture.toggle_wipe(),
+            CommandId::ShowStereo => self.picture.next_stereo(),
+            CommandId::FixateFocus => self.apply(Command::Fixate(None)),
             CommandId::RenderTruth => {
                 let kind = ReferenceKind::Truth;
                 self.apply(Command::MakeReference { kind, samples_per_pixel: TRUTH_SAMPLES });

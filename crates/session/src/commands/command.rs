@@ -120,6 +120,9 @@ pub enum Command {
     SetBackgroundFocus(FocusOffset),
     /// Sets the focus distance to the axial depth of a surface point.
     FocusHere(SurfaceHit),
+    /// Lets two eyes look at a surface point in stereo pictures: it has no disparity. None: at what the lens is focused on. No part of
+    /// the document.
+    Fixate(Option<SurfaceHit>),
     /// Takes the brush's focus from a surface point.
     Pick(SurfaceHit),
 

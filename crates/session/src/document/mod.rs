@@ -34,6 +34,7 @@ pub use disparity_error::DisparityError;
 pub use input::{CameraChoice, Input, InputKind};
 pub use near_question::NearQuestion;
 pub use open_document::{Beginning, Document};
+pub(crate) use picking::depth_toward;
 pub use picking::{SurfaceHit, chief_ray, pick, view_ray};
 pub use scene_camera::camera_of;
 pub use stage::{Stage, load_scene};

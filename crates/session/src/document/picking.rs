@@ -32,6 +32,17 @@ pub fn pick(tracer: &Tracer, ray: &Ray) -> Option<SurfaceHit> {
     })
 }
 
+/// How far ahead of a camera is what it sees in the direction of a place in the world; none where no surface is.
+pub(crate) fn depth_toward(tracer: &Tracer, camera: &Camera, place: DVec3) -> Option<f64> {
+    let seen = camera.camera_from_world(place);
+    if seen.z <= 0.0 {
+        return None;
+    }
+    let pixel = camera.pixel_from_q(camera.optics().chief(seen));
+    let hit = tracer.first_hit(&Ray::of_pinhole(camera, DVec2::ZERO, pixel))?;
+    Some(camera.camera_from_world(hit.point.position(tracer.scene())).z)
+}
+
 /// The chief ray of a picture position: (0, 0) the upper left corner, (1, 1) the lower right, whatever the
 /// resolution. Its direction has depth 1, so that t along it is axial depth.
 pub fn chief_ray(camera: &Camera, position: DVec2) -> Ray {

@@ -17,12 +17,13 @@ use atlas::Atlas;
 use glam::{DMat4, DVec3, Mat3, Vec2};
 use lens::Camera;
 use rayon::prelude::*;
-use relief::{Relief, TEXTURE_LAYERS};
+use relief::{GLOSS_TERMS, Gloss, Relief, TEXTURE_LAYERS};
 use scene::{
-    AlphaMode, CameraLens, Image, ImageLevel, Material, Node, Part, PictureTexture, Scene, SceneCamera,
-    TextureRef, Triangle, Wrap, srgb_from_linear,
+    AlphaMode, CameraLens, Image, ImageLevel, Material, Node, Part, PictureGloss, PictureTexture, Scene,
+    SceneCamera, TextureRef, Triangle, Wrap, srgb_from_linear,
 };
 use std::path::Path;
+use std::sync::Arc;
 
 /// How disparities become distances, and pixels directions.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -169,6 +170,7 @@ pub(super) fn picture_scene(
             pixels: shown.by as u32,
             origin: named.origin.clone(),
             is_seen: in_rows(&relief.is_seen, relief.size, behind, rows, true),
+            gloss: relief.gloss.as_ref().map(|gloss| Arc::new(picture_gloss(gloss, space))),
         }),
         ..Scene::default()
     }
@@ -203,6 +205,18 @@ pub(super) fn picture_atlas(scene: &Scene) -> Option<Atlas> {
     let height = 2.0 * camera.focus_distance * (0.5 * camera.yfov).tan();
     let density = f64::from(picture.shown()[1]) / height;
     Some(Atlas::new(picture.size, corners, chart_of, &vec![0; count], density))
+}
+
+/// The gloss of a surface in the scene's units.
+fn picture_gloss(gloss: &Gloss, space: &PictureSpace) -> PictureGloss {
+    const { assert!(GLOSS_TERMS == PictureGloss::TERMS && Gloss::NONE == PictureGloss::NONE) };
+    PictureGloss {
+        block: gloss.block as u32,
+        blocks: gloss.blocks.map(|side| side as u32),
+        reach: gloss.reach.map(|steps| f64::from(steps) * space.baseline()),
+        numbers: gloss.numbers.clone(),
+        polynomials: gloss.polynomials.clone(),
+    }
 }
 
 /// What layers say a texel, row by row of the whole texture; rows between them say `between`.

@@ -115,6 +115,11 @@ impl Lists {
             lists.add(format!("{} {}", map.width, map.height).as_bytes());
             lists.add(bytemuck::cast_slice(&map.texels));
         }
+        if let Some(gloss) = scene.picture.as_ref().and_then(|picture| picture.gloss.as_ref()) {
+            lists.add(format!("{} {:?} {:?}", gloss.block, gloss.blocks, gloss.reach).as_bytes());
+            lists.add(bytemuck::cast_slice(&gloss.numbers));
+            lists.add(bytemuck::cast_slice(gloss.polynomials.as_flattened()));
+        }
         lists.add(format!("{:?}", scene.photo_lookup).as_bytes());
         // Written out, numbers are as exact as they are.
         lists.add(

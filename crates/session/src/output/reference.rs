@@ -1,5 +1,6 @@
 //! Pictures to compare the live one with.
 
+use super::stereo::StereoForm;
 use lens::{Camera, Picture};
 use std::sync::Arc;
 
@@ -14,8 +15,8 @@ pub enum ReferenceKind {
     Truth,
     /// The photograph that the camera looks through.
     Photograph,
-    /// The document as it is for two eyes, an anaglyph of red and cyan.
-    Stereo,
+    /// The document as it is for two eyes.
+    Stereo(StereoForm),
 }
 
 /// A picture of the document to compare the live one with, at the preview's size.
@@ -45,7 +46,7 @@ impl Reference {
                 without_lens(&self.camera) == without_lens(camera)
             }
             ReferenceKind::Standard => self.camera == *camera,
-            ReferenceKind::Truth | ReferenceKind::Stereo => {
+            ReferenceKind::Truth | ReferenceKind::Stereo(_) => {
                 self.camera == *camera && self.revision == revision
             }
         }
@@ -83,7 +84,9 @@ mod tests {
         assert_eq!(shows(ReferenceKind::Pinhole), [true, true, true, false]);
         assert_eq!(shows(ReferenceKind::Standard), [true, true, false, false]);
         assert_eq!(shows(ReferenceKind::Truth), [true, false, false, false]);
-        assert_eq!(shows(ReferenceKind::Stereo), [true, false, false, false]);
+        for form in [StereoForm::SideBySide, StereoForm::Anaglyph] {
+            assert_eq!(shows(ReferenceKind::Stereo(form)), [true, false, false, false]);
+        }
         assert_eq!(shows(ReferenceKind::Photograph), [true, true, true, false]);
     }
 }

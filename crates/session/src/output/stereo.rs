@@ -16,7 +16,7 @@ use std::time::Instant;
 use trace::Tracer;
 
 /// How the two pictures become one.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum StereoForm {
     /// The left eye's on the left, the right eye's on the right.
     SideBySide,

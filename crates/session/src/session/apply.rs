@@ -85,6 +85,11 @@ impl Session {
                 self.opened()?.undo.finish_run();
                 Ok(())
             }
+            Command::Fixate(hit) => {
+                self.opened()?;
+                self.fixated = hit.map(|hit| hit.position);
+                Ok(())
+            }
             Command::Pick(hit) => {
                 let Some(focus) = self.focus_at(&hit) else { return Err(SessionError::NothingOpen) };
                 self.opened()?.brush.target = focus;

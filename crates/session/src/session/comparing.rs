@@ -3,17 +3,18 @@
 use super::outcome::Outcome;
 use super::state::Session;
 use crate::commands::Event;
+use crate::document::{Document, depth_toward};
 use crate::error::SessionError;
 use crate::jobs::{JobSteps, Steps};
 use crate::light_field::{LightQuality, light};
 use crate::output::{
-    Reference, ReferenceKind, RenderOptions, Renderer, Stereo, StereoForm, light_of_photographs, pair,
+    Reference, ReferenceKind, RenderOptions, Renderer, Stereo, light_of_photographs, pair,
     photograph_picture, render,
 };
 use crate::preview::PreviewActivity;
 use baselines::FirstHits;
 use focus::Focus;
-use lens::FocusOffset;
+use lens::{Camera, FocusOffset};
 use std::sync::Arc;
 use std::time::Instant;
 use trace::truth::TruthOptions;
@@ -30,8 +31,23 @@ impl Session {
     /// Whether the picture of a kind shows the document as it is.
     pub fn is_reference_current(&self, kind: ReferenceKind) -> bool {
         let (Some(document), Some(reference)) = (&self.document, self.reference(kind)) else { return false };
-        let painting = matches!(kind, ReferenceKind::Truth | ReferenceKind::Stereo) && self.is_painting();
-        !painting && reference.shows(&self.scaled_camera(&document.camera), document.revision)
+        let painting = matches!(kind, ReferenceKind::Truth | ReferenceKind::Stereo(_)) && self.is_painting();
+        !painting && reference.shows(&self.camera_of(kind, document), document.revision)
+    }
+
+    /// The camera of a picture; where two eyes look at something, that is in focus: it has no disparity.
+    fn camera_of(&self, kind: ReferenceKind, document: &Document) -> Camera {
+        let camera = self.scaled_camera(&document.camera);
+        let fixated = self.fixated.filter(|_| matches!(kind, ReferenceKind::Stereo(_)));
+        match fixated.and_then(|place| depth_toward(&document.stage.tracer, &camera, place)) {
+            Some(focus_distance) => Camera { focus_distance, ..camera },
+            None => camera,
+        }
+    }
+
+    /// Whether something is fixated in pictures for two eyes, other than what the lens is focused on.
+    pub fn is_fixating(&self) -> bool {
+        self.fixated.is_some()
     }
 
     /// Whether the picture of a kind is being made.
@@ -54,14 +70,15 @@ impl Session {
         let document = self.opened()?;
         let (stage, revision) = (document.stage.clone(), document.revision);
         let focus = match kind {
-            ReferenceKind::Truth | ReferenceKind::Stereo => {
+            ReferenceKind::Truth | ReferenceKind::Stereo(_) => {
                 let map = Arc::new(document.map.clone());
                 Focus::painted(stage.scene.clone(), stage.atlas.clone(), map)
             }
             _ => Focus::constant(stage.scene.clone(), FocusOffset::STANDARD),
         };
-        let (shot, exposure) = (document.camera.clone(), document.exposure);
-        let (camera, generation) = (self.scaled_camera(&shot), self.generation);
+        let exposure = document.exposure;
+        let document = self.document.as_ref().ok_or(SessionError::NothingOpen)?;
+        let (camera, generation) = (self.camera_of(kind, document), self.generation);
         for (id, _) in self.reference_jobs.iter().filter(|(_, of)| *of == kind) {
             self.jobs.iter().filter(|job| job.id == *id).for_each(|job| job.progress.cancel());
         }
@@ -70,7 +87,7 @@ impl Session {
             ReferenceKind::Standard => "drawing the ordinary lens",
             ReferenceKind::Truth => "tracing the ground truth",
             ReferenceKind::Photograph => "reading the photograph",
-            ReferenceKind::Stereo => "drawing for two eyes",
+            ReferenceKind::Stereo(_) => "drawing for two eyes",
         };
         let photograph = self.document.as_ref().and_then(|document| document.photograph().cloned());
         let at_hand = self.at_hand(stage.clone());
@@ -92,8 +109,9 @@ impl Session {
                         RenderOptions { renderer: Renderer::Truth, truth, ..RenderOptions::default() };
                     render(&stage.tracer, &camera, &focus, &options, &steps)?.picture
                 }
-                ReferenceKind::Stereo => {
-                    let stereo = Stereo { form: StereoForm::Anaglyph, eyes: EYES, fixate: None, exposure };
+                ReferenceKind::Stereo(form) => {
+                    // The camera is focused on what they fixate.
+                    let stereo = Stereo { form, eyes: EYES, fixate: None, exposure };
                     let options = RenderOptions::default();
                     pair(&camera, &stereo, |eye| at_hand.render(eye, &focus, &options, &steps))?.picture
                 }

@@ -74,7 +74,7 @@ impl Session {
         self.references.clear();
         self.map_changes.clear();
         self.end_verification();
-        self.looked_through = None;
+        (self.looked_through, self.fixated) = (None, None);
         let camera = self.scaled_camera(&document.camera);
         self.preview_camera = Some(camera.clone());
         let stage = (document.stage.clone(), self.generation);

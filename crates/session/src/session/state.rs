@@ -14,7 +14,7 @@ use crate::output::{Reference, ReferenceKind, Verification};
 use crate::preview::{PictureTimes, Preview, PreviewActivity, PreviewThread};
 
 use atlas::UnwrapOptions;
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 use lens::Camera;
 use slf::PhotographLight;
 use splat::{Gpu, Tolerance};
@@ -90,6 +90,8 @@ pub struct Session {
     pub(super) finished: Vec<PictureTimes>,
     /// The aperture point that the preview shows the scene through; none: all of the aperture.
     pub(super) looked_through: Option<DVec2>,
+    /// The place in the world that two eyes look at; none: what the lens is focused on.
+    pub(super) fixated: Option<DVec3>,
     /// The camera that the preview was asked to show last.
     pub(super) preview_camera: Option<Camera>,
     /// The newest preview that was seen, of whatever document.
@@ -142,6 +144,7 @@ impl Session {
             fields: 0,
             finished: Vec::new(),
             looked_through: None,
+            fixated: None,
             preview_camera: None,
             seen_preview: 0,
             map_serial: 0,

@@ -1,0 +1,225 @@
+//! What views show of blocks of pixels, beside what the picture does.
+
+use crate::cells::Grid;
+use crate::error::ReliefError;
+use crate::look::distance;
+use crate::other_view::OtherView;
+use crate::other_views::{Seen, interpolated, nearest, place};
+use progress::Progress;
+use rayon::prelude::*;
+
+/// What one view shows of a block.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Sighting {
+    /// How much more than the picture, linear RGB; the mean of the pixels that the view shows.
+    pub more: [f32; 3],
+    /// The share of the block's pixels that it shows, in [0, 1].
+    pub weight: f32,
+}
+
+/// The same as it is kept.
+#[derive(Clone, Copy, Debug, Default)]
+struct Kept {
+    /// In steps of [`STEP`].
+    more: [i16; 3],
+    /// In steps of 1/65,535.
+    weight: u16,
+}
+
+impl Kept {
+    fn of(sighting: &Sighting) -> Self {
+        Self {
+            more: sighting.more.map(|more| (more / STEP).round() as i16),
+            weight: (sighting.weight * f32::from(u16::MAX)).round() as u16,
+        }
+    }
+
+    fn sighting(&self) -> Sighting {
+        Sighting {
+            more: self.more.map(|steps| f32::from(steps) * STEP),
+            weight: f32::from(self.weight) / f32::from(u16::MAX),
+        }
+    }
+}
+
+/// What all views show.
+pub(super) struct Sightings {
+    /// Pixels that a block is wide and high.
+    pub side: usize,
+    pub blocks: Grid,
+    /// By block, what the picture shows in the mean.
+    pub picture: Vec<[f32; 3]>,
+    /// By block, the largest step between pixels in it and beside it, squared, all channels together.
+    pub steepest: Vec<f32>,
+    views: usize,
+    /// By block, then by view.
+    all: Vec<Kept>,
+}
+
+/// Steps of light: 8 bits tell several of them apart in the dark, and an i16 holds eight times white.
+const STEP: f32 = 1.0 / 4096.0;
+/// Bytes that sightings take at most: blocks are of several pixels where they would not fit.
+const MOST_BYTES: usize = 192 << 20;
+/// Views in which something nearer is as near as this are left out, px: their edges are mixed.
+const BESIDE: usize = 2;
+/// Blocks darker than this tell nothing of how bright a view is as a whole.
+const DARK: f32 = 0.02;
+
+impl Sightings {
+    /// Looks at the plain pixels in each view.
+    pub fn of<E: Send>(
+        seen: &Seen<'_>,
+        shown: &[[f32; 3]],
+        plain: &[bool],
+        views: &[OtherView<'_, E>],
+        progress: &dyn Progress,
+    ) -> Result<Self, ReliefError<E>> {
+        let [width, height] = seen.frame.picture();
+        let picture = Grid { width, height };
+        let bytes = |side: usize| {
+            let blocks = width.div_ceil(side) * height.div_ceil(side);
+            blocks.saturating_mul(views.len()).saturating_mul(size_of::<Kept>())
+        };
+        let side = (1..).find(|&side| bytes(side) <= MOST_BYTES).unwrap_or(width.max(height));
+        let blocks = Grid { width: width.div_ceil(side), height: height.div_ceil(side) };
+        let (frame, grid) = (seen.frame, seen.frame.grid);
+        let margin = frame.margin;
+        // The pixels of a block that are told of, in the grid of cells.
+        let pixels = |block: usize| {
+            let (x, y) = (block % blocks.width * side, block / blocks.width * side);
+            let rows = y..(y + side).min(height);
+            let columns = x..(x + side).min(width);
+            let cells = rows.flat_map(move |y| columns.clone().map(move |x| grid.at(x + margin, y + margin)));
+            cells.filter(|&cell| plain[cell])
+        };
+        let mean = |block: usize| {
+            let (mut sum, mut count) = ([0.0; 3], 0.0f32);
+            for cell in pixels(block) {
+                (0..3).for_each(|c| sum[c] += shown[cell][c]);
+                count += 1.0;
+            }
+            // Of a block that lies on an edge nothing is told.
+            if 2.0 * count >= (side * side) as f32 { sum.map(|sum| sum / count) } else { [f32::NAN; 3] }
+        };
+        let step = |cell: usize| -> f32 {
+            grid.around(cell).map(|(_, other)| distance(shown[cell], shown[other])).fold(0.0, f32::max)
+        };
+        let steepest = |block: usize| pixels(block).map(step).fold(0.0, f32::max);
+        let steepest = (0..blocks.count()).into_par_iter().map(steepest).collect();
+        let means: Vec<[f32; 3]> = (0..blocks.count()).into_par_iter().map(mean).collect();
+        let mut all = vec![Kept::default(); blocks.count() * views.len()];
+        for (number, view) in views.iter().enumerate() {
+            progress.check().map_err(ReliefError::Cancelled)?;
+            progress.report(number as f32 / views.len() as f32);
+            let looked_at = (view.read)().map_err(ReliefError::View)?;
+            // A picture of another size shows nothing that could be found in it.
+            if looked_at.len() != picture.count() {
+                continue;
+            }
+            let nearest = largest_around(grid, &nearest(grid, seen.front, view.offset), BESIDE);
+            let sighting = |block: usize| {
+                let (mut more, mut count) = ([0.0; 3], 0.0f32);
+                for cell in pixels(block) {
+                    let disparity = seen.front[cell];
+                    let at = place(grid, cell, disparity, view.offset);
+                    let is_open = open_at(grid, &nearest, at, disparity + seen.jump);
+                    let at = at.map(|at| at - margin as f32);
+                    if is_open && let Some(color) = interpolated(picture, &looked_at, at) {
+                        (0..3).for_each(|c| more[c] += color[c] - shown[cell][c]);
+                        count += 1.0;
+                    }
+                }
+                match count > 0.0 {
+                    true => {
+                        Sighting { more: more.map(|sum| sum / count), weight: count / (side * side) as f32 }
+                    }
+                    false => Sighting::default(),
+                }
+            };
+            all.par_chunks_mut(views.len()).enumerate().for_each(|(block, sightings)| {
+                if !means[block][0].is_nan() {
+                    sightings[number] = Kept::of(&sighting(block));
+                }
+            });
+        }
+        let mut found = Self { side, blocks, picture: means, steepest, views: views.len(), all };
+        (0..views.len()).for_each(|view| found.even_out(view));
+        Ok(found)
+    }
+
+    /// What views show of a block, in their order.
+    pub fn of_block(&self, block: usize) -> Vec<Sighting> {
+        self.all[block * self.views..(block + 1) * self.views].iter().map(Kept::sighting).collect()
+    }
+
+    /// A view that is darker as a whole, as outer ones of a plenoptic camera are, is made as bright as the picture.
+    fn even_out(&mut self, view: usize) {
+        for channel in 0..3 {
+            let of_block = |(block, picture): (usize, &[f32; 3])| {
+                let sighting = self.all[block * self.views + view].sighting();
+                let tells = picture[channel] > DARK && sighting.weight > 0.0;
+                tells.then(|| 1.0 + sighting.more[channel] / picture[channel])
+            };
+            let mut ratios: Vec<f32> = self.picture.iter().enumerate().filter_map(of_block).collect();
+            if ratios.is_empty() {
+                continue;
+            }
+            let middle = ratios.len() / 2;
+            let (_, ratio, _) = ratios.select_nth_unstable_by(middle, f32::total_cmp);
+            let by = if *ratio > 0.0 { 1.0 / *ratio } else { 1.0 };
+            for (block, picture) in self.picture.iter().enumerate() {
+                let kept = &mut self.all[block * self.views + view];
+                let mut sighting = kept.sighting();
+                if sighting.weight > 0.0 {
+                    let all = picture[channel] + sighting.more[channel];
+                    sighting.more[channel] = all * by - picture[channel];
+                    *kept = Kept::of(&sighting);
+                }
+            }
+        }
+    }
+}
+
+/// Whether nothing of more disparity than `most` is where `nearest` has the largest around.
+fn open_at(grid: Grid, nearest: &[f32], at: [f32; 2], most: f32) -> bool {
+    let [x, y] = at.map(|at| at.floor() as isize);
+    let is_in = (0..grid.width as isize).contains(&x) && (0..grid.height as isize).contains(&y);
+    is_in && nearest[grid.at(x as usize, y as usize)] <= most
+}
+
+/// The largest value within so many cells of each, along rows and columns.
+fn largest_around(grid: Grid, values: &[f32], around: usize) -> Vec<f32> {
+    let along = |values: &[f32], step: usize, at: &(dyn Fn(usize) -> [usize; 2] + Sync)| -> Vec<f32> {
+        let largest = |cell: usize| {
+            let [at, count] = at(cell);
+            let (first, last) = (at.saturating_sub(around), (at + around).min(count - 1));
+            let start = cell - at * step;
+            (first..=last).map(|k| values[start + k * step]).fold(f32::NEG_INFINITY, f32::max)
+        };
+        (0..values.len()).into_par_iter().map(largest).collect()
+    };
+    let across = along(values, 1, &|cell| [cell % grid.width, grid.width]);
+    along(&across, grid.width, &|cell| [cell / grid.width, grid.height])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_largest_around_is_found_up_to_the_border() {
+        let grid = Grid { width: 7, height: 5 };
+        let mut values = vec![0.0; grid.count()];
+        values[grid.at(1, 1)] = 2.0;
+        values[grid.at(6, 4)] = 1.0;
+        let found = largest_around(grid, &values, 2);
+        let expected = |x: usize, y: usize| match () {
+            () if x <= 3 && y <= 3 => 2.0,
+            () if x >= 4 && y >= 2 => 1.0,
+            () => 0.0,
+        };
+        for cell in 0..grid.count() {
+            assert_eq!(found[cell], expected(cell % 7, cell / 7), "{cell}");
+        }
+    }
+}

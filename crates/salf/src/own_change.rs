@@ -1,0 +1,110 @@
+//! How the own light of a point changes over the aperture.
+
+use crate::aperture_parts::{Cells, MOST_CELLS, Part};
+use crate::outgoing::{ALIKE, Asked, Outgoing, cells_of_lobe};
+use crate::sample::Visibility;
+use glam::{DVec2, Vec3};
+use scene::SurfacePoint;
+
+/// By cell of the aperture, how much more own light a point sends there than to the middle.
+pub struct OwnChange {
+    side: usize,
+    more: Vec<Vec3>,
+}
+
+impl OwnChange {
+    /// Of a point of inverse depth `inverse_depth`; none where it sends the same toward all of the aperture. It is told as finely for what
+    /// is in focus: who looks through a part of the aperture sees it there, too.
+    pub fn of(asked: &Asked, point: SurfacePoint, inverse_depth: f64) -> Option<Self> {
+        let Asked { view, radiance, .. } = *asked;
+        let wanted = cells_of_lobe(view, inverse_depth, radiance.own_width(point)?);
+        if wanted <= 1.0 {
+            return None;
+        }
+        let side = (wanted.min(MOST_CELLS as f64).ceil() as usize).next_power_of_two();
+        let middle = asked.leaving(point, view.eye, 0, 1).own;
+        let more = |cell: usize| {
+            let at = DVec2::new((cell % side) as f64 + 0.5, (cell / side) as f64 + 0.5);
+            let eye = view.aperture_point(at * (2.0 / side as f64) - 1.0);
+            asked.leaving(point, eye, 0, 1).own - middle
+        };
+        Some(Self { side, more: (0..side * side).map(more).collect() })
+    }
+
+    /// What is sent to the middle as it is sent toward each part of the aperture.
+    pub fn parts(&self, sent: &Outgoing) -> Vec<Outgoing> {
+        let light = |more: &Vec3| (sent.radiance + *more / sent.share).max(Vec3::ZERO);
+        let light: Vec<Vec3> = self.more.iter().map(light).collect();
+        let mean = light.iter().sum::<Vec3>() / light.len() as f32;
+        let by_chance = vec![sent.by_chance; light.len()];
+        let cells = Cells { side: self.side, light: &light, by_chance: &by_chance };
+        let parts = cells.parts(ALIKE * mean.max_element()).into_iter();
+        let part = |Part { light, cells, .. }| Outgoing {
+            radiance: light,
+            toward: Visibility::of(&[cells]),
+            ..sent.clone()
+        };
+        parts.map(part).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::view::View;
+    use glam::DVec3;
+    use lens::Camera;
+    use trace::{Leaving, Radiance};
+
+    /// Sends more toward the right.
+    struct Glossy;
+
+    impl Radiance for Glossy {
+        fn leaving(&self, _point: SurfacePoint, eye: DVec3) -> Leaving {
+            Leaving::own(Vec3::splat(0.5 + eye.x as f32))
+        }
+        fn from_infinity(&self, _direction: DVec3) -> Vec3 {
+            Vec3::ZERO
+        }
+        fn own_width(&self, point: SurfacePoint) -> Option<f64> {
+            (point.triangle == 0).then_some(0.1)
+        }
+    }
+
+    #[test]
+    fn own_light_is_told_on_parts_of_the_aperture_and_keeps_its_mean() {
+        let camera = Camera { width: 64, height: 64, aperture_radius: 0.25, ..Camera::default() };
+        let view = View::new(&camera, 2.0);
+        let asked = |triangle: u32, view: &View| {
+            let point = SurfacePoint { triangle, barycentric: DVec2::ZERO };
+            let of =
+                Asked { radiance: &Glossy, view, seed: [3, 5], received: None, own_only: false, blurred: 1 };
+            OwnChange::of(&of, point, 0.5)
+        };
+        let sent = Outgoing {
+            radiance: Vec3::splat(0.6),
+            share: 1.0,
+            is_carried: false,
+            by_chance: Vec3::ZERO,
+            toward: Visibility::Open,
+        };
+        let parts = asked(0, &view).unwrap().parts(&sent);
+        let (mut seen, mut sum) = (0, 0.0);
+        for part in &parts {
+            let Visibility::Cells { words } = &part.toward else { panic!("a part: {part:?}") };
+            assert_eq!(seen & words[0], 0, "parts do not overlap");
+            seen |= words[0];
+            sum += part.radiance.x * words[0].count_ones() as f32 / 64.0;
+            let column = (0..64).filter(|bit| words[0] >> bit & 1 == 1).map(|bit| bit % 8).sum::<u32>()
+                as f32
+                / words[0].count_ones() as f32;
+            let expected = 0.6 + 0.25 * ((column + 0.5) / 4.0 - 1.0);
+            assert!((part.radiance.x - expected).abs() < 1e-5 && !part.is_carried, "{part:?}");
+        }
+        assert!(seen == u64::MAX && (sum - 0.6).abs() < 1e-6 && parts.len() > 4, "{sum} {}", parts.len());
+        // Of another point, and through a pinhole, nothing is asked.
+        assert!(asked(1, &view).is_none());
+        let pinhole = Camera { aperture_radius: 0.0, ..camera.clone() };
+        assert!(asked(0, &View::new(&pinhole, 2.0)).is_none());
+    }
+}
