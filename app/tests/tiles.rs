@@ -72,7 +72,7 @@ fn tiles_are_the_whole_whatever_is_asked_for() {
     }
 }
 
-/// A wall that is lit, and glossy: light depends on nothing but the scene.
+/// A wall that is lit, and glossy: light depends on nothing but the scene, refined or not.
 #[test]
 fn tiles_of_a_lit_scene_are_the_whole() {
     let folder = folder();
@@ -89,9 +89,11 @@ fn tiles_of_a_lit_scene_are_the_whole() {
     std::fs::write(folder.path().join("lit.glb"), glb).unwrap();
     let shot = "render lit.glb --camera camera.json --size 70x40 --world";
     std::fs::write(folder.path().join("w.json"), r#"{"environment": [1.0, 0.8, 0.6]}"#).unwrap();
-    done(folder.path(), &format!("{shot} w.json --backend cpu -o whole.exr"));
-    done(folder.path(), &format!("{shot} w.json --tiles 3x2 -o tiles.exr"));
-    assert!(bytes(&folder, "whole.exr") == bytes(&folder, "tiles.exr"));
+    for light in ["", "--light-passes 2"] {
+        done(folder.path(), &format!("{shot} w.json {light} --backend cpu -o whole.exr"));
+        done(folder.path(), &format!("{shot} w.json {light} --tiles 3x2 -o tiles.exr"));
+        assert!(bytes(&folder, "whole.exr") == bytes(&folder, "tiles.exr"), "{light}");
+    }
 }
 
 #[test]

@@ -220,6 +220,11 @@ impl Shared {
         lock(&self.published).news.field = Some((generation, field));
     }
 
+    /// Tells that a scene must be shown darker by so many stops.
+    pub fn publish_glare(&self, generation: u64, stops: f32) {
+        lock(&self.published).news.glare = Some((generation, stops));
+    }
+
     /// Tells the user of what is no failure.
     pub fn notice(&self, what: String) {
         lock(&self.published).news.notices.push(what);

@@ -20,6 +20,8 @@ pub(crate) struct News {
     pub finished: Vec<PictureTimes>,
     /// Another light field of full size, and of which of the session's documents.
     pub field: Option<(u64, BakedField)>,
+    /// By how many stops a scene must be shown darker, as its first pictures tell, and of which of the session's documents.
+    pub glare: Option<(u64, f32)>,
     pub failures: Vec<String>,
     pub notices: Vec<String>,
 }

@@ -10,7 +10,7 @@ use super::picture::{PreviewKind, Quality};
 use super::presenter::{Made, Presenter, Relation};
 use super::refinement::{Refinement, Task};
 use super::wishes::Wishes;
-use crate::display::Source;
+use crate::display::{Source, stops_for};
 use crate::document::Stage;
 use crate::error::SessionError;
 use crate::jobs::guarded;
@@ -393,7 +393,11 @@ impl Worker {
                 self.shared.begin(PreviewActivity::RoughBaking)?;
                 let (tolerance, gpu) = (self.tolerance, self.shared.gpu());
                 let how = FieldOptions { least_margin_px: 0.0, tolerance, gpu, light: LightQuality::Rough };
-                self.coarse.insert(LightField::bake(stage, small, focus, how, &self.shared.quick)?)
+                let coarse = LightField::bake(stage, small, focus, how, &self.shared.quick)?;
+                if let Some(stops) = stops_for(&coarse.baked().salf) {
+                    self.shared.publish_glare(self.presenter.generation, stops);
+                }
+                self.coarse.insert(coarse)
             }
         };
         self.shared.begin(PreviewActivity::Splatting)?;
