@@ -116,6 +116,9 @@ mod tests {
         let baking = Stage::new(&progress, 0.5, 1.0);
         Stage::named(&baking, "rays", 0.25, 0.75).report(0.5);
         let (label, _) = progress.standing();
-        assert_eq!((label.as_str(), progress.fraction(), progress.step().shares), ("rays", 0.75, [0.625, 0.875]));
+        assert_eq!(
+            (label.as_str(), progress.fraction(), progress.step().shares),
+            ("rays", 0.75, [0.625, 0.875])
+        );
     }
 }
