@@ -1,5 +1,6 @@
 //! Captures from end to end: photographs of a wall that the test takes itself.
 
+mod card_light_field;
 mod program;
 mod wall_capture;
 
@@ -98,6 +99,24 @@ fn a_captures_surface_is_written_with_its_light_as_a_texture() {
     let output = run(folder, "export wall.fbrush --glb wall.obj");
     let errors = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.code() == Some(3) && errors.contains("are written as .glb"), "{errors}");
+}
+
+#[test]
+fn a_light_fields_surface_is_written_with_its_picture_as_a_texture() {
+    let place = tempfile::tempdir().unwrap();
+    let folder = place.path();
+    card_light_field::write(&folder.join("card"));
+    done(folder, "import card -o card.fbrush");
+    done(folder, "export card.fbrush --glb card.glb");
+    let render = |of: &str| {
+        done(folder, &format!("render {of} --aperture-radius 0 -o shown.exr"));
+        read_picture(&folder.join("shown.exr")).unwrap()
+    };
+    let [own, written] = [render("card.fbrush"), render("card.glb")];
+    assert_eq!([written.width, written.height], [own.width, own.height], "the camera comes along");
+    let off = |(a, b): (&[f32; 3], &[f32; 3])| (0..3).map(|c| f64::from(a[c] - b[c]).powi(2)).sum::<f64>();
+    let square = own.rgb.iter().zip(&written.rgb).map(off).sum::<f64>() / (3 * own.rgb.len()) as f64;
+    assert!(-10.0 * square.log10() > 32.0, "{} dB", -10.0 * square.log10());
 }
 
 /// The point of a scene's surface at (x, y, 0).

@@ -113,9 +113,12 @@ mod tests {
         assert_eq!((progress.standing().0.as_str(), progress.fraction()), ("baking", 0.5));
         progress.report(0.4);
         assert_eq!(progress.fraction(), 0.5, "it never runs back");
-        let baking = Stage::new(&progress, 0.5, 0.9);
+        let baking = Stage::new(&progress, 0.5, 1.0);
         Stage::named(&baking, "rays", 0.25, 0.75).report(0.5);
         let (label, _) = progress.standing();
-        assert_eq!((label.as_str(), progress.fraction(), progress.step().shares), ("rays", 0.7, [0.6, 0.8]));
+        assert_eq!(
+            (label.as_str(), progress.fraction(), progress.step().shares),
+            ("rays", 0.75, [0.625, 0.875])
+        );
     }
 }

@@ -26,10 +26,10 @@ use progress::{Cancelled, Progress};
 use rayon::prelude::*;
 use scene::View;
 
-/// Pixels that are joined to one each way, and how often all photographs are moved by what such pictures show. What is a few pixels off
-/// is less than two of the coarsest.
-const PASSES: [(u32, usize); 3] = [(4, 4), (2, 3), (1, 2)];
-/// Photographs that are off by less on the whole, px as they are kept, are not.
+/// How often all photographs are moved by what pictures of a quarter, half and all of their pixels each way show. What is a few pixels off is
+/// less than two of the coarsest.
+const PASSES: [usize; 3] = [4, 3, 2];
+/// Photographs that are nowhere off by so much, px as they are kept, are not off.
 const LEAST_OFF: f64 = 0.1;
 
 /// How far each view is off, as far as that lowers the errors of what others tell of it.
@@ -44,16 +44,11 @@ pub(crate) fn displacements(
     let points = Points::of(radiance, views, exposures, belonging);
     let pictures = &radiance.sightings.pictures;
     let mut found = none.clone();
-    let passes: usize = PASSES.iter().map(|(_, passes)| passes).sum();
+    let passes: usize = PASSES.iter().sum();
     let mut done = 0;
     let half = reduced(pictures);
     let quarter = reduced(&half);
-    for (level, passes_of_level) in PASSES {
-        let pictures = match level {
-            4 => &quarter,
-            2 => &half,
-            _ => pictures,
-        };
+    for (pictures, passes_of_level) in [&quarter[..], &half, pictures].into_iter().zip(PASSES) {
         for _ in 0..passes_of_level {
             progress.check()?;
             let expected = points.expected(pictures, &found);
