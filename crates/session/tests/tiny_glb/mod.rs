@@ -208,7 +208,7 @@ pub fn moving(quads: &[Quad]) -> Vec<u8> {
 
 /// The document and the buffer of a GLB.
 #[allow(dead_code, reason = "not every test changes the scene")]
-fn parts(bytes: &[u8]) -> (Value, Vec<u8>) {
+pub fn parts(bytes: &[u8]) -> (Value, Vec<u8>) {
     let length = u32::from_le_bytes(bytes[12..16].try_into().expect("four bytes")) as usize;
     let end = 20 + length;
     (serde_json::from_slice(&bytes[20..end]).expect("JSON"), bytes[end + 8..].to_vec())
