@@ -35,6 +35,7 @@ mod error;
 mod extension;
 mod file_reference;
 mod flaws;
+mod glossy_point;
 mod hierarchy;
 mod image_based_light;
 mod image_file;

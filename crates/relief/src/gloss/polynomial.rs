@@ -152,10 +152,9 @@ impl Regression {
             }
         }
         for i in 0..TERMS {
-            for c in 0..3 {
-                let before: f64 = (0..i).map(|k| factor.triangle[i][k] * z[k][c]).sum();
-                z[i][c] = (z[i][c] - before) / factor.triangle[i][i];
-            }
+            let row = &factor.triangle[i];
+            let before = |c: usize| -> f64 { (0..i).map(|k| row[k] * z[k][c]).sum() };
+            z[i] = std::array::from_fn(|c| (z[i][c] - before(c)) / row[i]);
         }
         let all = weights.iter().sum();
         Solved { factor, z, weights, all }
@@ -213,10 +212,9 @@ impl Solved<'_> {
             }
             all += counts;
             let more = sighting.more.map(f64::from);
-            errors[0] += counts * more.iter().map(|more| more * more).sum::<f64>();
             // Here, and here less in the middle; what this view does to either.
             let (mut here, mut beyond, mut own, mut own_beyond) = ([0.0; 3], [0.0; 3], 0.0, 0.0);
-            for degree in 0..DEGREES {
+            for (degree, error) in errors.iter_mut().enumerate() {
                 for t in terms_of(degree) - degree - 1..terms_of(degree) {
                     for c in 0..3 {
                         here[c] += q[t] * self.z[t][c];
@@ -226,13 +224,12 @@ impl Solved<'_> {
                     own_beyond += (q[t] - middle[t]) * q[t];
                 }
                 let left_out = weight / (1.0 - weight * own).max(f64::EPSILON);
-                let square = (0..3).map(|c| {
-                    let told = beyond[c] - own_beyond * left_out * (more[c] - here[c]);
-                    (more[c] - told).powi(2)
-                });
-                if degree > 0 {
-                    errors[degree] += counts * square.sum::<f64>();
-                }
+                // Of degree 0 that is the picture itself.
+                let told = |c: usize| match degree {
+                    0 => 0.0,
+                    _ => beyond[c] - own_beyond * left_out * (more[c] - here[c]),
+                };
+                *error += counts * (0..3).map(|c| (more[c] - told(c)).powi(2)).sum::<f64>();
             }
         }
         let is_told = |degree: usize| degree == 0 || self.tells(degree);

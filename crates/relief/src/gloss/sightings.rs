@@ -29,8 +29,8 @@ struct Kept {
 impl Kept {
     fn of(sighting: &Sighting) -> Self {
         Self {
-            more: sighting.more.map(|more| (more / STEP).round() as i16),
-            weight: (sighting.weight * f32::from(u16::MAX)).round() as u16,
+            more: sighting.more.map(|more| (more / STEP + 0.5f32.copysign(more)) as i16),
+            weight: (sighting.weight * f32::from(u16::MAX) + 0.5) as u16,
         }
     }
 
@@ -64,6 +64,8 @@ const MOST_BYTES: usize = 192 << 20;
 const BESIDE: usize = 2;
 /// Blocks darker than this tell nothing of how bright a view is as a whole.
 const DARK: f32 = 0.02;
+/// How bright a view is as a whole is told by about so many blocks.
+const RATIOS: usize = 20_000;
 
 impl Sightings {
     /// Looks at the plain pixels in each view.
@@ -136,46 +138,46 @@ impl Sightings {
                     false => Sighting::default(),
                 }
             };
-            all.par_chunks_mut(views.len()).enumerate().for_each(|(block, sightings)| {
-                if !means[block][0].is_nan() {
-                    sightings[number] = Kept::of(&sighting(block));
-                }
-            });
+            let of_block = |block: usize| match means[block][0].is_nan() {
+                true => Sighting::default(),
+                false => sighting(block),
+            };
+            let mut of_view: Vec<Sighting> = (0..blocks.count()).into_par_iter().map(of_block).collect();
+            even_out(&means, &mut of_view);
+            let of_blocks = all.par_chunks_mut(views.len()).zip(&of_view);
+            of_blocks.for_each(|(kept, sighting)| kept[number] = Kept::of(sighting));
         }
-        let mut found = Self { side, blocks, picture: means, steepest, views: views.len(), all };
-        (0..views.len()).for_each(|view| found.even_out(view));
-        Ok(found)
+        Ok(Self { side, blocks, picture: means, steepest, views: views.len(), all })
     }
 
     /// What views show of a block, in their order.
     pub fn of_block(&self, block: usize) -> Vec<Sighting> {
         self.all[block * self.views..(block + 1) * self.views].iter().map(Kept::sighting).collect()
     }
+}
 
-    /// A view that is darker as a whole, as outer ones of a plenoptic camera are, is made as bright as the picture.
-    fn even_out(&mut self, view: usize) {
-        for channel in 0..3 {
-            let of_block = |(block, picture): (usize, &[f32; 3])| {
-                let sighting = self.all[block * self.views + view].sighting();
-                let tells = picture[channel] > DARK && sighting.weight > 0.0;
-                tells.then(|| 1.0 + sighting.more[channel] / picture[channel])
-            };
-            let mut ratios: Vec<f32> = self.picture.iter().enumerate().filter_map(of_block).collect();
-            if ratios.is_empty() {
-                continue;
-            }
-            let middle = ratios.len() / 2;
-            let (_, ratio, _) = ratios.select_nth_unstable_by(middle, f32::total_cmp);
-            let by = if *ratio > 0.0 { 1.0 / *ratio } else { 1.0 };
-            for (block, picture) in self.picture.iter().enumerate() {
-                let kept = &mut self.all[block * self.views + view];
-                let mut sighting = kept.sighting();
-                if sighting.weight > 0.0 {
-                    let all = picture[channel] + sighting.more[channel];
-                    sighting.more[channel] = all * by - picture[channel];
-                    *kept = Kept::of(&sighting);
-                }
-            }
+/// A view that is darker as a whole, as outer ones of a plenoptic camera are, is made as bright as the picture.
+fn even_out(picture: &[[f32; 3]], of_view: &mut [Sighting]) {
+    for channel in 0..3 {
+        // The median of some that are spread evenly tells enough.
+        let apart = picture.len().div_ceil(RATIOS);
+        let ratio = |(picture, sighting): (&[f32; 3], &Sighting)| {
+            let tells = picture[channel] > DARK && sighting.weight > 0.0;
+            tells.then(|| 1.0 + sighting.more[channel] / picture[channel])
+        };
+        let mut ratios: Vec<f32> = picture.iter().zip(&*of_view).filter_map(ratio).step_by(apart).collect();
+        if ratios.is_empty() {
+            continue;
+        }
+        let middle = ratios.len() / 2;
+        let (_, ratio, _) = ratios.select_nth_unstable_by(middle, f32::total_cmp);
+        if *ratio <= 0.0 {
+            continue;
+        }
+        let by = 1.0 / *ratio;
+        for (picture, sighting) in picture.iter().zip(&mut *of_view).filter(|(_, s)| s.weight > 0.0) {
+            let all = picture[channel] + sighting.more[channel];
+            sighting.more[channel] = all * by - picture[channel];
         }
     }
 }
@@ -218,8 +220,8 @@ mod tests {
             () if x >= 4 && y >= 2 => 1.0,
             () => 0.0,
         };
-        for cell in 0..grid.count() {
-            assert_eq!(found[cell], expected(cell % 7, cell / 7), "{cell}");
+        for (cell, found) in found.iter().enumerate() {
+            assert_eq!(*found, expected(cell % 7, cell / 7), "{cell}");
         }
     }
 }
