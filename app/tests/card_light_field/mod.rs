@@ -60,6 +60,7 @@ fn encoded(linear: f64) -> u8 {
     (encoded * 255.0).round() as u8
 }
 
+#[allow(dead_code, reason = "not every test wants it")]
 pub fn view(view: [f64; 2]) -> RgbImage {
     view_of(shown, view)
 }
