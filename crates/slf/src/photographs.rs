@@ -285,7 +285,7 @@ impl Places<'_> {
         sightings.look_again(texels, views, |number, pixel| {
             let displacement = &displacements[number];
             let factor = || exposures[number].to_radiance(&views[number], pixel);
-            (!displacement.is_none()).then(|| (pixel + displacement.at(pixel), factor()))
+            (!displacement.is_none()).then(|| (displacement.moved(pixel), factor()))
         });
         let after = belonging(sightings, &Stage::new(&aligning, 0.8, 1.0))?;
         Ok((displacements, after))

@@ -3,10 +3,12 @@
 use super::mailbox::Shared;
 use super::picture::{DrawingCosts, PictureTimes, Preview, PreviewKind, Quality};
 use crate::display::{
-    Content, LivePicture, Patch, PictureRing, Rectangle, Source, Tone, ToneCurve, rectangle_to_screen, whole,
+    Content, LivePicture, Patch, PictureRing, Rectangle, Source, Tone, ToneCurve, rectangle_to_screen,
+    stops_for, whole,
 };
 use crate::light_field::Modelled;
 use lens::{Camera, Exposure, Picture};
+use salf::Salf;
 use splat::PictureOnCard;
 use std::sync::Arc;
 use std::time::Instant;
@@ -47,6 +49,8 @@ pub(crate) struct Presenter {
     last_id: u64,
     /// Which of the session's documents is shown.
     pub generation: u64,
+    /// Whether it was looked at how bright it is.
+    is_glare_known: bool,
     /// How many changes of the map the next picture has seen.
     pub map_serial: u64,
     /// When work on the next picture began.
@@ -65,6 +69,7 @@ impl Presenter {
             tone: Tone::default(),
             last_id: 0,
             generation: 0,
+            is_glare_known: false,
             map_serial: 0,
             begun: Instant::now(),
             costs: DrawingCosts::default(),
@@ -74,8 +79,18 @@ impl Presenter {
     /// Another document: what was shown is not of it.
     pub fn open(&mut self, generation: u64) {
         self.generation = generation;
+        self.is_glare_known = false;
         self.shown = None;
         self.costs = DrawingCosts::default();
+    }
+
+    /// Tells if a document must be shown darker; its first light field says so.
+    pub fn look_for_glare(&mut self, salf: &Salf) {
+        if !std::mem::replace(&mut self.is_glare_known, true)
+            && let Some(stops) = stops_for(salf)
+        {
+            self.shared.publish_glare(self.generation, stops);
+        }
     }
 
     /// The newest picture.

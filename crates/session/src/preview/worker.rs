@@ -10,7 +10,7 @@ use super::picture::{PreviewKind, Quality};
 use super::presenter::{Made, Presenter, Relation};
 use super::refinement::{Refinement, Task};
 use super::wishes::Wishes;
-use crate::display::{Source, stops_for};
+use crate::display::Source;
 use crate::document::Stage;
 use crate::error::SessionError;
 use crate::jobs::guarded;
@@ -261,6 +261,7 @@ impl Worker {
         match self.maker.take_up(delivery) {
             Ok((mut field, epoch)) if epoch == self.epoch => {
                 field.set_tolerance(self.tolerance);
+                self.presenter.look_for_glare(&field.baked().salf);
                 self.shared.publish_field(self.presenter.generation, field.baked());
                 self.fine = Some(field);
                 self.is_new = true;
@@ -394,9 +395,7 @@ impl Worker {
                 let (tolerance, gpu) = (self.tolerance, self.shared.gpu());
                 let how = FieldOptions { least_margin_px: 0.0, tolerance, gpu, light: LightQuality::Rough };
                 let coarse = LightField::bake(stage, small, focus, how, &self.shared.quick)?;
-                if let Some(stops) = stops_for(&coarse.baked().salf) {
-                    self.shared.publish_glare(self.presenter.generation, stops);
-                }
+                self.presenter.look_for_glare(&coarse.baked().salf);
                 self.coarse.insert(coarse)
             }
         };

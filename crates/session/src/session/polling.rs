@@ -4,7 +4,6 @@ use super::outcome::Outcome;
 use super::recovery::Recovery;
 use super::state::Session;
 use crate::commands::Event;
-use crate::display::stops_for;
 use crate::document::Document;
 use crate::error::SessionError;
 use progress::Progress;
@@ -36,15 +35,9 @@ impl Session {
             self.screen.take(patch);
         }
         self.finished = news.finished;
-        if let Some((_, stops)) = news.glare.filter(|(generation, _)| *generation == self.generation) {
-            self.tell_glare(stops);
-        }
+        let glare = news.glare.filter(|(generation, _)| *generation == self.generation);
+        self.events.extend(glare.map(|(_, stops)| Event::Glaring(stops)));
         if let Some((_, field)) = news.field.filter(|(generation, _)| *generation == self.generation) {
-            if self.field.is_none()
-                && let Some(stops) = stops_for(&field.salf)
-            {
-                self.tell_glare(stops);
-            }
             self.field = Some(field);
             self.fields += 1;
         }
@@ -70,20 +63,12 @@ impl Session {
         std::mem::take(&mut self.events)
     }
 
-    /// Tells once of a document that its light is too bright for the screen: the user may want it as it is.
-    fn tell_glare(&mut self, stops: f32) {
-        if !std::mem::replace(&mut self.is_glare_told, true) {
-            self.events.push(Event::Glaring(stops));
-        }
-    }
-
     /// Shows a document that was opened.
     pub(super) fn take_opened(&mut self, mut document: Document) {
         document.undo.set_budget(self.options.undo_budget_bytes);
         self.forget_recovery();
         self.generation += 1;
         (self.underway, self.preview, self.field) = (None, None, None);
-        self.is_glare_told = false;
         self.references.clear();
         self.map_changes.clear();
         self.end_verification();

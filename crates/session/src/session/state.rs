@@ -96,8 +96,6 @@ pub struct Session {
     pub(super) preview_camera: Option<Camera>,
     /// The newest preview that was seen, of whatever document.
     pub(super) seen_preview: u64,
-    /// Whether it was told that the document must be shown darker.
-    pub(super) is_glare_told: bool,
     /// Counts changes of the map that were shown to the preview.
     pub(super) map_serial: u64,
     pub(super) recovery: Recovery,
@@ -149,7 +147,6 @@ impl Session {
             fixated: None,
             preview_camera: None,
             seen_preview: 0,
-            is_glare_told: false,
             map_serial: 0,
             recovery: Recovery::default(),
             watched: None,

@@ -60,7 +60,7 @@ impl DirectPhotographs {
             let (view, picture) = (&views[number], &self.read[number].picture);
             let pixel = view.project(position)?;
             let displacement = &self.light.displacements[number];
-            let place = picture.place(pixel + displacement.at(pixel));
+            let place = picture.place(displacement.moved(pixel));
             let shown = picture.at(place);
             let light = shown.light * self.light.exposures[number].to_radiance(view, pixel);
             let mut weight = weight * self.light.belonging[number].at(pixel);

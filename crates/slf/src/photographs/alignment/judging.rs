@@ -42,7 +42,7 @@ fn errors(
                 && let Some(pixel) = views[number].project(from)
             {
                 let picture = &radiance.sightings.pictures[number];
-                let shown = picture.at(picture.place(pixel + displacements[number].at(pixel)));
+                let shown = picture.at(picture.place(displacements[number].moved(pixel)));
                 sample.light = shown.light * exposures[number].to_radiance(&views[number], pixel);
             }
         }

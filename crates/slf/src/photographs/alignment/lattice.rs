@@ -110,6 +110,11 @@ impl Displacement {
         cell.nodes.into_iter().zip(cell.shares()).map(corner).sum()
     }
 
+    /// Where the photograph shows what its camera sees at a pixel position, px.
+    pub fn moved(&self, pixel: DVec2) -> DVec2 {
+        pixel + self.at(pixel)
+    }
+
     /// Its largest, px.
     pub fn most(&self) -> f64 {
         self.nodes.iter().map(|node| f64::from(node.length())).fold(0.0, f64::max)

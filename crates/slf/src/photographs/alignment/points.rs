@@ -85,7 +85,7 @@ impl Points {
             samples.extend(seen.iter().map(|seen| {
                 let number = usize::from(seen.view);
                 let picture = &pictures[number];
-                let shown = picture.at(picture.place(seen.pixel + displacements[number].at(seen.pixel)));
+                let shown = picture.at(picture.place(displacements[number].moved(seen.pixel)));
                 let clipped = shown.clipped.clamp(0.0, 1.0);
                 Sample { light: shown.light * seen.to_radiance, weight: seen.weight, clipped }
             }));
@@ -117,7 +117,7 @@ impl Points {
             let (point, place) = (point as usize, usize::from(place));
             let expected = expected[point][place]?;
             let seen = &self.all[point][place];
-            let at = seen.pixel + displacement.at(seen.pixel);
+            let at = displacement.moved(seen.pixel);
             let shown = |pixel: DVec2| {
                 let shown = picture.at(picture.place(pixel));
                 f64::from(root(shown.light * seen.to_radiance))
