@@ -144,6 +144,7 @@ impl Camera {
     }
 
     /// A camera-space direction in the world. Inverse of [`Self::camera_direction`].
+    #[inline]
     pub fn world_direction(&self, direction: DVec3) -> DVec3 {
         let m = &self.camera_to_world;
         m.x_axis.truncate() * direction.x + m.y_axis.truncate() * direction.y
@@ -156,6 +157,7 @@ impl Camera {
     }
 
     /// Where the lens's axis meets the picture, px: its middle, unless the sensor is shifted.
+    #[inline]
     pub fn principal_point_px(&self) -> DVec2 {
         let [width, height] = [self.width, self.height].map(f64::from);
         DVec2::new(width / 2.0 - self.shift.x * height, height / 2.0 + self.shift.y * height)
@@ -174,6 +176,7 @@ impl Camera {
     }
 
     /// q in half-heights of a pixel position. Inverse of [`Self::pixel_from_q`].
+    #[inline]
     pub fn q_from_pixel(&self, pixel: DVec2) -> DVec2 {
         let half_height = self.height as f64 / 2.0;
         let axis = self.principal_point_px();

@@ -132,6 +132,11 @@ impl<'a> Baker<'a> {
 
     /// The samples of surfaces that are of one block, as if they saw all.
     fn samples(&self, groups: &[(Cell, &Group)]) -> Vec<Vec<Found>> {
+        if !self.radiance.tells_many() {
+            let of_group =
+                |&(cell, group): &(Cell, &Group)| group.samples(self.radiance, &self.view, cell, None, None);
+            return groups.iter().map(of_group).collect();
+        }
         let spots: Vec<_> =
             groups.iter().map(|(cell, group)| group.spot(self.tracer.scene(), *cell)).collect();
         let asked: Vec<_> = spots.iter().copied().flatten().collect();
@@ -160,7 +165,7 @@ impl<'a> Baker<'a> {
         }
         let mut shared = vec![None; groups.len()];
         for (tile, members) in tiles.into_iter().filter(|(_, members)| members.len() > 1) {
-            let points = members.iter().flat_map(|&index| groups[index].1.weighted_points(&self.view));
+            let points = members.iter().flat_map(|&index| groups[index].1.weighted_points());
             let points: Vec<_> = points.filter(|(_, weight)| *weight > 0.0).collect();
             if points.is_empty() {
                 continue;

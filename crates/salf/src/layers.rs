@@ -40,12 +40,19 @@ pub struct Member {
     pub point: Option<SurfacePoint>,
     /// 1/z.
     pub inverse_depth: f64,
-    /// How much of it is there, in (0, 1].
-    pub opacity: f32,
-    /// How much of it the aperture's middle sees past what is in front of it.
-    pub through: f32,
-    /// The same where nothing hides it that is there as a whole.
+}
+
+/// A member that is looked for a group.
+struct Met {
+    member: Member,
+    /// How much of it counts, in [0, 1].
+    share: f32,
+    /// What panes in front of it leave of its ray.
     panes: f32,
+    /// Whether it is the nearest along its ray.
+    is_nearest: bool,
+    /// 1/z of the nearest.
+    nearest: f64,
 }
 
 /// Members of one cell that lie on one smooth surface.
@@ -53,6 +60,10 @@ pub struct Member {
 pub struct Group {
     /// At most one a ray, in the order of their sub-cells.
     pub members: Vec<Member>,
+    /// How much of each counts: its opacity, past what is in front of it where the aperture is a point.
+    shares: Vec<f32>,
+    /// What panes in front of it leave of the first one's ray.
+    panes: f32,
     /// Whether the surface is the nearest along every member's ray.
     pub is_nearest: bool,
     /// Whether a surface less than [`JUST_BEHIND_PX`] of parallax nearer hides every member from the aperture's centre.
@@ -126,10 +137,13 @@ pub fn trace_cell(
             met.extend(first.filter_map(|(ray, hit)| Some((ray, hit?))));
             met
         };
+        let mut left = met.as_slice();
         for (ray, pixel) in pixels.into_iter().enumerate() {
-            let [start, end] = [ray, ray + 1].map(|next| met.partition_point(|(of, _)| *of < next));
+            let count = left.iter().take_while(|(of, _)| *of == ray).count();
+            let (of_ray, others) = left.split_at(count);
+            left = others;
             // Behind the last surface lies the background.
-            let hits = met[start..end].iter().map(|(_, hit)| Some(*hit)).chain([None]).take(most);
+            let hits = of_ray.iter().map(|(_, hit)| Some(*hit)).chain([None]).take(most);
             layers.add_all(tracer, view, placement, density.sub_cells(first + ray), pixel, hits);
         }
     }
@@ -147,11 +161,15 @@ impl Layers {
         pixel: DVec2,
         hits: impl Iterator<Item = Option<Hit>>,
     ) {
+        let is_pinhole = view.optics.aperture_radius == 0.0;
         let (mut nearest, mut through, mut panes) = (0.0, 1.0, 1.0);
         for (layer, hit) in hits.enumerate() {
             let inverse_depth = hit.map_or(0.0, |hit| 1.0 / hit.t);
             let point = hit.map(|hit| hit.point);
-            let opacity = point.map_or(1.0, |point| tracer.scene().opacity(point));
+            let opacity = match point {
+                Some(point) if tracer.blends() => tracer.scene().opacity(point),
+                _ => 1.0,
+            };
             if layer == 0 {
                 self.has_pane |= opacity < 1.0;
                 nearest = inverse_depth;
@@ -159,20 +177,27 @@ impl Layers {
                 *near = near.max(inverse_depth as f32);
                 *far = far.min(inverse_depth as f32);
             }
-            let member = Member { sub_cells, pixel, point, inverse_depth, opacity, through, panes };
+            let met = Met {
+                member: Member { sub_cells, pixel, point, inverse_depth },
+                share: opacity * if is_pinhole { through } else { 1.0 },
+                panes,
+                is_nearest: layer == 0,
+                nearest,
+            };
             through *= 1.0 - opacity;
             panes *= if opacity < 1.0 { 1.0 - opacity } else { 1.0 };
             let is_sampled_here = point.is_none_or(|point| !placement.is_on_surface(point.triangle));
             if is_sampled_here {
-                self.add(tracer, view, member, layer == 0, nearest);
+                self.add(tracer, view, met);
             } else if layer == 0 {
                 self.has_gap = true;
             }
         }
     }
 
-    /// Adds a member; `nearest` is 1/z of the nearest surface along its ray.
-    fn add(&mut self, tracer: &Tracer, view: &View, member: Member, is_nearest: bool, nearest: f64) {
+    /// Adds a member to the group it belongs to, or to one of its own.
+    fn add(&mut self, tracer: &Tracer, view: &View, met: Met) {
+        let Met { member, share, panes, is_nearest, nearest } = met;
         let parallax_px = view.radius_per_kappa_px;
         let is_just_behind = !is_nearest && (nearest - member.inverse_depth) * parallax_px < JUST_BEHIND_PX;
         let part = member.point.map(|p| tracer.scene().triangles[p.triangle as usize].part);
@@ -181,12 +206,13 @@ impl Layers {
             let expected = first.inverse_depth + group.slope.dot(member.pixel - first.pixel);
             group.part == part
                 && group.is_just_behind == is_just_behind
-                && (member.panes - first.panes).abs() <= SAME_PANES
+                && (panes - group.panes).abs() <= SAME_PANES
                 && (member.inverse_depth - expected).abs() * parallax_px <= Occluders::SAME_SURFACE_PX
                 && group.members.last().is_none_or(|last| last.sub_cells != member.sub_cells)
         };
         if let Some(group) = self.groups.iter_mut().find(belongs) {
             group.members.push(member);
+            group.shares.push(share);
             group.is_nearest &= is_nearest;
             return;
         }
@@ -200,7 +226,9 @@ impl Layers {
         }
         let mut members = Vec::with_capacity(Beam::MOST_RAYS);
         members.push(member);
-        self.groups.push(Group { members, is_nearest, is_just_behind, part, tilt, slope });
+        let mut shares = Vec::with_capacity(Beam::MOST_RAYS);
+        shares.push(share);
+        self.groups.push(Group { members, shares, panes, is_nearest, is_just_behind, part, tilt, slope });
     }
 
     /// What they tell of the depths around their cell.
@@ -272,8 +300,7 @@ impl Group {
         received: Option<Received>,
         shared: Option<&TowardCells>,
     ) -> Vec<Found> {
-        let shares = self.shares(view);
-        if shares.iter().all(|&share| share == 0.0) {
+        if self.shares.iter().all(|&share| share == 0.0) {
             return Vec::new();
         }
         let seed = cell.corner.as_uvec2().to_array();
@@ -283,15 +310,16 @@ impl Group {
         let asked = Asked { radiance, view, seed, received, own_only: shared.is_some(), blurred };
         if let Some(shared) = shared {
             let sent = self.toward_middle(&asked);
-            let own = mean(&(0..sent.len()), |ray| (sent[ray], shares[ray]));
-            return self.glossy_samples(cell, &shares, &shared.beside(own));
+            let own = mean(&sent, &self.shares);
+            return self.glossy_samples(cell, &shared.beside(own));
         }
         let is_pinhole = view.optics.aperture_radius == 0.0;
-        let width = self.carried_width(radiance, cell);
+        let middle = self.middle(cell);
+        let width = middle.and_then(|point| radiance.carried_width(point));
         let side = width.map_or(1, |width| outgoing::cells_a_side(view, self.mean_inverse_depth(), width));
         if side > 1 {
-            let points: Vec<_> = self.weighted_points(view).collect();
-            return self.glossy_samples(cell, &shares, &TowardCells::ask(&asked, &points, side));
+            let points: Vec<_> = self.weighted_points().collect();
+            return self.glossy_samples(cell, &TowardCells::ask(&asked, &points, side));
         }
         let sent = match width {
             Some(_) if !is_pinhole => {
@@ -300,17 +328,15 @@ impl Group {
             }
             _ => self.toward_middle(&asked),
         };
-        let mean = |rays: &Range<usize>| mean(rays, |ray| (sent[ray], shares[ray]));
-        let change = nearest(&self.members, self.center(cell))
-            .point
-            .and_then(|point| OwnChange::of(&asked, point, self.mean_inverse_depth()));
+        let mean = |rays: &Range<usize>| mean(&sent[rays.clone()], &self.shares[rays.clone()]);
+        let change = middle.and_then(|point| OwnChange::of(&asked, point, self.mean_inverse_depth()));
         // Few paths tell what a quadrant carries: it may differ by more.
         let even = if width.is_some() { 2.0 } else { 1.0 } * BakeOptions::EVEN_PER_PX * view.tolerance_px;
         let parts = self.parts(cell, even as f32, |rays| mean(rays).total());
         // Looks are kept for the whole picture, most with one sample: no room for more.
         let mut found = Vec::with_capacity(parts.len());
         for rays in parts {
-            let mut add = |kind| found.push(self.sample(cell, rays.clone(), &shares, kind));
+            let mut add = |kind| found.push(self.sample(cell, rays.clone(), kind));
             for kind in mean(&rays).kinds() {
                 match &change {
                     Some(change) if !kind.is_carried => change.parts(&kind).into_iter().for_each(&mut add),
@@ -321,16 +347,9 @@ impl Group {
         found
     }
 
-    /// How much of each member counts.
-    fn shares(&self, view: &View) -> Vec<f32> {
-        let is_pinhole = view.optics.aperture_radius == 0.0;
-        let share = |member: &Member| member.opacity * if is_pinhole { member.through } else { 1.0 };
-        self.members.iter().map(share).collect()
-    }
-
-    /// [`Radiance::carried_width`] in its middle.
-    fn carried_width(&self, radiance: &dyn Radiance, cell: Cell) -> Option<f64> {
-        nearest(&self.members, self.center(cell)).point.and_then(|point| radiance.carried_width(point))
+    /// Its surface in the middle of its sub-cells; `None` of the background.
+    fn middle(&self, cell: Cell) -> Option<SurfacePoint> {
+        nearest(&self.members, self.center(cell)).point
     }
 
     /// Whom it may share its carried light with: those of the same answer. `None` where it sends none, or has to tell it by itself.
@@ -340,7 +359,7 @@ impl Group {
         if tile_side <= cell.side {
             return None;
         }
-        let width = self.carried_width(radiance, cell)?;
+        let width = radiance.carried_width(self.middle(cell)?)?;
         let side = outgoing::cells_a_side(view, depth, width).max(2);
         let [corner, of] = [cell.corner, IVec2::splat(tile_side)];
         let corner = (corner.div_euclid(of) * of).to_array();
@@ -348,9 +367,8 @@ impl Group {
     }
 
     /// Its points with how much of each counts.
-    pub fn weighted_points(&self, view: &View) -> impl Iterator<Item = (SurfacePoint, f32)> {
-        let shares = self.shares(view);
-        self.members.iter().zip(shares).filter_map(|(member, share)| Some((member.point?, share)))
+    pub fn weighted_points(&self) -> impl Iterator<Item = (SurfacePoint, f32)> {
+        self.members.iter().zip(&self.shares).filter_map(|(member, share)| Some((member.point?, *share)))
     }
 
     /// What each member sends to the aperture's middle. Where only light tells one from the next, a few of them stand for all: two
@@ -389,11 +407,11 @@ impl Group {
     }
 
     /// The same where carried light is told on cells of the aperture: it is one for all members.
-    fn glossy_samples(&self, cell: Cell, shares: &[f32], asked: &TowardCells) -> Vec<Found> {
+    fn glossy_samples(&self, cell: Cell, asked: &TowardCells) -> Vec<Found> {
         let all = 0..self.members.len();
         let own = asked.all.kinds().filter(|kind| !kind.is_carried);
         let kinds = own.chain(asked.carried());
-        kinds.map(|kind| self.sample(cell, all.clone(), shares, kind)).collect()
+        kinds.map(|kind| self.sample(cell, all.clone(), kind)).collect()
     }
 
     /// Its members, or those of each quadrant, if their radiance varies by more than this share of the largest.
@@ -419,9 +437,9 @@ impl Group {
         parts.scan(0, following).collect()
     }
 
-    /// The sample that some of its members make, of these shares, of one kind of light.
-    fn sample(&self, cell: Cell, members: Range<usize>, shares: &[f32], kind: Outgoing) -> Found {
-        let there = shares[members.clone()].iter().sum::<f32>() / members.len() as f32;
+    /// The sample that some of its members make, of one kind of light.
+    fn sample(&self, cell: Cell, members: Range<usize>, kind: Outgoing) -> Found {
+        let there = self.shares[members.clone()].iter().sum::<f32>() / members.len() as f32;
         let members = &self.members[members];
         let sub_cells = sub_cells_of(members);
         let CellPart { center, half_size, weight } = cell.part(sub_cells);
@@ -441,10 +459,10 @@ impl Group {
     }
 }
 
-/// What some rays send in the mean. Where none of them is there, they count alike.
-fn mean(rays: &Range<usize>, of: impl Fn(usize) -> (Leaving, f32)) -> Sent {
-    let is_there = rays.clone().any(|ray| of(ray).1 > 0.0);
-    Sent::mean(rays.clone().map(|ray| (of(ray).0, if is_there { of(ray).1 } else { 1.0 })))
+/// What some rays of these shares send in the mean. Where none of them is there, they count alike.
+fn mean(sent: &[Leaving], shares: &[f32]) -> Sent {
+    let is_there = shares.iter().any(|&share| share > 0.0);
+    Sent::mean(sent.iter().zip(shares).map(|(light, share)| (*light, if is_there { *share } else { 1.0 })))
 }
 
 /// Of some members, at least one, the nearest to a place in the picture.
@@ -500,19 +518,19 @@ mod tests {
         let member = |ray: usize| {
             let sub_cells = Density::Coarse.sub_cells(ray);
             let pixel = cell.part(sub_cells).center - DVec2::new(shift, 0.0);
-            Member {
-                sub_cells,
-                pixel,
-                point: None,
-                inverse_depth: 0.0,
-                opacity: 1.0,
-                through: 1.0,
-                panes: 1.0,
-            }
+            Member { sub_cells, pixel, point: None, inverse_depth: 0.0 }
         };
-        let members = (0..Density::Coarse.rays()).map(member).collect();
-        let (tilt, slope) = (DVec2::ZERO, DVec2::ZERO);
-        let group = Group { members, is_nearest: true, is_just_behind: false, part: None, tilt, slope };
+        let members: Vec<_> = (0..Density::Coarse.rays()).map(member).collect();
+        let group = Group {
+            shares: vec![1.0; members.len()],
+            members,
+            panes: 1.0,
+            is_nearest: true,
+            is_just_behind: false,
+            part: None,
+            tilt: DVec2::ZERO,
+            slope: DVec2::ZERO,
+        };
         group.samples(&Halves(light), &view, cell, None, None)
     }
 

@@ -46,6 +46,7 @@ impl<'a> View<'a> {
     }
 
     /// The chief ray through a pixel position; its t is the depth z.
+    #[inline]
     pub fn chief_ray(&self, pixel: DVec2) -> Ray {
         let q = self.camera.q_from_pixel(pixel) * self.optics.tan_half_yfov;
         let direction = self.camera.world_direction(q.extend(1.0));

@@ -5,7 +5,12 @@ use glam::{DVec2, DVec3, Vec3};
 
 impl Scene {
     /// What gloss adds to the picture's light at a point, toward a world position; may be below 0.
+    #[inline]
     pub fn picture_gloss(&self, point: SurfacePoint, eye: DVec3) -> Vec3 {
+        if self.picture.is_none() { Vec3::ZERO } else { self.gloss_of_picture(point, eye) }
+    }
+
+    fn gloss_of_picture(&self, point: SurfacePoint, eye: DVec3) -> Vec3 {
         let Some((gloss, place)) = self.gloss_at(point) else { return Vec3::ZERO };
         // Surfaces of pictures lie before the origin, where their camera stands and looks down −z.
         let position = point.position(self);

@@ -183,16 +183,20 @@ pub struct SceneCamera {
 
 impl Scene {
     /// The world positions of a triangle's corners.
+    #[inline]
     pub fn corners(&self, triangle: u32) -> [DVec3; 3] {
-        self.triangles[triangle as usize].vertices.map(|v| self.positions[v as usize])
+        let [a, b, c] = self.triangles[triangle as usize].vertices;
+        [self.positions[a as usize], self.positions[b as usize], self.positions[c as usize]]
     }
 
     /// The part that a triangle belongs to.
+    #[inline]
     pub fn part_of(&self, triangle: u32) -> &Part {
         &self.parts[self.triangles[triangle as usize].part as usize]
     }
 
     /// The material of a triangle.
+    #[inline]
     pub fn material_of(&self, triangle: u32) -> &Material {
         &self.materials[self.part_of(triangle).material as usize]
     }
@@ -216,6 +220,7 @@ impl Scene {
     }
 
     /// The geometric normal of a triangle, its length twice the area; zero for a degenerate triangle.
+    #[inline]
     pub fn area_normal(&self, triangle: u32) -> DVec3 {
         let [a, b, c] = self.corners(triangle);
         (b - a).cross(c - a)

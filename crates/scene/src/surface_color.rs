@@ -11,7 +11,8 @@ impl Scene {
         if uv.is_empty() {
             return Vec2::ZERO;
         }
-        let [a, b, c] = self.triangles[point.triangle as usize].vertices.map(|v| uv[v as usize]);
+        let [a, b, c] = self.triangles[point.triangle as usize].vertices;
+        let [a, b, c] = [uv[a as usize], uv[b as usize], uv[c as usize]];
         let [wa, wb, wc] = point.weights();
         (a.as_dvec2() * wa + b.as_dvec2() * wb + c.as_dvec2() * wc).as_vec2()
     }
@@ -59,6 +60,7 @@ impl Scene {
     }
 
     /// The share of light that the surface stops, in [0, 1], the alpha mode applied: 1 if opaque, 0 or 1 if masked.
+    #[inline]
     pub fn opacity(&self, point: SurfacePoint) -> f32 {
         match self.material_of(point.triangle).alpha {
             AlphaMode::Opaque => 1.0,

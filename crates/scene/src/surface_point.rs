@@ -14,12 +14,14 @@ pub struct SurfacePoint {
 
 impl SurfacePoint {
     /// The weights of the triangle's three corners; they sum to 1.
+    #[inline]
     pub fn weights(self) -> [f64; 3] {
         let DVec2 { x: b1, y: b2 } = self.barycentric;
         [1.0 - b1 - b2, b1, b2]
     }
 
     /// The point in world space.
+    #[inline]
     pub fn position(self, scene: &Scene) -> DVec3 {
         let [a, b, c] = scene.corners(self.triangle);
         let [wa, wb, wc] = self.weights();

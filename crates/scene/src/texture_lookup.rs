@@ -46,51 +46,90 @@ impl Wrap {
 impl Image {
     /// RGBA of the texel in column `x` of row `y`, both within the image: linear RGB of an image of colours, else the numbers
     /// as they are, in [0, 1].
-    #[inline(always)]
     pub fn texel(&self, x: u32, y: u32, is_color: bool) -> Vec4 {
-        let at = 4 * (y as usize * self.width as usize + x as usize);
-        match &self.texels {
-            ImageLevel::Bits8(data) => {
-                let t = &data[at..at + 4];
-                if !is_color {
-                    return Vec4::from_array([t[0], t[1], t[2], t[3]].map(f32::from)) * (1.0 / 255.0);
-                }
-                let lut = &*LINEAR_FROM_8;
-                let of = |k: usize| lut[t[k] as usize];
-                Vec4::new(of(0), of(1), of(2), f32::from(t[3]) * (1.0 / 255.0))
-            }
-            ImageLevel::Bits16(data) => {
-                let t = &data[at..at + 4];
-                if !is_color {
-                    return Vec4::from_array([t[0], t[1], t[2], t[3]].map(f32::from)) * (1.0 / 65535.0);
-                }
-                let lut = &*LINEAR_FROM_16;
-                let of = |k: usize| lut[t[k] as usize];
-                Vec4::new(of(0), of(1), of(2), f32::from(t[3]) * (1.0 / 65535.0))
-            }
-            ImageLevel::Float(data) => Vec4::from_slice(&data[at..at + 4]),
-        }
+        let at = self.start_of(x, y);
+        self.mean(&Texels { starts: [at; 4], shares: None }, is_color)
     }
 
     /// RGBA at texture coordinates; of colours linear.
     #[inline]
     pub fn sample(&self, uv: Vec2, wrap: [Wrap; 2], nearest: bool, is_color: bool) -> Vec4 {
+        /// Not more than half the range of i32, so that the right neighbour has a number too.
+        const FAR: f32 = (1 << 30) as f32;
         let (w, h) = (self.width as i32, self.height as i32);
-        let texel =
-            |x: i32, y: i32| self.texel(wrap[0].fold(x, w) as u32, wrap[1].fold(y, h) as u32, is_color);
-        let at = uv * Vec2::new(w as f32, h as f32);
-        if nearest {
-            return texel(at.x.floor() as i32, at.y.floor() as i32);
-        }
-        let at = at - 0.5;
-        let low = at.floor();
-        let f = at - low;
-        // Not more than half the range of i32, so that the right neighbour has a number too.
-        let (x, y) = ((low.x as i32).clamp(-(1 << 30), 1 << 30), (low.y as i32).clamp(-(1 << 30), 1 << 30));
-        let top = texel(x, y) * (1.0 - f.x) + texel(x + 1, y) * f.x;
-        let bottom = texel(x, y + 1) * (1.0 - f.x) + texel(x + 1, y + 1) * f.x;
-        top * (1.0 - f.y) + bottom * f.y
+        let start = |x: i32, y: i32| self.start_of(wrap[0].fold(x, w) as u32, wrap[1].fold(y, h) as u32);
+        let at = uv * Vec2::new(w as f32, h as f32) - if nearest { 0.0 } else { 0.5 };
+        let at = at.clamp(Vec2::splat(-FAR), Vec2::splat(FAR));
+        let [x, y] = at.to_array().map(floor);
+        let texels = match nearest {
+            true => Texels { starts: [start(x, y); 4], shares: None },
+            false => Texels {
+                starts: [start(x, y), start(x + 1, y), start(x, y + 1), start(x + 1, y + 1)],
+                shares: Some(at - Vec2::new(x as f32, y as f32)),
+            },
+        };
+        self.mean(&texels, is_color)
     }
+
+    /// Where a texel's numbers begin.
+    #[inline]
+    fn start_of(&self, x: u32, y: u32) -> usize {
+        4 * (y as usize * self.width as usize + x as usize)
+    }
+
+    /// The mean of some texels.
+    #[inline]
+    fn mean(&self, of: &Texels, is_color: bool) -> Vec4 {
+        match (&self.texels, is_color) {
+            (ImageLevel::Bits8(data), true) => of.mean(|at| color(&data[at..at + 4], &*LINEAR_FROM_8, 255.0)),
+            (ImageLevel::Bits8(data), false) => of.mean(|at| numbers(&data[at..at + 4], 255.0)),
+            (ImageLevel::Bits16(data), true) => {
+                of.mean(|at| color(&data[at..at + 4], &LINEAR_FROM_16, 65535.0))
+            }
+            (ImageLevel::Bits16(data), false) => of.mean(|at| numbers(&data[at..at + 4], 65535.0)),
+            (ImageLevel::Float(data), _) => of.mean(|at| Vec4::from_slice(&data[at..at + 4])),
+        }
+    }
+}
+
+/// Texels whose mean is wanted: which they are is found once, how they are read once for all of them.
+struct Texels {
+    /// Where the numbers of each begin: upper left, upper right, lower left, lower right.
+    starts: [usize; 4],
+    /// How far the place lies toward the right and the lower ones, in [0, 1]; none where the first is all.
+    shares: Option<Vec2>,
+}
+
+impl Texels {
+    #[inline]
+    fn mean(&self, texel: impl Fn(usize) -> Vec4) -> Vec4 {
+        let [upper_left, upper_right, lower_left, lower_right] = self.starts;
+        let Some(to) = self.shares else { return texel(upper_left) };
+        let upper = texel(upper_left) * (1.0 - to.x) + texel(upper_right) * to.x;
+        let lower = texel(lower_left) * (1.0 - to.x) + texel(lower_right) * to.x;
+        upper * (1.0 - to.y) + lower * to.y
+    }
+}
+
+/// The largest whole number that is not above `v`, which is within the range of i32: quicker than [`f32::floor`], which not every
+/// processor has an instruction for.
+#[inline]
+fn floor(v: f32) -> i32 {
+    let toward_zero = v as i32;
+    toward_zero - i32::from(toward_zero as f32 > v)
+}
+
+/// A texel of colours by the table that decodes them; its opacity is linear, of `most`.
+#[inline]
+fn color<T: Copy + Into<f32> + Into<usize>>(texel: &[T], linear: &[f32], most: f32) -> Vec4 {
+    let of = |k: usize| linear[Into::<usize>::into(texel[k])];
+    Vec4::new(of(0), of(1), of(2), Into::<f32>::into(texel[3]) * (1.0 / most))
+}
+
+/// The four numbers of a texel, of `most`.
+#[inline]
+fn numbers<T: Copy + Into<f32>>(texel: &[T], most: f32) -> Vec4 {
+    Vec4::new(texel[0].into(), texel[1].into(), texel[2].into(), texel[3].into()) * (1.0 / most)
 }
 
 impl Scene {

@@ -64,6 +64,8 @@ pub struct Transport {
     lights: Lights,
     media: Media,
     kept: Kept,
+    /// Whether any surface receives light.
+    is_lit: bool,
     /// Directions of the sky, once they are asked for.
     sky: OnceLock<Vec<LightSample>>,
 }
@@ -119,7 +121,8 @@ impl Transport {
     pub fn new(tracer: Arc<Tracer>, world: World, options: TransportOptions) -> Self {
         let scene = tracer.scene();
         let (lights, media) = (Lights::of(scene, &world), Media::of(scene));
-        Self { tracer, world, options, lights, media, kept: Kept::Nothing, sky: OnceLock::new() }
+        let is_lit = scene.parts.iter().any(|part| !scene.materials[part.material as usize].unlit);
+        Self { tracer, world, options, lights, media, kept: Kept::Nothing, is_lit, sky: OnceLock::new() }
     }
 
     /// The same with light that is known already, of the same scene and world.
@@ -343,10 +346,13 @@ impl Radiance for Transport {
 
     fn leaving_among(&self, point: SurfacePoint, eye: DVec3, among: Among) -> Leaving {
         let scene = self.scene();
+        if scene.material_of(point.triangle).unlit {
+            return Leaving::own((scene.emitted(point) + scene.picture_gloss(point, eye)).max(Vec3::ZERO));
+        }
         let outgoing = (eye - point.position(scene)).normalize_or_zero();
         let emitted = emitted(scene, point, outgoing);
-        if scene.material_of(point.triangle).unlit || outgoing == DVec3::ZERO {
-            return Leaving::own((emitted + scene.picture_gloss(point, eye)).max(Vec3::ZERO));
+        if outgoing == DVec3::ZERO {
+            return Leaving::own(emitted);
         }
         let at = MaterialPoint::of(scene, point, self.options.scattering);
         let is_front = at.frame.geometric.dot(outgoing) >= 0.0;
@@ -409,6 +415,10 @@ impl Radiance for Transport {
             carried_share: carried_share as f32,
             by_chance: [by_chance.own, by_chance.carried].map(|light| light.as_vec3()),
         }
+    }
+
+    fn tells_many(&self) -> bool {
+        self.is_lit && self.kept.trusted().is_some()
     }
 
     fn received(&self, spots: &[Spot], eye: DVec3) -> Vec<Option<Received>> {

@@ -40,6 +40,11 @@ pub trait Radiance: Sync {
         self.leaving(point, eye)
     }
 
+    /// Whether [`Self::received`] tells anything, so that spots are to be asked many at once.
+    fn tells_many(&self) -> bool {
+        false
+    }
+
     /// What light spots receive that lie close together in the picture that `eye` sees: told of many at once, since a few of
     /// them tell most. `None` of a spot that has to be asked by itself. One answer a spot, for [`Among::received`] of its points.
     fn received(&self, spots: &[Spot], _eye: DVec3) -> Vec<Option<Received>> {
