@@ -1,10 +1,11 @@
 //! What views show of blocks of pixels, beside what the picture does.
 
 use crate::cells::Grid;
+use crate::covers::place;
 use crate::error::ReliefError;
 use crate::look::distance;
 use crate::other_view::OtherView;
-use crate::other_views::{Seen, interpolated, nearest, place};
+use crate::other_views::{Seen, interpolated, nearest};
 use progress::Progress;
 use rayon::prelude::*;
 
