@@ -142,9 +142,10 @@ impl Relief {
         let is_in_picture = |cell| frame.is_in_picture(cell);
         let Texture { colors, is_seen, mut opacity } =
             texture(grid, shown, is_in_picture, &hidden, &mixed, &told);
-        let plain = plain(&frame, &links, &opacity);
+        let whole: Vec<bool> =
+            (0..grid.count()).map(|cell| frame.is_in_picture(cell) && opacity[cell] == 1.0).collect();
         let seen = Seen { frame: &frame, front: &front, jump };
-        let gloss = gloss(&seen, &colors[0], &plain, views, &Stage::new(progress, 0.5, 0.9))?;
+        let gloss = gloss(&seen, &colors[0], &whole, views, &Stage::new(progress, 0.5, 0.9))?;
         let Hidden { disparity: back, links: back_links, onward, .. } = hidden;
         let cells = Cells { grid, disparity: [front, back], links: [links, back_links], onward };
         let mut mesh = Mesh::of(grid);
@@ -214,19 +215,6 @@ fn told_apart(
         (opacity[mixed.cell], colors[mixed.cell]) = (share, before);
     }
     ToldApart { disparity, opacity, colors }
-}
-
-/// By cell, whether it is one of the picture's pixels, whole, and hangs together with all around it, as those beside it do: nothing else
-/// is mixed into it in any view.
-fn plain(frame: &Frame, links: &Links, opacity: &[f32]) -> Vec<bool> {
-    let grid = frame.grid;
-    let hangs_together =
-        |cell: usize| opacity[cell] == 1.0 && grid.around(cell).all(|(side, _)| links.has(cell, side));
-    let inner: Vec<bool> = (0..grid.count()).map(hangs_together).collect();
-    let is_plain = |cell: usize| {
-        frame.is_in_picture(cell) && inner[cell] && grid.around(cell).all(|(_, other)| inner[other])
-    };
-    (0..grid.count()).map(is_plain).collect()
 }
 
 /// Triangles as they are found, and the points that they share.
