@@ -163,10 +163,13 @@ fn picture_header(ui: &mut Ui, session: &Session, picture: &mut PictureView, act
     if ui.checkbox(&mut wiping, "Compare").on_hover_text(tip).changed() {
         actions.push(CommandId::Wipe.into());
     }
-    ui.add_enabled_ui(wiping && !picture.shown.is_pair(), |ui| {
-        let of: Vec<Shown> = Shown::ALL.into_iter().filter(|shown| !shown.is_pair()).collect();
-        choose_picture(ui, session, "Compared picture", &of, &mut picture.wipe.against)
-    });
+    // Pictures for two eyes are compared with nothing: what can be said of them has its place.
+    if !picture.shown.is_pair() {
+        ui.add_enabled_ui(wiping, |ui| {
+            let of: Vec<Shown> = Shown::ALL.into_iter().filter(|shown| !shown.is_pair()).collect();
+            choose_picture(ui, session, "Compared picture", &of, &mut picture.wipe.against)
+        });
+    }
     if matches!(picture.shown, Shown::Anaglyph | Shown::SideBySide) && session.is_fixating() {
         let response = ui.button("Fixated ×");
         if response.on_hover_text(keys::tip(ui.ctx(), CommandId::FixateFocus)).clicked() {

@@ -21,13 +21,15 @@ impl Frame {
 
     /// The picture's pixels, and in the margin those at its border.
     pub fn continued<T: Copy>(&self, values: &[T]) -> Vec<T> {
+        (0..self.grid.count()).map(|cell| values[self.pixel(cell)]).collect()
+    }
+
+    /// The picture's pixel at a cell; in the margin, the nearest one.
+    pub fn pixel(&self, cell: usize) -> usize {
         let [width, height] = self.picture();
-        let at = |cell: usize| {
-            let x = (cell % self.grid.width).clamp(self.margin, self.margin + width - 1) - self.margin;
-            let y = (cell / self.grid.width).clamp(self.margin, self.margin + height - 1) - self.margin;
-            values[y * width + x]
-        };
-        (0..self.grid.count()).map(at).collect()
+        let x = (cell % self.grid.width).clamp(self.margin, self.margin + width - 1) - self.margin;
+        let y = (cell / self.grid.width).clamp(self.margin, self.margin + height - 1) - self.margin;
+        y * width + x
     }
 
     /// Whether a cell is one of the picture's pixels.

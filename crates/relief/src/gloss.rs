@@ -48,11 +48,11 @@ impl Gloss {
     pub const NONE: u32 = u32::MAX;
 }
 
-/// The gloss of the cells of the first layer that are `plain`: whole, and at no jump. None where no block has any.
+/// The gloss of the cells of the first layer that are `whole`: there in the picture, and not in part. None where no block has any.
 pub(crate) fn gloss<E: Send>(
     seen: &Seen<'_>,
     shown: &[[f32; 3]],
-    plain: &[bool],
+    whole: &[bool],
     views: &[OtherView<'_, E>],
     progress: &dyn Progress,
 ) -> Result<Option<Gloss>, ReliefError<E>> {
@@ -60,7 +60,7 @@ pub(crate) fn gloss<E: Send>(
     if views.is_empty() || reach == [0.0; 2] {
         return Ok(None);
     }
-    let sightings = Sightings::of(seen, shown, plain, views, progress)?;
+    let sightings = Sightings::of(seen, shown, whole, views, progress)?;
     let place = |view: &OtherView<'_, E>| {
         [0, 1].map(|axis| if reach[axis] > 0.0 { view.offset[axis] / reach[axis] } else { 0.0 })
     };

@@ -6,9 +6,9 @@
 //!
 //! ```text
 //! disparities ─▶ jumps ─▶ matte ─▶ hidden ─▶ corners ─▶ triangulation ─▶ Relief
-//!  (a pixel each)  │       │          │                                   ▲
-//!                  │       │          └──────▶ texture (from other_views, ┘
-//!                  │       │                            or invented)
+//!  (a pixel each)  │       │ ▲        │                                   ▲
+//!                  │       │ │        └──────▶ texture (from other_views, ┘
+//!                  │       │ └ snapping                 or invented)
 //!                  │       └ pixels that show both sides told apart (cut by an outline, or there in part)
 //!                  └ cut where depth jumps, pixels between put on one side
 //! ```
@@ -20,6 +20,7 @@
 
 mod cells;
 mod corners;
+mod covers;
 mod error;
 mod fading;
 mod filling;
@@ -34,6 +35,8 @@ mod other_views;
 mod outline;
 mod relief;
 mod repair;
+mod roughness;
+mod snapping;
 mod steps;
 mod texture;
 mod triangulation;
@@ -45,4 +48,5 @@ pub use gloss::{GLOSS_TERMS, Gloss};
 pub use other_view::OtherView;
 pub use relief::{Relief, ReliefOptions, ReliefVertex, TEXTURE_LAYERS};
 pub use repair::{DepthRepair, DepthStroke, repaired};
+pub use roughness::roughness;
 pub use upsampling::upsampled;

@@ -58,57 +58,61 @@ pub(crate) fn edges(
     (0..grid.count()).into_par_iter().filter_map(look).collect()
 }
 
-/// Those of the edges that do show both sides. Those of the farther side are then taken for the nearer one's, which they are part of: their
-/// disparities change.
+/// Those of the edges that do show both sides. Those of the farther side are then taken for the nearer one's, which they are part of: the
+/// disparities with that, too.
 pub(crate) fn mixtures(
     grid: Grid,
-    disparity: &mut [f32],
+    disparity: &[f32],
     links: &Links,
     colors: &[[f32; 3]],
     edges: &[Mixed],
     jump: f32,
-) -> Vec<Mixed> {
+) -> (Vec<f32>, Vec<Mixed>) {
     let told: Vec<Mixed> = edges.iter().filter_map(|edge| mixed(colors[edge.cell], *edge)).collect();
-    take_across(grid, disparity, links, told.iter().filter(|told| told.is_beyond), jump);
-    told
+    let across = across(grid, disparity, links, told.iter().filter(|told| told.is_beyond), jump);
+    (across, told)
 }
 
-/// Puts edges of depth where the picture has them: pixels that show only what is on the other side of their jump belong there. Tells whether
-/// there were any.
-pub(crate) fn snap(grid: Grid, disparity: &mut [f32], links: &Links, colors: &[[f32; 3]], jump: f32) -> bool {
+/// Pixels beside jumps that show only what is on the other side.
+pub(crate) fn wrong(
+    grid: Grid,
+    disparity: &[f32],
+    links: &Links,
+    colors: &[[f32; 3]],
+    jump: f32,
+) -> Vec<Mixed> {
     let told = edges(grid, disparity, links, colors, jump);
     let is_wrong = |told: &Mixed| match told.is_beyond {
         true => told.share >= WHOLE,
         false => told.share <= 1.0 - WHOLE,
     };
     let told = told.into_iter().filter_map(|edge| mixed(colors[edge.cell], edge));
-    let wrong: Vec<Mixed> = told.filter(is_wrong).collect();
-    take_across(grid, disparity, links, wrong.iter(), jump);
-    !wrong.is_empty()
+    told.filter(is_wrong).collect()
 }
 
-/// Gives pixels beside jumps the disparity of what is on the other side.
-fn take_across<'a>(
+/// The disparities where pixels beside jumps have that of what is on the other side.
+pub(crate) fn across<'a>(
     grid: Grid,
-    disparity: &mut [f32],
+    disparity: &[f32],
     links: &Links,
-    pixels: impl Iterator<Item = &'a Mixed>,
+    pixels: impl IntoIterator<Item = &'a Mixed>,
     jump: f32,
-) {
-    let was = disparity.to_vec();
+) -> Vec<f32> {
+    let mut across = disparity.to_vec();
     for pixel in pixels {
         let (mut sum, mut count) = (0.0, 0.0);
         for (side, other) in grid.around(pixel.cell) {
-            let step = was[other] - was[pixel.cell];
+            let step = disparity[other] - disparity[pixel.cell];
             if !links.has(pixel.cell, side) && if pixel.is_beyond { step > jump } else { step < -jump } {
-                sum += was[other];
+                sum += disparity[other];
                 count += 1.0;
             }
         }
         if count > 0.0 {
-            disparity[pixel.cell] = sum / count;
+            across[pixel.cell] = sum / count;
         }
     }
+    across
 }
 
 /// A mixture, told anew: once it is known what lies behind. The colours of both sides, of which it is made exactly.

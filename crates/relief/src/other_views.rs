@@ -1,6 +1,7 @@
 //! What other views show of places that the picture does not.
 
 use crate::cells::Grid;
+use crate::covers::{Cover, Layer, covers, place, touched};
 use crate::error::ReliefError;
 use crate::frame::Frame;
 use crate::look::{Look, Looks};
@@ -10,8 +11,10 @@ use rayon::prelude::*;
 
 /// A pixel covers those beside it if it reaches into them by so much.
 const RIM_SHARE: f32 = 0.25;
-/// Views in which something nearer is two pixels off count so little beside those in which it is farther: edges are mixed.
-const BESIDE_EDGES: f32 = 1e-3;
+/// What is told of pixels at the edges of what stands before counts so little beside what others show by itself: edges are off a little.
+const BESIDE_EDGES: f32 = 0.2;
+/// Where less than this of it is left, a view tells nothing.
+const LEAST_LEFT: f32 = 0.05;
 
 /// A place that the picture does not show.
 #[derive(Clone, Copy)]
@@ -29,11 +32,13 @@ pub(crate) struct Seen<'a> {
 }
 
 impl Seen<'_> {
-    /// What other views show of places, where one does.
+    /// What other views show of places, where one does; in pixels that they share with what stands before, what is left of their
+    /// light.
     pub fn looks<E: Send>(
         &self,
         asked: &[Asked],
-        views: &[OtherView<'_, E>],
+        before: Layer,
+        views: &[&OtherView<'_, E>],
         progress: &dyn Progress,
     ) -> Result<Vec<Option<Look>>, ReliefError<E>> {
         let mut sums = vec![Looks::default(); asked.len()];
@@ -51,28 +56,30 @@ impl Seen<'_> {
             if shown.len() != picture.count() {
                 continue;
             }
-            let nearest = nearest(grid, self.front, view.offset);
+            let covers = covers(grid, before, view.offset, self.jump);
             sums.par_iter_mut().zip(asked).for_each(|(sum, asked)| {
+                let most = asked.disparity + self.jump;
                 let place = place(grid, asked.cell, asked.disparity, view.offset);
-                let is_open = |around| is_open(grid, &nearest, place, around, asked.disparity + self.jump);
-                let weight = match (is_open(1), is_open(2)) {
-                    (false, _) => return,
-                    (true, false) => BESIDE_EDGES,
-                    (true, true) => 1.0,
-                };
-                if let Some(color) = interpolated(picture, &shown, place.map(|at| at - margin)) {
-                    sum.add(color, weight);
+                if !is_in(picture, place.map(|at| at - margin)) {
+                    return;
                 }
+                let (mut left, mut light) = (0.0, [0.0; 3]);
+                for (pixel, share) in touched(grid, place) {
+                    // The border goes on.
+                    let color = shown[self.frame.pixel(pixel)];
+                    let (open, of_pixel) = covers[pixel].left(color, most);
+                    left += share * open;
+                    (0..3).for_each(|c| light[c] += share * of_pixel[c]);
+                }
+                if left < LEAST_LEFT {
+                    return;
+                }
+                let weight = if is_clear(grid, &covers, place, most) { 1.0 } else { BESIDE_EDGES };
+                sum.add(light.map(|light| (light / left).max(0.0)), left * left * weight);
             });
         }
         Ok(sums.iter().map(Looks::look).collect())
     }
-}
-
-/// Where a view shows a cell's middle, pixels from its upper left corner.
-pub(crate) fn place(grid: Grid, cell: usize, disparity: f32, [dx, dy]: [f32; 2]) -> [f32; 2] {
-    let (x, y) = ((cell % grid.width) as f32 + 0.5, (cell / grid.width) as f32 + 0.5);
-    [x - disparity * dx, y - disparity * dy]
 }
 
 /// The disparity of what is nearest in each pixel of a view, as far as the first layer tells.
@@ -98,21 +105,25 @@ pub(crate) fn nearest(grid: Grid, front: &[f32], offset: [f32; 2]) -> Vec<f32> {
     nearest
 }
 
-/// Whether nothing of more disparity than `most` is at a place or `around` it.
-fn is_open(grid: Grid, nearest: &[f32], [x, y]: [f32; 2], around: isize, most: f32) -> bool {
+/// Whether nothing of more disparity than `most` is at a place or beside it.
+fn is_clear(grid: Grid, covers: &[Cover], [x, y]: [f32; 2], most: f32) -> bool {
     let (x, y) = (x.floor() as isize, y.floor() as isize);
-    (y - around..=y + around).all(|y| {
-        (x - around..=x + around).all(|x| {
+    (y - 1..=y + 1).all(|y| {
+        (x - 1..=x + 1).all(|x| {
             let is_in = (0..grid.width as isize).contains(&x) && (0..grid.height as isize).contains(&y);
-            !is_in || nearest[grid.at(x as usize, y as usize)] <= most
+            !is_in || covers[grid.at(x as usize, y as usize)].nearest <= most
         })
     })
 }
 
+/// Whether a place is in a picture.
+fn is_in(picture: Grid, [x, y]: [f32; 2]) -> bool {
+    x >= 0.0 && y >= 0.0 && x <= picture.width as f32 && y <= picture.height as f32
+}
+
 /// What a picture shows at a place in it.
 pub(crate) fn interpolated(grid: Grid, picture: &[[f32; 3]], [x, y]: [f32; 2]) -> Option<[f32; 3]> {
-    let is_in = x >= 0.0 && y >= 0.0 && x <= grid.width as f32 && y <= grid.height as f32;
-    if !is_in {
+    if !is_in(grid, [x, y]) {
         return None;
     }
     let (x, y) = (x - 0.5, y - 0.5);

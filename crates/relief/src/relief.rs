@@ -2,22 +2,21 @@
 
 use crate::cells::{Cells, Grid, Links};
 use crate::corners::Corner;
+use crate::covers::Layer;
 use crate::error::ReliefError;
 use crate::frame::Frame;
 use crate::gloss::{Gloss, gloss};
 use crate::hidden::{Hidden, hidden};
-use crate::matte::Mixed;
+use crate::matte::{Mixed, unmixed};
 use crate::other_view::OtherView;
 use crate::other_views::{Asked, Seen};
+use crate::snapping::snap;
 use crate::texture::{Texture, texture};
 use crate::triangulation::{Metric, Triangulation};
 use crate::{jumps, matte, outline, steps};
 use glam::Vec2;
 use progress::{Progress, Stage};
 use std::collections::HashMap;
-
-/// Edges of depth are off the picture's by so many pixels at most.
-const SNAPPED: usize = 2;
 
 /// How a surface is made.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -108,15 +107,11 @@ impl Relief {
         let (mut front, shown) = (frame.continued(disparity), frame.continued(picture));
         jumps::snap(grid, &mut front, &shown, jump);
         steps::even_out(grid, &mut front, jump);
-        let mut links = jumps::links(grid, &front, jump);
-        for _ in 0..SNAPPED {
-            if !matte::snap(grid, &mut front, &links, &shown, jump) {
-                break;
-            }
-            links = jumps::links(grid, &front, jump);
-        }
+        let stage = Stage::new(progress, 0.0, 0.1);
+        let (stays, links) = snap(&frame, &mut front, &shown, views, jump, &stage)?;
         let reach = options.reach * options.beyond;
-        let edges = matte::edges(grid, &front, &links, &shown, jump);
+        let mut edges = matte::edges(grid, &front, &links, &shown, jump);
+        edges.retain(|edge| !stays[edge.cell]);
         progress.check().map_err(ReliefError::Cancelled)?;
 
         // What else is to be shown: beside the picture, behind it, and what edges are told apart by. They may move by a cell.
@@ -130,7 +125,9 @@ impl Relief {
         let asked = beside.chain(behind).filter(|(_, asked)| !asked.disparity.is_nan());
         let (places, asked): (Vec<usize>, Vec<Asked>) = asked.unzip();
         let seen = Seen { frame: &frame, front: &front, jump };
-        let looks = seen.looks(&asked, views, &Stage::new(progress, 0.1, 0.5))?;
+        let all: Vec<_> = views.iter().collect();
+        let before = told_apart(grid, &front, &links, &shown, &edges, jump);
+        let looks = seen.looks(&asked, before.layer(), &all, &Stage::new(progress, 0.1, 0.5))?;
         let mut told = vec![None; TEXTURE_LAYERS * grid.count()];
         places.into_iter().zip(looks).for_each(|(place, look)| told[place] = look);
 
@@ -138,16 +135,17 @@ impl Relief {
             .into_iter()
             .map(|edge| Mixed { behind: told[grid.count() + edge.cell].unwrap_or(edge.behind), ..edge })
             .collect();
-        let mixed = matte::mixtures(grid, &mut front, &links, &shown, &edges, jump);
+        let (front, mixed) = matte::mixtures(grid, &front, &links, &shown, &edges, jump);
         let links = jumps::links(grid, &front, jump);
         let hidden = hidden(grid, &front, &links, reach, 0.0, jump);
         progress.check().map_err(ReliefError::Cancelled)?;
         let is_in_picture = |cell| frame.is_in_picture(cell);
         let Texture { colors, is_seen, mut opacity } =
             texture(grid, shown, is_in_picture, &hidden, &mixed, &told);
-        let plain = plain(&frame, &links, &opacity);
+        let whole: Vec<bool> =
+            (0..grid.count()).map(|cell| frame.is_in_picture(cell) && opacity[cell] == 1.0).collect();
         let seen = Seen { frame: &frame, front: &front, jump };
-        let gloss = gloss(&seen, &colors[0], &plain, views, &Stage::new(progress, 0.5, 0.9))?;
+        let gloss = gloss(&seen, &colors[0], &whole, views, &Stage::new(progress, 0.5, 0.9))?;
         let Hidden { disparity: back, links: back_links, onward, .. } = hidden;
         let cells = Cells { grid, disparity: [front, back], links: [links, back_links], onward };
         let mut mesh = Mesh::of(grid);
@@ -189,17 +187,34 @@ impl Relief {
     }
 }
 
-/// By cell, whether it is one of the picture's pixels, whole, and hangs together with all around it, as those beside it do: nothing else
-/// is mixed into it in any view.
-fn plain(frame: &Frame, links: &Links, opacity: &[f32]) -> Vec<bool> {
-    let grid = frame.grid;
-    let hangs_together =
-        |cell: usize| opacity[cell] == 1.0 && grid.around(cell).all(|(side, _)| links.has(cell, side));
-    let inner: Vec<bool> = (0..grid.count()).map(hangs_together).collect();
-    let is_plain = |cell: usize| {
-        frame.is_in_picture(cell) && inner[cell] && grid.around(cell).all(|(_, other)| inner[other])
-    };
-    (0..grid.count()).map(is_plain).collect()
+/// The first layer as far as the picture alone tells its edges apart.
+struct ToldApart {
+    disparity: Vec<f32>,
+    opacity: Vec<f32>,
+    colors: Vec<[f32; 3]>,
+}
+
+impl ToldApart {
+    fn layer(&self) -> Layer<'_> {
+        Layer { disparity: &self.disparity, opacity: &self.opacity, colors: &self.colors }
+    }
+}
+
+fn told_apart(
+    grid: Grid,
+    front: &[f32],
+    links: &Links,
+    shown: &[[f32; 3]],
+    edges: &[Mixed],
+    jump: f32,
+) -> ToldApart {
+    let (disparity, mixed) = matte::mixtures(grid, front, links, shown, edges, jump);
+    let (mut opacity, mut colors) = (vec![1.0; grid.count()], shown.to_vec());
+    for mixed in mixed {
+        let (share, [before, _]) = unmixed(shown[mixed.cell], &mixed);
+        (opacity[mixed.cell], colors[mixed.cell]) = (share, before);
+    }
+    ToldApart { disparity, opacity, colors }
 }
 
 /// Triangles as they are found, and the points that they share.

@@ -324,6 +324,53 @@ fn what_other_views_show_behind_an_edge_tells_how_much_of_it_is_there() {
 }
 
 #[test]
+fn what_lies_behind_is_told_up_to_the_edge_that_hides_it() {
+    let wall = |x: f32| [0.05, 0.4 + 0.3 * (0.4 * x).sin(), 0.6];
+    let shown = |offset: f32| {
+        let (near, far) = (2.0 * offset, 0.3 * offset);
+        soft_card(20.0 - near, 49.4 - near, [0.8, 0.1, 0.05], |x| wall(x + far))
+    };
+    let view = |offset: f32| OtherView::<Infallible> {
+        offset: [offset, 0.0],
+        read: Box::new(move || Ok(shown(offset))),
+    };
+    let options = ReliefOptions { reach: 4.0, ..ReliefOptions::default() };
+    let views = [1.0, 2.0, 3.0, 4.0].map(view);
+    let relief = Relief::of(SIZE, &disparities(card_at), &shown(0.0), &views, &options, &Unwatched).unwrap();
+    // The last view looks 6.8 px behind it: where it shows the wall last, half of a pixel is the card's.
+    for x in 43..50 {
+        let behind = SIZE[0] * SIZE[1] + 20 * SIZE[0] + x;
+        let (told, expected) = (relief.texture[behind], wall(x as f32 + 0.5));
+        assert!((0..3).all(|c| (told[c] - expected[c]).abs() < 0.02), "{told:?}, not {expected:?} at {x}");
+        assert!(relief.is_seen[behind], "{x}");
+    }
+}
+
+#[test]
+fn what_looks_like_the_other_side_stays_where_views_show_it() {
+    // The wall has a stripe of the card's colour right beside the card.
+    let card = [0.8, 0.1, 0.05];
+    let wall = |x: f32| if (50.0..51.0).contains(&x) { card } else { [0.05, 0.2, 0.6] };
+    let shown = |offset: f32| {
+        let (near, far) = (2.0 * offset, 0.5 * offset);
+        soft_card(20.0 - near, 50.0 - near, card, |x| wall(x + far))
+    };
+    let view = |offset: f32| OtherView::<Infallible> {
+        offset: [offset, 0.0],
+        read: Box::new(move || Ok(shown(offset))),
+    };
+    let options = ReliefOptions { reach: 4.0, ..ReliefOptions::default() };
+    let found = |views: &[OtherView<'_, Infallible>]| {
+        let disparity = disparities(|x, y| if self::card(x, y) == 2.0 { 2.0 } else { 0.5 });
+        let relief = Relief::of(SIZE, &disparity, &shown(0.0), views, &options, &Unwatched).unwrap();
+        first_layer(&relief, Vec2::new(50.4, 20.4)).0
+    };
+    assert!((found(&[]) - 2.0).abs() < 0.05, "the picture alone cannot tell");
+    let found = found(&[-4.0, -2.0, 2.0, 4.0].map(view));
+    assert!((found - 0.5).abs() < 0.05, "{found}");
+}
+
+#[test]
 fn edges_of_depth_go_where_the_picture_has_them() {
     let options = ReliefOptions { reach: 4.0, ..ReliefOptions::default() };
     let picture = soft_card(20.0, 50.0, [0.8, 0.1, 0.05], |_| [0.05, 0.2, 0.6]);

@@ -1,10 +1,11 @@
 //! What views show of blocks of pixels, beside what the picture does.
 
 use crate::cells::Grid;
+use crate::covers::place;
 use crate::error::ReliefError;
 use crate::look::distance;
 use crate::other_view::OtherView;
-use crate::other_views::{Seen, interpolated, nearest, place};
+use crate::other_views::{Seen, interpolated, nearest};
 use progress::Progress;
 use rayon::prelude::*;
 
@@ -61,18 +62,18 @@ const STEP: f32 = 1.0 / 4096.0;
 /// Bytes that sightings take at most: blocks are of several pixels where they would not fit.
 const MOST_BYTES: usize = 192 << 20;
 /// Views in which something nearer is as near as this are left out, px: their edges are mixed.
-const BESIDE: usize = 2;
+const BESIDE: usize = 1;
 /// Blocks darker than this tell nothing of how bright a view is as a whole.
 const DARK: f32 = 0.02;
 /// How bright a view is as a whole is told by about so many blocks.
 const RATIOS: usize = 20_000;
 
 impl Sightings {
-    /// Looks at the plain pixels in each view.
+    /// Looks at the whole pixels in each view.
     pub fn of<E: Send>(
         seen: &Seen<'_>,
         shown: &[[f32; 3]],
-        plain: &[bool],
+        whole: &[bool],
         views: &[OtherView<'_, E>],
         progress: &dyn Progress,
     ) -> Result<Self, ReliefError<E>> {
@@ -92,7 +93,7 @@ impl Sightings {
             let rows = y..(y + side).min(height);
             let columns = x..(x + side).min(width);
             let cells = rows.flat_map(move |y| columns.clone().map(move |x| grid.at(x + margin, y + margin)));
-            cells.filter(|&cell| plain[cell])
+            cells.filter(|&cell| whole[cell])
         };
         let mean = |block: usize| {
             let (mut sum, mut count) = ([0.0; 3], 0.0f32);

@@ -8,12 +8,14 @@ use crate::error::{SessionError, file_name};
 use crate::jobs::Steps;
 use capture::{CaptureError, GivenDisparity, LightField, LightFieldOptions, Optics};
 use progress::{Progress, Stage};
-use relief::{DepthStroke, OtherView, Relief, ReliefOptions, filled, repaired, upsampled};
+use relief::{DepthStroke, OtherView, Relief, ReliefOptions, filled, repaired, roughness, upsampled};
 use scene::LoadOptions;
 use std::path::Path;
 
 /// Cameras may stand, and apertures reach, so many times as far from the middle view as the farthest view.
 const BEYOND: f64 = 1.6;
+/// Disparities are even that are rougher by no more than this, as a parallax, px: they have smaller jumps, which noise has not made.
+const EVEN_PX: f32 = 0.03;
 
 /// Opens a light field and makes its surface, the depth of which is repaired by `strokes`.
 pub(super) fn load_light_field(
@@ -32,12 +34,14 @@ pub(super) fn load_light_field(
     let disparity = disparity(&field, size, &middle, load, &Stage::new(progress, 0.1, 0.5))?;
     let reach = field.views.iter().map(|view| view.position.length()).fold(0.0, f64::max);
     let range = range(&disparity);
+    let rough_px = roughness(size, &disparity) * reach as f32;
     let disparity = repaired(size, disparity, &middle, strokes, 1.0);
     let space = space(&field.optics, field.size, range);
     let surface = ReliefOptions {
         reach: reach as f32,
         beyond: BEYOND as f32,
         offset: space.offset as f32,
+        jump_px: if rough_px < EVEN_PX { 0.5 } else { ReliefOptions::default().jump_px },
         // Blur reaches as far as parallax does against what is focused on; a camera that moves sees beside the picture as far as what is
         // nearest moves.
         margin_px: margin_px(size, BEYOND * reach * (range[1] - range[0]).max(range[1] + space.offset)),

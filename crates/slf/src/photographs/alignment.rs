@@ -17,10 +17,10 @@ mod points;
 
 pub(crate) use lattice::Displacement;
 
-use super::calibrated::Calibrated;
-use super::gains::Exposure;
-use super::kept_picture::KeptPicture;
+use super::exposures::Exposure;
 use super::odd::Belonging;
+use super::seeing::KeptPicture;
+use super::telling::Calibrated;
 use points::Points;
 use progress::{Cancelled, Progress};
 use rayon::prelude::*;

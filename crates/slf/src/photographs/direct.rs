@@ -3,15 +3,10 @@
 //! What was solved for all photographs together (exposures, what is mirrored, what leaving out told by blocks) is that of
 //! [`PhotographLight`]; constant part and residuals of a point are found anew each time it is asked, as those of a texel are.
 
-use super::blocks::Blocks;
-use super::budget::Budget;
-use super::constant::{Sample, robust_mean};
-use super::directions::{Known, toward};
 use super::error::PhotographError;
-use super::reading::{ReadView, Reading};
-use super::residuals::Work;
-use super::sightings::{Look, from_border};
-use super::told::SEEN;
+use super::places::{Blocks, Budget};
+use super::seeing::{Look, ReadView, Reading, from_border};
+use super::telling::{Known, SEEN, Sample, Work, robust_mean, toward};
 use super::{PhotographLight, PhotographOptions};
 use glam::{DVec3, Vec3};
 use progress::Progress;

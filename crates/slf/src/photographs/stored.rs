@@ -2,14 +2,10 @@
 
 use super::PhotographLight;
 use super::alignment::Displacement;
-use super::blocks::Blocks;
-use super::directions::Kernel;
-use super::gains::Exposure;
-use super::mirrored::Mirrored;
+use super::exposures::Exposure;
 use super::odd::Belonging;
-use super::residuals::{Believed, Residuals};
-use super::sphere::Sphere;
-use super::texels::TexelGrid;
+use super::places::{Blocks, Sphere, TexelGrid};
+use super::telling::{Believed, Kernel, Mirrored, Residuals};
 use atlas::NO_TEXEL;
 use bytemuck::{Pod, Zeroable, pod_collect_to_vec};
 use glam::{DVec3, Vec2, Vec3};

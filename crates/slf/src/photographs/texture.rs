@@ -1,7 +1,7 @@
 //! The constant part of the light as a picture: what textures of other programs can hold of it.
 
 use super::PhotographLight;
-use super::texels::TexelGrid;
+use super::places::TexelGrid;
 use atlas::Atlas;
 use glam::{DVec2, Vec3};
 use rayon::prelude::*;

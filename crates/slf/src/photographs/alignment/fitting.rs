@@ -17,8 +17,7 @@
 //! lattice has those of small errors in it. o falls out: of every tile only differences from its weighted mean count.
 
 use super::lattice::{Displacement, InCell, Lattice};
-use crate::photographs::median::median;
-use crate::photographs::positive::solve_positive;
+use crate::photographs::numbers::{median, solve_positive};
 use glam::{DVec2, Vec2};
 use scene::View;
 

@@ -1,7 +1,6 @@
 //! What photographs are aligned by, and what the alignment is judged by: never the same.
 
-use crate::photographs::blocks::Blocks;
-use crate::photographs::texels::Texels;
+use crate::photographs::places::{Blocks, Texels};
 
 /// What a place of the atlas is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -2,13 +2,10 @@
 
 use super::halves::{Half, half_of};
 use super::lattice::Displacement;
-use crate::photographs::blocks::Blocks;
-use crate::photographs::calibrated::Calibrated;
-use crate::photographs::constant::robust_mean;
-use crate::photographs::directions::{Known, toward};
-use crate::photographs::gains::Exposure;
+use crate::photographs::exposures::Exposure;
 use crate::photographs::odd;
-use crate::photographs::residuals::Work;
+use crate::photographs::places::Blocks;
+use crate::photographs::telling::{Calibrated, Known, Work, robust_mean, toward};
 use progress::{Cancelled, Progress};
 use rayon::prelude::*;
 use scene::View;

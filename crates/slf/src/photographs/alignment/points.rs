@@ -3,13 +3,11 @@
 use super::fitting::Compared;
 use super::halves::{Half, half_of};
 use super::lattice::Displacement;
-use crate::photographs::blocks::Blocks;
-use crate::photographs::calibrated::Calibrated;
-use crate::photographs::constant::{Sample, robust_mean, roots};
-use crate::photographs::gains::Exposure;
-use crate::photographs::kept_picture::KeptPicture;
+use crate::photographs::exposures::Exposure;
 use crate::photographs::odd::Belonging;
-use crate::photographs::sightings::Sighting;
+use crate::photographs::places::Blocks;
+use crate::photographs::seeing::{KeptPicture, Sighting};
+use crate::photographs::telling::{Calibrated, Sample, robust_mean, roots};
 use glam::{DVec2, Vec3};
 use rayon::prelude::*;
 use scene::View;

@@ -4,12 +4,12 @@
 //! surroundings or, as all other light, at the surface; what of a residual is believed; and which photographs of a texel show what no
 //! other leads to expect, so that they count less (what moved, or does not belong).
 
-use super::blocks::Blocks;
 use super::calibrated::Calibrated;
 use super::constant::Sample;
 use super::directions::{Kernel, Known, MOST, Regression, toward};
-use super::median::median;
 use super::mirrored::Mirrored;
+use crate::photographs::numbers::median;
+use crate::photographs::places::Blocks;
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 use progress::{Cancelled, Progress};

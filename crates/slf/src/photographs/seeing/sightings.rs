@@ -4,12 +4,11 @@
 //! depth, the picture's border and glancing angles, so that nothing begins or ends abruptly on the surface.
 
 use super::depth_picture::FAR_FROM_EDGES;
-use super::error::PhotographError;
 use super::kept_picture::KeptPicture;
-use super::ramp::ramp;
 use super::reading::{ReadView, Reading};
-use super::sphere::Sphere;
-use super::texels::Texels;
+use crate::photographs::error::PhotographError;
+use crate::photographs::numbers::ramp;
+use crate::photographs::places::{Sphere, Texels};
 use glam::{DVec2, DVec3, Vec3};
 use progress::{Progress, Stage};
 use rayon::prelude::*;

@@ -8,7 +8,7 @@ use glam::Vec3;
 use rayon::prelude::*;
 
 /// The colours of the photographs that see each texel finest: most pixels over its area, as far as they see it at all.
-pub(crate) fn told(radiance: &Calibrated<'_>) -> Told {
+pub(crate) fn one_view(radiance: &Calibrated<'_>) -> Told {
     let texels = radiance.texels;
     let constant = (0..texels.count())
         .into_par_iter()

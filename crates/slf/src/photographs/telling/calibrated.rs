@@ -1,8 +1,8 @@
 //! What photographs show, as radiance: sightings with their exposures undone.
 
 use super::constant::Sample;
-use super::sightings::{Sighting, Sightings};
-use super::texels::Texels;
+use crate::photographs::places::Texels;
+use crate::photographs::seeing::{Sighting, Sightings};
 use glam::DVec3;
 
 /// Sightings with their exposures undone.

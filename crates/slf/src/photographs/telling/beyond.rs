@@ -4,10 +4,10 @@
 //! nearest directions that are known stands in; where they agree on next to nothing, their mean, from everywhere alike.
 
 use super::constant::{Sample, robust_mean, roots};
-use super::gains::Exposure;
-use super::kept_picture::KeptPicture;
-use super::ramp::ramp;
-use super::sphere::Sphere;
+use crate::photographs::exposures::Exposure;
+use crate::photographs::numbers::ramp;
+use crate::photographs::places::Sphere;
+use crate::photographs::seeing::KeptPicture;
 use glam::Vec3;
 use rayon::prelude::*;
 use scene::View;

@@ -4,7 +4,7 @@
 //! much that was; a texel takes it from the finest cells that know, the rest from coarser ones. Lattices are in space, not in the
 //! atlas, so that charts do not matter.
 
-use super::texels::Texels;
+use crate::photographs::places::Texels;
 use glam::{DVec3, IVec3, Vec3};
 use rayon::prelude::*;
 use std::collections::HashMap;

@@ -1,6 +1,6 @@
 //! How fine photographs and texels are kept, so that all of it fits the memory that there is.
 
-use super::median::median;
+use crate::photographs::numbers::median;
 use atlas::Atlas;
 use glam::DVec3;
 use scene::{Scene, View};

@@ -1,8 +1,8 @@
 //! Photographs as they are worked with: read, with the depths of what they show and their masks.
 
 use super::depth_picture::DepthPicture;
-use super::error::PhotographError;
 use super::kept_picture::KeptPicture;
+use crate::photographs::error::PhotographError;
 use progress::Progress;
 use rayon::prelude::*;
 use scene::{LoadOptions, Mask, Scene, View};

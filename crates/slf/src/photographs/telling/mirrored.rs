@@ -19,11 +19,10 @@
 //! D and E are found in turns, each the (weighted, robust) mean of what the other leaves. s is the regression of what D leaves on what E
 //! tells, over blocks of texels, and 0 where E tells nothing: so a matte surface has no such part.
 
-use super::blocks::Blocks;
 use super::calibrated::Calibrated;
 use super::constant::{Sample, robust_mean};
 use super::directions::toward;
-use super::sphere::Sphere;
+use crate::photographs::places::{Blocks, Sphere};
 use glam::{DVec3, Vec3};
 use progress::{Cancelled, Progress};
 use rayon::prelude::*;

@@ -1,0 +1,124 @@
+//! What stands before in the pixels of another view, as far as the first layer tells: how much of each, and in which light.
+//!
+//! A hidden cell is seen by the views that look farthest behind what hides it, and there it lies right beside its edge: most of the pixels that
+//! show it show some of what stands before, too. A cell covers of a view's pixel what the two have in common, and an edge's cell so much of that
+//! as is there of it (`matte`): what is left of the pixel's light is that of what lies behind.
+
+use crate::cells::Grid;
+
+/// Less of a pixel than this is not covered: what is left of rounding.
+const TOUCHED: f32 = 1e-3;
+
+/// The first layer, told apart at its edges.
+#[derive(Clone, Copy)]
+pub(crate) struct Layer<'a> {
+    /// By cell: disparity, how much of it is there, in [0, 1], and its colour.
+    pub disparity: &'a [f32],
+    pub opacity: &'a [f32],
+    pub colors: &'a [[f32; 3]],
+}
+
+/// What covers a pixel of a view.
+#[derive(Clone, Copy)]
+pub(crate) struct Cover {
+    /// The disparity of what is nearest in it; −∞ where nothing is.
+    pub nearest: f32,
+    /// That of what else is in it, behind a jump.
+    pub next: f32,
+    /// What is nearest covers so much of it …
+    pub share: f32,
+    /// … and sends so much of its light.
+    pub light: [f32; 3],
+}
+
+impl Cover {
+    const NONE: Self =
+        Self { nearest: f32::NEG_INFINITY, next: f32::NEG_INFINITY, share: 0.0, light: [0.0; 3] };
+
+    /// How much of the pixel is left for what is no nearer than `most`, and of its light.
+    pub fn left(&self, color: [f32; 3], most: f32) -> (f32, [f32; 3]) {
+        if self.nearest <= most {
+            return (1.0, color);
+        }
+        // Of two edges in one pixel nothing can be told.
+        if self.next > most || self.share >= 1.0 {
+            return (0.0, [0.0; 3]);
+        }
+        (1.0 - self.share, std::array::from_fn(|c| color[c] - self.light[c]))
+    }
+}
+
+/// By pixel of the view at this offset, in the grid of cells. `jump` is the least step of disparity that is a jump.
+pub(crate) fn covers(grid: Grid, layer: Layer, offset: [f32; 2], jump: f32) -> Vec<Cover> {
+    let mut covers = vec![Cover::NONE; grid.count()];
+    let is_there = |cell: &usize| !layer.disparity[*cell].is_nan();
+    for cell in (0..grid.count()).filter(is_there) {
+        let disparity = layer.disparity[cell];
+        for (pixel, _) in touched(grid, place(grid, cell, disparity, offset)) {
+            covers[pixel].nearest = covers[pixel].nearest.max(disparity);
+        }
+    }
+    for cell in (0..grid.count()).filter(is_there) {
+        let disparity = layer.disparity[cell];
+        for (pixel, share) in touched(grid, place(grid, cell, disparity, offset)) {
+            let cover = &mut covers[pixel];
+            if disparity < cover.nearest - jump {
+                cover.next = cover.next.max(disparity);
+                continue;
+            }
+            let share = share * layer.opacity[cell];
+            cover.share += share;
+            (0..3).for_each(|c| cover.light[c] += share * layer.colors[cell][c]);
+        }
+    }
+    covers
+}
+
+/// Where a view shows a cell's middle, pixels from its upper left corner.
+pub(crate) fn place(grid: Grid, cell: usize, disparity: f32, [dx, dy]: [f32; 2]) -> [f32; 2] {
+    let (x, y) = ((cell % grid.width) as f32 + 0.5, (cell / grid.width) as f32 + 0.5);
+    [x - disparity * dx, y - disparity * dy]
+}
+
+/// The pixels that a cell around this place has something in common with, and how much of each.
+pub(crate) fn touched(grid: Grid, [x, y]: [f32; 2]) -> impl Iterator<Item = (usize, f32)> {
+    let (left, above) = ((x - 0.5).floor(), (y - 0.5).floor());
+    let (right, below) = (x - 0.5 - left, y - 0.5 - above);
+    let of = move |dx: isize, dy: isize| {
+        let share = |after: f32, is_after: bool| if is_after { after } else { 1.0 - after };
+        let share = share(right, dx == 1) * share(below, dy == 1);
+        let (x, y) = ((left as isize).saturating_add(dx), (above as isize).saturating_add(dy));
+        let is_in = (0..grid.width as isize).contains(&x) && (0..grid.height as isize).contains(&y);
+        (is_in && share > TOUCHED).then(|| (grid.at(x as usize, y as usize), share))
+    };
+    [(0, 0), (1, 0), (0, 1), (1, 1)].into_iter().filter_map(move |(dx, dy)| of(dx, dy))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_lies_behind_is_left_at_an_edge() {
+        // A card's last column is there to 0.4; the view shows it half a pixel further left.
+        let grid = Grid { width: 6, height: 1 };
+        let layer = Layer {
+            disparity: &[0.5, 0.5, 0.5, 0.0, 0.0, 0.0],
+            opacity: &[1.0, 1.0, 0.4, 1.0, 1.0, 1.0],
+            colors: &[[0.8; 3]; 6],
+        };
+        let covers = covers(grid, layer, [1.0, 0.0], 0.25);
+        let shares: Vec<f32> = covers.iter().map(|cover| cover.share).collect();
+        let expected = [1.0, 0.7, 0.2, 1.0, 1.0, 1.0];
+        assert!(
+            shares.iter().zip(expected).all(|(share, expected)| (share - expected).abs() < 1e-6),
+            "{shares:?}"
+        );
+        // Behind it is 0.1.
+        let color = [0.7 * 0.8 + 0.3 * 0.1; 3];
+        let (open, light) = covers[1].left(color, 0.25);
+        assert!((open - 0.3).abs() < 1e-6 && (light[0] / open - 0.1).abs() < 1e-5, "{open} {light:?}");
+        assert_eq!(covers[0].left([0.8; 3], 0.25).0, 0.0);
+        assert_eq!(covers[4].left([0.3; 3], 0.25), (1.0, [0.3; 3]));
+    }
+}

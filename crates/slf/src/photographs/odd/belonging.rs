@@ -1,0 +1,71 @@
+//! How far each place of a photograph belongs: by tiles, interpolated between their middles.
+
+use glam::DVec2;
+use scene::View;
+
+/// Tiles along the longer side of a photograph.
+const TILES: f64 = 40.0;
+
+/// How far each place of a photograph belongs.
+#[derive(Debug, PartialEq)]
+pub(crate) struct Belonging {
+    pub(super) grid: Grid,
+    pub(super) tiles: Vec<f32>,
+}
+
+/// The tiles of a photograph.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Grid {
+    pub columns: usize,
+    pub rows: usize,
+    /// Pixels a tile each way.
+    pub side_px: f64,
+}
+
+impl Grid {
+    pub fn of(view: &View) -> Self {
+        let [width, height] = view.lens.size_px().map(f64::from);
+        let side_px = (width.max(height) / TILES).max(1.0);
+        let [columns, rows] = [width, height].map(|side| (side / side_px).ceil() as usize);
+        Self { columns, rows, side_px }
+    }
+}
+
+impl Belonging {
+    /// All of a view belongs.
+    pub fn whole(view: &View) -> Self {
+        let grid = Grid::of(view);
+        Self { grid, tiles: vec![1.0; grid.columns * grid.rows] }
+    }
+
+    /// Of tiles as they were stored; none if there are more or fewer.
+    pub fn of_tiles(view: &View, tiles: Vec<f32>) -> Option<Self> {
+        let grid = Grid::of(view);
+        (tiles.len() == grid.columns * grid.rows).then_some(Self { grid, tiles })
+    }
+
+    /// Its tiles, row by row.
+    pub fn tiles(&self) -> &[f32] {
+        &self.tiles
+    }
+
+    /// How far a pixel position belongs, in [0, 1].
+    pub fn at(&self, pixel: DVec2) -> f32 {
+        let Grid { columns, rows, side_px } = self.grid;
+        let place = pixel / side_px - 0.5;
+        let floor = place.floor();
+        let share = (place - floor).as_vec2();
+        let at = |dx: i64, dy: i64| {
+            let column = (floor.x as i64 + dx).clamp(0, columns as i64 - 1) as usize;
+            let row = (floor.y as i64 + dy).clamp(0, rows as i64 - 1) as usize;
+            self.tiles[row * columns + column]
+        };
+        let row = |dy: i64| at(0, dy) + (at(1, dy) - at(0, dy)) * share.x;
+        row(0) + (row(1) - row(0)) * share.y
+    }
+
+    /// Whether all of it belongs.
+    pub fn is_whole(&self) -> bool {
+        self.tiles.iter().all(|&tile| tile >= 1.0)
+    }
+}

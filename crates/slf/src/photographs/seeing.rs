@@ -1,0 +1,15 @@
+//! Which photograph sees what.
+//!
+//! ```text
+//! views ─▶ kept_picture ─┐
+//!    └──▶ depth_picture ─┴▶ reading (one after the other, within the memory there is) ─▶ sightings
+//! ```
+
+mod depth_picture;
+mod kept_picture;
+mod reading;
+mod sightings;
+
+pub(crate) use kept_picture::{KeptPicture, Shown};
+pub(crate) use reading::{ReadView, Reading};
+pub(crate) use sightings::{Look, Sighting, Sightings, from_border};
