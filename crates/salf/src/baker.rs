@@ -18,6 +18,10 @@ use std::collections::BTreeMap;
 use std::rc::Rc;
 use trace::{Radiance, Received, Tracer, Viewpoint};
 
+/// So many cells are looked at together where nothing is told of more at once: what they take is given back, and taken again by the
+/// next ones, from the few pieces of memory that a thread has at hand.
+const FEW_CELLS: usize = 4;
+
 /// A surface of a cell, before it is known what it sees of the aperture.
 struct Candidate {
     center: DVec2,
@@ -59,6 +63,8 @@ pub struct Baker<'a> {
     pub patterns: Patterns,
     /// Where the pinhole picture is sampled.
     pub domain: Domain,
+    /// How many cells of a block are looked at together.
+    together: usize,
     packs: bool,
 }
 
@@ -74,8 +80,9 @@ impl<'a> Baker<'a> {
         let margin = standard_margin_px(tracer.scene(), &view).max(options.margin_px);
         let domain = Domain::new(camera.width, camera.height, margin);
         let placement = Placement::new(tracer.scene(), &view);
+        let together = if radiance.tells_many() { usize::MAX } else { FEW_CELLS };
         let packs = options.packs;
-        Self { tracer, radiance, view, placement, patterns: Patterns::new(), domain, packs }
+        Self { tracer, radiance, view, placement, patterns: Patterns::new(), domain, together, packs }
     }
 
     /// The samples of a block that was looked at, and of the surface patches in it.
@@ -86,7 +93,8 @@ impl<'a> Baker<'a> {
         patches: &[Sample],
     ) -> (Samples, Outliers) {
         let Some(first) = looks.first() else { return Default::default() };
-        let mut found = self.second_looks(occluders, looks);
+        let mut found: Vec<_> =
+            looks.chunks(self.together).flat_map(|looks| self.second_looks(occluders, looks)).collect();
         let unfound = |patch: &Sample| Found { sample: patch.clone(), part_of: None, by_chance: Vec3::ZERO };
         found.extend(patches.iter().map(unfound));
         let outliers = outliers::spread(&mut found, self.tracer.scene());
@@ -113,6 +121,13 @@ impl<'a> Baker<'a> {
 
     /// Looks at the cells of a block.
     pub fn first_looks(&self, cells: &[Cell]) -> Vec<FirstLook> {
+        let mut looks = Vec::with_capacity(cells.len());
+        cells.chunks(self.together).for_each(|cells| looks.extend(self.looks_together(cells)));
+        looks
+    }
+
+    /// Looks at some of them, of which light is told together.
+    fn looks_together(&self, cells: &[Cell]) -> impl Iterator<Item = FirstLook> {
         let of_cell = |&cell: &Cell| {
             let (density, layers) = self.nearest(cell);
             (cell, density, layers)
@@ -121,13 +136,13 @@ impl<'a> Baker<'a> {
         let groups =
             looks.iter().flat_map(|(cell, _, layers)| layers.groups.iter().map(|group| (*cell, group)));
         let mut sampled = self.samples(&groups.collect::<Vec<_>>()).into_iter();
-        let first_look = |(cell, density, layers): (Cell, Density, Layers)| {
+        let first_look = move |(cell, density, layers): (Cell, Density, Layers)| {
             let candidates = layers.groups.iter().map(|group| self.candidate(cell, &layers, group));
             let nearest = candidates.zip(&mut sampled).collect();
             let (has_gap, has_pane) = (layers.has_gap, layers.has_pane);
             FirstLook { cell, density, depths: layers.depths(cell), has_gap, has_pane, nearest }
         };
-        looks.into_iter().map(first_look).collect()
+        looks.into_iter().map(first_look)
     }
 
     /// The samples of surfaces that are of one block, as if they saw all.
