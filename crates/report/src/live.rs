@@ -115,10 +115,16 @@ fn watch_one(
             (_, Quality::Viewing) => "viewing",
             (_, Quality::Exact) => "exact",
         };
-        let size = [own.width, own.height];
-        let psnr = compare(&enlarged(&own, [last.width, last.height]), &last)?.psnr;
+        let own_size = [own.width, own.height];
+        let size = [last.width, last.height];
+        let is_mean = preview.quality == Quality::Coarse && preview.kind != PreviewKind::Pinhole;
+        let shown = match preview.picture.bring() {
+            Some(picture) if is_mean => conserved(&session::enlarged(&picture, size)),
+            _ => enlarged(&own, size),
+        };
+        let psnr = compare(&shown, &last)?.psnr;
         let (after, what) = (after.to_string(), what.to_string());
-        pictures.push(ShownPicture { after, what, size, seconds: *seconds, psnr });
+        pictures.push(ShownPicture { after, what, size: own_size, seconds: *seconds, psnr });
     }
     Ok(pictures)
 }

@@ -36,7 +36,7 @@ pub use carrying::{CarriedNode, CarriedPaint};
 pub use commands::{COMMANDS, Command, CommandId, CommandInfo, Event, KeyMap, Menu, Shortcut};
 pub use display::{
     Display, LivePicture, OcioViews, Screen, ScreenPixel, Thumbnail, ThumbnailResult, Thumbnails, Tone,
-    ToneCurve, to_screen,
+    ToneCurve, enlarged, to_screen,
 };
 pub use document::{
     Beginning, CameraChoice, CameraEdit, DisparityError, Document, HistoryStep, Input, InputKind,

@@ -2,6 +2,7 @@
 //!
 //! Tone, the pixels as the screen has them, and what of them changed since somebody looked.
 
+mod enlarging;
 mod glare;
 mod live_picture;
 mod ocio_views;
@@ -11,6 +12,7 @@ mod thumbnails;
 mod tone;
 mod tone_curve;
 
+pub use enlarging::enlarged;
 pub use live_picture::LivePicture;
 pub use ocio_views::OcioViews;
 pub use screen::Screen;
@@ -18,6 +20,7 @@ pub use thumbnails::{Thumbnail, ThumbnailResult, Thumbnails};
 pub use tone::{Display, ScreenPixel, Tone, to_screen};
 pub use tone_curve::ToneCurve;
 
+pub(crate) use enlarging::{enlarged_part, enlarged_rectangle};
 pub(crate) use glare::stops_for;
 pub(crate) use live_picture::Source;
 pub(crate) use picture_ring::{PictureRing, Rectangle, whole};

@@ -2,8 +2,8 @@
 
 use lens::Camera;
 
-/// Sides of the coarse picture are this share of the preview's: a sixteenth of the work.
-const COARSE: f64 = 1.0 / 4.0;
+/// Sides of the coarse picture are this share of the preview's: a twenty-fifth of the work.
+const COARSE: f64 = 1.0 / 5.0;
 
 /// Where the coarse picture has more than twice as many pixels, one of so many comes before it: about a second's work.
 const ROUGH_PIXELS: f64 = 20_000.0;
@@ -56,9 +56,9 @@ mod tests {
             sizes
         };
         assert!(sizes(120, 90).is_empty());
-        assert_eq!(sizes(640, 360), [[160, 90]]);
-        assert_eq!(sizes(1920, 1080), [[189, 106], [480, 270]]);
-        assert_eq!(sizes(16384, 1), [[4096, 1]]);
+        assert_eq!(sizes(640, 360), [[128, 72]]);
+        assert_eq!(sizes(1920, 1080), [[189, 106], [384, 216]]);
+        assert_eq!(sizes(16384, 1), [[3277, 1]]);
         let between = |width, height| {
             between_of(&Camera { width, height, ..Camera::default() })
                 .map(|camera| [camera.width, camera.height])

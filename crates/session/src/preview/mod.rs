@@ -5,7 +5,7 @@
 //! Two light fields serve it:
 //!
 //! ```text
-//!                  coarse (a quarter of the size)         fine (the preview's size)
+//!                  coarse (a fifth of the size)           fine (the preview's size)
 //! scene, pose …    baked at once, after a pinhole and,   baked on a helper thread, if large
 //!                  if large, a rough one                 after one between in the coarse one's place
 //! lens             summed at once                        summed on a helper thread, if it takes long

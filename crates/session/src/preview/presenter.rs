@@ -3,8 +3,8 @@
 use super::mailbox::Shared;
 use super::picture::{DrawingCosts, PictureTimes, Preview, PreviewKind, Quality};
 use crate::display::{
-    Content, LivePicture, Patch, PictureRing, Rectangle, Source, Tone, ToneCurve, rectangle_to_screen,
-    stops_for, whole,
+    Content, LivePicture, Patch, PictureRing, Rectangle, Source, Tone, ToneCurve, enlarged_part,
+    enlarged_rectangle, rectangle_to_screen, stops_for, to_screen, whole,
 };
 use crate::light_field::Modelled;
 use lens::{Camera, Exposure, Picture};
@@ -17,6 +17,8 @@ use std::time::Instant;
 pub(crate) struct Made<'a> {
     pub picture: Source<'a>,
     pub camera: &'a Camera,
+    /// The size that it is shown in, if its pixels are means of many of those.
+    pub enlarged_to: Option<[u32; 2]>,
     /// What it has to do with the one before.
     pub relation: Relation,
     pub kind: PreviewKind,
@@ -45,6 +47,8 @@ pub(crate) struct Presenter {
     pictures: PictureRing,
     /// It, if it is on a card.
     on_card: Option<PictureOnCard>,
+    /// The size that it is shown in, where that is not its own.
+    enlarged_to: Option<[u32; 2]>,
     tone: Tone,
     last_id: u64,
     /// Which of the session's documents is shown.
@@ -66,6 +70,7 @@ impl Presenter {
             shown: None,
             pictures: PictureRing::default(),
             on_card: None,
+            enlarged_to: None,
             tone: Tone::default(),
             last_id: 0,
             generation: 0,
@@ -113,6 +118,7 @@ impl Presenter {
         let summed = Instant::now();
         let is_new = matches!(made.relation, Relation::New);
         let (picture, changed) = self.take_up(made.picture, made.relation);
+        self.enlarged_to = made.enlarged_to;
         self.last_id += 1;
         let preview = Preview {
             id: self.last_id,
@@ -192,6 +198,11 @@ impl Presenter {
 
     /// A rectangle of a picture, as the screen shows it.
     fn patch(&self, picture: &LivePicture, rectangle: Rectangle) -> Patch {
+        if let (Some(size), LivePicture::Here(picture)) = (self.enlarged_to, picture) {
+            let rectangle = enlarged_rectangle(picture, size, &rectangle);
+            let part = enlarged_part(picture, size, rectangle.clone());
+            return Patch { size, rectangle, content: Content::Pixels(to_screen(&part, self.tone)) };
+        }
         let content = match picture {
             LivePicture::Here(picture) => {
                 Content::Pixels(rectangle_to_screen(picture, self.tone, rectangle.clone()))

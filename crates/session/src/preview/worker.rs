@@ -330,6 +330,7 @@ impl Worker {
             self.presenter.show(Made {
                 picture: fine.source(),
                 camera,
+                enlarged_to: None,
                 kind: PreviewKind::from(&brought),
                 quality: if is_exact { Quality::Exact } else { Quality::Viewing },
                 seconds: start.elapsed().as_secs_f64() + elsewhere,
@@ -364,6 +365,7 @@ impl Worker {
         self.presenter.show(Made {
             picture: Source::Here(&hits.picture()),
             camera,
+            enlarged_to: None,
             relation: Relation::New,
             kind: PreviewKind::Pinhole,
             quality: Quality::Coarse,
@@ -376,17 +378,25 @@ impl Worker {
     /// Pictures of few pixels, each of more than the one before; begins with the best that need not be baked, and ends there
     /// while a stroke waits for more.
     fn show_coarse(&mut self, stage: &Stage, camera: &Camera, focus: &Focus) -> Result<(), SessionError> {
+        let size = [camera.width, camera.height];
         let serves = |small: &Camera| self.coarse.as_ref().is_some_and(|coarse| coarse.serves(small));
         if let Some(between) = between_of(camera).filter(serves) {
-            return self.show_small(stage, &between, focus);
+            return self.show_small(stage, &between, size, focus);
         }
         let sizes = coarse_of(camera);
         let first = sizes.iter().rposition(serves).unwrap_or(0);
         let count = if self.is_painting { 1 } else { sizes.len() };
-        sizes[first..].iter().take(count).try_for_each(|small| self.show_small(stage, small, focus))
+        sizes[first..].iter().take(count).try_for_each(|small| self.show_small(stage, small, size, focus))
     }
 
-    fn show_small(&mut self, stage: &Stage, small: &Camera, focus: &Focus) -> Result<(), SessionError> {
+    /// A picture of few pixels, shown in this size.
+    fn show_small(
+        &mut self,
+        stage: &Stage,
+        small: &Camera,
+        size: [u32; 2],
+        focus: &Focus,
+    ) -> Result<(), SessionError> {
         self.coarse.take_if(|coarse| !coarse.serves(small));
         let coarse = match &mut self.coarse {
             Some(coarse) => coarse,
@@ -407,6 +417,7 @@ impl Worker {
             self.presenter.show(Made {
                 picture: coarse.source(),
                 camera: small,
+                enlarged_to: Some(size),
                 kind: PreviewKind::from(&brought),
                 quality: Quality::Coarse,
                 seconds: start.elapsed().as_secs_f64(),
@@ -505,6 +516,7 @@ impl Worker {
         self.presenter.show(Made {
             picture: field.source(),
             camera: &exact.camera,
+            enlarged_to: None,
             relation: Relation::Better,
             kind: PreviewKind::Splat,
             quality: Quality::Exact,
