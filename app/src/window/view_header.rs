@@ -10,6 +10,9 @@ use session::{CommandId, Session};
 /// Width of the picture's header with the picture's scale in percent, points: in a narrower one it is left out.
 const WIDTH_WITH_PERCENT: f32 = 500.0;
 
+/// How much more it has to be where what both eyes look at is told, points.
+const WIDTH_OF_FIXATED: f32 = 80.0;
+
 /// Room for the panel's own menu, points.
 const MENU_WIDTH: f32 = 32.0;
 
@@ -170,7 +173,8 @@ fn picture_header(ui: &mut Ui, session: &Session, picture: &mut PictureView, act
             choose_picture(ui, session, "Compared picture", &of, &mut picture.wipe.against)
         });
     }
-    if matches!(picture.shown, Shown::Anaglyph | Shown::SideBySide) && session.is_fixating() {
+    let is_fixated = matches!(picture.shown, Shown::Anaglyph | Shown::SideBySide) && session.is_fixating();
+    if is_fixated {
         let response = ui.button("Fixated ×");
         if response.on_hover_text(keys::tip(ui.ctx(), CommandId::FixateFocus)).clicked() {
             actions.push(CommandId::FixateFocus.into());
@@ -185,8 +189,9 @@ fn picture_header(ui: &mut Ui, session: &Session, picture: &mut PictureView, act
             actions.push(id.into());
         }
     }
+    let with_percent = WIDTH_WITH_PERCENT + if is_fixated { WIDTH_OF_FIXATED } else { 0.0 };
     if let Some(percent) = picture.percent(session, ui.ctx().pixels_per_point()).filter(|p| p.is_finite())
-        && ui.max_rect().width() > WIDTH_WITH_PERCENT
+        && ui.max_rect().width() > with_percent
     {
         ui.add(egui::Label::new(egui::RichText::new(format!("{percent:.0} %")).weak()).extend())
             .on_hover_text("Screen pixels of a picture pixel.");

@@ -5,9 +5,13 @@
 //! as is there of it (`matte`): what is left of the pixel's light is that of what lies behind.
 
 use crate::cells::Grid;
+use rayon::prelude::*;
 
 /// Less of a pixel than this is not covered: what is left of rounding.
 const TOUCHED: f32 = 1e-3;
+
+/// Rows of a view that are covered at a time.
+const BAND: usize = 64;
 
 /// The first layer, told apart at its edges.
 #[derive(Clone, Copy)]
@@ -51,26 +55,43 @@ impl Cover {
 /// By pixel of the view at this offset, in the grid of cells. `jump` is the least step of disparity that is a jump.
 pub(crate) fn covers(grid: Grid, layer: Layer, offset: [f32; 2], jump: f32) -> Vec<Cover> {
     let mut covers = vec![Cover::NONE; grid.count()];
-    let is_there = |cell: &usize| !layer.disparity[*cell].is_nan();
-    for cell in (0..grid.count()).filter(is_there) {
-        let disparity = layer.disparity[cell];
-        for (pixel, _) in touched(grid, place(grid, cell, disparity, offset)) {
-            covers[pixel].nearest = covers[pixel].nearest.max(disparity);
-        }
-    }
-    for cell in (0..grid.count()).filter(is_there) {
-        let disparity = layer.disparity[cell];
-        for (pixel, share) in touched(grid, place(grid, cell, disparity, offset)) {
-            let cover = &mut covers[pixel];
-            if disparity < cover.nearest - jump {
-                cover.next = cover.next.max(disparity);
-                continue;
+    let moved = |disparity: &f32| (disparity * offset[1]).abs();
+    let far = layer.disparity.iter().map(moved).fold(0.0, f32::max).ceil() as usize;
+    let far = far.saturating_add(1);
+    let bands = covers.par_chunks_mut(BAND * grid.width).enumerate();
+    bands.for_each(|(band, covers)| {
+        let (first, rows) = (band * BAND, covers.len() / grid.width);
+        // What a band shows comes from rows about it.
+        let rows = first.saturating_sub(far)..(first + rows).saturating_add(far).min(grid.height);
+        let cells = || {
+            let cells = rows.start * grid.width..rows.end * grid.width;
+            cells.filter(|&cell| !layer.disparity[cell].is_nan())
+        };
+        let touched = |cell: usize| {
+            let place = place(grid, cell, layer.disparity[cell], offset);
+            touched(grid, place).map(move |(pixel, share)| (pixel.wrapping_sub(first * grid.width), share))
+        };
+        for cell in cells() {
+            for (pixel, _) in touched(cell) {
+                if let Some(cover) = covers.get_mut(pixel) {
+                    cover.nearest = cover.nearest.max(layer.disparity[cell]);
+                }
             }
-            let share = share * layer.opacity[cell];
-            cover.share += share;
-            (0..3).for_each(|c| cover.light[c] += share * layer.colors[cell][c]);
         }
-    }
+        for cell in cells() {
+            let disparity = layer.disparity[cell];
+            for (pixel, share) in touched(cell) {
+                let Some(cover) = covers.get_mut(pixel) else { continue };
+                if disparity < cover.nearest - jump {
+                    cover.next = cover.next.max(disparity);
+                    continue;
+                }
+                let share = share * layer.opacity[cell];
+                cover.share += share;
+                (0..3).for_each(|c| cover.light[c] += share * layer.colors[cell][c]);
+            }
+        }
+    });
     covers
 }
 

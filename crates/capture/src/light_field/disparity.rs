@@ -74,7 +74,7 @@ pub(super) fn find_disparity(wanted: &Wanted<'_>) -> Result<Option<FoundDisparit
 
 /// The likeliest file whose name has this word: floats before levels, of the size of the views before finer ones.
 fn named(wanted: &Wanted<'_>, word: &str) -> Option<PathBuf> {
-    const FORMS: [&str; 4] = ["pfm", "exr", "png", "webp"];
+    const FORMS: [&str; 6] = ["pfm", "exr", "png", "webp", "jpg", "jpeg"];
     let rank = |file: &Path| {
         let name = file.file_name()?.to_string_lossy().to_lowercase();
         let form = FORMS.iter().position(|form| *form == extension(file))?;

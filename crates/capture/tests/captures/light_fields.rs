@@ -287,6 +287,16 @@ fn disparities_of_the_files_that_lie_with_the_views() {
         (given.map.meaning, given.map.range().unwrap())
     };
     assert!(open(folder.path()).unwrap().disparity.is_none());
+    // Colours that are a code, as JPEG and as PNG.
+    for name in ["disparity.jpg", "disparity.png"] {
+        let code = |x: u32, _| image::Rgb([4 * x as u8, 255 - 4 * x as u8, 40]);
+        image::RgbImage::from_fn(SIDE, SIDE, code).save(path(name)).unwrap();
+        let field = open(folder.path()).unwrap();
+        assert!(field.disparity.is_none());
+        assert_eq!(field.coded_disparity.as_ref().map(PictureSource::file), Some(&*path(name)));
+        assert!(said(&field).contains("is coded by colour"), "{}", said(&field));
+        std::fs::remove_file(path(name)).unwrap();
+    }
     // Levels, which are relative.
     image::GrayImage::from_fn(SIDE, SIDE, |x, _| image::Luma([x as u8 * 4]))
         .save(path("disp_rel.png"))
