@@ -104,27 +104,25 @@ fn watch_one(
         shown.extend(newer.map(|preview| (preview.clone(), start.elapsed().as_secs_f64())));
         !shown.is_empty() && is_exact(session)
     })?;
-    let picture = |preview: &Preview| preview.picture.bring().map(|picture| conserved(&picture));
-    let Some(last) = shown.last().and_then(|(preview, _)| picture(preview)) else { return Ok(Vec::new()) };
+    let last = shown.last().and_then(|(preview, _)| preview.picture.bring());
+    let Some(last) = last.map(|picture| conserved(&picture)) else { return Ok(Vec::new()) };
     let mut pictures = Vec::new();
     for (preview, seconds) in &shown {
-        let Some(own) = picture(preview) else { continue };
+        let Some(own) = preview.picture.bring() else { continue };
         let what = match (preview.kind, preview.quality) {
             (PreviewKind::Pinhole, _) => "pinhole",
             (_, Quality::Coarse) => "coarse",
             (_, Quality::Viewing) => "viewing",
             (_, Quality::Exact) => "exact",
         };
-        let own_size = [own.width, own.height];
-        let size = [last.width, last.height];
-        let is_mean = preview.quality == Quality::Coarse && preview.kind != PreviewKind::Pinhole;
-        let shown = match preview.picture.bring() {
-            Some(picture) if is_mean => conserved(&session::enlarged(&picture, size)),
-            _ => enlarged(&own, size),
+        let on_screen = match preview.enlarged_to {
+            Some(size) => conserved(&session::enlarged(&own, size)),
+            None => conserved(&own),
         };
+        let shown = enlarged(&on_screen, [last.width, last.height]);
         let psnr = compare(&shown, &last)?.psnr;
         let (after, what) = (after.to_string(), what.to_string());
-        pictures.push(ShownPicture { after, what, size: own_size, seconds: *seconds, psnr });
+        pictures.push(ShownPicture { after, what, size: [own.width, own.height], seconds: *seconds, psnr });
     }
     Ok(pictures)
 }

@@ -63,8 +63,6 @@ pub struct Baker<'a> {
     pub patterns: Patterns,
     /// Where the pinhole picture is sampled.
     pub domain: Domain,
-    /// How many cells of a block are looked at together.
-    together: usize,
     packs: bool,
 }
 
@@ -80,9 +78,8 @@ impl<'a> Baker<'a> {
         let margin = standard_margin_px(tracer.scene(), &view).max(options.margin_px);
         let domain = Domain::new(camera.width, camera.height, margin);
         let placement = Placement::new(tracer.scene(), &view);
-        let together = if radiance.tells_many() { usize::MAX } else { FEW_CELLS };
         let packs = options.packs;
-        Self { tracer, radiance, view, placement, patterns: Patterns::new(), domain, together, packs }
+        Self { tracer, radiance, view, placement, patterns: Patterns::new(), domain, packs }
     }
 
     /// The samples of a block that was looked at, and of the surface patches in it.
@@ -94,11 +91,16 @@ impl<'a> Baker<'a> {
     ) -> (Samples, Outliers) {
         let Some(first) = looks.first() else { return Default::default() };
         let mut found: Vec<_> =
-            looks.chunks(self.together).flat_map(|looks| self.second_looks(occluders, looks)).collect();
+            looks.chunks(self.together()).flat_map(|looks| self.second_looks(occluders, looks)).collect();
         let unfound = |patch: &Sample| Found { sample: patch.clone(), part_of: None, by_chance: Vec3::ZERO };
         found.extend(patches.iter().map(unfound));
         let outliers = outliers::spread(&mut found, self.tracer.scene());
         (together(block_corner(first.cell.corner), found, self.packs), outliers)
+    }
+
+    /// How many cells of a block are looked at together.
+    fn together(&self) -> usize {
+        if self.radiance.tells_many() { usize::MAX } else { FEW_CELLS }
     }
 
     fn layers(&self, cell: Cell, density: Density, hidden: bool) -> Layers {
@@ -122,7 +124,7 @@ impl<'a> Baker<'a> {
     /// Looks at the cells of a block.
     pub fn first_looks(&self, cells: &[Cell]) -> Vec<FirstLook> {
         let mut looks = Vec::with_capacity(cells.len());
-        cells.chunks(self.together).for_each(|cells| looks.extend(self.looks_together(cells)));
+        cells.chunks(self.together()).for_each(|cells| looks.extend(self.looks_together(cells)));
         looks
     }
 

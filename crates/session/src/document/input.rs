@@ -3,7 +3,7 @@
 use super::capture_scene::{CaptureScene, PHOTOGRAPH, disparity_error_of, load_capture, photograph_camera};
 use super::disparity_error::DisparityError;
 use super::kept_atlas::unwrapped;
-use super::scene_camera::camera_of;
+use super::scene_camera::{camera_of, camera_of_any_unit};
 use super::stage::{Stage, atlas_error, load_variant};
 use super::variant_choice::VariantChoice;
 use crate::carrying::CarriedPaint;
@@ -132,7 +132,7 @@ impl Input {
         let read = load_capture(path, &choices, steps)?;
         let CaptureScene { scene, camera, remarks: mut warnings, is_incomplete } = read;
         warnings.extend(named(path, &scene.warnings));
-        let camera = camera.unwrap_or_else(|| in_any_unit(camera_of(&scene.cameras[0], &Camera::default())));
+        let camera = camera.unwrap_or_else(|| camera_of_any_unit(&scene.cameras[0]));
         let input = Self::new(path, scene, camera, warnings);
         Ok(Self { capture: Some(choices), is_incomplete, ..input })
     }
@@ -432,13 +432,4 @@ const MANY_TRIANGLES: usize = 50_000;
 /// Warnings that say whose they are.
 pub(crate) fn named(path: &Path, warnings: &[String]) -> Vec<String> {
     warnings.iter().map(|warning| format!("{}: {warning}", path.display())).collect()
-}
-
-/// A camera of a scene whose unit may be any, as that of a reconstruction is: its lens and sensor as large as the default camera's are before
-/// something 0.75 away, so that what lies before and behind is blurred.
-fn in_any_unit(camera: Camera) -> Camera {
-    const LIKE_AT: f64 = 0.75;
-    let Camera { aperture_radius, sensor_height, .. } = Camera::default();
-    let scale = camera.focus_distance / LIKE_AT;
-    Camera { aperture_radius: scale * aperture_radius, sensor_height: scale * sensor_height, ..camera }
 }

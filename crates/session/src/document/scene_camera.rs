@@ -21,3 +21,40 @@ pub fn camera_of(camera: &SceneCamera, lens: &Camera) -> Camera {
         ..lens.clone()
     })
 }
+
+/// A camera of a scene whose unit may be any, as that of a reconstruction is: its lens and sensor as large as the default camera's are before
+/// something 0.75 away, so that what lies before and behind is blurred.
+pub(super) fn camera_of_any_unit(camera: &SceneCamera) -> Camera {
+    const LIKE_AT: f64 = 0.75;
+    let lens = Camera::default();
+    let scale = camera.focus_distance / LIKE_AT;
+    let (aperture_radius, sensor_height) = (scale * lens.aperture_radius, scale * lens.sensor_height);
+    camera_of(camera, &Camera { aperture_radius, sensor_height, ..lens })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DMat4;
+    use scene::CameraLens;
+
+    #[test]
+    fn a_scene_in_another_unit_is_blurred_alike() {
+        let of = |unit: f64| {
+            let camera = SceneCamera {
+                name: "framing".into(),
+                index: None,
+                camera_to_world: DMat4::IDENTITY,
+                yfov: 0.7,
+                aspect: None,
+                focus_distance: 0.75 * unit,
+                lens: CameraLens::default(),
+            };
+            camera_of_any_unit(&camera)
+        };
+        let (metres, others) = (of(1.0), of(130.0));
+        assert_eq!(metres.aperture_radius, Camera::default().aperture_radius);
+        assert!((others.f_number() / metres.f_number() - 1.0).abs() < 1e-12);
+        assert!((others.aperture_radius / metres.aperture_radius / 130.0 - 1.0).abs() < 1e-12);
+    }
+}

@@ -12,6 +12,8 @@ pub struct Preview {
     pub id: u64,
     /// The picture, radiance and coverage.
     pub picture: LivePicture,
+    /// The size that the screen shows it in, [enlarged](crate::enlarged), where that is not its own.
+    pub enlarged_to: Option<[u32; 2]>,
     /// How it was made.
     pub kind: PreviewKind,
     /// How good it is.

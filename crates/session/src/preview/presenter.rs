@@ -47,8 +47,6 @@ pub(crate) struct Presenter {
     pictures: PictureRing,
     /// It, if it is on a card.
     on_card: Option<PictureOnCard>,
-    /// The size that it is shown in, where that is not its own.
-    enlarged_to: Option<[u32; 2]>,
     tone: Tone,
     last_id: u64,
     /// Which of the session's documents is shown.
@@ -70,7 +68,6 @@ impl Presenter {
             shown: None,
             pictures: PictureRing::default(),
             on_card: None,
-            enlarged_to: None,
             tone: Tone::default(),
             last_id: 0,
             generation: 0,
@@ -118,10 +115,10 @@ impl Presenter {
         let summed = Instant::now();
         let is_new = matches!(made.relation, Relation::New);
         let (picture, changed) = self.take_up(made.picture, made.relation);
-        self.enlarged_to = made.enlarged_to;
         self.last_id += 1;
         let preview = Preview {
             id: self.last_id,
+            enlarged_to: made.enlarged_to.filter(|_| matches!(picture, LivePicture::Here(_))),
             picture,
             kind: made.kind,
             quality: made.quality,
@@ -133,7 +130,7 @@ impl Presenter {
             generation: self.generation,
         };
         self.shown = Some(preview.clone());
-        let patch = changed.map(|rectangle| self.patch(&preview.picture, rectangle));
+        let patch = changed.map(|rectangle| self.patch(&preview, rectangle));
         let times =
             PictureTimes { map_serial: self.map_serial, begun: self.begun, summed, finished: Instant::now() };
         self.shared.publish(preview, patch, Some(times));
@@ -152,7 +149,7 @@ impl Presenter {
         if let Some(mut preview) = self.shown.clone() {
             self.last_id += 1;
             preview.id = self.last_id;
-            let patch = self.patch(&preview.picture, preview.picture.size().map(|side| 0..side));
+            let patch = self.patch(&preview, preview.picture.size().map(|side| 0..side));
             self.shared.publish(preview, Some(patch), None);
         }
     }
@@ -197,8 +194,9 @@ impl Presenter {
     }
 
     /// A rectangle of a picture, as the screen shows it.
-    fn patch(&self, picture: &LivePicture, rectangle: Rectangle) -> Patch {
-        if let (Some(size), LivePicture::Here(picture)) = (self.enlarged_to, picture) {
+    fn patch(&self, preview: &Preview, rectangle: Rectangle) -> Patch {
+        let picture = &preview.picture;
+        if let (Some(size), LivePicture::Here(picture)) = (preview.enlarged_to, picture) {
             let rectangle = enlarged_rectangle(picture, size, &rectangle);
             let part = enlarged_part(picture, size, rectangle.clone());
             return Patch { size, rectangle, content: Content::Pixels(to_screen(&part, self.tone)) };
