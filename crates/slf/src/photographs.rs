@@ -36,14 +36,14 @@ use alignment::Displacement;
 use glam::{DVec3, Vec3};
 use odd::Belonging;
 use places::{Sphere, TexelGrid};
-use scene::{Scene, SurfacePoint};
+use scene::SurfacePoint;
 use std::sync::Arc;
-use telling::{Mirrored, Residuals, toward};
-use trace::{Leaving, Radiance};
+use telling::{Mirrored, Residuals, is_blocked, toward};
+use trace::{Leaving, Radiance, Tracer};
 
 /// Radiance of a surface as photographs of it show it, kept at the texels of an atlas.
 pub struct PhotographLight {
-    scene: Arc<Scene>,
+    tracer: Arc<Tracer>,
     grid: TexelGrid,
     exposures: Vec<Exposure>,
     eyes: Vec<DVec3>,
@@ -97,6 +97,15 @@ impl PhotographLight {
         })
     }
 
+    /// What a point that mirrors by `strength` mirrors of the surroundings toward a direction, and its share.
+    fn mirrored(&self, point: SurfacePoint, strength: f32, normal: Vec3, outgoing: Vec3) -> (Vec3, f32) {
+        if strength <= 0.0 || is_blocked(&self.tracer, point, normal, outgoing) {
+            return (Vec3::ZERO, 0.0);
+        }
+        let light = self.mirrored.sent(normal, outgoing) * strength;
+        (light, self.mirrored.share_of(strength, normal, outgoing))
+    }
+
     fn interpolated(&self, point: SurfacePoint, of: impl Fn(usize) -> f32) -> f32 {
         let around = self.grid.around(point);
         around.map_or(0.0, |around| around.iter().map(|&(texel, share)| of(texel as usize) * share).sum())
@@ -106,10 +115,11 @@ impl PhotographLight {
 impl Radiance for PhotographLight {
     fn leaving(&self, point: SurfacePoint, eye: DVec3) -> Leaving {
         let Some(around) = self.grid.around(point) else { return Leaving::default() };
-        let position = point.position(&self.scene);
+        let scene = self.tracer.scene();
+        let position = point.position(scene);
         let outgoing = toward(position, eye);
-        let normal = self.scene.shading_normal(point).as_vec3();
-        let (mut sum, mut mirrored, mut carried_share) = (Vec3::ZERO, 0.0, 0.0);
+        let normal = scene.shading_normal(point).as_vec3();
+        let (mut sum, mut strength) = (Vec3::ZERO, 0.0);
         for (texel, share) in around {
             if share == 0.0 {
                 continue;
@@ -124,12 +134,9 @@ impl Radiance for PhotographLight {
                 }
             }
             sum += light * share;
-            let strength = self.mirrored.strength(texel);
-            mirrored += strength * share;
-            carried_share += self.mirrored.share_of(strength, normal, outgoing) * share;
+            strength += self.mirrored.strength(texel) * share;
         }
-        let carried =
-            if mirrored > 0.0 { self.mirrored.sent(normal, outgoing) * mirrored } else { Vec3::ZERO };
+        let (carried, carried_share) = self.mirrored(point, strength, normal, outgoing);
         // What was left over may be below 0 where less is mirrored than was thought.
         let own = sum.max(-carried);
         Leaving { own, carried, carried_share, ..Leaving::default() }

@@ -146,6 +146,14 @@ impl Tracer {
         nearest.hit
     }
 
+    /// Whether light from a surface point meets anything in a direction: from behind, too. Free of self-intersection as
+    /// [`Self::occluded`] is.
+    pub fn meets(&self, from: SurfacePoint, direction: DVec3) -> bool {
+        let origin = from.position(&self.scene);
+        let ray = Ray { origin, direction, t_min: 0.0, t_max: f64::INFINITY, skip: Some(from.triangle) };
+        self.any(&ray, |triangle, _| !in_plane(&triangle.corners, origin))
+    }
+
     /// Takes a triangle for the nearest that an eye sees, if it is.
     #[inline(always)]
     fn take(

@@ -155,7 +155,7 @@ fn solve(kept: &Kept, tracer: &Arc<Tracer>, progress: &dyn Progress) -> Result<A
     let scene = tracer.scene();
     let file = kept.file(tracer);
     let found = file.and_then(|file| FILES.read(file));
-    if let Some(light) = found.and_then(|bytes| PhotographLight::from_bytes(&bytes, scene)) {
+    if let Some(light) = found.and_then(|bytes| PhotographLight::from_bytes(&bytes, tracer)) {
         return Ok(Arc::new(light));
     }
     // The share of unwrapping, where that is left to do.

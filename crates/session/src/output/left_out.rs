@@ -75,7 +75,7 @@ impl Input {
         let (out, rest): (Vec<View>, Vec<View>) = (views(out), views(rest));
         let scene = Arc::new(Scene { views: rest.clone(), ..Scene::clone(&self.scene) });
         let atlas = self.atlas(unwrap, steps)?;
-        let tracer = Tracer::new(scene);
+        let tracer = Arc::new(Tracer::new(scene));
         let solved = |model: PhotographModel| {
             let options = PhotographOptions { model, ..PhotographOptions::default() };
             PhotographLight::solve(

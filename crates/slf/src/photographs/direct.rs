@@ -6,7 +6,7 @@
 use super::error::PhotographError;
 use super::places::{Blocks, Budget};
 use super::seeing::{Look, ReadView, Reading, from_border};
-use super::telling::{Known, SEEN, Sample, Work, robust_mean, toward};
+use super::telling::{Known, SEEN, Sample, Work, is_blocked, robust_mean, toward};
 use super::{PhotographLight, PhotographOptions};
 use glam::{DVec3, Vec3};
 use progress::Progress;
@@ -31,7 +31,7 @@ impl DirectPhotographs {
         options: &PhotographOptions,
         progress: &dyn Progress,
     ) -> Result<Self, PhotographError> {
-        let scene = &light.scene;
+        let scene = light.tracer.scene();
         let (reduction, at_once) = Budget::of_pictures(&scene.views, options.max_memory);
         let reading = Reading { load: &options.load, reduction, at_once };
         let read = reading.each(scene, &scene.views, progress, |_, read| read)?;
@@ -40,7 +40,7 @@ impl DirectPhotographs {
 
     /// What photographs show of a place, and from where: those that see the side that is seen better.
     fn samples(&self, position: DVec3, normal: Vec3) -> Vec<(usize, Sample)> {
-        let views = &self.light.scene.views;
+        let views = &self.light.tracer.scene().views;
         let is_front = |number: usize| normal.dot((views[number].position() - position).as_vec3()) >= 0.0;
         let mut seen: Vec<(usize, f32)> = Vec::new();
         for (number, (view, read)) in views.iter().zip(&self.read).enumerate() {
@@ -77,12 +77,13 @@ impl Radiance for DirectPhotographs {
         let light = &self.light;
         let (residuals, mirrored) = (&light.residuals, &light.mirrored);
         let Some(place) = light.grid.place(point) else { return Leaving::default() };
-        let position = point.position(&light.scene);
+        let scene = light.tracer.scene();
+        let position = point.position(scene);
         let outgoing = toward(position, eye);
-        let normal = light.scene.shading_normal(point).as_vec3();
+        let normal = scene.shading_normal(point).as_vec3();
         let blocks = Blocks::of([light.grid.width, light.grid.height]);
         let believed = |values: &[f32]| blocks.at(place, values);
-        let area_normal = light.scene.area_normal(point.triangle).normalize_or_zero().as_vec3();
+        let area_normal = scene.area_normal(point.triangle).normalize_or_zero().as_vec3();
         let samples = self.samples(position, area_normal);
         let evidence: f32 = samples.iter().map(|(_, sample)| sample.weight).sum();
         if evidence == 0.0 {
@@ -90,26 +91,35 @@ impl Radiance for DirectPhotographs {
         }
         let share = believed(&residuals.believed.share);
         let strength = believed(&mirrored.strength_of_block);
-        let directions: Vec<Vec3> =
-            samples.iter().map(|&(number, _)| toward(position, light.eyes[number])).collect();
+        let told = strength * share;
+        // Of each sample: from where, and what is mirrored there by a strength of 1.
+        let directions: Vec<(Vec3, Vec3)> = samples
+            .iter()
+            .map(|&(number, _)| {
+                let direction = toward(position, light.eyes[number]);
+                let is_open = told > 0.0 && !is_blocked(&light.tracer, point, normal, direction);
+                (direction, if is_open { mirrored.sent(normal, direction) } else { Vec3::ZERO })
+            })
+            .collect();
         let mut work = Work::new();
         let mut mean = |strength: f32| {
             work.samples.clear();
-            work.samples.extend(samples.iter().zip(&directions).map(|((_, sample), direction)| {
-                let light = sample.light - mirrored.sent(normal, *direction) * strength;
-                sample.with_light(light)
-            }));
+            work.samples.extend(
+                samples
+                    .iter()
+                    .zip(&directions)
+                    .map(|((_, sample), (_, sent))| sample.with_light(sample.light - *sent * strength)),
+            );
             robust_mean(&work.samples, &mut Vec::new())
         };
         let plain = mean(0.0);
         let mut constant = plain;
-        if share > 0.0 && strength > 0.0 {
+        if told > 0.0 {
             constant = constant.lerp(mean(strength).max(Vec3::ZERO), share);
         }
-        let told = strength * share;
         work.known.clear();
-        for (place, ((_, sample), &direction)) in samples.iter().zip(&directions).enumerate() {
-            let residual = sample.light - constant - mirrored.sent(normal, direction) * told;
+        for (place, ((_, sample), &(direction, sent))) in samples.iter().zip(&directions).enumerate() {
+            let residual = sample.light - constant - sent * told;
             work.known.push(Known { place, direction, residual, weight: sample.counts(plain) });
         }
         let mut own = light.constant(point).lerp(constant, (evidence / SEEN).min(1.0));
@@ -121,11 +131,11 @@ impl Radiance for DirectPhotographs {
                 own += *alpha * (belief * residuals.kernel.at(known.direction.distance(outgoing)));
             }
         }
-        let carried = mirrored.sent(normal, outgoing) * told;
+        let (carried, carried_share) = light.mirrored(point, told, normal, outgoing);
         Leaving {
             own: own.max(-carried),
             carried,
-            carried_share: mirrored.share_of(told, normal, outgoing),
+            carried_share,
             ..Leaving::default()
         }
     }

@@ -5,12 +5,13 @@ use super::exposures::{Exposure, exposures};
 use super::odd::{self, Belonging};
 use super::places::{Budget, Sphere, Texels};
 use super::seeing::{Reading, Sightings};
-use super::telling::{Calibrated, Told, beyond, fill, one_view, told};
+use super::telling::{Calibrated, Told, beyond, fill, is_blocked, one_view, told, toward};
 use super::{PhotographError, PhotographLight, PhotographModel, PhotographOptions, Poses};
 use atlas::Atlas;
 use glam::DVec3;
 use progress::{Cancelled, Progress, Stage};
 use scene::View;
+use std::sync::Arc;
 use trace::Tracer;
 
 /// Rows of the cells at infinity, 0.35° each: some pixels of a photograph.
@@ -23,7 +24,7 @@ impl PhotographLight {
     /// # Errors
     /// There are no photographs, one cannot be read, or `progress` says to stop.
     pub fn solve(
-        tracer: &Tracer,
+        tracer: &Arc<Tracer>,
         atlas: &Atlas,
         views: &[View],
         options: &PhotographOptions,
@@ -63,6 +64,12 @@ impl PhotographLight {
         if !belonging.iter().all(Belonging::is_whole) {
             sightings.weigh(&texels, views, |number, pixel| belonging[number].at(pixel));
         }
+        if options.model == PhotographModel::Light {
+            sightings.block(|texel, view| {
+                let outgoing = toward(texels.position(texel), eyes[view]);
+                is_blocked(tracer, texels.point(texel), texels.shading_normal(texel), outgoing)
+            });
+        }
         let radiance = Calibrated { texels: &texels, sightings: &sightings, eyes: &eyes };
         let seeing = (0..texels.count()).map(|texel| sightings.range(texel).len() as u16).collect();
         let Told { mut constant, seen, mirrored, residuals } = match options.model {
@@ -73,7 +80,7 @@ impl PhotographLight {
         fill(&texels, &seen, &mut constant);
         progress.report(1.0);
         Ok(Self {
-            scene: scene.clone(),
+            tracer: tracer.clone(),
             grid: texels.grid,
             exposures,
             eyes,

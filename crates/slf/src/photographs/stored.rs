@@ -9,10 +9,10 @@ use super::telling::{Believed, Kernel, Mirrored, Residuals};
 use atlas::NO_TEXEL;
 use bytemuck::{Pod, Zeroable, pod_collect_to_vec};
 use glam::{DVec3, Vec2, Vec3};
-use scene::Scene;
 use std::sync::Arc;
+use trace::Tracer;
 
-const MAGIC: &[u8; 8] = b"FBPHOTO2";
+const MAGIC: &[u8; 8] = b"FBPHOTO3";
 
 /// What is there once.
 #[derive(Clone, Copy, Pod, Zeroable)]
@@ -62,8 +62,9 @@ impl PhotographLight {
         bytes
     }
 
-    /// The light of a scene from the bytes of [`Self::to_bytes`]; none if they are no such, or of another scene.
-    pub fn from_bytes(bytes: &[u8], scene: &Arc<Scene>) -> Option<Self> {
+    /// The light of the scene in `tracer` from the bytes of [`Self::to_bytes`]; none if they are no such, or of another scene.
+    pub fn from_bytes(bytes: &[u8], tracer: &Arc<Tracer>) -> Option<Self> {
+        let scene = tracer.scene();
         let rest = bytes.strip_prefix(MAGIC)?;
         let (head, mut rest) = rest.split_at_checked(size_of::<Head>())?;
         let head: Head = bytemuck::pod_read_unaligned(head);
@@ -85,7 +86,7 @@ impl PhotographLight {
         let beyond = list(&mut rest)?;
         let kernel = Kernel { reach: head.reach, noise: head.noise };
         let light = Self {
-            scene: scene.clone(),
+            tracer: tracer.clone(),
             grid: TexelGrid {
                 scale: head.scale,
                 width: head.width,
@@ -115,12 +116,12 @@ impl PhotographLight {
 
     /// Whether no list leads beyond the end of another.
     fn holds_together(&self) -> bool {
-        let (texels, views) = (self.constant.len(), self.scene.views.len());
+        let (texels, views) = (self.constant.len(), self.tracer.scene().views.len());
         let (grid, residuals) = (&self.grid, &self.residuals);
         let Believed { share, belief, errors } = &residuals.believed;
         let by_block = [share.len(), belief.len(), errors.len(), self.mirrored.strength_of_block.len()];
         let blocks = Blocks::of([grid.width, grid.height]).count();
-        grid.corners.len() == self.scene.triangles.len()
+        grid.corners.len() == self.tracer.scene().triangles.len()
             && grid.index.len() as u64 == u64::from(grid.width) * u64::from(grid.height)
             && grid.index.iter().all(|&texel| texel == NO_TEXEL || (texel as usize) < texels)
             && [self.exposures.len(), self.eyes.len()] == [views; 2]

@@ -14,6 +14,7 @@ mod directions;
 mod filling;
 mod mirrored;
 mod one_view;
+mod reflection;
 mod residuals;
 mod told;
 
@@ -24,5 +25,6 @@ pub(crate) use directions::{Kernel, Known, toward};
 pub(crate) use filling::fill;
 pub(crate) use mirrored::Mirrored;
 pub(crate) use one_view::one_view;
+pub(crate) use reflection::is_blocked;
 pub(crate) use residuals::{Believed, LEAST_ERROR, Residuals, Work};
 pub(crate) use told::{SEEN, Told, told};

@@ -30,7 +30,7 @@ const SIGHTING_BYTES: f64 = 18.0;
 /// Of the photographs about so many see a texel.
 const SEEING: f64 = 0.35;
 /// Of a texel by itself.
-const TEXEL_BYTES: f64 = 160.0;
+const TEXEL_BYTES: f64 = 184.0;
 /// Pixels a texel, each way, as the photographs that see it best see it: many photographs know it finer than one.
 const PIXELS_A_TEXEL: f64 = 0.8;
 /// More photographs at once make nothing faster where two cores read them.

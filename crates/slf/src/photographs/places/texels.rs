@@ -23,6 +23,7 @@ pub(crate) struct Texels {
     pub grid: TexelGrid,
     /// Column and row of each.
     places: Vec<[u32; 2]>,
+    points: Vec<SurfacePoint>,
     positions: Vec<DVec3>,
     /// Unit, geometric, on the front.
     normals: Vec<Vec3>,
@@ -56,6 +57,7 @@ impl Texels {
         Self {
             grid: TexelGrid { scale, width, height, corners: atlas.corners.clone(), index },
             places: texels.iter().map(|texel| [texel.x, texel.y]).collect(),
+            points: texels.iter().map(|texel| texel.centroid).collect(),
             positions,
             normals,
             shading_normals,
@@ -70,6 +72,10 @@ impl Texels {
     /// Columns and rows.
     pub fn size(&self) -> [u32; 2] {
         [self.grid.width, self.grid.height]
+    }
+
+    pub fn point(&self, texel: usize) -> SurfacePoint {
+        self.points[texel]
     }
 
     pub fn position(&self, texel: usize) -> DVec3 {

@@ -31,7 +31,7 @@ pub(crate) struct Sighting {
     pub view: u16,
     /// How well it is seen, in (0, 1] by 255ths.
     weight: u8,
-    /// The share of clipped pixels, by 255ths.
+    /// The share of clipped pixels, by 127ths; [`BLOCKED`] beside it.
     clipped: u8,
     /// Linear light, as the photograph has it until that is scaled, as square roots.
     root: [u16; 3],
@@ -48,13 +48,21 @@ pub(crate) struct Sightings {
     brightest: f32,
 }
 
+/// Of a sighting: what the texel mirrors toward the photograph is another part of the scene.
+const BLOCKED: u8 = 128;
+
 impl Sighting {
     pub fn weight(&self) -> f32 {
         f32::from(self.weight) / 255.0
     }
 
     pub fn clipped(&self) -> f32 {
-        f32::from(self.clipped) / 255.0
+        f32::from(self.clipped & !BLOCKED) / 127.0
+    }
+
+    /// Whether what the texel mirrors toward the photograph is another part of the scene, and not what surrounds it.
+    pub fn is_blocked(&self) -> bool {
+        self.clipped & BLOCKED != 0
     }
 }
 
@@ -129,7 +137,7 @@ impl Sightings {
                 let place = picture.place(pixel);
                 let shown = picture.at(place);
                 sighting.root = root_of(shown.light * factor, brightest);
-                sighting.clipped = by_255ths(shown.clipped.clamp(0.0, 1.0));
+                sighting.clipped = by_127ths(shown.clipped);
                 sighting.weight = by_255ths(sighting.weight() * from_border(picture, place)).max(1);
             }
         });
@@ -144,6 +152,16 @@ impl Sightings {
         });
     }
 
+    /// Has it told of each texel and view whether what is mirrored from there is blocked.
+    pub fn block(&mut self, is_blocked: impl Fn(usize, usize) -> bool + Sync) {
+        self.each(|sighting, texel| {
+            sighting.clipped &= !BLOCKED;
+            if is_blocked(texel, usize::from(sighting.view)) {
+                sighting.clipped |= BLOCKED;
+            }
+        });
+    }
+
     /// Changes all sightings, each given with its view's number and its pixel position.
     fn change(
         &mut self,
@@ -151,17 +169,22 @@ impl Sightings {
         views: &[View],
         change: impl Fn(&mut Sighting, usize, DVec2) + Sync,
     ) {
+        self.each(|sighting, texel| {
+            let number = usize::from(sighting.view);
+            // It was projected before, by the same lens.
+            let pixel = views[number].project(texels.position(texel)).unwrap_or_default();
+            change(sighting, number, pixel);
+        });
+    }
+
+    /// Changes all sightings, each given with its texel.
+    fn each(&mut self, change: impl Fn(&mut Sighting, usize) + Sync) {
         let start = &self.start;
         blocks_of(start, &mut self.all).into_par_iter().for_each(|(range, block)| {
             let first = start[range.start];
             for texel in range {
                 let (from, to) = (start[texel] - first, start[texel + 1] - first);
-                for sighting in &mut block[from as usize..to as usize] {
-                    let number = usize::from(sighting.view);
-                    // It was projected before, by the same lens.
-                    let pixel = views[number].project(texels.position(texel)).unwrap_or_default();
-                    change(sighting, number, pixel);
-                }
+                block[from as usize..to as usize].iter_mut().for_each(|sighting| change(sighting, texel));
             }
         });
     }
@@ -271,6 +294,10 @@ fn by_255ths(share: f32) -> u8 {
     (share * 255.0 + 0.5) as u8
 }
 
+fn by_127ths(share: f32) -> u8 {
+    (share.clamp(0.0, 1.0) * 127.0 + 0.5) as u8
+}
+
 /// A texel has one light, so of views of its front and its back only those of the side that is seen better count.
 fn keep_one_side(texels: &Texels, views: &[View], weights: &mut [Vec<u8>]) {
     let is_front = |texel: usize, view: &View| {
@@ -329,7 +356,7 @@ fn gathered(
                 // It was projected before, by the same lens.
                 let pixel = view.project(position).unwrap_or_default();
                 let shown = pictures[number].at(pictures[number].place(pixel));
-                let clipped = by_255ths(shown.clipped.clamp(0.0, 1.0));
+                let clipped = by_127ths(shown.clipped);
                 *slot =
                     Sighting { view: number as u16, weight, clipped, root: root_of(shown.light, brightest) };
             }

@@ -5,7 +5,7 @@
 //! surroundings.
 //!
 //! ```text
-//! L(x, ω) = D(x) + s(x)·F(n·ω)·E(2(n·ω)n − ω) + …        F(μ) = 0.04 + 0.96·(1 − μ)⁵
+//! L(x, ω) = D(x) + s(x)·F(n·ω)·V(x, m)·E(m) + …        m = 2(n·ω)n − ω        F(μ) = 0.04 + 0.96·(1 − μ)⁵
 //! ```
 //!
 //! | symbol | meaning | unit |
@@ -13,6 +13,7 @@
 //! | D | constant part of texel x | radiance |
 //! | s | how glossy the surface is around x, ≥ 0 | 1 |
 //! | F | what lacquer, glass and skin mirror (Schlick 1994) | 1 |
+//! | V | 0 where the scene itself is in the way, else 1 | 1 |
 //! | E | the surroundings as this gloss shows them, at infinity, ≥ 0 | radiance |
 //! | n, ω | unit shading normal on the eye's side, direction to the eye | |
 //!
@@ -22,6 +23,7 @@
 use super::calibrated::Calibrated;
 use super::constant::{Sample, robust_mean};
 use super::directions::toward;
+use super::reflection::{fresnel, reflection};
 use crate::photographs::places::{Blocks, Sphere};
 use glam::{DVec3, Vec3};
 use progress::{Cancelled, Progress};
@@ -101,7 +103,8 @@ impl Mirrored {
             |(samples, belonging), (texel, constant)| {
                 radiance.samples_into(texel, samples);
                 let from = texels.position(texel);
-                for (sample, sighting) in samples.iter_mut().zip(radiance.sightings.of_texel(texel)) {
+                let sightings = radiance.sightings.of_texel(texel);
+                for (sample, sighting) in samples.iter_mut().zip(sightings).filter(|(_, s)| !s.is_blocked()) {
                     let outgoing = toward(from, radiance.eye(sighting));
                     sample.light -= mirrored.sent(texels.shading_normal(texel), outgoing) * strength[texel];
                 }
@@ -163,19 +166,6 @@ impl Mirrored {
     }
 }
 
-/// The direction that is mirrored toward another, and F.
-fn reflection(normal: Vec3, outgoing: Vec3) -> (Vec3, f32) {
-    let cosine = normal.dot(outgoing);
-    (normal * (2.0 * cosine) - outgoing, fresnel(cosine.abs()))
-}
-
-/// F.
-fn fresnel(cosine: f32) -> f32 {
-    let rest = (1.0 - cosine).clamp(0.0, 1.0);
-    let square = rest * rest;
-    0.04 + 0.96 * square * square * rest
-}
-
 /// A texel that E is found from.
 struct Asked {
     constant: Vec3,
@@ -206,6 +196,7 @@ impl Asked {
         let seen = samples.iter().zip(sightings).map(|(&sample, sighting)| {
             let (direction, share) = reflection(normal, toward(from, radiance.eye(sighting)));
             let around = sphere.around(direction).map(|(cell, weight)| (cell as u32, weight));
+            let share = if sighting.is_blocked() { 0.0 } else { share };
             Seen { sample, is_clipped: sighting.clipped() > 0.0, around, share }
         });
         Some(Self { constant, seen: seen.collect() })

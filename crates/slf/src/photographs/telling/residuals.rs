@@ -158,7 +158,11 @@ impl Ways<'_> {
         let sightings = self.radiance.sightings.of_texel(texel);
         for (place, (sighting, sample)) in sightings.iter().zip(&*samples).enumerate() {
             let direction = toward(from, self.radiance.eye(sighting));
-            let mirrored = self.mirrored.at(texel, texels.shading_normal(texel), direction) * share;
+            let mirrored = if sighting.is_blocked() {
+                Vec3::ZERO
+            } else {
+                self.mirrored.at(texel, texels.shading_normal(texel), direction) * share
+            };
             let residual = sample.light - constant - mirrored;
             known.push(Known { place, direction, residual, weight: sample.counts(self.plain[texel]) });
         }

@@ -1,0 +1,30 @@
+//! What a surface mirrors, and whether that is what surrounds the scene.
+
+use glam::{DVec3, Vec3};
+use scene::SurfacePoint;
+use trace::Tracer;
+
+/// The direction that is mirrored toward another, and F.
+pub(super) fn reflection(normal: Vec3, outgoing: Vec3) -> (Vec3, f32) {
+    let cosine = normal.dot(outgoing);
+    (normal * (2.0 * cosine) - outgoing, fresnel(cosine.abs()))
+}
+
+/// F: what lacquer, glass and skin mirror (Schlick 1994).
+pub(super) fn fresnel(cosine: f32) -> f32 {
+    let rest = (1.0 - cosine).clamp(0.0, 1.0);
+    let square = rest * rest;
+    0.04 + 0.96 * square * square * rest
+}
+
+/// Whether what a point with this shading normal mirrors toward an eye is another part of the scene.
+///
+/// Where a smooth surface is made of flat faces, the mirrored direction may lie below its own face; it is then looked along the face, as
+/// the smooth surface would not be in its own way.
+pub(crate) fn is_blocked(tracer: &Tracer, point: SurfacePoint, normal: Vec3, outgoing: Vec3) -> bool {
+    let (direction, _) = reflection(normal, outgoing);
+    let face = tracer.scene().area_normal(point.triangle).normalize_or_zero();
+    let face = if face.dot(outgoing.as_dvec3()) < 0.0 { -face } else { face };
+    let direction: DVec3 = direction.as_dvec3();
+    tracer.meets(point, direction - face * face.dot(direction).min(0.0))
+}
