@@ -132,12 +132,7 @@ impl Radiance for DirectPhotographs {
             }
         }
         let (carried, carried_share) = light.mirrored(point, told, normal, outgoing);
-        Leaving {
-            own: own.max(-carried),
-            carried,
-            carried_share,
-            ..Leaving::default()
-        }
+        Leaving { own: own.max(-carried), carried, carried_share, ..Leaving::default() }
     }
 
     fn from_infinity(&self, direction: DVec3) -> Vec3 {

@@ -4,10 +4,10 @@ mod alignment;
 mod place;
 
 use atlas::{Atlas, Density, UnwrapOptions};
-use glam::{DVec2, DVec3};
+use glam::{DVec2, DVec3, Vec3};
 use place::{
-    Photographs, SKY, UNDERSIDE, floor, floor_color, floor_places, gain_stops, gauge, glossy, matte, solve,
-    tracer,
+    Photographs, SKY, UNDERSIDE, box_is_in_the_way, floor, floor_color, floor_places, gain_stops, gauge,
+    glossy, lacquered, matte, solve, tracer,
 };
 use progress::{Part, Progress, Unwatched};
 use scene::{Scene, SurfacePoint, View};
@@ -106,6 +106,32 @@ fn gloss_is_kept_where_photographs_show_it_and_changes_smoothly() {
 }
 
 #[test]
+fn a_mirror_shows_its_surroundings_where_the_scene_is_not_in_the_way() {
+    let tracer = tracer();
+    let photographs = Photographs::take("mirror", &tracer, lacquered, false);
+    let light = solve(&tracer, &photographs.views);
+    // Between cameras 0 and 1, and lower and higher.
+    let eyes = [0.45f64, 0.7, 0.9].map(|elevation| {
+        let (sin, cos) = 0.26f64.sin_cos();
+        5.0 * DVec3::new(elevation.cos() * sin, elevation.sin(), elevation.cos() * cos)
+    });
+    let mut sums = [[0.0; 3]; 2];
+    for (eye, [x, z]) in eyes.into_iter().flat_map(|eye| floor_places().map(move |place| (eye, place))) {
+        let (point, position) = (floor(x, z), DVec3::new(x, 0.0, z));
+        let leaving = light.leaving(point, eye);
+        let is_blocked = box_is_in_the_way(position, eye);
+        assert!(!is_blocked || leaving.carried == Vec3::ZERO, "{x} {z}");
+        let truth = lacquered(tracer.scene(), point, eye);
+        let [told, flat] = [leaving.total(), light.constant(point)].map(|light| light / gauge());
+        let sum = &mut sums[usize::from(is_blocked)];
+        *sum = [sum[0] + told.distance_squared(truth), sum[1] + flat.distance_squared(truth), sum[2] + 1.0];
+    }
+    let [open, blocked] = sums.map(|[told, flat, count]| [told, flat].map(|sum| (sum / count).sqrt()));
+    assert!(open[0] < 0.5 * open[1], "{open:?}");
+    assert!(blocked[0] < 0.7 * blocked[1], "{blocked:?}");
+}
+
+#[test]
 fn light_does_not_depend_on_the_number_of_threads() {
     let tracer = tracer();
     let photographs = Photographs::take("threads", &tracer, glossy, false);
@@ -139,10 +165,10 @@ fn light_comes_back_from_its_bytes_and_from_no_others() {
     let tracer = tracer();
     let photographs = Photographs::take("stored", &tracer, matte, false);
     let scene = Arc::new(Scene { views: photographs.views.clone(), ..Scene::clone(tracer.scene()) });
-    let tracer = Tracer::new(scene.clone());
+    let tracer = Arc::new(Tracer::new(scene.clone()));
     let light = solve(&tracer, &photographs.views);
     let bytes = light.to_bytes();
-    let again = PhotographLight::from_bytes(&bytes, &scene).unwrap();
+    let again = PhotographLight::from_bytes(&bytes, &tracer).unwrap();
     assert_eq!(again.to_bytes(), bytes);
     assert_eq!(again.exposures(), light.exposures());
     let eye = DVec3::new(0.3, 2.0, 1.5);
@@ -151,10 +177,10 @@ fn light_comes_back_from_its_bytes_and_from_no_others() {
         assert_eq!((a.own, a.carried), (b.own, b.carried));
     }
     for length in (0..bytes.len()).step_by(bytes.len() / 97) {
-        assert!(PhotographLight::from_bytes(&bytes[..length], &scene).is_none(), "{length}");
+        assert!(PhotographLight::from_bytes(&bytes[..length], &tracer).is_none(), "{length}");
     }
     let other = Arc::new(Scene { triangles: scene.triangles[1..].to_vec(), ..Scene::clone(&scene) });
-    assert!(PhotographLight::from_bytes(&bytes, &other).is_none());
+    assert!(PhotographLight::from_bytes(&bytes, &Arc::new(Tracer::new(other))).is_none());
 }
 
 /// The parts that begun, and whether one of them is where to stop; the empty name stops at once.

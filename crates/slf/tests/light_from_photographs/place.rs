@@ -15,7 +15,7 @@ pub const HEIGHT: u32 = 90;
 pub const SKY: Vec3 = Vec3::new(0.3, 0.3, 0.35);
 
 /// Floor (triangles 0 and 1), and a box of six sides.
-pub fn tracer() -> Tracer {
+pub fn tracer() -> Arc<Tracer> {
     let mut mesh = SurfaceMesh { name: "place".into(), ..SurfaceMesh::default() };
     let mut rectangle = |corner: [f64; 3], side: [f64; 3], other: [f64; 3]| {
         let [corner, side, other] = [corner, side, other].map(DVec3::from_array);
@@ -32,7 +32,7 @@ pub fn tracer() -> Tracer {
     for [x, z, dx, dz] in sides {
         rectangle([x, low, z], [dx, 0.0, dz], [0.0, high - low, 0.0]);
     }
-    Tracer::new(Arc::new(Scene::of_mesh(mesh, &LoadOptions::default()).unwrap()))
+    Arc::new(Tracer::new(Arc::new(Scene::of_mesh(mesh, &LoadOptions::default()).unwrap())))
 }
 
 /// The triangles of the box's underside.
@@ -48,6 +48,36 @@ pub type Sends = fn(&Scene, SurfacePoint, DVec3) -> Vec3;
 pub fn matte(scene: &Scene, point: SurfacePoint, _eye: DVec3) -> Vec3 {
     let position = point.position(scene);
     if point.triangle < 2 { floor_color(position.x, position.z) } else { Vec3::new(0.6, 0.08, 0.08) }
+}
+
+/// The same, the floor under clear lacquer, which mirrors rings of light in the sky where the box is not in the way.
+pub fn lacquered(scene: &Scene, point: SurfacePoint, eye: DVec3) -> Vec3 {
+    let position = point.position(scene);
+    let mirrored = match point.triangle {
+        0 | 1 => mirrored_by_floor(position, eye),
+        _ => 0.0,
+    };
+    matte(scene, point, eye) + mirrored
+}
+
+/// What the lacquered floor mirrors at a position.
+pub fn mirrored_by_floor(position: DVec3, eye: DVec3) -> f32 {
+    let outgoing = (eye - position).normalize();
+    if box_is_in_the_way(position, eye) {
+        return 0.0;
+    }
+    let fresnel = 0.04 + 0.96 * (1.0 - outgoing.y).powi(5);
+    (fresnel * (2.0 + 2.0 * (12.0 * outgoing.y).sin())) as f32
+}
+
+/// Whether the box is what the floor mirrors there.
+pub fn box_is_in_the_way(position: DVec3, eye: DVec3) -> bool {
+    let outgoing = (eye - position).normalize();
+    let mirrored = DVec3::new(-outgoing.x, outgoing.y, -outgoing.z);
+    let [a, b] =
+        [DVec3::new(-0.5, 0.1, -0.5), DVec3::new(0.5, 1.1, 0.5)].map(|corner| (corner - position) / mirrored);
+    let (enters, leaves) = (a.min(b).max_element(), a.max(b).min_element());
+    enters < leaves && leaves > 0.0
 }
 
 /// The same, the eastern strip of the floor under a wide gloss of a lamp in the south.
@@ -142,11 +172,11 @@ pub fn encoded(light: f32) -> u16 {
     (value * 65535.0 + 0.5) as u16
 }
 
-pub fn solve(tracer: &Tracer, views: &[View]) -> PhotographLight {
+pub fn solve(tracer: &Arc<Tracer>, views: &[View]) -> PhotographLight {
     solve_with(tracer, views, &PhotographOptions::default())
 }
 
-pub fn solve_with(tracer: &Tracer, views: &[View], options: &PhotographOptions) -> PhotographLight {
+pub fn solve_with(tracer: &Arc<Tracer>, views: &[View], options: &PhotographOptions) -> PhotographLight {
     let unwrap = UnwrapOptions { density: Density::Side(192), ..UnwrapOptions::default() };
     let atlas = Atlas::unwrap(tracer.scene(), &unwrap, &Unwatched).unwrap();
     PhotographLight::solve(tracer, &atlas, views, options, &Unwatched).unwrap()

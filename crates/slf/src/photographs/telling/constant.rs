@@ -21,11 +21,18 @@ pub(crate) struct Sample {
 const CLIPPED_COUNTS: f32 = 0.05;
 /// From told brighter by this share on, which is what noise leaves open.
 const CLIPPED_SURE: f32 = 0.05;
+/// From this share of its pixels on at the limit, a sample is wholly so: noise that is cut off at the limit leaves pixels below it.
+const LIMITED: f32 = 0.25;
 
 impl Sample {
     /// The same as another light with it changes it: how well it is seen stays.
     pub fn with_light(self, light: Vec3) -> Self {
         Self { light, ..self }
+    }
+
+    /// How far it is no more than the least that was there, in [0, 1]: a mean of pixels, some at the limit, is too dark as a whole.
+    fn limited(&self) -> f32 {
+        (self.clipped / LIMITED).min(1.0)
     }
 
     /// How it counts whatever it is compared with.
@@ -43,7 +50,7 @@ impl Sample {
         let over = told[channel] - self.light[channel];
         let is_kept =
             (over / (CLIPPED_SURE * self.light[channel].abs()).max(f32::MIN_POSITIVE)).clamp(0.0, 1.0);
-        self.weight * (1.0 - (1.0 - CLIPPED_COUNTS) * self.clipped * is_kept)
+        self.weight * (1.0 - (1.0 - CLIPPED_COUNTS) * self.limited() * is_kept)
     }
 }
 
@@ -109,14 +116,45 @@ fn weighted_mean(samples: &[Sample], weights: impl Iterator<Item = f32>) -> Opti
     (all > 0.0).then(|| sum / all)
 }
 
-/// By channel.
+/// By channel. What was at the sensor's limit was at least so bright: the product-limit estimate of Kaplan and Meier (1958).
 fn median(samples: &[Sample]) -> Vec3 {
     let mut values = Vec::with_capacity(samples.len());
     Vec3::from_array(std::array::from_fn(|channel| {
         values.clear();
-        values.extend(samples.iter().map(|sample| (sample.light[channel], sample.weight)));
-        weighted_median(&mut values)
+        for sample in samples {
+            let clipped = if sample.light.max_position() == channel { sample.limited() } else { 0.0 };
+            let light = sample.light[channel];
+            for (is_least, weight) in [(false, 1.0 - clipped), (true, clipped)] {
+                values.push(Value { light, is_least, weight: weight * sample.weight });
+            }
+        }
+        median_of_limited(&mut values)
     }))
+}
+
+/// A value, or the least that it may be.
+struct Value {
+    light: f32,
+    is_least: bool,
+    weight: f32,
+}
+
+/// What half of the values lie above; the largest, if that is not known.
+fn median_of_limited(values: &mut [Value]) -> f32 {
+    values.sort_unstable_by(|a, b| a.light.total_cmp(&b.light).then(a.is_least.cmp(&b.is_least)));
+    let mut at_risk: f32 = values.iter().map(|value| value.weight).sum();
+    // The share of values that lie above.
+    let mut above = 1.0;
+    for value in values.iter() {
+        if !value.is_least && value.weight > 0.0 {
+            above *= (1.0 - value.weight / at_risk).max(0.0);
+            if above <= 0.5 {
+                return value.light;
+            }
+        }
+        at_risk -= value.weight;
+    }
+    values.last().map_or(0.0, |last| last.light)
 }
 
 fn weighted_median(values: &mut [(f32, f32)]) -> f32 {
@@ -174,6 +212,17 @@ mod tests {
         assert!((with(0.4, 4) - 0.5).abs() < 0.02, "{}", with(0.4, 4));
         // Above: it is at least that bright toward most.
         assert!(with(0.7, 8) > 0.65, "{}", with(0.7, 8));
+    }
+
+    #[test]
+    fn few_that_were_below_their_limits_say_how_bright_it_was() {
+        // 1.3, by exposures whose limits lie below, but for two; a quarter of each one's pixels just misses its limit.
+        let limits = [0.6, 0.65, 0.7, 0.75, 0.8, 0.85, 0.9, 0.95, 1.0, 1.1, 1.2];
+        let mut samples = samples(&[1.28, 1.32]);
+        let limited = |limit: f32| Sample { light: Vec3::splat(limit * 0.99), weight: 1.0, clipped: 0.75 };
+        samples.extend(limits.map(limited));
+        let mean = robust_mean(&samples, &mut Vec::new()).x;
+        assert!((1.1..1.35).contains(&mean), "{mean}");
     }
 
     #[test]
