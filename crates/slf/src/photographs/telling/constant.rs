@@ -18,7 +18,7 @@ pub(crate) struct Sample {
 }
 
 /// What was at the sensor's limit says that it was at least so bright. Where it is told to be that bright already, it counts this much.
-const CLIPPED_COUNTS: f32 = 0.05;
+const CLIPPED_COUNTS: f32 = 0.005;
 /// From told brighter by this share on, which is what noise leaves open.
 const CLIPPED_SURE: f32 = 0.05;
 /// From this share of its pixels on at the limit, a sample is wholly so: noise that is cut off at the limit leaves pixels below it.

@@ -243,7 +243,7 @@ fn looked_up(sphere: &Sphere, asked: &[Asked], before: &[Vec3]) -> Vec<Vec3> {
     /// Points that are summed as one, whatever the number of threads.
     const TOGETHER: usize = 8192;
     /// What lies off by this is trusted half, in roots of light.
-    const SCALE: f32 = 0.1;
+    const SCALE: f32 = 0.3;
     let parts: Vec<Vec<(Vec3, f32)>> = asked
         .par_chunks(TOGETHER)
         .map(|points| {
