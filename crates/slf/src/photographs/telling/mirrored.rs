@@ -49,6 +49,8 @@ const ASKED: usize = 50_000;
 const TURNS: usize = 12;
 /// Cells are held at what lies around them as by so much evidence (squared share of light, summed over sightings).
 const HOLD: f32 = 0.02;
+/// One photograph is no more evidence of a cell than this, however many of its pixels look there.
+const MOST_OF_VIEW: f32 = 0.2 * HOLD;
 /// No surface mirrors more than this, by F: a metal at normal incidence.
 const MOST: f32 = 25.0;
 
@@ -79,22 +81,15 @@ impl Mirrored {
             .filter_map(|texel| Asked::of(radiance, &sphere, texel, constant[texel]))
             .collect();
         let mut surroundings = vec![Vec3::ZERO; sphere.count()];
-        let mut asked = asked;
-        for turn in 0..TURNS {
-            progress.check()?;
-            progress.report(0.8 * turn as f32 / TURNS as f32);
-            surroundings = looked_up(&sphere, &asked, &surroundings);
-            asked.par_iter_mut().for_each_init(
-                || (Vec::new(), Vec::new()),
-                |(samples, belonging), point| {
-                    point.constant = point.without(&surroundings, samples, belonging);
-                },
-            );
-        }
+        let views = radiance.eyes.len();
+        let of = |half: usize| asked.iter().map(|point| point.of_half(half)).collect();
+        let halves: [Vec<Vec3>; 2] =
+            [found(&sphere, of(0), views, progress)?, found(&sphere, of(1), views, progress)?];
+        let surroundings = found(&sphere, asked, views, progress)?;
         let (strength, strength_of_block) = Default::default();
         let mut mirrored = Self { sphere, surroundings, strength, strength_of_block };
         let blocks = Blocks::of(texels.size());
-        mirrored.strength_of_block = mirrored.strengths(radiance, constant, &blocks);
+        mirrored.strength_of_block = mirrored.strengths(radiance, constant, &blocks, &halves);
         mirrored.strength = blocks.by_texel(texels, &mirrored.strength_of_block);
         let strength = &mirrored.strength;
         let mut constant = constant.to_vec();
@@ -146,14 +141,20 @@ impl Mirrored {
     }
 
     /// s by block.
-    fn strengths(&self, radiance: &Calibrated<'_>, constant: &[Vec3], blocks: &Blocks) -> Vec<f32> {
+    fn strengths(
+        &self,
+        radiance: &Calibrated<'_>,
+        constant: &[Vec3],
+        blocks: &Blocks,
+        halves: &[Vec<Vec3>; 2],
+    ) -> Vec<f32> {
         let texels = radiance.texels;
         // Of what a texel shows and what it should mirror, both less their means: product and square, summed.
         let sums: Vec<(usize, f32, f32)> = (0..texels.count())
             .into_par_iter()
             .filter_map(|texel| {
                 let point = Asked::of(radiance, &self.sphere, texel, constant[texel])?;
-                let (product, square) = point.covariance(&self.surroundings);
+                let (product, square) = point.covariance(halves);
                 Some((blocks.of_texel(texels, texel), product, square))
             })
             .collect();
@@ -172,9 +173,11 @@ struct Asked {
     seen: Vec<Seen>,
 }
 
+#[derive(Clone)]
 /// A sample and the cells around its mirrored direction.
 struct Seen {
     sample: Sample,
+    view: u16,
     is_clipped: bool,
     around: Cells,
     share: f32,
@@ -197,7 +200,7 @@ impl Asked {
             let (direction, share) = reflection(normal, toward(from, radiance.eye(sighting)));
             let around = sphere.around(direction).map(|(cell, weight)| (cell as u32, weight));
             let share = if sighting.is_blocked() { 0.0 } else { share };
-            Seen { sample, is_clipped: sighting.clipped() > 0.0, around, share }
+            Seen { sample, view: sighting.view, is_clipped: sighting.clipped() > 0.0, around, share }
         });
         Some(Self { constant, seen: seen.collect() })
     }
@@ -212,19 +215,28 @@ impl Asked {
         robust_mean(samples, belonging).max(Vec3::ZERO)
     }
 
-    /// Product and square of `strengths`.
-    fn covariance(&self, surroundings: &[Vec3]) -> (f32, f32) {
-        let told: Vec<Vec3> = self.seen.iter().map(|seen| seen.mirrored(surroundings)).collect();
-        let (mut light, mut mirrored, mut weights) = (Vec3::ZERO, Vec3::ZERO, 0.0);
+    /// What is seen by one half of the photographs.
+    fn of_half(&self, half: usize) -> Self {
+        let seen = self.seen.iter().filter(|seen| half_of(seen.view) == half).cloned().collect();
+        Self { constant: self.constant, seen }
+    }
+
+    /// Product and square of `strengths`: what each half of the photographs shows, beside what the other half tells.
+    fn covariance(&self, halves: &[Vec<Vec3>; 2]) -> (f32, f32) {
+        let told: Vec<Vec3> =
+            self.seen.iter().map(|seen| seen.mirrored(&halves[1 - half_of(seen.view)])).collect();
+        let (mut light, mut mirrored, mut weights) = (Vec3::ZERO, [Vec3::ZERO; 2], [0.0; 2]);
         for (seen, told) in self.seen.iter().zip(&told) {
-            let weight = seen.sample.counts_at_least();
+            let (half, weight) = (half_of(seen.view), seen.sample.counts_at_least());
             light += seen.sample.light * weight;
-            mirrored += *told * weight;
-            weights += weight;
+            mirrored[half] += *told * weight;
+            weights[half] += weight;
         }
-        let (light, mirrored) = (light / weights, mirrored / weights);
+        light /= weights[0] + weights[1];
+        // A half that sees nothing has no mean, and is not asked for it.
+        let mirrored = [0, 1].map(|half| mirrored[half] / weights[half].max(f32::MIN_POSITIVE));
         self.seen.iter().zip(&told).fold((0.0, 0.0), |(product, square), (seen, told)| {
-            let told = *told - mirrored;
+            let told = *told - mirrored[half_of(seen.view)];
             let weight = seen.sample.counts_at_least();
             (product + told.dot(seen.sample.light - light) * weight, square + told.length_squared() * weight)
         })
@@ -238,18 +250,54 @@ impl Seen {
     }
 }
 
+/// Photographs beside each other are of different halves.
+fn half_of(view: u16) -> usize {
+    usize::from(view) % 2
+}
+
+/// E, from what is asked.
+fn found(
+    sphere: &Sphere,
+    mut asked: Vec<Asked>,
+    views: usize,
+    progress: &dyn Progress,
+) -> Result<Vec<Vec3>, Cancelled> {
+    let mut by_view = vec![Vec::new(); views];
+    for (point, asked) in asked.iter().enumerate() {
+        for (number, seen) in asked.seen.iter().enumerate() {
+            by_view[usize::from(seen.view)].push((point as u32, number as u32));
+        }
+    }
+    let mut surroundings = vec![Vec3::ZERO; sphere.count()];
+    for turn in 0..TURNS {
+        progress.check()?;
+        progress.report(0.8 * turn as f32 / TURNS as f32);
+        surroundings = looked_up(sphere, &asked, &by_view, &surroundings);
+        asked.par_iter_mut().for_each_init(
+            || (Vec::new(), Vec::new()),
+            |(samples, belonging), point| {
+                point.constant = point.without(&surroundings, samples, belonging);
+            },
+        );
+    }
+    Ok(surroundings)
+}
+
 /// E as the constant parts leave it, from what it was.
-fn looked_up(sphere: &Sphere, asked: &[Asked], before: &[Vec3]) -> Vec<Vec3> {
-    /// Points that are summed as one, whatever the number of threads.
-    const TOGETHER: usize = 8192;
+fn looked_up(sphere: &Sphere, asked: &[Asked], by_view: &[Vec<(u32, u32)>], before: &[Vec3]) -> Vec<Vec3> {
     /// What lies off by this is trusted half, in roots of light.
-    const SCALE: f32 = 0.3;
-    let parts: Vec<Vec<(Vec3, f32)>> = asked
-        .par_chunks(TOGETHER)
-        .map(|points| {
-            let mut sums = vec![(Vec3::ZERO, 0.0f32); sphere.count()];
-            for point in points {
-                for seen in &point.seen {
+    const SCALE: f32 = 1.0;
+    /// Views that are worked on at once.
+    const AT_ONCE: usize = 8;
+    let mut sums = vec![(Vec3::ZERO, 0.0f32); sphere.count()];
+    for views in by_view.chunks(AT_ONCE) {
+        let parts: Vec<Vec<(Vec3, f32)>> = views
+            .par_iter()
+            .map(|seen| {
+                let mut sums = vec![(Vec3::ZERO, 0.0f32); sphere.count()];
+                for &(point, number) in seen {
+                    let point = &asked[point as usize];
+                    let seen = &point.seen[number as usize];
                     let known = seen.mirrored(before);
                     let left = seen.sample.light - point.constant;
                     if seen.is_clipped && known.cmpge(left).all() {
@@ -265,15 +313,15 @@ fn looked_up(sphere: &Sphere, asked: &[Asked], before: &[Vec3]) -> Vec<Vec3> {
                         sum.1 += seen.share * trust * weight;
                     }
                 }
+                sums
+            })
+            .collect();
+        for part in parts {
+            for (sum, (light, weight)) in sums.iter_mut().zip(part) {
+                let share = if weight > MOST_OF_VIEW { MOST_OF_VIEW / weight } else { 1.0 };
+                sum.0 += light * share;
+                sum.1 += weight * share;
             }
-            sums
-        })
-        .collect();
-    let mut sums = vec![(Vec3::ZERO, 0.0f32); sphere.count()];
-    for part in parts {
-        for (sum, part) in sums.iter_mut().zip(part) {
-            sum.0 += part.0;
-            sum.1 += part.1;
         }
     }
     sphere.smoothed(&sums, HOLD).into_iter().map(|light| light.max(Vec3::ZERO)).collect()
