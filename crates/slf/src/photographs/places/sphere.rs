@@ -35,13 +35,15 @@ impl Sphere {
         let at = Vec2::new(azimuth * self.columns as f32, polar * self.rows as f32) - 0.5;
         let floor = at.floor();
         let share = at - floor;
-        let column = |x: i64| x.rem_euclid(self.columns as i64) as usize;
-        let row = |y: i64| y.clamp(0, self.rows as i64 - 1) as usize;
+        let (columns, rows) = (self.columns as i64, self.rows as i64);
         let (x, y) = (floor.x as i64, floor.y as i64);
         [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(dx, dy)| {
             let across = if dx == 0 { 1.0 - share.x } else { share.x };
             let down = if dy == 0 { 1.0 - share.y } else { share.y };
-            (row(y + dy) * self.columns + column(x + dx), across * down)
+            // Beyond a pole it goes on on the other side.
+            let row = (y + dy).clamp(0, rows - 1);
+            let column = (x + dx + if row == y + dy { 0 } else { columns / 2 }).rem_euclid(columns);
+            ((row * columns + column) as usize, across * down)
         })
     }
 
@@ -91,5 +93,18 @@ mod tests {
         }
         let shares: f32 = sphere.around(Vec3::new(0.6, -0.8, 0.0)).iter().map(|(_, share)| share).sum();
         assert!((shares - 1.0).abs() < 1e-6);
+    }
+
+    #[test]
+    fn what_lies_at_a_pole_is_passed_without_a_jump() {
+        let sphere = Sphere::of_rows(16);
+        let value = |cell: usize| (cell * 7 % 11) as f32;
+        for pole in [Vec3::Y, Vec3::NEG_Y] {
+            let at = |step: f32| {
+                let around = sphere.around((pole + Vec3::new(0.6, 0.0, -0.8) * step).normalize());
+                around.iter().map(|&(cell, share)| value(cell) * share).sum::<f32>()
+            };
+            assert!((at(1e-5) - at(-1e-5)).abs() < 0.01 && (at(0.2) - at(-0.2)).abs() > 0.1);
+        }
     }
 }
