@@ -93,7 +93,7 @@ impl Radiance for DirectPhotographs {
         let strength = believed(&mirrored.strength_of_block);
         let told = strength * share;
         // Of each sample: from where, and what is mirrored there by a strength of 1.
-        let directions: Vec<(Vec3, Vec3)> = samples
+        let looks: Vec<(Vec3, Vec3)> = samples
             .iter()
             .map(|&(number, _)| {
                 let direction = toward(position, light.eyes[number]);
@@ -107,7 +107,7 @@ impl Radiance for DirectPhotographs {
             work.samples.extend(
                 samples
                     .iter()
-                    .zip(&directions)
+                    .zip(&looks)
                     .map(|((_, sample), (_, sent))| sample.with_light(sample.light - *sent * strength)),
             );
             robust_mean(&work.samples, &mut Vec::new())
@@ -118,7 +118,7 @@ impl Radiance for DirectPhotographs {
             constant = constant.lerp(mean(strength).max(Vec3::ZERO), share);
         }
         work.known.clear();
-        for (place, ((_, sample), &(direction, sent))) in samples.iter().zip(&directions).enumerate() {
+        for (place, ((_, sample), &(direction, sent))) in samples.iter().zip(&looks).enumerate() {
             let residual = sample.light - constant - sent * told;
             work.known.push(Known { place, direction, residual, weight: sample.counts(plain) });
         }

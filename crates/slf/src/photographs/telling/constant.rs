@@ -125,7 +125,9 @@ fn median(samples: &[Sample]) -> Vec3 {
             let clipped = if sample.light.max_position() == channel { sample.limited() } else { 0.0 };
             let light = sample.light[channel];
             for (is_least, weight) in [(false, 1.0 - clipped), (true, clipped)] {
-                values.push(Value { light, is_least, weight: weight * sample.weight });
+                if weight > 0.0 {
+                    values.push(Value { light, is_least, weight: weight * sample.weight });
+                }
             }
         }
         median_of_limited(&mut values)
@@ -146,7 +148,7 @@ fn median_of_limited(values: &mut [Value]) -> f32 {
     // The share of values that lie above.
     let mut above = 1.0;
     for value in values.iter() {
-        if !value.is_least && value.weight > 0.0 {
+        if !value.is_least {
             above *= (1.0 - value.weight / at_risk).max(0.0);
             if above <= 0.5 {
                 return value.light;
