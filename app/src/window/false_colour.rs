@@ -63,11 +63,27 @@ pub fn nearness_color(share: f32) -> [u8; 3] {
 
 /// Draws the map as a bar from the nearest blur to the farthest; `fade` below 1 for a control that is off.
 pub fn paint_bar(painter: &Painter, rect: Rect, fade: f32) {
+    let color = |[r, g, b]: [f32; 3]| {
+        let [r, g, b] = [r, g, b].map(|c| (c * 255.0).round() as u8);
+        Color32::from_rgb(r, g, b).gamma_multiply(fade)
+    };
+    paint_stops(painter, rect, &STOPS.map(color));
+}
+
+/// Draws the colours of what is far to near, or few to many, as a bar.
+pub fn paint_nearness_bar(painter: &Painter, rect: Rect) {
+    paint_stops(
+        painter,
+        rect,
+        &[0.0, 0.5, 1.0].map(nearness_color).map(|[r, g, b]| Color32::from_rgb(r, g, b)),
+    );
+}
+
+/// Draws colours, equally spaced and interpolated, as a bar.
+fn paint_stops(painter: &Painter, rect: Rect, colors: &[Color32]) {
     let mut mesh = Mesh::default();
-    let last = STOPS.len() - 1;
-    for (index, stop) in STOPS.iter().enumerate() {
-        let [r, g, b] = stop.map(|c| (c * 255.0).round() as u8);
-        let color = Color32::from_rgb(r, g, b).gamma_multiply(fade);
+    let last = colors.len() - 1;
+    for (index, &color) in colors.iter().enumerate() {
         let x = rect.left() + rect.width() * index as f32 / last as f32;
         mesh.colored_vertex(pos2(x, rect.top()), color);
         mesh.colored_vertex(pos2(x, rect.bottom()), color);

@@ -36,7 +36,7 @@ pub struct Coat {
 }
 
 /// What no photograph sees, sRGB-encoded.
-const UNSEEN: [u8; 3] = [200, 40, 140];
+pub const UNSEEN: [u8; 3] = [200, 40, 140];
 /// From so many on it does not matter how many there are.
 const MANY: f32 = 32.0;
 
@@ -101,9 +101,13 @@ fn encoded(linear: Vec3) -> [u8; 3] {
     linear.to_array().map(gamma_u8_from_linear_f32)
 }
 
-/// By the logarithm of the count: the first photographs matter most.
 fn color_of_count(count: u16) -> [u8; 3] {
-    nearness_color(f32::from(count.max(1)).ln() / MANY.ln())
+    nearness_color(share_of_count(count))
+}
+
+/// By the logarithm of the count: the first photographs matter most. 0 for one, 1 for [`MANY`].
+pub fn share_of_count(count: u16) -> f32 {
+    (f32::from(count.max(1)).ln() / MANY.ln()).min(1.0)
 }
 
 #[cfg(test)]

@@ -10,6 +10,7 @@ mod changed_pixels;
 mod coat;
 mod focus_texture;
 mod graphics;
+mod legend;
 mod orbit_camera;
 #[cfg(test)]
 mod shader_twin;

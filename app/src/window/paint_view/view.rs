@@ -2,6 +2,7 @@
 
 use super::changed_pixels::changed_pixels;
 use super::coat::{Coat, Coating};
+use super::legend;
 use super::{
     FocusTexture, GraphicsError, OrbitCamera, Stale, SurfaceFrame, SurfaceLook, SurfaceMesh, SurfaceRenderer,
 };
@@ -12,7 +13,7 @@ use crate::window::hand::Hand;
 use crate::window::navigation::{self, Motion};
 use crate::window::pointer::StrokeInput;
 use crate::window::region_highlight::RegionHighlight;
-use crate::window::{Action, false_colour, theme};
+use crate::window::{Action, theme};
 use egui::{Color32, Pos2, Rect, Response, Sense, Stroke, Ui, pos2, vec2};
 use glam::{DVec2, DVec3};
 use lens::Camera;
@@ -308,9 +309,7 @@ impl PaintView {
         self.hover = pointer.and_then(|at| hand.hit(session, &view, at));
         let painter = ui.painter_at(rect);
         self.paint_shot_camera(&painter, &document.camera, document.stage.bounds);
-        if look.focus_share > 0.0 {
-            legend(&painter, rect);
-        }
+        legend::paint(&painter, rect, look.focus_share > 0.0, self.coating);
         self.stroke.paint(ui, rect, session, hand, &view);
         let targets = hand.targets(session, self.hover.filter(|_| response.hovered()));
         self.highlight.paint(ui, document, (frame, rect, rect), &targets);
@@ -438,42 +437,6 @@ impl PaintView {
         if let [Some(a), Some(b)] = ends {
             painter.line_segment([a, b], stroke);
         }
-    }
-}
-
-/// In a view smaller than this there is no room for the legend, points.
-const LEAST_LEGEND_WIDTH: f32 = 120.0;
-const LEAST_LEGEND_HEIGHT: f32 = 120.0;
-
-/// What the colours mean, in the lower right corner.
-fn legend(painter: &egui::Painter, rect: Rect) {
-    // Its box reaches 18 points further on either side, and stands 8 from the corner.
-    let width = (rect.width() - 60.0).min(200.0);
-    if width < LEAST_LEGEND_WIDTH || rect.height() < LEAST_LEGEND_HEIGHT {
-        return;
-    }
-    let bar = Rect::from_min_size(rect.right_bottom() - vec2(width + 26.0, 34.0), vec2(width, 8.0));
-    painter.rect_filled(
-        bar.expand2(vec2(18.0, 5.0)).with_max_y(bar.bottom() + 20.0),
-        3.0,
-        Color32::from_black_alpha(140),
-    );
-    false_colour::paint_bar(painter, bar, 1.0);
-    let label = |circle_px: f64, text: &str| {
-        let x = bar.center().x + bar.width() / 2.0 * false_colour::position(circle_px) as f32;
-        let font = egui::FontId::proportional(10.0);
-        painter.text(
-            pos2(x, bar.bottom() + 3.0),
-            egui::Align2::CENTER_TOP,
-            text,
-            font,
-            Color32::from_gray(220),
-        );
-    };
-    label(-64.0, "near 64");
-    label(64.0, "64 far");
-    for (px, text) in [(-8.0, "8"), (0.0, "sharp"), (8.0, "8")] {
-        label(px, text);
     }
 }
 
