@@ -21,6 +21,8 @@ pub(crate) struct Sample {
 const CLIPPED_COUNTS: f32 = 0.005;
 /// From told brighter by this share on, which is what noise leaves open.
 const CLIPPED_SURE: f32 = 0.05;
+/// Channels of a clipped sample that are no darker than this share of its brightest one are at their limit, too: it was white.
+const AT_LIMIT: f32 = 0.95;
 /// From this share of its pixels on at the limit, a sample is wholly so: noise that is cut off at the limit leaves pixels below it.
 const LIMITED: f32 = 0.25;
 
@@ -122,8 +124,9 @@ fn median(samples: &[Sample]) -> Vec3 {
     Vec3::from_array(std::array::from_fn(|channel| {
         values.clear();
         for sample in samples {
-            let clipped = if sample.light.max_position() == channel { sample.limited() } else { 0.0 };
             let light = sample.light[channel];
+            let is_at_limit = light >= AT_LIMIT * sample.light.max_element();
+            let clipped = if is_at_limit { sample.limited() } else { 0.0 };
             for (is_least, weight) in [(false, 1.0 - clipped), (true, clipped)] {
                 if weight > 0.0 {
                     values.push(Value { light, is_least, weight: weight * sample.weight });
@@ -225,6 +228,20 @@ mod tests {
         samples.extend(limits.map(limited));
         let mean = robust_mean(&samples, &mut Vec::new()).x;
         assert!((1.1..1.35).contains(&mean), "{mean}");
+    }
+
+    #[test]
+    fn what_is_burnt_out_white_is_no_darker_in_one_channel_than_in_another() {
+        let cream = Vec3::new(1.3, 1.27, 1.25);
+        let limited = |limit: f32| Sample {
+            light: Vec3::new(limit, 0.98 * limit, 0.97 * limit),
+            weight: 1.0,
+            clipped: 1.0,
+        };
+        let mut samples: Vec<Sample> = [0.7, 0.75, 0.8, 0.85, 0.9, 0.95, 1.0].map(limited).to_vec();
+        samples.extend([0.98, 1.0, 1.02].map(|v| Sample { light: cream * v, weight: 1.0, clipped: 0.0 }));
+        let found = median(&samples);
+        assert!(found.distance(cream) < 0.05, "{found}");
     }
 
     #[test]
