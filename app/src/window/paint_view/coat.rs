@@ -38,7 +38,7 @@ pub struct Coat {
 /// What no photograph sees, sRGB-encoded.
 pub const UNSEEN: [u8; 3] = [200, 40, 140];
 /// From so many on it does not matter how many there are.
-const MANY: f32 = 32.0;
+pub const MANY: f32 = 32.0;
 
 impl Coat {
     /// A surface's coat; none where it is to be shown in its materials. What photographs show of it they show toward all directions alike.

@@ -1,6 +1,6 @@
 //! What the colours of the paint view mean, in its lower right corner.
 
-use super::coat::{Coating, UNSEEN, share_of_count};
+use super::coat::{Coating, MANY, UNSEEN, share_of_count};
 use crate::window::false_colour;
 use egui::{Align2, Color32, FontId, Painter, Rect, pos2, vec2};
 
@@ -49,9 +49,10 @@ fn coat(painter: &Painter, bar: Rect, coating: Coating) {
         Coating::Seeing => {
             let counted = unseen(painter, bar, "none");
             false_colour::paint_nearness_bar(painter, counted);
-            for (count, text) in [(1, "1"), (3, "3"), (10, "10"), (32, "32+")] {
+            for (count, text) in [(1, "1"), (3, "3"), (10, "10")] {
                 label(painter, counted, share_of_count(count), text);
             }
+            label(painter, counted, 1.0, &format!("{MANY}+"));
         }
         Coating::Depth => {
             false_colour::paint_nearness_bar(painter, bar);

@@ -67,8 +67,10 @@ impl PhotographLight {
         if options.model == PhotographModel::Light {
             sightings.block(|texel, view| {
                 let outgoing = toward(texels.position(texel), eyes[view]);
-                is_blocked(tracer, texels.point(texel), texels.shading_normal(texel), outgoing)
+                !progress.cancelled()
+                    && is_blocked(tracer, texels.point(texel), texels.shading_normal(texel), outgoing)
             });
+            progress.check()?;
         }
         let radiance = Calibrated { texels: &texels, sightings: &sightings, eyes: &eyes };
         let seeing = (0..texels.count()).map(|texel| sightings.range(texel).len() as u16).collect();

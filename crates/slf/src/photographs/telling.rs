@@ -5,7 +5,8 @@
 //!                            └▶ filling               └ directions
 //! ```
 //!
-//! `told` has them in this order, `one_view` the plain texture to compare with; `beyond` tells the light from infinity.
+//! `told` has them in this order, `one_view` the plain texture to compare with; `beyond` tells the light from infinity,
+//! `reflection` what a surface mirrors and what is in its way.
 
 mod beyond;
 mod calibrated;
