@@ -8,6 +8,7 @@
 //! * `ci` is everything that must be green: crate directions, circles of modules, licences, formatting, lints, docs, tests.
 //! * `package` makes what people install who have no compiler, and a source archive that builds without a network.
 //! * `demo` makes the demo scene in `assets/demo` anew.
+//! * `figures` writes the tables and plots of the performance pages from `docs/figures`.
 //!
 //! Pure Rust without build scripts of its own, so that it runs where only Rust and a C linker are.
 
@@ -15,6 +16,7 @@ mod chore;
 mod ci;
 mod crate_directions;
 mod demo;
+mod figures;
 mod licences;
 mod module_circles;
 mod package;
@@ -34,6 +36,8 @@ usage: cargo xtask CHORE
                 packages to install, a folder that runs from anywhere, a source archive that
                 builds without a network; in target/package
   demo          make the demo scene in assets/demo anew
+  figures [--check]
+                write the tables and plots of the performance pages from docs/figures
   window [ARG…] act on the real window under Xvfb, with a screenshot of every step
   circles [CRATE…]
                 modules of a crate that use one another, and by which names
@@ -56,6 +60,7 @@ fn main() -> std::process::ExitCode {
         "package" => package::package(&rest),
         "ci" => ci::ci(),
         "demo" => demo::demo(sky_rays(&rest)),
+        "figures" => figures::figures(&rest),
         "" | "help" | "-h" | "--help" => {
             println!("{USAGE}");
             Ok(())
