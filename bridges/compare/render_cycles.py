@@ -32,7 +32,7 @@ import sys
 import time
 import zipfile
 
-# The camera's fields that have a default, as docs/files.md has them.
+# The camera's fields that have a default, as docs/reference/files.md has them.
 CAMERA_DEFAULTS = {
     "focus_distance": 3.0,
     "aperture_radius": 0.0125,
@@ -60,7 +60,7 @@ def read_json(path):
     except OSError as error:
         raise BadInput(f"{path}: {error.strerror} (check the path)") from None
     except ValueError as error:
-        raise BadInput(f"{path}: {error} (write it as docs/files.md says)") from None
+        raise BadInput(f"{path}: {error} (write it as docs/reference/files.md says)") from None
 
 
 def read_camera_and_world(path):

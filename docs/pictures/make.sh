@@ -1,11 +1,11 @@
 #!/bin/bash
-# Makes the book's pictures of the demo anew: docs/pictures/*.jpg, and the figures *.svg.
+# Renders the book's pictures of the demo again: docs/pictures/*/*.jpg, and the drawings docs/pictures/model/*.svg.
 #
 #   docs/pictures/make.sh [FOCUS-BRUSH] [FOLDER]
 #
 # FOCUS-BRUSH is the program (default: the one on the path). What is in between goes to FOLDER and is kept: a light field that is
 # there is not baked again (default: a temporary folder). Needs ImageMagick and Python. All is drawn from assets/demo and from
-# what stands beside this script; a light field is baked once and serves all pictures. Cycles' picture in cycles.jpg comes from
+# what stands beside this script; a light field is baked once and serves all pictures. Cycles' picture in comparing/cycles.jpg comes from
 # bridges/compare/render_cycles.py, which needs bpy: it is made if PYTHON_WITH_BPY names a Python that has it, else left as it is.
 set -eu
 root=$(cd "$(dirname "$0")/../.." && pwd)
@@ -23,7 +23,7 @@ fi
 # Pictures in rows, with captions of so many pixels, which can be read on a narrow screen, too: `sheet 28 -tile 2x2 …`.
 sheet() { montage -font DejaVu-Sans -pointsize "$1" -fill '#222' -background white -geometry '+4+4' "${@:2}"; }
 
-python3 "$here/figures.py" "$here"
+python3 "$here/model/figures.py" "$here/model"
 
 ln -sf "$demo/demo.glb" demo.glb
 [ -e demo.salf ] || "$program" bake demo.glb --camera "$demo/demo.camera.json" --size 640x360 -o demo.salf
@@ -37,13 +37,13 @@ json.dump(camera, open(sys.argv[4], "w"))' \
 # What the anchor does: the tower is made sharp in either way, then the lens is focused elsewhere.
 camera focus_distance 0.42 near.json
 for anchor in point lens; do
-    draw --focus "$here/tower-by-$anchor.focus.json" -o "$anchor-fox.png"
-    draw --camera near.json --focus "$here/tower-by-$anchor.focus.json" -o "$anchor-near.png"
+    draw --focus "$here/painting/tower-by-$anchor.focus.json" -o "$anchor-fox.png"
+    draw --camera near.json --focus "$here/painting/tower-by-$anchor.focus.json" -o "$anchor-near.png"
 done
 sheet 26 -tile 2x2 \
     -label 'by point, lens focused on the fox' point-fox.png -label 'by lens, lens focused on the fox' lens-fox.png \
     -label 'by point, lens focused nearer' point-near.png -label 'by lens, lens focused nearer' lens-near.png \
-    -quality 88 "$here/anchor.jpg"
+    -quality 88 "$here/painting/anchor.jpg"
 
 # The same lens, closed.
 stops=()
@@ -52,7 +52,7 @@ for stop in "f/9.4 0.0025" "f/4.7 0.005" "f/2.3 0.01" "f/1.1 0.0205"; do
     draw --aperture-radius "$2" -o "stop-$2.png"
     stops+=(-label "$1" "stop-$2.png")
 done
-sheet 26 -tile 2x2 "${stops[@]}" -quality 88 "$here/stops.jpg"
+sheet 26 -tile 2x2 "${stops[@]}" -quality 88 "$here/lens-and-bokeh/stops.jpg"
 
 # Shapes: the lights at the upper left, and one of them in near blur.
 lights=260x200+380+20
@@ -62,13 +62,13 @@ for shape in "Round" "Hexagon" "Star" "Heart" "Ring (mirror lens)" "Anamorphic 2
     convert whole.png -crop "$lights" +repage "shape-${#labels[@]}.png"
     labels+=(-label "$shape" "shape-${#labels[@]}.png")
 done
-sheet 20 -tile 3x2 "${labels[@]}" -quality 88 "$here/bokeh.jpg"
+sheet 20 -tile 3x2 "${labels[@]}" -quality 88 "$here/lens-and-bokeh/bokeh.jpg"
 
 draw --bokeh Heart -o whole.png
 convert whole.png -crop "$lights" +repage far.png
-draw --bokeh Heart --focus "$here/lights-in-near-blur.focus.json" -o whole.png
+draw --bokeh Heart --focus "$here/lens-and-bokeh/lights-in-near-blur.focus.json" -o whole.png
 convert whole.png -crop "$lights" +repage turned.png
-sheet 16 -tile 2x1 -label 'far blur' far.png -label 'painted near' turned.png -quality 88 "$here/near-and-far.jpg"
+sheet 16 -tile 2x1 -label 'far blur' far.png -label 'painted near' turned.png -quality 88 "$here/lens-and-bokeh/near-and-far.jpg"
 
 # Beside Cycles, and how far two pictures of Cycles are from each other.
 if [ -n "${PYTHON_WITH_BPY:-}" ]; then
@@ -81,5 +81,5 @@ if [ -n "${PYTHON_WITH_BPY:-}" ]; then
     echo "Cycles, Cycles of another seed" && "$program" compare cycles-1.exr cycles-0.exr
     for picture in ours cycles-0; do convert "$picture.exr" -colorspace sRGB "$picture.png"; done
     sheet 30 -tile 3x1 -label 'Focus Brush' ours.png -label 'Cycles' cycles-0.png -label 'FLIP' map.png -quality 88 \
-        "$here/cycles.jpg"
+        "$here/comparing/cycles.jpg"
 fi

@@ -1,4 +1,4 @@
-"""Makes the pictures of docs/blender.md. Run with a Python that has bpy; FOCUS_BRUSH names the program."""
+"""Makes the pictures of docs/guide/blender.md. Run with a Python that has bpy; FOCUS_BRUSH names the program."""
 
 import importlib
 import json
@@ -15,7 +15,7 @@ cycles_light, exr_file, focus_back, handover, meshes_back, names, program = (
     for name in ("cycles_light", "exr_file", "focus_back", "handover", "meshes_back", "names", "program")
 )
 
-OUT = workshop.HERE.parent.parent / "docs" / "pictures"
+OUT = workshop.HERE.parent.parent / "docs" / "pictures" / "blender"
 SIZE = (320, 200)
 RECIPE = {"nodes": {"Rock": {"t": 1, "anchor": 1}, "Drop": {"t": 0.93, "anchor": 1}}}
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Reads a `.salf` file as docs/salf.md describes it, and nothing else; needs Python 3 alone.
+"""Reads a `.salf` file as docs/reference/salf.md describes it, and nothing else; needs Python 3 alone.
 
     read_salf.py FILE.salf              what it holds on the whole, as one JSON object
     read_salf.py FILE.salf --samples    every sample, a JSON object a line

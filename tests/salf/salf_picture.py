@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The standard picture of a `.salf` file, by the sum that docs/salf.md gives; needs Python 3 alone.
+"""The standard picture of a `.salf` file, by the sum that docs/reference/salf.md gives; needs Python 3 alone.
 
     salf_picture.py FILE.salf OUT.pfm [POINTS]
 

@@ -22,7 +22,7 @@ pub struct SequenceArguments {
     /// The animation of the scene's file, by name (default: the first; info lists them)
     #[arg(long, value_name = "NAME", value_parser = name_parser())]
     pub animation: Option<String>,
-    /// How the lens moves: keys in a file instead of the project's (docs/sequences.md)
+    /// How the lens moves: keys in a file instead of the project's (docs/guide/sequences.md)
     #[arg(long, value_name = "KEYS.json")]
     pub keys: Option<PathBuf>,
     /// This share of the frames or tiles: the K-th of N; env: as the farm says (Slurm's arrays, indexed jobs of Kubernetes, GNU parallel)
@@ -32,14 +32,14 @@ pub struct SequenceArguments {
 
 impl SequenceArguments {
     /// Whether the picture is one of a sequence.
-    pub fn is_asked_for(&self) -> bool {
+    pub fn is_sequence(&self) -> bool {
         self.frame.is_some() || self.frames.is_some()
     }
 }
 
 fn shard(text: &str) -> Result<Shard, String> {
     match text {
-        "env" => Shard::of_environment(&|name| std::env::var(name).ok()),
+        "env" => Shard::from_environment(&|name| std::env::var(name).ok()),
         _ => text.parse(),
     }
 }
@@ -73,7 +73,7 @@ pub struct KeysArguments {
 }
 
 fn ease(text: &str) -> Result<Ease, String> {
-    Ease::named(text).ok_or_else(|| "hold, linear or smooth".into())
+    Ease::from_name(text).ok_or_else(|| "hold, linear or smooth".into())
 }
 
 /// A number that is none is told later, with what it is for.

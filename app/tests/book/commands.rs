@@ -32,7 +32,7 @@ fn page() -> String {
 /// `UPDATE_BOOK=1 cargo test -p focus-brush --test book` writes it anew.
 #[test]
 fn the_page_of_commands_is_the_programs_own_help() {
-    let file = repository().join("docs/commands.md");
+    let file = repository().join("docs/reference/commands.md");
     let page = page();
     if std::env::var_os("UPDATE_BOOK").is_some() {
         std::fs::write(&file, &page).unwrap();
@@ -41,6 +41,6 @@ fn the_page_of_commands_is_the_programs_own_help() {
     let differs = written.lines().zip(page.lines()).find(|(written, told)| written != told);
     assert!(
         written == page,
-        "docs/commands.md is not what the program says: {differs:?} (write it anew: UPDATE_BOOK=1 cargo test -p focus-brush --test book)"
+        "docs/reference/commands.md is not what the program says: {differs:?} (write it anew: UPDATE_BOOK=1 cargo test -p focus-brush --test book)"
     );
 }

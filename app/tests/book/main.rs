@@ -1,8 +1,10 @@
-//! The book (`docs`) tells the truth: its page of commands is the program's own help, its links lead somewhere, its commands run.
+//! The book (`docs`) is true: its page of commands is the program's own help, its links lead somewhere, its commands run, and the program understands
+//! the commands of its figures.
 
 #[path = "../card_light_field/mod.rs"]
 mod card_light_field;
 mod commands;
+mod figures;
 mod links;
 mod pages;
 #[path = "../program/mod.rs"]

@@ -1,4 +1,4 @@
-//! The pages of the book, and the README.
+//! The pages of the book, and those beside it: the README and its kin.
 
 use std::path::{Path, PathBuf};
 
@@ -9,11 +9,18 @@ pub fn repository() -> PathBuf {
 
 /// All pages, in order of their names.
 pub fn pages() -> Vec<PathBuf> {
-    let mut pages = vec![repository().join("README.md"), repository().join("ARCHITECTURE.md")];
-    for folder in ["docs", "docs/notebook"] {
-        let entries = std::fs::read_dir(repository().join(folder)).unwrap();
-        let files = entries.map(|entry| entry.unwrap().path());
-        pages.extend(files.filter(|file| file.extension().is_some_and(|e| e == "md")));
+    let beside = ["README.md", "ARCHITECTURE.md", "CONTRIBUTING.md", "SECURITY.md", "CHANGELOG.md"];
+    let mut pages: Vec<_> = beside.iter().map(|name| repository().join(name)).collect();
+    let mut folders = vec![repository().join("docs")];
+    while let Some(folder) = folders.pop() {
+        for entry in std::fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                folders.push(path);
+            } else if path.extension().is_some_and(|e| e == "md") {
+                pages.push(path);
+            }
+        }
     }
     pages.sort();
     pages

@@ -49,14 +49,14 @@ fn sky(file: &Path) {
 /// The project with a second layer.
 fn layered(project: ProjectFile, file: &Path) {
     let map = project.focus_map.clone().unwrap();
-    let layers = ["Paint", "far lamp"].map(|name| FocusLayer::painted(name, map.clone()));
+    let layers = ["Paint", "far lamp"].map(|name| FocusLayer::from_map(name, map.clone()));
     let layers = LayerStack::new(layers.into(), 1);
     ProjectFile { layers, ..project }.save(file).unwrap();
 }
 
 /// One stroke across the picture, as the window records it.
 fn strokes(project: &ProjectFile, file: &Path) {
-    let view = ViewFrame::of(&project.cameras[0].camera);
+    let view = ViewFrame::from_camera(&project.cameras[0].camera);
     let brush = Brush { radius: 0.3, target: FocusOffset::new(1.4, 0.5), ..Brush::default() };
     let points = (0..20).map(|k| [0.3 + 0.02 * f64::from(k), 0.5, 1.0]).collect();
     let stroke = RecordedStroke { layer: "Paint".into(), brush, view: view.into(), points };

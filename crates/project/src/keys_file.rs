@@ -15,7 +15,7 @@ use std::path::Path;
 /// The file; what stands there that is nothing of it is a mistake.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Form {
+struct KeysFile {
     #[serde(default)]
     focus: Keys<FocusTarget>,
     #[serde(default)]
@@ -27,8 +27,8 @@ struct Form {
 /// # Errors
 /// The file cannot be read, is in another form, or has keys that cannot be used.
 pub fn read_keys(file: &Path) -> Result<LensMotion, ProjectError> {
-    let cure = "see docs/sequences.md for its form";
-    let Form { focus, f_number } = serde_json::from_str(&read_text(file)?)
+    let cure = "see docs/guide/sequences.md for its form";
+    let KeysFile { focus, f_number } = serde_json::from_str(&read_text(file)?)
         .map_err(|error| ProjectError::content(file, format!("holds no keys of a lens: {error}"), cure))?;
     let motion = LensMotion { focus, f_number };
     match motion.is_valid() {

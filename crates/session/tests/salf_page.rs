@@ -1,4 +1,4 @@
-//! `docs/salf.md` says what a `.salf` file is: another program that was written by it (`tests/salf/read_salf.py`) finds in our
+//! `docs/reference/salf.md` says what a `.salf` file is: another program that was written by it (`tests/salf/read_salf.py`) finds in our
 //! files what our own reader finds, sample by sample, and draws the same picture.
 
 mod tiny_glb;
@@ -200,7 +200,7 @@ fn block_of_page<'a>(page: &'a str, start: &str) -> Vec<&'a str> {
 
 /// The example's file, into `folder`, and what the page says that it holds.
 fn example(folder: &Path) -> (PathBuf, Vec<Value>) {
-    let page = std::fs::read_to_string(Path::new(ROOT).join("docs/salf.md")).unwrap();
+    let page = std::fs::read_to_string(Path::new(ROOT).join("docs/reference/salf.md")).unwrap();
     let digits = block_of_page(&page, "464253414c46").concat();
     let byte = |at: usize| u8::from_str_radix(&digits[at..at + 2], 16).unwrap();
     let file = folder.join("example.salf");

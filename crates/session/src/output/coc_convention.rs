@@ -7,7 +7,7 @@
 //! | magicdefocus | 0 | above 0 | below 0 | its radius: ∓D/2 |
 //! | flame | 0.5 | to 0 | to 1 | 0.5 ± D/(2·H), H the frame's height, in [0, 1] |
 //!
-//! Where they are from is told in `docs/compositing.md`.
+//! Where they are from is told in `docs/guide/compositing.md`.
 
 /// What the layer `coc` holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -34,16 +34,16 @@ impl CocConvention {
 
     /// The one of this name.
     pub fn named(name: &str) -> Option<Self> {
-        Self::ALL.iter().find(|(known, _)| *known == name).map(|(_, convention)| *convention)
+        Self::ALL.iter().find(|(entry_name, _)| *entry_name == name).map(|(_, convention)| *convention)
     }
 
     /// Its name on the command line.
     pub fn name(self) -> &'static str {
-        Self::ALL.iter().find(|(_, known)| *known == self).map_or("", |(name, _)| name)
+        Self::ALL.iter().find(|(_, convention)| *convention == self).map_or("", |(name, _)| name)
     }
 
     /// What it says of a circle of this signed diameter, px, in a frame of this height, px.
-    pub(crate) fn told(self, diameter: f32, frame_height: u32) -> f32 {
+    pub(crate) fn encode(self, diameter: f32, frame_height: u32) -> f32 {
         match self {
             Self::SignedPx => diameter,
             Self::Nuke => diameter / 2.0,
@@ -59,13 +59,13 @@ mod tests {
 
     #[test]
     fn each_convention_tells_near_from_far() {
-        let told =
-            |convention: CocConvention| [-10.0, 0.0, 10.0].map(|diameter| convention.told(diameter, 100));
-        assert_eq!(told(CocConvention::SignedPx), [-10.0, 0.0, 10.0]);
-        assert_eq!(told(CocConvention::Nuke), [-5.0, 0.0, 5.0]);
-        assert_eq!(told(CocConvention::MagicDefocus), [5.0, 0.0, -5.0]);
-        assert_eq!(told(CocConvention::Flame), [0.45, 0.5, 0.55]);
-        assert_eq!(CocConvention::Flame.told(1e9, 100), 1.0);
+        let encoded =
+            |convention: CocConvention| [-10.0, 0.0, 10.0].map(|diameter| convention.encode(diameter, 100));
+        assert_eq!(encoded(CocConvention::SignedPx), [-10.0, 0.0, 10.0]);
+        assert_eq!(encoded(CocConvention::Nuke), [-5.0, 0.0, 5.0]);
+        assert_eq!(encoded(CocConvention::MagicDefocus), [5.0, 0.0, -5.0]);
+        assert_eq!(encoded(CocConvention::Flame), [0.45, 0.5, 0.55]);
+        assert_eq!(CocConvention::Flame.encode(1e9, 100), 1.0);
         for (name, convention) in CocConvention::ALL {
             assert_eq!((CocConvention::named(name), convention.name()), (Some(convention), name));
         }

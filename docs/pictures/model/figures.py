@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Draws the figures of docs/model.md: `figures.py FOLDER` writes *.svg there. Curves and rays are computed from the formula."""
+"""Draws the figures of docs/theory/model.md: `figures.py FOLDER` writes *.svg there. Curves and rays are computed from the formula."""
 import math
 import sys
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Draws glTF models beside Cycles' pictures of them: ../models.jpg, and the rows of the table in ../models.md.
+"""Draws glTF models beside Cycles' pictures of them: models.jpg, and the rows of the table in docs/guide/models.md.
 
     python models.py FOCUS-BRUSH FOLDER MODEL.glb ... [--spp 192] [--size 320x240]
 
@@ -14,7 +14,7 @@ import subprocess
 import sys
 
 HERE = os.path.dirname(os.path.abspath(__file__))
-CYCLES = os.path.join(HERE, "..", "..", "bridges", "compare", "render_cycles.py")
+CYCLES = os.path.join(HERE, "..", "..", "..", "bridges", "compare", "render_cycles.py")
 # The brightest hundredth of a picture is shown at this grey, if it would be brighter.
 SHOWN_AT = 0.9
 
@@ -104,7 +104,7 @@ def main():
         run("montage", shown[0][1], shown[1][1], "-tile", "2x1", "-geometry", "+0+0", pair)
         pairs += ["-label", f"{name}: ours, Cycles'", pair]
     look = ["-font", "DejaVu-Sans", "-pointsize", "18", "-fill", "#222", "-background", "white", "-quality", "88"]
-    run("montage", *look, *pairs, "-tile", "2x", "-geometry", "+6+6", os.path.join(HERE, "..", "models.jpg"))
+    run("montage", *look, *pairs, "-tile", "2x", "-geometry", "+6+6", os.path.join(HERE, "models.jpg"))
 
 
 if __name__ == "__main__":
